@@ -1,0 +1,1 @@
+"""Exact region maps of planar tensegrity mechanisms."""

@@ -1,0 +1,69 @@
+"""The exceptions of ptmcad, as one tree.
+
+* PtmcadError
+  * ConfigError            -- the input is wrong: exit status 2, one message with file, line, key and remedy
+  * HypothesisError        -- the input is well formed but a hypothesis of the method fails
+    * DegenerateSliceError -- the whole slice lies inside the discriminant variety: exit status 2
+    * InfiniteSolutionsError -- infinitely many equilibria at every point of the slice: exit status 2
+    * GeometryError        -- a length or a stiffness is not positive somewhere in the window: exit status 2
+  * OutputError            -- a result could not be written: exit status 2
+  * LimitReached           -- a time limit stopped the computation: exit status 3
+
+"Undecided" is not in this tree: it is a value (`ptmcad.regionmap.Status.UNDECIDED`), never an exception.
+"""
+
+from __future__ import annotations
+
+
+class PtmcadError(Exception):
+    """Base of every exception that ptmcad raises on purpose."""
+
+
+class ConfigError(PtmcadError):
+    """The input is wrong.
+
+    Parameters
+    ----------
+    message : what is wrong and, in the same sentence or the next, the remedy.
+    key : dotted path of the offending key, such as ``axes.rho``, or the command-line option.
+    file, line : where it stands, when it stands in a file.
+    """
+
+    def __init__(self, message: str, *, key: str | None = None, file: str | None = None, line: int | None = None):
+        self.message = message
+        self.key = key
+        self.file = file
+        self.line = line
+        super().__init__(message)
+
+    def __str__(self) -> str:
+        place = ""
+        if self.file is not None:
+            place = self.file if self.line is None else f"{self.file}:{self.line}"
+        if self.key is not None:
+            place = f"{place}: {self.key}" if place else self.key
+        return f"{place}: {self.message}" if place else self.message
+
+
+class HypothesisError(PtmcadError):
+    """A hypothesis of the method is violated; the message names a witness."""
+
+
+class DegenerateSliceError(HypothesisError):
+    """Every point of the slice lies on the discriminant variety."""
+
+
+class InfiniteSolutionsError(HypothesisError):
+    """Every point of the slice has infinitely many equilibria."""
+
+
+class GeometryError(HypothesisError):
+    """A length or stiffness is not positive at some point of the window."""
+
+
+class OutputError(PtmcadError):
+    """A result could not be written."""
+
+
+class LimitReached(PtmcadError):
+    """A limit that the caller set stopped the computation."""

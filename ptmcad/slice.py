@@ -1,0 +1,93 @@
+"""A slice: a two-parameter family of mechanisms over a rectangular window, with exact rational data.
+
+Guarantee: a `Slice` that `config` has built is complete (every parameter of the mechanism has a value as a
+rational function of the two axes), its window is a nonempty rectangle, and no number in it was rounded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from fractions import Fraction
+from typing import Any
+
+from ptmcad.expressions import Expression
+
+
+class Count(Enum):
+    """Which count tells two regions apart."""
+
+    STABLE = "stable"
+    TOTAL = "total"
+    INDEX = "index"
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One axis of the window: the open interval ``low < name < high`` (its ends belong to the picture's edge)."""
+
+    name: str
+    low: Fraction
+    high: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Slice:
+    """The question that is put to `ptmcad.classify`.
+
+    Attributes
+    ----------
+    name : used for the names of the files that are written.
+    mechanism : the model's name, ``"ptm"`` for the paper's mechanism.
+    axes : the two axes, first the horizontal one.
+    parameters : every parameter of the mechanism as an `Expression` (a rational function in the two axes, exponent
+        pairs in the order of ``axes``). An axis that is itself a parameter maps to itself.
+    count : which count tells two regions apart.
+    title : the picture's title, the name when empty.
+    reference : published answers, as read from the record; never used by the computation.
+    text : each parameter as the user wrote it, for reports.
+    """
+
+    name: str
+    mechanism: str
+    axes: tuple[Axis, Axis]
+    parameters: Mapping[str, Expression]
+    count: Count = Count.STABLE
+    title: str = ""
+    reference: Mapping[str, Any] = field(default_factory=dict)
+    text: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def axis_names(self) -> tuple[str, str]:
+        return (self.axes[0].name, self.axes[1].name)
+
+
+class Point(tuple[Fraction, Fraction]):
+    """A point of the window: a pair of exact rationals, indexed by position or by the axis's name.
+
+    >>> p = Point(("rho", "L2"), Fraction(7, 10), Fraction(3, 2))
+    >>> p[0], p["L2"], dict(p)
+    (Fraction(7, 10), Fraction(3, 2), {'rho': Fraction(7, 10), 'L2': Fraction(3, 2)})
+    """
+
+    names: tuple[str, str]
+
+    def __new__(cls, names: tuple[str, str], x: Fraction, y: Fraction) -> Point:
+        point = super().__new__(cls, (x, y))
+        point.names = names
+        return point
+
+    def __getnewargs__(self) -> tuple[tuple[str, str], Fraction, Fraction]:
+        return (self.names, tuple.__getitem__(self, 0), tuple.__getitem__(self, 1))
+
+    def keys(self) -> Iterator[str]:
+        """The axes' names, so that ``dict(point)`` and ``locate(**point)`` work."""
+        return iter(self.names)
+
+    def __getitem__(self, key: Any) -> Any:
+        if isinstance(key, str):
+            if key not in self.names:
+                raise KeyError(key)
+            return tuple.__getitem__(self, self.names.index(key))
+        return tuple.__getitem__(self, key)
