@@ -1,0 +1,1 @@
+"""Open cylindrical algebraic decomposition of a rectangular window, with exact adjacency."""

@@ -1,0 +1,236 @@
+"""The quotient algebra Q(x, y)[unknowns]/I of a zero-dimensional ideal, by its multiplication table.
+
+Guarantee: exact. The norm of an element h is the product of its values at the solutions, with multiplicity; it is the
+determinant of multiplication by h. The Hermite form is (b_i, b_j) -> trace(h b_i b_j) on the monomial basis.
+
+References: Lazard & Rouillier, J. Symb. Comp. 42 (2007); Le & Safey El Din, arXiv 2011.14136 (Hermite matrices).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from operator import add
+
+from ptmcad.algebra.groebner import GroebnerBasis, Monomial
+from ptmcad.algebra.polynomials import (
+    ONE,
+    ZERO,
+    Coefficient,
+    Ratio,
+    UnknownPolynomial,
+    add_ratios,
+    common_factor,
+    lcm,
+    ratio,
+)
+
+Vector = tuple[tuple[Coefficient, ...], Coefficient]
+"""Coordinates on the monomial basis: numerators and one common denominator."""
+
+
+def standard_monomials(leading: Sequence[Monomial], unknowns: int) -> tuple[Monomial, ...] | None:
+    """The monomials outside the leading ideal, by degree; None when there are infinitely many."""
+    for k in range(unknowns):
+        if not any(sum(m) == m[k] for m in leading):
+            return None
+    found: list[Monomial] = []
+    layer = {(0,) * unknowns}
+    while layer:
+        kept = sorted(
+            m for m in layer if not any(all(i <= j for i, j in zip(n, m, strict=True)) for n in leading)
+        )
+        found += kept
+        layer = {m[:k] + (m[k] + 1,) + m[k + 1 :] for m in kept for k in range(unknowns)}
+    return tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class QuotientAlgebra:
+    """Monomial basis and normal forms; ``table`` grows as normal forms are asked for."""
+
+    basis: tuple[Monomial, ...]
+    table: dict[Monomial, Vector]
+
+    @property
+    def dimension(self) -> int:
+        """The number of complex solutions, counted with multiplicity, for generic axes."""
+        return len(self.basis)
+
+
+def quotient_algebra(groebner: GroebnerBasis) -> QuotientAlgebra | None:
+    """The quotient by the ideal; None when it is not zero-dimensional."""
+    unknowns = len(groebner.order.permutation)
+    basis = standard_monomials(groebner.leading, unknowns)
+    if basis is None:
+        return None
+    position = {m: i for i, m in enumerate(basis)}
+    table: dict[Monomial, Vector] = {
+        m: (tuple(ONE if i == k else ZERO for i in range(len(basis))), ONE) for m, k in position.items()
+    }
+    rules = dict(zip(groebner.leading, groebner.elements, strict=True))
+    algebra = QuotientAlgebra(basis, table)
+    border = {m[:k] + (m[k] + 1,) + m[k + 1 :] for m in basis for k in range(unknowns)} - position.keys()
+    for m in sorted(border, key=groebner.order.key):
+        if m in rules:
+            row = [ZERO] * len(basis)
+            for n, c in rules[m].items():
+                if n != m:
+                    row[position[n]] = -c
+            table[m] = _normalised(row, rules[m][m])
+        else:
+            # m is a proper multiple of a leading monomial, hence of a smaller border monomial
+            k, below = next(
+                (k, below)
+                for k in range(unknowns)
+                if m[k] and (below := m[:k] + (m[k] - 1,) + m[k + 1 :]) in table and below not in position
+            )
+            table[m] = _times_unknown(algebra, k, table[below])
+    return algebra
+
+
+def _normalised(row: Sequence[Coefficient], denominator: Coefficient) -> Vector:
+    common = common_factor([denominator, *row])
+    if common.is_one():
+        return tuple(row), denominator
+    return tuple(c / common for c in row), denominator / common
+
+
+def _sum(terms: Sequence[tuple[Coefficient, Coefficient, Vector]], dimension: int) -> Vector:
+    """The sum of (a/b) v over (a, b, v)."""
+    scale = lcm(b * v[1] for _, b, v in terms)
+    total = [ZERO] * dimension
+    for a, b, (row, denominator) in terms:
+        factor = a * (scale / (b * denominator))
+        for i, c in enumerate(row):
+            if not c.is_zero():
+                total[i] = total[i] + factor * c
+    return _normalised(total, scale)
+
+
+def _times_unknown(algebra: QuotientAlgebra, k: int, vector: Vector) -> Vector:
+    row, denominator = vector
+    terms = [
+        (c, denominator, algebra.table[m[:k] + (m[k] + 1,) + m[k + 1 :]])
+        for m, c in zip(algebra.basis, row, strict=True)
+        if not c.is_zero()
+    ]
+    return _sum(terms, algebra.dimension)
+
+
+def normal_form(algebra: QuotientAlgebra, monomial: Monomial) -> Vector:
+    """Coordinates of a monomial on the basis."""
+    if monomial not in algebra.table:
+        k = next(k for k, e in enumerate(monomial) if e)
+        below = monomial[:k] + (monomial[k] - 1,) + monomial[k + 1 :]
+        algebra.table[monomial] = _times_unknown(algebra, k, normal_form(algebra, below))
+    return algebra.table[monomial]
+
+
+def element(algebra: QuotientAlgebra, p: UnknownPolynomial) -> Vector:
+    """Coordinates of a polynomial on the basis."""
+    return _sum([(c, ONE, normal_form(algebra, m)) for m, c in p.items()], algebra.dimension)
+
+
+def norm(algebra: QuotientAlgebra, p: UnknownPolynomial) -> Ratio:
+    """The product of p over all complex solutions, as a rational function of the axes."""
+    images: dict[Monomial, Vector] = {algebra.basis[0]: element(algebra, p)}
+    for m in algebra.basis[1:]:
+        k, below = next(
+            (k, below)
+            for k in range(len(m))
+            if m[k] and (below := m[:k] + (m[k] - 1,) + m[k + 1 :]) in images
+        )
+        images[m] = _times_unknown(algebra, k, images[below])
+    return determinant([[ratio(c, images[m][1]) for c in images[m][0]] for m in algebra.basis])
+
+
+def multiplication_denominator(algebra: QuotientAlgebra) -> Coefficient:
+    """A common denominator of the multiplication matrices of the unknowns."""
+    return lcm(algebra.table[m[:k] + (m[k] + 1,) + m[k + 1 :]][1] for m in algebra.basis for k in range(len(m)))
+
+
+def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:
+    """The common denominator of trace(u^j), j = 1 ... dimension, for the unknown number k.
+
+    By Newton's identities the zeros of this polynomial are the poles of the characteristic polynomial of u: the
+    points of the plane near which the unknown u is unbounded on the solutions.
+    """
+    scale = ONE
+    vectors = [algebra.table[m] for m in algebra.basis]
+    for _ in range(algebra.dimension):
+        vectors = [_times_unknown(algebra, k, v) for v in vectors]
+        total: Ratio = (ZERO, ONE)
+        for i, (numerators, denominator) in enumerate(vectors):
+            total = add_ratios(total, ratio(numerators[i], denominator))
+        scale = lcm((scale, total[1]))
+    return scale
+
+
+def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:
+    """The Hermite matrix trace(b_i b_j); its determinant vanishes where solutions coincide."""
+    basis = algebra.basis
+    products = [
+        [normal_form(algebra, tuple(map(add, a, b))) for b in basis] for a in basis
+    ]
+    traces = []
+    for row in products:
+        total: Ratio = (ZERO, ONE)
+        for j, (numerators, denominator) in enumerate(row):
+            total = add_ratios(total, ratio(numerators[j], denominator))
+        traces.append(total)
+    matrix = []
+    for row in products:
+        entries = []
+        for numerators, denominator in row:
+            total = (ZERO, ONE)
+            for c, (above, below) in zip(numerators, traces, strict=True):
+                if not c.is_zero():
+                    total = add_ratios(total, ratio(c * above, denominator * below))
+            entries.append(total)
+        matrix.append(entries)
+    return matrix
+
+
+def determinant(rows: list[list[Ratio]]) -> Ratio:
+    """The determinant of a square matrix over Q(x, y): rows and columns made primitive, then Bareiss elimination."""
+    below = ONE
+    matrix = []
+    for row in rows:
+        scale = lcm(d for _, d in row)
+        matrix.append([n * (scale / d) for n, d in row])
+        below = below * scale
+    above = ONE
+    for j in range(len(matrix)):
+        common = common_factor(row[j] for row in matrix)
+        if common.is_zero():
+            return ZERO, ONE
+        if not common.is_one():
+            above = above * common
+            for row in matrix:
+                row[j] = row[j] / common
+    for i, row in enumerate(matrix):
+        common = common_factor(row)
+        if common.is_zero():
+            return ZERO, ONE
+        if not common.is_one():
+            above = above * common
+            matrix[i] = [c / common for c in row]
+    return ratio(above * _bareiss(matrix), below)
+
+
+def _bareiss(matrix: list[list[Coefficient]]) -> Coefficient:
+    size, previous, sign = len(matrix), ONE, 1
+    for k in range(size - 1):
+        candidates = [i for i in range(k, size) if not matrix[i][k].is_zero()]
+        if not candidates:
+            return ZERO
+        pivot = min(candidates, key=lambda i: (len(matrix[i][k]), i))
+        if pivot != k:
+            matrix[k], matrix[pivot] = matrix[pivot], matrix[k]
+            sign = -sign
+        for i in range(k + 1, size):
+            for j in range(k + 1, size):
+                matrix[i][j] = (matrix[k][k] * matrix[i][j] - matrix[i][k] * matrix[k][j]) / previous
+        previous = matrix[k][k]
+    return matrix[-1][-1] * sign

@@ -1,0 +1,246 @@
+"""Real roots of integer polynomials: isolation by Descartes' rule and bisection, refinement, rational points between.
+
+Guarantee: exact. Isolation finds every root in the open interval; isolating intervals have rational ends, are disjoint
+and contain one root each, an interval of length zero being the root itself.
+
+Reference: Collins & Akritas, SYMSAC 1976; Rouillier & Zimmermann, J. Comput. Appl. Math. 162 (2004).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from flint import fmpq, fmpz, fmpz_poly
+
+_SHIFT = fmpz_poly([1, 1])
+
+
+@dataclass(frozen=True, slots=True)
+class RealRoot:
+    """The only root of the squarefree ``polynomial`` in the open interval (low, high), or low itself if low == high."""
+
+    polynomial: fmpz_poly
+    low: fmpq
+    high: fmpq
+
+    @property
+    def is_rational(self) -> bool:
+        """Whether the root is known to be the rational ``low``."""
+        return bool(self.low == self.high)
+
+    @property
+    def middle(self) -> fmpq:
+        return (self.low + self.high) / 2
+
+
+def sign(value: fmpq | fmpz) -> int:
+    """-1, 0 or 1."""
+    return (value > 0) - (value < 0)
+
+
+def sign_at(p: fmpz_poly, at: fmpq) -> int:
+    """The sign of p at a rational point."""
+    return sign(fmpq(p(at)))
+
+
+def squarefree_part(p: fmpz_poly) -> fmpz_poly:
+    """p divided by gcd(p, p')."""
+    if p.degree() < 1:
+        return p
+    common = p.gcd(p.derivative())
+    return p if common.degree() == 0 else p // common
+
+
+def variations(p: fmpz_poly) -> int:
+    """The number of sign changes in the sequence of coefficients."""
+    count, last = 0, 0
+    for c in p.coeffs():
+        if c:
+            s = 1 if c > 0 else -1
+            count += s == -last
+            last = s
+    return count
+
+
+def _on_unit_interval(p: fmpz_poly, low: fmpq, high: fmpq) -> fmpz_poly:
+    """A positive multiple of p(low + (high - low) t)."""
+    width = high - low
+    scale = int(low.q) * int(width.q)
+    offset, step = int(low.p) * int(width.q), int(width.p) * int(low.q)
+    n = p.degree()
+    power, scaled = 1, []
+    for c in reversed(p.coeffs()):
+        scaled.append(c * power)
+        power *= scale
+    return fmpz_poly(scaled[::-1])(fmpz_poly([offset, step])) if n >= 0 else p
+
+
+def _descartes_bound(q: fmpz_poly, degree: int) -> int:
+    """Sign changes of (1 + t)^n q(1/(1 + t)): a bound for the number of roots of q in (0, 1), exact when 0 or 1."""
+    coefficients = q.coeffs()
+    coefficients += [0] * (degree + 1 - len(coefficients))
+    return variations(fmpz_poly(coefficients[::-1])(_SHIFT))
+
+
+def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
+    """The roots of a squarefree polynomial in the open interval (low, high), in increasing order."""
+    if p.degree() < 1:
+        return ()
+    degree = p.degree()
+    width = high - low
+    found: list[tuple[fmpq, fmpq]] = []
+    start = _on_unit_interval(p, low, high)
+    stack = [(start, fmpz(0), 0)]  # polynomial on (0, 1), number of the dyadic interval, its level
+    while stack:
+        q, number, level = stack.pop()
+        while q[0] == 0:
+            q = q.right_shift(1)
+        bound = _descartes_bound(q, q.degree())
+        if bound == 0:
+            continue
+        left, right = low + width * fmpq(number, 2**level), low + width * fmpq(number + 1, 2**level)
+        if bound == 1:
+            found.append((left, right))
+            continue
+        n = q.degree()
+        half = fmpz_poly([c << (n - i) for i, c in enumerate(q.coeffs())])
+        other = half(_SHIFT)
+        if other[0] == 0:
+            middle = (left + right) / 2
+            found.append((middle, middle))
+        stack.append((half, 2 * number, level + 1))
+        stack.append((other, 2 * number + 1, level + 1))
+    del degree
+    return tuple(_tidy(p, left, right) for left, right in sorted(found))
+
+
+def _tidy(p: fmpz_poly, low: fmpq, high: fmpq) -> RealRoot:
+    """The isolating interval with ends that are no roots, so that signs at its ends differ."""
+    if low == high:
+        return RealRoot(p, low, high)
+    derivative = p.derivative()
+    while True:
+        s, t = sign_at(p, low), sign_at(p, high)
+        s = s or sign_at(derivative, low)
+        t = t or -sign_at(derivative, high)
+        if sign_at(p, low) and sign_at(p, high):
+            return RealRoot(p, low, high)
+        middle = (low + high) / 2
+        u = sign_at(p, middle)
+        if u == 0:
+            return RealRoot(p, middle, middle)
+        if u == s:
+            low = middle
+        else:
+            high = middle
+
+
+def halve(root: RealRoot) -> RealRoot:
+    """The same root in an interval half as long."""
+    if root.is_rational:
+        return root
+    middle = root.middle
+    at_middle = sign_at(root.polynomial, middle)
+    if at_middle == 0:
+        return RealRoot(root.polynomial, middle, middle)
+    if at_middle == sign_at(root.polynomial, root.low):
+        return RealRoot(root.polynomial, middle, root.high)
+    return RealRoot(root.polynomial, root.low, middle)
+
+
+def refine(root: RealRoot, width: fmpq) -> RealRoot:
+    """The same root in an interval shorter than ``width``, by quadratic interval refinement.
+
+    Reference: Abbott, Quadratic interval refinement for real roots, ACM Commun. Comput. Algebra 48 (2014).
+    """
+    p, low, high = root.polynomial, root.low, root.high
+    if low == high or high - low < width:
+        return root
+    at_low, at_high = fmpq(p(low)), fmpq(p(high))
+    pieces = 4
+    while high - low >= width:
+        step = (high - low) / pieces
+        slope = at_low / (at_low - at_high)
+        k = (slope * pieces + fmpq(1, 2)).floor()
+        left = low + step * k
+        value = at_low if k == 0 else at_high if k == pieces else fmpq(p(left))
+        if value == 0:
+            return RealRoot(p, left, left)
+        right = left + step if sign(value) == sign(at_low) else left - step
+        if low <= right <= high:
+            other = at_low if right == low else at_high if right == high else fmpq(p(right))
+            if other == 0:
+                return RealRoot(p, right, right)
+            if sign(other) != sign(value):
+                if right > left:
+                    low, at_low, high, at_high = left, value, right, other
+                else:
+                    low, at_low, high, at_high = right, other, left, value
+                pieces *= pieces
+                continue
+        pieces = 4
+        middle = (low + high) / 2
+        value = fmpq(p(middle))
+        if value == 0:
+            return RealRoot(p, middle, middle)
+        if sign(value) == sign(at_low):
+            low, at_low = middle, value
+        else:
+            high, at_high = middle, value
+    return RealRoot(p, low, high)
+
+
+def has_root_between(p: fmpz_poly, low: fmpq, high: fmpq) -> bool:
+    """Whether p has a root in the closed interval [low, high]; p need not be squarefree."""
+    if sign_at(p, low) == 0 or sign_at(p, high) == 0:
+        return True
+    if p.degree() < 1:
+        return False
+    bound = _descartes_bound(_on_unit_interval(p, low, high), p.degree())
+    if bound % 2 == 1:
+        return True
+    return bound > 0 and bool(isolate(squarefree_part(p), low, high))
+
+
+def disjoint(roots: Sequence[RealRoot]) -> tuple[RealRoot, ...]:
+    """Different real numbers in increasing order, with closed isolating intervals that are pairwise disjoint."""
+    ordered = sorted(roots, key=lambda r: (r.low, r.high))
+    changed = True
+    while changed:
+        changed = False
+        for i in range(len(ordered) - 1):
+            a, b = ordered[i], ordered[i + 1]
+            while a.high >= b.low:
+                a, b = (halve(a), b) if a.high - a.low >= b.high - b.low else (a, halve(b))
+                changed = True
+                if a.low > b.high or (a.is_rational and b.is_rational):
+                    break
+            ordered[i], ordered[i + 1] = a, b
+        if changed:
+            ordered.sort(key=lambda r: (r.low, r.high))
+    return tuple(ordered)
+
+
+def simplest_between(low: fmpq, high: fmpq) -> fmpq:
+    """The rational with the smallest denominator strictly between low and high, the one nearest to zero of these."""
+    if low < 0 < high:
+        return fmpq(0)
+    if high <= 0:
+        return -simplest_between(-high, -low)
+    # continued fraction descent; p/q matrices kept as integers
+    a, b, c, d = 1, 0, 0, 1
+    while True:
+        whole = int(low.floor())
+        if fmpq(whole + 1) < high:
+            value = fmpq(whole + 1) if low >= whole else fmpq(whole)
+            return (a * value + b) / (c * value + d)
+        if low == whole:
+            # smallest 1/t + whole below high, t integer
+            t = int((1 / (high - whole)).floor()) + 1
+            value = whole + fmpq(1, t)
+            return (a * value + b) / (c * value + d)
+        low, high = low - whole, high - whole
+        # both in (0, 1]; take reciprocals
+        a, b, c, d = a * whole + b, a, c * whole + d, c
+        low, high = 1 / high, 1 / low

@@ -1,0 +1,90 @@
+"""Discriminants and resultants in Z[u] of polynomials in Z[u][v], by evaluation at integers and interpolation.
+
+Guarantee: exact. The number of evaluation points comes from a proved bound for the degree, so nothing is left to chance.
+
+The bound: if deg c_i <= A - a i for the coefficients c_i of v^i and some rational a, then substituting v = u^a w shows
+deg disc_v(p) <= (2n - 2) A - a n (n - 1) for n = deg_v p, and deg res_v(p, q) <= m A + n B - a n m for a second
+polynomial of degree m with the bound B. The a that gives the smallest bound is a slope of the Newton polygon.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import floor
+
+from flint import fmpz, fmpz_poly
+
+Coefficients = Sequence[fmpz_poly]
+
+
+def discriminant(p: Coefficients) -> fmpz_poly:
+    """The discriminant with respect to v of sum_i p_i(u) v^i, for degree at least 1 in v."""
+    n = len(p) - 1
+    if n < 2:
+        return fmpz_poly([1])
+    bound = min(floor((2 * n - 2) * _offset(p, a) - a * n * (n - 1)) for a in _slopes(p))
+
+    def at(k: int) -> fmpz:
+        value = fmpz_poly([c(k) for c in p])
+        if value.degree() == n:
+            return value.discriminant()
+        if value.degree() < n - 1:
+            return fmpz(0)
+        # formal discriminant when the leading coefficient vanishes once: c_(n-1)^2 disc of the rest
+        return value.leading_coefficient() ** 2 * (value.discriminant() if n > 2 else 1)
+
+    return interpolate(at, bound)
+
+
+def resultant(p: Coefficients, q: Coefficients) -> fmpz_poly:
+    """The resultant with respect to v, up to sign."""
+    n, m = len(p) - 1, len(q) - 1
+    if n == 0 or m == 0:
+        return (p[0] ** m) if n == 0 else (q[0] ** n)
+    bound = min(floor(m * _offset(p, a) + n * _offset(q, a) - a * n * m) for a in _slopes(p) | _slopes(q))
+
+    def at(k: int) -> fmpz:
+        left, right = fmpz_poly([c(k) for c in p]), fmpz_poly([c(k) for c in q])
+        if left.degree() < n and right.degree() < m:
+            return fmpz(0)
+        value = left.resultant(right)
+        # the formal resultant of degrees n, m when one leading coefficient vanishes at k
+        if left.degree() < n:
+            value *= right.leading_coefficient() ** (n - left.degree()) * (-1) ** (m * (n - left.degree()))
+        elif right.degree() < m:
+            value *= left.leading_coefficient() ** (m - right.degree())
+        return value
+
+    return interpolate(at, bound)
+
+
+def _offset(p: Coefficients, slope: Fraction) -> Fraction:
+    return max(c.degree() + slope * i for i, c in enumerate(p) if c)
+
+
+def _slopes(p: Coefficients) -> set[Fraction]:
+    points = [(i, c.degree()) for i, c in enumerate(p) if c]
+    slopes = {Fraction(0)}
+    slopes |= {Fraction(d - e, j - i) for k, (i, d) in enumerate(points) for j, e in points[k + 1 :]}
+    return slopes
+
+
+def interpolate(at: Callable[[int], fmpz], degree: int) -> fmpz_poly:
+    """The integer polynomial of degree at most ``degree`` with the given values at integers (Newton's form).
+
+    Divided differences of an integer polynomial at integers are integers, so every division is exact.
+    """
+    if degree < 0:
+        return fmpz_poly([])
+    first = -(degree // 2)
+    differences = [at(first + k) for k in range(degree + 1)]
+    newton, factorial = [], fmpz(1)
+    for k in range(degree + 1):
+        factorial *= max(k, 1)
+        newton.append(differences[0] // factorial)
+        differences = [b - a for a, b in zip(differences, differences[1:], strict=False)]
+    result = fmpz_poly([newton[-1]])
+    for k in range(degree - 1, -1, -1):
+        result = result * fmpz_poly([-(first + k), 1]) + newton[k]
+    return result

@@ -1,0 +1,205 @@
+"""Adjacency of cells of neighbouring stacks, with the open segment that proves each pair.
+
+Guarantee: the pairs found are adjacent, and no pair is missing. Two cells on both sides of a critical abscissa a are
+adjacent exactly when an open segment of the line u = a, free of the curves, belongs to the closure of both.
+
+A *barrier* is a rational height e such that no curve meets the horizontal segment [l, r] x {e}, where l < a < r lie in
+the two stacks; it proves that the cells at (l, e) and (r, e) are adjacent. Between consecutive barriers lies a *slot*
+that some branches enter from the left and some from the right. All pairs are found once every slot contains at most one
+point of the curves on the line u = a that branches run into, because then barriers stand on both sides of each such point.
+
+* A slot with at most two branches is such a slot: through every point of a real algebraic curve (no vertical line among
+  them) runs an even number of half-branches, so two branches in a slot end at the same point. At the window's edge there
+  is one point, which may take an odd number.
+* A slot with more branches is split, if it can be, by bracketing a more closely; if that fails, all real roots of
+  res_u(q, p) in the slot are isolated, q being a's polynomial: they include every point of the curves over a, so
+  heights between them are barriers once the bracket is narrow enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from flint import fmpq, fmpz_poly
+
+from ptmcad.algebra.real_roots import (
+    RealRoot,
+    disjoint,
+    has_root_between,
+    isolate,
+    refine,
+    sign_at,
+    simplest_between,
+    squarefree_part,
+)
+from ptmcad.algebra.resultants import resultant
+from ptmcad.algebra.window import Interval
+from ptmcad.cad.curves import Curve
+from ptmcad.cad.stacks import BaseEnd, StackData, Wall, roots_over
+
+ROUNDS = 4
+"""Bracketings that are tried before the exact separation; each is 2^-8 as wide as the one before."""
+
+
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """Cells ``left`` and ``right`` (levels in their stacks) joined by the open segment [low, high] x {height}."""
+
+    left: int
+    right: int
+    low: fmpq
+    high: fmpq
+    height: fmpq
+
+
+def passages(curves: Sequence[Curve], left: StackData, right: StackData, fibre: Interval) -> tuple[Passage, ...]:
+    """All adjacent pairs of cells across the abscissa between two neighbouring stacks, one witness for each pair."""
+    end = left.right
+    assert end.root is not None
+    reach = min(end.value - left.sample, right.sample - end.value)
+    width, resolution = reach, fibre[1] - fibre[0]
+    extra: tuple[fmpq, ...] = ()
+    attempt = 0
+    while True:
+        width, resolution = width / 256, resolution / 64
+        low, high = _bracket(end, width, left.sample, right.sample)
+        over_low, over_high = (
+            tuple((w, refine(r, resolution)) for w, r in roots_over(curves, u, fibre)) for u in (low, high)
+        )
+        found = _barriers(curves, low, high, over_low, over_high, fibre, extra)
+        unresolved = _unresolved(curves, end, found, len(over_low), len(over_high), fibre, exact=bool(extra))
+        if not unresolved:
+            unique = {(p.left, p.right): p for p in reversed(found)}
+            return tuple(sorted(unique.values(), key=lambda p: (p.left, p.right)))
+        attempt += 1
+        if attempt >= ROUNDS:
+            extra = tuple(h for slot in unresolved for h in _between_points(curves, end, slot, fibre)) or extra
+
+
+def _bracket(end: BaseEnd, width: fmpq, low: fmpq, high: fmpq) -> tuple[fmpq, fmpq]:
+    """Rational points on both sides of the critical abscissa, inside the neighbouring stacks."""
+    assert end.root is not None
+    root = refine(end.root, width)
+    if root.is_rational:
+        return max(root.low - width, low), min(root.low + width, high)
+    return root.low, root.high
+
+
+def _barriers(
+    curves: Sequence[Curve],
+    low: fmpq,
+    high: fmpq,
+    over_low: Sequence[tuple[Wall, RealRoot]],
+    over_high: Sequence[tuple[Wall, RealRoot]],
+    fibre: Interval,
+    extra: Sequence[fmpq],
+) -> list[Passage]:
+    """The barriers among the gaps between the branches and among the extra heights, from below."""
+    occupied = sorted((r.low, r.high) for _, r in (*over_low, *over_high))
+    heights = list(extra)
+    top = fibre[0]
+    for start, stop in [*occupied, (fibre[1], fibre[1])]:
+        if start > top:
+            quarter = (start - top) / 4
+            heights.append(simplest_between(top + quarter, start - quarter))
+        top = max(top, stop)
+    result = []
+    for height in sorted(set(heights)):
+        if any(r.low <= height <= r.high for _, r in (*over_low, *over_high)):
+            continue
+        if any(has_root_between(c.trace(height), low, high) for c in curves):
+            continue
+        below_low = sum(r.high < height for _, r in over_low)
+        below_high = sum(r.high < height for _, r in over_high)
+        result.append(Passage(below_low, below_high, low, high, height))
+    return result
+
+
+@dataclass(frozen=True, slots=True)
+class _Slot:
+    """Heights between two barriers (or a barrier and the window's edge) and the branches that enter."""
+
+    bottom: fmpq
+    top: fmpq
+    from_left: int
+    from_right: int
+    edge: fmpq | None
+
+
+def _unresolved(
+    curves: Sequence[Curve],
+    end: BaseEnd,
+    found: Sequence[Passage],
+    count_left: int,
+    count_right: int,
+    fibre: Interval,
+    exact: bool,
+) -> list[_Slot]:
+    """The slots that may contain more than one point into which branches run."""
+    if not found:
+        return [_Slot(fibre[0], fibre[1], count_left, count_right, fibre[0])]
+    slots = [
+        _Slot(a.height, b.height, b.left - a.left, b.right - a.right, None)
+        for a, b in zip(found, found[1:], strict=False)
+    ]
+    slots.insert(0, _Slot(fibre[0], found[0].height, found[0].left, found[0].right, fibre[0]))
+    last = found[-1]
+    slots.append(_Slot(last.height, fibre[1], count_left - last.left, count_right - last.right, fibre[1]))
+    result = []
+    for slot in slots:
+        branches = slot.from_left + slot.from_right
+        if slot.edge is not None:
+            if branches and not _meets(curves, end, slot.edge):
+                result.append(slot)
+            elif branches > 2 and not (exact and _points(curves, end, slot, fibre) <= 1):
+                result.append(slot)
+        elif branches % 2 or (branches > 2 and not (exact and _points(curves, end, slot, fibre) <= 1)):
+            result.append(slot)
+    return result
+
+
+def _meets(curves: Sequence[Curve], end: BaseEnd, edge: fmpq) -> bool:
+    """Whether a curve passes through the point of the window's edge over the critical abscissa."""
+    assert end.root is not None
+    for c in curves:
+        common = c.trace(edge).gcd(end.root.polynomial)
+        if common.degree() > 0 and (
+            sign_at(common, end.root.low) == 0
+            if end.root.is_rational
+            else sign_at(common, end.root.low) != sign_at(common, end.root.high)
+        ):
+            return True
+    return False
+
+
+def _possible_points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> tuple[RealRoot, ...]:
+    """Real numbers in the slot among which are all points of the curves over the critical abscissa."""
+    assert end.root is not None
+    q = end.root.polynomial
+    if end.root.is_rational:
+        value = end.root.low
+        q = fmpz_poly([-int(value.p), int(value.q)])
+    constant = [fmpz_poly([c]) for c in q.coeffs()]
+    product = fmpz_poly([1])
+    for c in curves:
+        points = squarefree_part(resultant(c.in_u, constant))
+        product = product * (points // points.gcd(product)) if points else product
+    return disjoint(isolate(product, slot.bottom, slot.top))
+
+
+def _points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot, fibre: Interval) -> int:
+    """An upper bound for the number of points of the curves over the critical abscissa in the slot."""
+    points = len(_possible_points(curves, end, slot))
+    return points + (1 if slot.edge is not None and _meets(curves, end, slot.edge) else 0)
+
+
+def _between_points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot, fibre: Interval) -> list[fmpq]:
+    """Heights between all points of the curves over the critical abscissa in the slot."""
+    points = _possible_points(curves, end, slot)
+    levels = [slot.bottom, *(x for r in points for x in (r.low, r.high)), slot.top]
+    return [
+        simplest_between(levels[2 * k], levels[2 * k + 1])
+        for k in range(len(points) + 1)
+        if levels[2 * k] < levels[2 * k + 1]
+    ]

@@ -1,0 +1,104 @@
+"""Projection of the window's curves to the base axis: the abscissae over which their order can change.
+
+Guarantee: over each interval between consecutive critical abscissae the number of real roots of every curve in the
+window, and the order of all these roots, are constant.
+
+Why these polynomials: within a bounded window the roots of p(u, .) change in number only at a multiple root (a zero of
+the discriminant) or through the window's edge (a zero of p(u, edge)); roots of two curves meet at zeros of the
+resultant. Leading coefficients are left out: where one vanishes a root leaves through infinity, not through the window.
+Powers are deflated: for p(u, v^k) the discriminant's zeros are those of disc_V p(u, V) and, if the window contains v = 0,
+of p(u, 0). References: McCallum, J. Symb. Comp. 5 (1988); Strzebonski, J. Symb. Comp. 29 (2000) for open cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from flint import fmpz_poly
+
+from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, refine
+from ptmcad.algebra.resultants import discriminant, resultant
+from ptmcad.algebra.window import Interval
+from ptmcad.cad.curves import Curve, base_deflation, deflation
+
+
+@dataclass(frozen=True, slots=True)
+class Projection:
+    """Irreducible polynomials in Z[u], each with its origin, and their roots in the base interval."""
+
+    polynomials: tuple[tuple[fmpz_poly, str], ...]
+    abscissae: tuple[RealRoot, ...]
+
+
+def predicted_cost(curves: Sequence[Curve]) -> int:
+    """A figure for the cost of the projection: evaluation points times the cost of one evaluation, summed."""
+    sizes = []
+    for c in curves:
+        n = (len(c.in_v) - 1) // deflation(c.in_v)
+        d = max(q.degree() for q in c.in_v) // base_deflation(c.in_v)
+        sizes.append((n, d))
+    cost = sum(max(d, 1) * 2 * n * n**3 for n, d in sizes)
+    for i, (n, d) in enumerate(sizes):
+        for m, e in sizes[i + 1 :]:
+            cost += (n * e + m * d + 1) * (n + m) ** 3
+    return cost
+
+
+def project(curves: Sequence[Curve], verticals: Sequence[fmpz_poly], base: Interval, fibre: Interval) -> Projection:
+    """The projection of the curves (and of vertical lines, given by their polynomials in u) and its real roots."""
+    found: dict[tuple[int, ...], tuple[fmpz_poly, str]] = {}
+
+    def adopt(p: fmpz_poly, origin: str) -> None:
+        if p.degree() < 1:
+            return
+        for factor, _ in p.factor()[1]:
+            found.setdefault(tuple(int(c) for c in factor.coeffs()), (factor, origin))
+
+    for line in verticals:
+        adopt(line, "vertical line")
+    for c in curves:
+        for p, origin in _of_one(c, fibre):
+            adopt(p, origin)
+    for i, c in enumerate(curves):
+        for d in curves[i + 1 :]:
+            adopt(_of_two(c, d), f"components {c.component} and {d.component} meet")
+    roots = [r for p, _ in found.values() for r in isolate(p, *base)]
+    # intervals that are short against the window leave room for simple samples between them
+    width = (base[1] - base[0]) / 2**16
+    short = [refine(r, width) for r in roots]
+    return Projection(tuple(found.values()), disjoint(short))
+
+
+def _of_one(c: Curve, fibre: Interval) -> list[tuple[fmpz_poly, str]]:
+    k = deflation(c.in_v)
+    result = [(_deflated(lambda p: discriminant(p[0]), [c.in_v[::k]]), f"component {c.component}: turning or singular point")]
+    if k > 1 and fibre[0] < 0 < fibre[1]:
+        result.append((c.in_v[0], f"component {c.component}: turning point on the axis"))
+    for edge in fibre:
+        result.append((c.trace(edge), f"component {c.component}: crosses the window's edge"))
+    return result
+
+
+def _of_two(c: Curve, d: Curve) -> fmpz_poly:
+    k = _gcd(deflation(c.in_v), deflation(d.in_v))
+    return _deflated(lambda p: resultant(p[0], p[1]), [c.in_v[::k], d.in_v[::k]])
+
+
+def _deflated(operation, arguments: list[tuple[fmpz_poly, ...]]) -> fmpz_poly:  # type: ignore[no-untyped-def]
+    """Apply an operation on coefficients in Z[u] after replacing u^k by u, and replace u by u^k in the result."""
+    k = 0
+    for coefficients in arguments:
+        if any(q.degree() > 0 for q in coefficients):
+            k = _gcd(k, base_deflation(coefficients))
+    k = max(k, 1)
+    result: fmpz_poly = operation([tuple(q.deflate(k) if k > 1 else q for q in p) for p in arguments])
+    return result.inflate(k) if k > 1 else result
+
+
+def _gcd(a: int, b: int) -> int:
+    while b:
+        a, b = b, a % b
+    return a
+
+

@@ -1,0 +1,187 @@
+"""Equilibria at a rational point of a slice, counted by two independent methods.
+
+Guarantee: `count_by_isolation` and `count_by_signature` are exact; both raise `DegeneratePoint` when an equilibrium
+there has a singular Hessian, so no count is ever given on the discriminant variety.
+
+By isolation: the real roots of a univariate representation, then the Hessian's signs there by ball arithmetic, with
+precision doubled until every sign is certain (the Hessian is nonsingular, so this ends). By signature: Hermite forms
+weighted with 1, det H, tr H and their product (Tarski queries). The two share the fibre's multiplication matrices.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from flint import arb, arb_poly, ctx, fmpq
+
+from ptmcad.algebra.fibre import (
+    Fibre,
+    UnivariateRepresentation,
+    evaluate,
+    fibre,
+    hermite_matrix,
+    signature,
+    univariate_representation,
+)
+from ptmcad.algebra.real_roots import RealRoot, isolate, refine
+from ptmcad.errors import HypothesisError
+from ptmcad.models.system import ParametricSystem, RationalPolynomial, at_point
+
+
+class DegeneratePoint(HypothesisError):
+    """Some equilibrium at the point has a singular Hessian, or there are infinitely many."""
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """Numbers of equilibria by Morse index; on a torus minima - saddles + maxima is zero."""
+
+    minima: int
+    saddles: int
+    maxima: int
+
+    @property
+    def total(self) -> int:
+        return self.minima + self.saddles + self.maxima
+
+    @property
+    def stable(self) -> int:
+        return self.minima
+
+    @property
+    def index(self) -> tuple[int, int, int]:
+        return (self.minima, self.saddles, self.maxima)
+
+
+@dataclass(frozen=True, slots=True)
+class PointSystem:
+    """Gradient, Hessian and quotient algebra at one rational point."""
+
+    hessian: tuple[tuple[RationalPolynomial, ...], ...]
+    algebra: Fibre
+
+
+def point_system(system: ParametricSystem, values: Mapping[str, fmpq]) -> PointSystem:
+    """The system at rational values of all parameters.
+
+    Raises
+    ------
+    DegeneratePoint
+        When there are infinitely many solutions.
+    """
+    gradient, hessian = at_point(system, values)
+    unknowns = 2 * system.dimension
+    circles = [
+        {
+            tuple(2 if i == 2 * k + offset else 0 for i in range(unknowns)): fmpq(1) for offset in (0, 1)
+        } | {(0,) * unknowns: fmpq(-1)}
+        for k in range(system.dimension)
+    ]
+    algebra = fibre([g for g in gradient if g] + circles, unknowns)
+    if algebra is None:
+        raise DegeneratePoint(f"infinitely many solutions at {_text(values)}")
+    return PointSystem(hessian, algebra)
+
+
+def _text(values: Mapping[str, fmpq]) -> str:
+    return ", ".join(f"{name}={value}" for name, value in values.items())
+
+
+def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq]) -> Counts:
+    """Counts at rational values of all parameters, by real-root isolation.
+
+    Raises
+    ------
+    DegeneratePoint
+        When some solution, real or not, is singular, or there are infinitely many.
+    """
+    point = point_system(system, values)
+    representation = univariate_representation(point.algebra)
+    if representation is None:
+        raise DegeneratePoint(f"an equilibrium has a singular Hessian at {_text(values)}")
+    bound = root_bound(representation)
+    numbers = [0, 0, 0]
+    for root in isolate(representation.minimal, -bound, bound):
+        numbers[morse_index(point, representation, root)] += 1
+    counts = Counts(*numbers)
+    if counts.minima - counts.saddles + counts.maxima != 0:
+        raise ArithmeticError(f"the Euler sum of {counts} at {_text(values)} is not zero")
+    return counts
+
+
+def root_bound(representation: UnivariateRepresentation) -> fmpq:
+    """A power of two above the modulus of every root (Cauchy)."""
+    coefficients = [abs(int(c)) for c in representation.minimal.coeffs()]
+    ratio = max(coefficients[:-1]) // coefficients[-1] + 2
+    return fmpq(2 ** ratio.bit_length())
+
+
+def morse_index(point: PointSystem, representation: UnivariateRepresentation, root: RealRoot) -> int:
+    """The number of negative eigenvalues of the (2 x 2) Hessian at a real solution.
+
+    Guarantee: certain; the precision is doubled until det H, and if it is positive H11, has a certain sign.
+    """
+    bits = 64
+    while True:
+        with ctx.workprec(bits):
+            root = refine(root, fmpq(1, 2 ** (bits - 8)) * (abs(root.middle) + 1))
+            at = arb(root.low).union(arb(root.high))
+            unknowns = [arb_poly(p)(at) for p in representation.coordinates]
+            h11, h12, h22 = (
+                _value(point.hessian[i][j], unknowns) for i, j in ((0, 0), (0, 1), (1, 1))
+            )
+            determinant = h11 * h22 - h12 * h12
+            if determinant < 0:
+                return 1
+            if determinant > 0:
+                if h11 > 0:
+                    return 0
+                if h11 < 0:
+                    return 2
+        bits *= 2
+
+
+def _value(p: RationalPolynomial, unknowns: list[arb]) -> arb:
+    total = arb(0)
+    for monomial, c in p.items():
+        term = arb(c)
+        for value, e in zip(unknowns, monomial, strict=True):
+            if e:
+                term = term * value**e
+        total = total + term
+    return total
+
+
+def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> Counts:
+    """Counts at rational values of all parameters, by signatures of Hermite matrices.
+
+    Raises
+    ------
+    DegeneratePoint
+        When some real solution has a singular Hessian, or there are infinitely many.
+    """
+    point = point_system(system, values)
+    h11, h12, h22 = (evaluate(point.algebra, point.hessian[i][j]) for i, j in ((0, 0), (0, 1), (1, 1)))
+    determinant, trace = h11 * h22 - h12 * h12, h11 + h22
+    one = evaluate(point.algebra, {(0,) * len(point.algebra.multiplication): fmpq(1)})
+
+    def query(weight: object) -> tuple[int, int]:
+        return signature(hermite_matrix(point.algebra, weight))  # type: ignore[arg-type]
+
+    positive, negative = query(one)
+    total = positive - negative
+    positive, negative = query(determinant)
+    if positive + negative != point.algebra.dimension:
+        raise DegeneratePoint(f"an equilibrium has a singular Hessian at {_text(values)}")
+    definite_minus_saddles = positive - negative
+    # with N(s, t) solutions of sign s of det H and t of tr H: the query of tr H gives sum t N, that of det H tr H sum s t N
+    positive, negative = query(trace)
+    trace_sum = positive - negative
+    positive, negative = query(determinant * trace)
+    minima_minus_maxima = (trace_sum + positive - negative) // 2
+    saddles = (total - definite_minus_saddles) // 2
+    definite = total - saddles
+    return Counts((definite + minima_minus_maxima) // 2, saddles, (definite - minima_minus_maxima) // 2)
+
+
