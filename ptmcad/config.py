@@ -342,7 +342,7 @@ def _with_axes(record: _Record, slice: str, sets: Mapping[str, Scalar], ranges: 
             axes[name] = _Window(Scalar(low, place), Scalar(high, place), place)
         else:
             hint = did_you_mean(name, tuple(PARAMETERS))
-            raise place.error(f"'{name}' is no parameter{hint}; a new name needs --range {name}=LO:HI")
+            raise place.error(f"'{name}' is no parameter{hint}; any new name needs --range {name}=LO:HI")
     for name in record.axes:
         if name in PARAMETERS and name not in axes and name not in sets and name not in record.values:
             raise place.error(f"{name} was an axis of {record.place.file} and has no value now: add --set {name}=VALUE")
