@@ -8,6 +8,7 @@ the computation, 130 after Ctrl-C and 143 after SIGTERM; bad input gets one mess
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -40,7 +41,9 @@ class _LazyGroup(click.Group):
 
 
 @click.group(cls=_LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="ptmcad", prog_name="ptmcad")
+@click.option("--version", is_flag=True, is_eager=True, expose_value=False,
+              callback=lambda context, _parameter, value: _show_version(context, value),
+              help="Show the version and exit.")  # fmt: skip
 def group() -> None:
     """Exact region maps of planar tensegrity mechanisms.
 
@@ -50,6 +53,18 @@ def group() -> None:
     Example, the unloaded slice of the paper's figure 2:
         ptmcad classify --slice L2,rho
     """
+
+
+def _show_version(context: click.Context, wanted: bool) -> None:
+    if wanted and not context.resilient_parsing:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            number = version("ptmcad")
+        except PackageNotFoundError:
+            number = "(run from its sources, not installed)"
+        click.echo(f"ptmcad {number}")
+        context.exit()
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
@@ -62,7 +77,8 @@ def run(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
     try:
         status = group.main(args=arguments, prog_name="ptmcad", standalone_mode=False)
-        sys.stdout.flush()
+        if sys.stdout is not None:  # None when it was closed by the caller
+            sys.stdout.flush()
     except click.ClickException as error:
         error.show()
         return 2
@@ -73,6 +89,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return 3
     except PtmcadError as error:
         click.echo(f"error: {error}", err=True)
+        return 2
+    except OSError as error:  # what the output modules do not turn into an OutputError is the terminal's
+        click.echo(f"error: {error.filename or 'standard output'} can not be written: {error.strerror}", err=True)
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - so that the exit does not try again
         return 2
     return status if isinstance(status, int) else 0
 
