@@ -248,7 +248,7 @@ def test_a_table_that_can_not_be_printed_is_no_traceback(redirection: str) -> No
     assert "Exception ignored" not in done.stderr
     if redirection == ">/dev/full":
         assert done.returncode == 2
-        assert "error: standard output" in done.stderr
+        assert "error: No space left on device" in done.stderr
 
 
 def test_every_command_has_help_with_an_example(capfd: pytest.CaptureFixture[str]) -> None:

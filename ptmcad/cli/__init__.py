@@ -90,8 +90,8 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except PtmcadError as error:
         click.echo(f"error: {error}", err=True)
         return 2
-    except OSError as error:  # what the output modules do not turn into an OutputError is the terminal's
-        click.echo(f"error: {error.filename or 'standard output'} can not be written: {error.strerror}", err=True)
+    except OSError as error:  # mostly standard output that is full; files of results raise OutputError
+        click.echo(f"error: {error.strerror or error}{f': {error.filename}' if error.filename else ''}", err=True)
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - so that the exit does not try again
         return 2
     return status if isinstance(status, int) else 0
