@@ -2,6 +2,8 @@
 
 * PtmcadError
   * ConfigError            -- the input is wrong: exit status 2, one message with file, line, key and remedy
+  * ExpressionError        -- a text is not arithmetic, or too large to be meant; `config` reports it as a ConfigError
+    * PoleError            -- a denominator vanishes at the point where a value was asked for
   * HypothesisError        -- the input is well formed but a hypothesis of the method fails
     * DegenerateSliceError -- the whole slice lies inside the discriminant variety: exit status 2
     * InfiniteSolutionsError -- infinitely many equilibria at every point of the slice: exit status 2
@@ -45,6 +47,28 @@ class ConfigError(PtmcadError):
         return f"{place}: {self.message}" if place else self.message
 
 
+class ExpressionError(PtmcadError):
+    """A text is not an arithmetic expression in the known names, or exceeds a limit.
+
+    Parameters
+    ----------
+    message : what is wrong, with the remedy.
+    position : index of the offending character in the text, where there is one.
+    """
+
+    def __init__(self, message: str, position: int | None = None):
+        self.message = message
+        self.position = position
+        super().__init__(message)
+
+    def __str__(self) -> str:
+        return self.message if self.position is None else f"{self.message} (at column {self.position + 1})"
+
+
+class PoleError(ExpressionError):
+    """The denominator of an expression vanishes at the point where its value was asked for."""
+
+
 class HypothesisError(PtmcadError):
     """A hypothesis of the method is violated; the message names a witness."""
 
@@ -66,4 +90,14 @@ class OutputError(PtmcadError):
 
 
 class LimitReached(PtmcadError):
-    """A limit that the caller set stopped the computation."""
+    """A limit that the caller set stopped the computation.
+
+    Parameters
+    ----------
+    message : which limit, and how far the computation got.
+    partial : the result so far, marked as partial (a `RegionMap`), or None when there is nothing to save.
+    """
+
+    def __init__(self, message: str, partial: object | None = None):
+        self.partial = partial
+        super().__init__(message)

@@ -1,0 +1,102 @@
+"""The command line: one module per command, imported only when it is asked for.
+
+A command module is listed in `COMMANDS` and defines ``command``, a click command that delegates to plain functions.
+
+Guarantee: the exit status is 0 when done, 1 when a check failed, 2 for bad input or output, 3 when a limit stopped
+the computation, 130 after Ctrl-C and 143 after SIGTERM; bad input gets one message on standard error, no traceback.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from types import FrameType
+from typing import NoReturn
+
+import click
+
+from ptmcad.errors import LimitReached, PtmcadError
+
+COMMANDS = {
+    "classify": "ptmcad.cli.classify",
+}
+
+
+class _LazyGroup(click.Group):
+    """A group that imports a command's module when the command is asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        command = import_module(COMMANDS[cmd_name]).command
+        if not isinstance(command, click.Command):
+            raise TypeError(f"{COMMANDS[cmd_name]}.command is not a click command")
+        return command
+
+
+@click.group(cls=_LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option("--version", is_flag=True, is_eager=True, expose_value=False,
+              callback=lambda context, _parameter, value: _show_version(context, value),
+              help="Show the version and exit.")  # fmt: skip
+def group() -> None:
+    """Exact region maps of planar tensegrity mechanisms.
+
+    Over a 2-D slice of parameters: how many (stable) equilibria, and where does that number change?
+
+    \b
+    Example, the unloaded slice of the paper's figure 2:
+        ptmcad classify --slice L2,rho
+    """
+
+
+def _show_version(context: click.Context, wanted: bool) -> None:
+    if wanted and not context.resilient_parsing:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            number = version("ptmcad")
+        except PackageNotFoundError:
+            number = "(run from its sources, not installed)"
+        click.echo(f"ptmcad {number}")
+        context.exit()
+
+
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Run the command line and exit with its status."""
+    signal.signal(signal.SIGTERM, _terminate)
+    sys.exit(run(arguments))
+
+
+def run(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit status."""
+    try:
+        status = group.main(args=arguments, prog_name="ptmcad", standalone_mode=False)
+        if sys.stdout is not None:  # None when it was closed by the caller
+            sys.stdout.flush()
+    except click.ClickException as error:
+        error.show()
+        return 2
+    except click.Abort:
+        return 130
+    except LimitReached as error:
+        click.echo(f"stopped: {error}", err=True)
+        return 3
+    except PtmcadError as error:
+        click.echo(f"error: {error}", err=True)
+        return 2
+    except OSError as error:  # mostly standard output that is full; files of results raise OutputError
+        click.echo(f"error: {error.strerror or error}{f': {error.filename}' if error.filename else ''}", err=True)
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - so that the exit does not try again
+        return 2
+    return status if isinstance(status, int) else 0
+
+
+def _terminate(_number: int, _frame: FrameType | None) -> NoReturn:
+    """Leave through every ``finally``, so that temporary files are removed."""
+    raise SystemExit(143)

@@ -1,0 +1,176 @@
+"""``ptmcad classify``: the region map of a slice, as JSON and pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.config import slice_from_options
+from ptmcad.errors import ConfigError, ExpressionError, LimitReached
+from ptmcad.expressions import rational
+from ptmcad.output import Writer, check_writable, text_writer, write_files
+from ptmcad.slice import Count, Slice
+
+FORMATS = ("json", "png", "svg", "pdf")
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What is asked of the engine and of the output, beside the slice."""
+
+    engine: str = "auto"
+    out: Path = Path()
+    formats: tuple[str, ...] = ("json", "png", "svg")
+    explain: bool = False
+    jobs: int | None = None
+    timeout: float | None = None
+    area_tolerance: Fraction | None = None
+    samples: bool = False
+    timings: bool = True
+
+
+def classify_to_files(slice: Slice, request: Request) -> Any:
+    """Classify the slice, write the files asked for, and return the `RegionMap`.
+
+    Guarantee: the folder has been proved writable before the computation starts; files are written all or none.
+
+    Raises
+    ------
+    LimitReached
+        After what there is of the result has been saved.
+    PtmcadError
+        Any other of its kinds, with nothing written.
+    """
+    check_writable(request.out, tuple(f"{slice.name}.{suffix}" for suffix in request.formats))
+    from ptmcad.pipeline import classify
+
+    with ProgressBar() as progress:
+        try:
+            result = classify(
+                slice,
+                engine=request.engine,
+                timeout=request.timeout,
+                area_tolerance=request.area_tolerance,
+                jobs=request.jobs,
+                progress=progress,
+            )
+        except LimitReached as stopped:
+            if stopped.partial is not None and "json" in request.formats:
+                _save(stopped.partial, slice.name, ("json",), request)
+            raise
+        _save(result, slice.name, request.formats, request)
+    return result
+
+
+def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) -> None:
+    """Write the pictures and, last, the JSON."""
+    writers: dict[str, Writer] = {}
+    pictures = [suffix for suffix in formats if suffix != "json"]
+    if pictures:
+        from ptmcad.render import draw  # brings matplotlib
+
+        for suffix in pictures:
+            writers[f"{name}.{suffix}"] = partial(draw, result, samples=request.samples)
+    if "json" in formats:
+        writers[f"{name}.json"] = text_writer(result.to_json(timings=request.timings))
+    write_files(request.out, writers)
+
+
+def explanation(plan: Any) -> str:
+    """The plan as text, one step a line."""
+    return plan if isinstance(plan, str) else "\n".join(str(step) for step in plan)
+
+
+def _formats(_context: click.Context, _parameter: click.Parameter, value: str) -> tuple[str, ...]:
+    formats = tuple(dict.fromkeys(part.strip().lower() for part in value.split(",") if part.strip()))
+    unknown = [part for part in formats if part not in FORMATS]
+    if unknown or not formats:
+        raise click.BadParameter(f"{', '.join(unknown) or 'nothing'} is not among {', '.join(FORMATS)}")
+    return formats
+
+
+def _tolerance(_context: click.Context, _parameter: click.Parameter, value: str | None) -> Fraction | None:
+    if value is None:
+        return None
+    try:
+        tolerance = rational(value)
+    except ExpressionError as error:
+        raise ConfigError(str(error), key="--area-tolerance") from error
+    if not 0 < tolerance < 1:
+        raise ConfigError(f"{value} is not between 0 and 1: write a number such as 1e-6", key="--area-tolerance")
+    return tolerance
+
+
+def _seconds(_context: click.Context, _parameter: click.Parameter, value: float | None) -> float | None:
+    if value is not None and not 0 < value < 1e9:
+        raise click.BadParameter(f"{value} is not a positive number of seconds")
+    return value
+
+
+@click.command("classify")
+@click.argument("config", required=False, type=click.Path(path_type=Path))
+@click.option("--slice", "axes", metavar="X,Y", help="The two axes, the horizontal one first.")
+@click.option("--set", "sets", multiple=True, metavar="NAME=VALUE", help="Fix a parameter: a number or an expression.")
+@click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", help="The range of an axis.")
+@click.option("--count", type=click.Choice([c.value for c in Count]), help="What tells two regions apart.")
+@click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
+@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@click.option("--format", "formats", callback=_formats, default="json,png,svg", show_default=True,
+              metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
+@click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Number of processes.")
+@click.option("--timeout", type=float, callback=_seconds, metavar="S", help="Stop after S seconds (exit status 3).")
+@click.option("--area-tolerance", callback=_tolerance, metavar="EPS", help="Relative width of the areas' bounds.")
+@click.option("--samples", is_flag=True, help="Draw the cells' sample points.")
+@click.option("--no-timings", is_flag=True, help="Leave run times out of the JSON, so that it is the same every time.")
+def command(
+    *,
+    config: Path | None,
+    axes: str | None,
+    sets: tuple[str, ...],
+    ranges: tuple[str, ...],
+    count: str | None,
+    engine: str,
+    out: Path,
+    formats: tuple[str, ...],
+    explain: bool,
+    jobs: int | None,
+    timeout: float | None,
+    area_tolerance: Fraction | None,
+    samples: bool,
+    no_timings: bool,
+) -> None:
+    """Map the regions of a slice by their number of equilibria.
+
+    CONFIG is a problem record (YAML); options override it. Writes NAME.json and NAME.png, NAME.svg, and prints a table.
+    Without a record, parameters that are neither axes nor --set have their defaults: L1 = L2 = rho = 1, k = 100, no
+    load.
+
+    \b
+    Examples:
+        ptmcad classify --slice L2,rho
+        ptmcad classify --slice rho,L2 --range rho=0:2 --range L2=0:2 --set F3=-10 --set F4=-10 --out fig4
+        ptmcad classify --slice rho,F --range rho=0:2 --range F=-10:0 --set F3=F --set F4=F --format json
+    """
+    slice = slice_from_options(config, axes, sets, ranges, count)
+    request = Request(
+        engine=engine,
+        out=out,
+        formats=formats,
+        explain=explain,
+        jobs=jobs,
+        timeout=timeout,
+        area_tolerance=area_tolerance,
+        samples=samples,
+        timings=not no_timings,
+    )
+    result = classify_to_files(slice, request)
+    if explain:
+        click.echo(explanation(result.plan))
+    click.echo(result.table())
