@@ -1,0 +1,61 @@
+# Everything runs in the virtual environment .venv, which these targets create and fill themselves:
+# all they need is python3 (3.11 or newer) and make.
+
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
+JOBS ?= 2
+
+.PHONY: help demo test test-slow check bench docs clean distclean
+
+help:
+	@echo "make demo       the map of the paper's fig. 4, as out/fig4.png and out/fig4.svg"
+	@echo "make test       the fast tests"
+	@echo "make test-slow  the thorough tests"
+	@echo "make check      ruff, its formatter and mypy in strict mode"
+	@echo "make bench      run time and memory of every slice in configs/, into docs/benchmarks/"
+	@echo "make docs       the pictures that the README and docs/ show, into docs/img/"
+	@echo "make clean      removes what the targets made, except the environment"
+	@echo "make distclean  removes the environment too"
+
+# The stamps make a new set-up follow every change of pyproject.toml, and nothing else.
+# A stamp is touched last, so an interrupted set-up is begun again.
+$(VENV)/.installed: pyproject.toml scripts/setup-venv
+	scripts/setup-venv $(VENV)
+	$(PIP) --editable .
+	@touch $@
+
+$(VENV)/.installed-test: $(VENV)/.installed
+	$(PIP) --editable '.[test]'
+	@touch $@
+
+$(VENV)/.installed-check: $(VENV)/.installed-test
+	$(PIP) --editable '.[test,check]'
+	@touch $@
+
+demo: $(VENV)/.installed
+	$(BIN)/ptmcad classify configs/fig4.yaml --format json,png,svg --out out
+
+test: $(VENV)/.installed-test
+	$(BIN)/python -m pytest --numprocesses $(JOBS)
+
+test-slow: $(VENV)/.installed-test
+	$(BIN)/python -m pytest --numprocesses $(JOBS) -m slow
+
+check: $(VENV)/.installed-check
+	$(BIN)/python -m ruff check .
+	$(BIN)/python -m ruff format --check .
+	$(BIN)/python -m mypy
+
+bench: $(VENV)/.installed
+	$(BIN)/python -m ptmcad.bench --out docs/benchmarks
+
+docs: $(VENV)/.installed
+	$(BIN)/ptmcad classify configs/fig4.yaml --format png --out docs/img
+
+clean:
+	rm -rf out build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info
+	find . -name __pycache__ -type d -not -path './$(VENV)/*' -prune -exec rm -rf {} +
+
+distclean: clean
+	rm -rf $(VENV)

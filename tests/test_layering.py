@@ -1,0 +1,132 @@
+"""The layering that docs/architecture.md describes, read off the import statements."""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / "ptmcad"
+MODULES = sorted(PACKAGE.rglob("*.py"))
+
+EXACT = ("algebra", "models", "cad", "counting", "variety", "area", "regions", "regionmap", "pipeline", "verify")
+FLINT_POLYNOMIALS = ("poly", "mpoly", "mpoly_ctx", "mpoly_vec", "series")
+
+
+def part(path: Path) -> str:
+    """The folder or module right under the package that a file belongs to, such as ``cad`` or ``slice``."""
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def imports(path: Path) -> Iterator[tuple[str, str]]:
+    """Every import in a file, at any depth: pairs of the module and the name taken from it, or an empty name."""
+    package = [PACKAGE.name, *path.relative_to(PACKAGE).parts[:-1]]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield alias.name, ""
+        elif isinstance(node, ast.ImportFrom):
+            base = ".".join(package[: len(package) - node.level + 1]) if node.level else ""
+            module = ".".join(filter(None, (base, node.module or "")))
+            for alias in node.names:
+                yield module, alias.name
+
+
+def imported_parts(path: Path) -> set[str]:
+    """The parts of ptmcad that a file imports, in either way of writing it."""
+    found = set()
+    for module, name in imports(path):
+        names = f"{module}.{name}".split(".")
+        if names[0] == PACKAGE.name and len(names) > 1:
+            found.add(names[1])
+    return found - {""}
+
+
+def relative(path: Path) -> str:
+    return str(path.relative_to(ROOT))
+
+
+def test_relative_imports_are_resolved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The reader of imports itself: nothing escapes it by being written another way."""
+    monkeypatch.setattr(sys.modules[__name__], "PACKAGE", tmp_path / "ptmcad")
+    module = tmp_path / "ptmcad" / "interval" / "boxes.py"
+    module.parent.mkdir(parents=True)
+    module.write_text("import ptmcad.cad\nfrom ptmcad import algebra\nfrom ..variety import x\nfrom . import y\n")
+    assert imported_parts(module) == {"cad", "algebra", "variety", "interval"}
+
+
+@pytest.mark.parametrize("path", MODULES, ids=relative)
+def test_only_render_imports_matplotlib(path: Path) -> None:
+    tops = {module.partition(".")[0] for module, _ in imports(path)}
+    assert part(path) == "render" or not tops & {"matplotlib", "mpl_toolkits"}
+
+
+@pytest.mark.parametrize("path", MODULES, ids=relative)
+def test_flint_stays_in_the_exact_engine(path: Path) -> None:
+    """FLINT's numbers and balls are used where counts are made; its polynomials in algebra/ only."""
+    names = {name for module, name in imports(path) if module.partition(".")[0] == "flint"}
+    used = {
+        node.attr
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "flint"
+    }
+    if names or used:
+        assert part(path) in EXACT
+    if part(path) != "algebra":
+        assert not [name for name in names | used if name.endswith(FLINT_POLYNOMIALS)]
+
+
+@pytest.mark.parametrize("path", MODULES, ids=relative)
+def test_the_engines_are_independent(path: Path) -> None:
+    """A check of one engine by the other proves something only while they share no mathematics."""
+    if part(path) == "interval":
+        assert not imported_parts(path) & {"algebra", "cad", "variety", "counting", "area"}
+
+
+@pytest.mark.parametrize("path", MODULES, ids=relative)
+def test_data_flows_one_way(path: Path) -> None:
+    """What computes knows nothing of how results are shown, asked for or timed."""
+    if part(path) not in {"cli", "bench", "render"}:
+        allowed = {"render"} if part(path) == "regionmap" else set()
+        assert not imported_parts(path) & {"cli", "bench", "render"} - allowed
+    if part(path) in {"errors", "expressions"}:
+        assert imported_parts(path) <= {"errors"}
+
+
+def loaded_after(code: str, tmp_path: Path) -> set[str]:
+    """Top-level modules loaded by a fresh interpreter that has run the code."""
+    report = "import json, sys; print('\\n' + json.dumps(sorted({name.partition('.')[0] for name in sys.modules})))"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}\n{report}"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return set(json.loads(done.stdout.splitlines()[-1]))
+
+
+def test_the_command_line_starts_lean(tmp_path: Path) -> None:
+    """``ptmcad --help`` must not wait for a computing or drawing library."""
+    assert not loaded_after("import ptmcad.cli", tmp_path) & {"matplotlib", "sympy", "numpy", "flint"}
+
+
+def test_json_needs_no_picture_or_symbolic_library(tmp_path: Path) -> None:
+    """A whole classification to JSON loads neither matplotlib nor sympy nor numpy."""
+    record = str(ROOT / "configs" / "fig4.yaml")
+    code = (
+        "import sys\n"
+        "from ptmcad.cli import main\n"
+        f"sys.argv = ['ptmcad', 'classify', {record!r}, '--format', 'json', '--out', '.']\n"
+        "try:\n"
+        "    main()\n"
+        "except SystemExit as end:\n"
+        "    assert not end.code, end.code\n"
+    )
+    loaded = loaded_after(code, tmp_path)
+    assert "flint" in loaded
+    assert not loaded & {"matplotlib", "sympy", "numpy"}
+    assert (tmp_path / "fig4.json").exists()

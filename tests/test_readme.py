@@ -1,0 +1,102 @@
+"""The README does what it says: its blocks are taken out of it and run."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
+RESULTS = re.compile(r"^(?P<expression>[^#\n]+?)\s*#\s*(?P<value>\S.*)$")
+
+
+def blocks(language: str) -> list[str]:
+    return [text for found, text in BLOCKS if found == language]
+
+
+def shell_lines() -> list[str]:
+    return [line.partition("#")[0].strip() for block in blocks("sh") for line in block.splitlines() if line.strip()]
+
+
+MAKE_LINES = [line for line in shell_lines() if line.startswith("make ")]
+PROGRAM_LINES = [line for line in shell_lines() if not line.startswith("make ")]
+
+
+def test_the_parts_are_there() -> None:
+    assert MAKE_LINES == ["make demo", "make test"]
+    assert len(PROGRAM_LINES) == 2
+    assert len(blocks("yaml")) == 1
+    assert len(blocks("python")) == 1
+
+
+@pytest.mark.parametrize("line", MAKE_LINES)
+def test_make_command(line: str) -> None:
+    """The targets exist and run what the README says; they are not run here, or the tests would run themselves."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
+    dry = subprocess.run(
+        [*shlex.split(line), "--dry-run"], cwd=ROOT, env=environment, capture_output=True, text=True, check=False
+    )
+    assert dry.returncode == 0, dry.stderr
+    expected = {"make demo": "ptmcad classify configs/fig4.yaml --format json,png,svg --out out", "make test": "pytest"}
+    assert expected[line] in dry.stdout
+
+
+@pytest.mark.parametrize("line", PROGRAM_LINES)
+def test_program_command(line: str, tmp_path: Path) -> None:
+    """Each command ends well and writes its files, in a folder that holds nothing but the problem records."""
+    shutil.copytree(ROOT / "configs", tmp_path / "configs")
+    program, *arguments = shlex.split(line)
+    assert program == ".venv/bin/ptmcad"
+    installed = Path(sys.executable).with_name("ptmcad")
+    done = subprocess.run([str(installed), *arguments], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    written = {path.suffix for path in (tmp_path / "out").iterdir()}
+    assert written >= ({".json", ".svg"} if "svg" in line else {".json"})
+
+
+def test_python_block(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The block runs; a line that ends in a comment evaluates to what the comment says."""
+    monkeypatch.chdir(ROOT)
+    (block,) = blocks("python")
+    names: dict[str, object] = {}
+    checked = 0
+    for line in block.splitlines():
+        result = RESULTS.match(line)
+        if result is None:
+            exec(line, names)
+        else:
+            assert eval(result["expression"], names) == ast.literal_eval(result["value"])
+            checked += 1
+    assert checked
+
+
+def test_yaml_block(tmp_path: Path) -> None:
+    """The record is read, and is the shipped one with its reference left out."""
+    from ptmcad import config
+
+    (block,) = blocks("yaml")
+    record = tmp_path / "record.yaml"
+    record.write_text(block, encoding="utf-8")
+    shown, shipped = config.load(record), config.load(ROOT / "configs" / "fig4.yaml")
+    assert (shown.name, shown.mechanism, shown.axes, shown.count) == (
+        shipped.name,
+        shipped.mechanism,
+        shipped.axes,
+        shipped.count,
+    )
+    assert dict(shown.parameters) == dict(shipped.parameters)
+
+
+def test_links_lead_somewhere() -> None:
+    for target in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (ROOT / target).exists(), target
