@@ -1,1 +1,51 @@
-"""Exact region maps of planar tensegrity mechanisms."""
+"""Exact region maps of planar tensegrity mechanisms.
+
+>>> import ptmcad
+>>> result = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))
+>>> result.locate(L2="3/2", rho=1).stable
+2
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ptmcad.version import __version__
+
+if TYPE_CHECKING:
+    from ptmcad.config import load, slice_from_mapping, slice_from_options
+    from ptmcad.pipeline import classify
+    from ptmcad.regionmap import RegionMap
+    from ptmcad.slice import Count, Point, Slice
+
+_HOMES = {
+    "load": "config",
+    "slice_from_mapping": "config",
+    "slice_from_options": "config",
+    "classify": "pipeline",
+    "RegionMap": "regionmap",
+    "Count": "slice",
+    "Point": "slice",
+    "Slice": "slice",
+}
+
+__all__ = [
+    "Count",
+    "Point",
+    "RegionMap",
+    "Slice",
+    "__version__",
+    "classify",
+    "load",
+    "slice_from_mapping",
+    "slice_from_options",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import public names when they are first used: a command that only reads a record loads no algebra."""
+    if name in _HOMES:
+        from importlib import import_module
+
+        return getattr(import_module(f"ptmcad.{_HOMES[name]}"), name)
+    raise AttributeError(f"module 'ptmcad' has no attribute {name!r}")

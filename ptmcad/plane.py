@@ -6,6 +6,7 @@ so two polynomials that are equal up to a constant are equal objects.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -41,13 +42,38 @@ class PlanePolynomial:
         return sum((c * x**i * y**j for i, j, c in self.terms), Fraction(0))
 
     def text(self, names: tuple[str, str] = ("x", "y"), power: str = "^") -> str:
-        """The polynomial as text that the expression parser reads back."""
-        pieces = []
+        """The polynomial as text, such as ``2*x^2*y - 1``."""
+        text = ""
         for i, j, c in self.terms:
             factors = [f"{n}{power}{e}" if e > 1 else n for n, e in zip(names, (i, j), strict=True) if e]
             if abs(c) != 1 or not factors:
                 factors.insert(0, str(abs(c)))
-            pieces.append(("- " if c < 0 else "+ ") + "*".join(factors))
-        return " ".join(pieces).removeprefix("+ ").replace("- ", "-", 1) if pieces and pieces[0][0] == "-" else (
-            " ".join(pieces).removeprefix("+ ") or "0"
-        )
+            sign = ("-" if c < 0 else "") if not text else (" - " if c < 0 else " + ")
+            text += sign + "*".join(factors)
+        return text or "0"
+
+    @classmethod
+    def parse(cls, text: str, names: tuple[str, str] = ("x", "y")) -> PlanePolynomial:
+        """The polynomial that `text` wrote (for longer texts than the expression parser takes).
+
+        Raises
+        ------
+        ValueError
+            When the text was not written by `text`.
+        """
+        if text == "0":
+            return cls(())
+        terms = []
+        for sign, body in re.findall(r"(^-?|[+-]) ?([^ ]+)", text):
+            powers, coefficient = [0, 0], 1
+            for factor in body.split("*"):
+                name, _, exponent = factor.partition("^")
+                if name in names:
+                    powers[names.index(name)] += int(exponent or 1)
+                else:
+                    coefficient *= int(factor)
+            terms.append((powers[0], powers[1], -coefficient if sign == "-" else coefficient))
+        result = cls.of(terms)
+        if result.text(names) != text:
+            raise ValueError(f"not a primitive polynomial in {names[0]} and {names[1]}: {text[:60]}")
+        return result

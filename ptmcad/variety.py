@@ -15,9 +15,8 @@ the latter also vanishes where the monomial basis degenerates; `hermite_determin
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from enum import Enum
 
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import Coefficient, Ratio, to_plane
@@ -34,30 +33,7 @@ from ptmcad.algebra.window import Interval, nowhere_zero
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
 from ptmcad.models.system import ParametricSystem, SliceSystem, on_slice
 from ptmcad.plane import PlanePolynomial
-
-
-class Kind(Enum):
-    """Why a curve belongs to the variety."""
-
-    CRITICAL = "critical"
-    INFINITY = "infinity"
-    BOUNDARY = "boundary"
-
-
-@dataclass(frozen=True, slots=True)
-class Component:
-    """An irreducible curve of the variety (a factor over Q), with the reason when the window does not need it.
-
-    Attributes
-    ----------
-    polynomial : primitive, in Z[x, y].
-    kind : CRITICAL, INFINITY or BOUNDARY.
-    left_out : empty when the cell decomposition uses the component, else why it does not.
-    """
-
-    polynomial: PlanePolynomial
-    kind: Kind
-    left_out: str = ""
+from ptmcad.regionmap import Component, Kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +48,7 @@ def discriminant_variety(
     system: ParametricSystem,
     parameters: Mapping[str, Ratio],
     window: tuple[Interval, Interval],
+    limits: Sequence[Coefficient] = (),
     keep: frozenset[str] = frozenset(),
 ) -> DiscriminantVariety:
     """The discriminant variety of a slice over a window.
@@ -80,6 +57,7 @@ def discriminant_variety(
     ----------
     parameters : each parameter as a ratio of polynomials in Z[x, y].
     window : the ranges of x and y.
+    limits : further polynomials whose zeros bound the slice's domain (lengths and stiffnesses that vanish).
     keep : names of savings to switch off: ``"no-real-points"`` keeps components that have no point in the window.
 
     Raises
@@ -105,7 +83,7 @@ def discriminant_variety(
             left_out = "no point in the window"
         found[polynomial] = Component(polynomial, kind, left_out)
 
-    for polynomial in equations.boundary:
+    for polynomial in (*equations.boundary, *limits):
         for factor in _factors(polynomial):
             adopt(factor, Kind.BOUNDARY)
     for factor in _factors(jacobian_norm):

@@ -30,6 +30,10 @@ class Projection:
     polynomials: tuple[tuple[fmpz_poly, str], ...]
     abscissae: tuple[RealRoot, ...]
 
+    def origin(self, polynomial: fmpz_poly) -> str:
+        """Why a polynomial belongs to the projection."""
+        return next(origin for p, origin in self.polynomials if p == polynomial)
+
 
 def predicted_cost(curves: Sequence[Curve]) -> int:
     """A figure for the cost of the projection: evaluation points times the cost of one evaluation, summed."""
