@@ -9,15 +9,17 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from time import perf_counter
 from typing import Any
 
 import flint
-from flint import fmpq, fmpz_poly
+from flint import fmpq
 
 from ptmcad.algebra.polynomials import (
     Coefficient,
     Ratio,
+    UnivariatePolynomial,
     coefficients_in,
     evaluate,
     from_expression,
@@ -132,9 +134,7 @@ def classify(
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     window = tuple((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
     clock.report("variety", 0, 1)
-    variety = discriminant_variety(
-        system, parameters, (window[0], window[1]), _limits(system, parameters), keep
-    )
+    variety = discriminant_variety(system, parameters, (window[0], window[1]), _limits(system, parameters), keep)
     clock.stage("variety")
 
     base, curves, verticals, costs = _choose_base(variety.components, keep)
@@ -154,7 +154,7 @@ def classify(
     clock.stage("counts")
 
     crossings = []
-    for k, (left, right) in enumerate(zip(stacks, stacks[1:], strict=False)):
+    for k, (left, right) in enumerate(pairwise(stacks)):
         clock.report("adjacency", k, len(stacks) - 1)
         crossings.append(passages(curves, left, right, window[1 - base]))
     vertical_components = {
@@ -219,7 +219,7 @@ def _limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coef
     return [parameters[name][0] for name in names if not parameters[name][0].is_constant()]
 
 
-def _vertical_lines(components: Sequence[Component], base: int) -> dict[int, fmpz_poly]:
+def _vertical_lines(components: Sequence[Component], base: int) -> dict[int, UnivariatePolynomial]:
     """The components that are lines across the fibre direction, as polynomials in the base coordinate."""
     lines = {}
     for n, c in enumerate(components):
@@ -230,7 +230,7 @@ def _vertical_lines(components: Sequence[Component], base: int) -> dict[int, fmp
 
 def _choose_base(
     components: Sequence[Component], keep: frozenset[str]
-) -> tuple[int, list[Curve], list[fmpz_poly], tuple[int, int]]:
+) -> tuple[int, list[Curve], list[UnivariatePolynomial], tuple[int, int]]:
     """The base axis of the cheaper decomposition, with the curves and lines as seen from it."""
     views = []
     for base in (0, 1):
@@ -292,9 +292,7 @@ def _adjacencies(
             line = tuple(int(c) for c in projection.abscissae[s].polynomial.coeffs())
             for p in crossings[s]:
                 segment = (to_fraction(p.low), to_fraction(p.high), to_fraction(p.height))
-                found.append(
-                    Adjacency(first + p.left, following + p.right, vertical_components.get(line), segment)
-                )
+                found.append(Adjacency(first + p.left, following + p.right, vertical_components.get(line), segment))
         first = following
     return tuple(found)
 
@@ -339,5 +337,3 @@ def _regions(
 def _height(point: Point) -> tuple[int, ...]:
     x, y = point[0], point[1]
     return (max(abs(x.numerator), x.denominator, abs(y.numerator), y.denominator), x.denominator, y.denominator)
-
-

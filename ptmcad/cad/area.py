@@ -2,13 +2,9 @@
 
 Guarantee: each area is an interval that contains the true value; its relative width is at most the tolerance asked for.
 
-On a panel [m - r, m + r] a branch v = y(u) of p(u, v) = 0 is approximated by a polynomial z(h), u = m + r h, from the
-branch's Taylor series. Let q = s p with a polynomial s(h) close to 1/p_v(u, z). If |q(u, z)| <= e and q_v(u, z) >= b > 0
-on the panel and |q_vv| <= K in the tube |v - z| <= t with t >= 2 e / b and K t <= b / 2, then q_v has no zero in the
-tube and q changes sign across it (mean value theorem), so the tube contains exactly one root of p for each u (s has no
-zero, as s p_v >= b / 2); if the isolated root at u = m lies in it, this root is the branch. Panels that fail, as they
-must at turning points, are halved; there the branch is shut in between two horizontals that the curve does not meet.
-The number of panels grows with the logarithm of 1/tolerance.
+The branch of a wall is integrated on panels by `algebra.branches`; panels where that fails, as it must at turning
+points, are halved, and there the branch is shut in between two horizontals that the curve does not meet. The number of
+panels grows with the logarithm of 1/tolerance.
 """
 
 from __future__ import annotations
@@ -16,9 +12,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
-from flint import arb, arb_poly, arb_series, ctx, fmpq
+from flint import arb, ctx, fmpq
 
+from ptmcad.algebra.branches import branch_integral
 from ptmcad.algebra.polynomials import to_fraction
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine
 from ptmcad.algebra.window import Interval
@@ -107,7 +105,7 @@ def _areas(
     """One attempt: strips of at most the given width around the critical abscissae are left to any region."""
     by_component = {c.component: c for c in curves}
     spans = [_span(stack, strip) for stack in stacks]
-    gaps = sum((b[0] - a[1] for a, b in zip(spans, spans[1:], strict=False)), fmpq(0))
+    gaps = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0))
     fixed = _edges(spans, regions, fibre, count)
     panels = []
     for (low, high), stack, row in zip(spans, stacks, regions, strict=True):
@@ -126,9 +124,7 @@ def _span(stack: StackData, strip: fmpq) -> Interval:
     return left, right
 
 
-def _edges(
-    spans: Sequence[Interval], regions: Sequence[Sequence[int]], fibre: Interval, count: int
-) -> list[fmpq]:
+def _edges(spans: Sequence[Interval], regions: Sequence[Sequence[int]], fibre: Interval, count: int) -> list[fmpq]:
     """The exact contributions of the window's edges to each region's area."""
     total = [fmpq(0)] * count
     for (low, high), row in zip(spans, regions, strict=True):
@@ -155,9 +151,7 @@ def _refine(
         if any(to_fraction(lost) * 4 > tolerance * bounds[i][1] for i in poor):
             raise _Unreachable(strips=True)
         load = {i: sum(i in (p.below, p.above) for p in panels) for i in poor}
-        target = {
-            i: float(tolerance * max(bounds[i][0], bounds[i][1] / 8)) / (2 * max(load[i], 1)) for i in poor
-        }
+        target = {i: float(tolerance * max(bounds[i][0], bounds[i][1] / 8)) / (2 * max(load[i], 1)) for i in poor}
         refined: list[_Panel] = []
         for p in panels:
             if any(p.width > target[i] for i in poor & {p.below, p.above}):
@@ -172,9 +166,7 @@ def _refine(
         panels = refined
 
 
-def _bounds(
-    panels: Sequence[_Panel], fixed: Sequence[fmpq], lost: fmpq
-) -> tuple[tuple[Fraction, Fraction], ...]:
+def _bounds(panels: Sequence[_Panel], fixed: Sequence[fmpq], lost: fmpq) -> tuple[tuple[Fraction, Fraction], ...]:
     totals = [arb(f) for f in fixed]
     for p in panels:
         totals[p.below] += p.integral
@@ -198,108 +190,11 @@ def _panel(
     """A panel with the better of two enclosures."""
     middle = (low + high) / 2
     at_middle = isolate(curve.fibre(middle), *fibre)[root]
-    integral = _taylor_enclosure(curve, at_middle, middle, (high - low) / 2, fibre, effort.order)
+    integral = branch_integral(curve.in_v, at_middle, middle, (high - low) / 2, fibre, effort.order)
     if integral is None:
         bottom, top = _horizontals(curve, root, low, high, at_middle, fibre)
         integral = arb(bottom).union(arb(top)) * arb(high - low)
     return _Panel(curve, root, low, high, below, above, integral)
-
-
-def _taylor_enclosure(
-    curve: Curve, at_middle: RealRoot, middle: fmpq, radius: fmpq, fibre: Interval, order: int
-) -> arb | None:
-    """An enclosure of the branch's integral over the panel, or None when the tube could not be proved."""
-    root = refine(at_middle, (fibre[1] - fibre[0]) / 2 ** (ctx.prec // 3))
-    origin = root.low
-    local = _local_coefficients(curve, middle, radius, origin)
-    if not abs(local[1][0]) > 0:
-        return None
-    series = _series(local, order)
-    last, first = abs(series[order]).upper(), max((abs(c).upper() for c in series.coeffs()[1:]), default=arb(0))
-    if not 8 * last < first and not last < arb((fibre[1] - fibre[0]) / 2**20):
-        return None  # the series does not converge on this panel; trying on would only take time
-    residual, slope, bend = _along(local, series)
-    scale = _inverse(slope, order)
-    error = _norm(scale * residual).upper()
-    least = (1 - _norm(scale * slope - 1)).lower()
-    if not least > 0:
-        return None
-    start = abs(series[0]) + arb(root.high - root.low)
-    tube = (2 * error / least).upper()
-    tube = tube if tube > start.upper() else start.upper()
-    reach = _norm(series) + tube
-    third, power = arb(0), arb(1)
-    for i in range(3, len(local)):
-        third += i * (i - 1) * (i - 2) * _norm(local[i]) * power
-        power = power * reach
-    curvature = _norm(scale * bend) + _norm(scale) * third * tube
-    if not 2 * curvature * tube < least:
-        return None
-    # w(h) is integrated over -1 <= h <= 1: odd powers cancel
-    mean = arb(origin)
-    for k, c in enumerate(series.coeffs()):
-        if k % 2 == 0:
-            mean += c / (k + 1)
-    return (mean + tube * arb(0, 1)) * arb(2 * radius)
-
-
-def _local_coefficients(curve: Curve, middle: fmpq, radius: fmpq, origin: fmpq) -> list[arb_poly]:
-    """Coefficients b_i(h) of p(middle + radius h, origin + w) = sum_i b_i(h) w^i."""
-    line = arb_poly([arb(middle), arb(radius)])
-    rows = [arb_poly(c)(line) for c in curve.in_v]
-    shift = arb(origin)
-    for start in range(len(rows) - 1):
-        for i in range(len(rows) - 2, start - 1, -1):
-            rows[i] = rows[i] + rows[i + 1] * shift
-    return rows
-
-
-def _series(local: Sequence[arb_poly], order: int) -> arb_poly:
-    """The first coefficients of the solution w(h) of sum_i b_i(h) w^i = 0 near w = 0, each an exact midpoint.
-
-    Newton's iteration on power series; each step doubles the number of right coefficients.
-    """
-    w = arb_poly([0])
-    known = 1
-    for length in (2, 4, 8, 16, 32, 64):
-        length = min(length, order + 1)
-        value, slope = local[-1].truncate(length), arb_poly([0])
-        for b in reversed(local[:-1]):
-            slope = (slope * w).truncate(length) + value
-            value = (value * w).truncate(length) + b.truncate(length)
-        step = (value * _inverse(slope, length - 1)).truncate(length)
-        w = arb_poly([c.mid() for c in (w - step).coeffs()])
-        if known == order + 1:
-            return w
-        known = length
-    return w
-
-
-def _inverse(p: arb_poly, order: int) -> arb_poly:
-    """The first coefficients of 1/p, each an exact midpoint."""
-    length = order + 1
-    previous = ctx.cap
-    ctx.cap = length
-    try:
-        inverse = arb_series([1], prec=length) / arb_series(p.coeffs()[:length], prec=length)
-    finally:
-        ctx.cap = previous
-    return arb_poly([c.mid() for c in inverse.coeffs()])
-
-
-def _along(local: Sequence[arb_poly], w: arb_poly) -> tuple[arb_poly, arb_poly, arb_poly]:
-    """p and its first two derivatives by v along the approximation."""
-    value, slope, half = local[-1], arb_poly([0]), arb_poly([0])
-    for b in reversed(local[:-1]):
-        half = half * w + slope
-        slope = slope * w + value
-        value = value * w + b
-    return value, slope, 2 * half
-
-
-def _norm(p: arb_poly) -> arb:
-    """The sum of the coefficients' moduli: a bound for |p(h)|, |h| <= 1."""
-    return sum((abs(c) for c in p.coeffs()), arb(0))
 
 
 def _horizontals(
@@ -316,13 +211,13 @@ def _horizontals(
     margin = (top - bottom) / 2 + step
     lower, upper = fibre
     for _ in range(6):
-        if bottom - margin > fibre[0] and lower == fibre[0] and not has_root_between(
-            curve.trace(bottom - margin), low, high
+        if (
+            bottom - margin > fibre[0]
+            and lower == fibre[0]
+            and not has_root_between(curve.trace(bottom - margin), low, high)
         ):
             lower = bottom - margin
-        if top + margin < fibre[1] and upper == fibre[1] and not has_root_between(
-            curve.trace(top + margin), low, high
-        ):
+        if top + margin < fibre[1] and upper == fibre[1] and not has_root_between(curve.trace(top + margin), low, high):
             upper = top + margin
         margin = margin * 4
     return lower, upper
