@@ -13,11 +13,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from flint import arb, arb_poly, ctx, fmpq
+from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.fibre import (
     Fibre,
     UnivariateRepresentation,
+    coordinates_at,
     evaluate,
     fibre,
     hermite_matrix,
@@ -120,7 +121,7 @@ def morse_index(point: PointSystem, representation: UnivariateRepresentation, ro
         with ctx.workprec(bits):
             root = refine(root, fmpq(1, 2 ** (bits - 8)) * (abs(root.middle) + 1))
             at = arb(root.low).union(arb(root.high))
-            unknowns = [arb_poly(p)(at) for p in representation.coordinates]
+            unknowns = coordinates_at(representation, at)
             h11, h12, h22 = (_value(point.hessian[i][j], unknowns) for i, j in ((0, 0), (0, 1), (1, 1)))
             determinant = h11 * h22 - h12 * h12
             if determinant < 0:
@@ -142,6 +143,16 @@ def _value(p: RationalPolynomial, unknowns: list[arb]) -> arb:
                 term = term * value**e
         total = total + term
     return total
+
+
+def solutions_at(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int | None, int]:
+    """Number of different complex solutions, and their number with multiplicity; (None, 0) for infinitely many."""
+    try:
+        algebra = point_system(system, values).algebra
+    except DegeneratePoint:
+        return None, 0
+    one = evaluate(algebra, {(0,) * len(algebra.multiplication): fmpq(1)})
+    return sum(signature(hermite_matrix(algebra, one))), algebra.dimension
 
 
 def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> Counts:

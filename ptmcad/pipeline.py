@@ -27,13 +27,14 @@ from ptmcad.algebra.polynomials import (
     from_plane,
     to_fraction,
 )
+from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.cad.adjacency import Passage, passages
 from ptmcad.cad.area import region_areas
 from ptmcad.cad.curves import Curve, curve
 from ptmcad.cad.projection import Projection, predicted_cost, project
 from ptmcad.cad.stacks import StackData, lift
-from ptmcad.counting import Counts, DegeneratePoint, count_by_isolation
-from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, LimitReached
+from ptmcad.counting import Counts, DegeneratePoint, count_by_isolation, solutions_at
+from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
 from ptmcad.expressions import rational
 from ptmcad.models import ParametricSystem, system_of
 from ptmcad.plan import plan_of
@@ -134,7 +135,11 @@ def classify(
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     window = tuple((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
     clock.report("variety", 0, 1)
-    variety = discriminant_variety(system, parameters, (window[0], window[1]), _limits(system, parameters), keep)
+    try:
+        variety = discriminant_variety(system, parameters, (window[0], window[1]), _limits(system, parameters), keep)
+    except (DegenerateSliceError, InfiniteSolutionsError) as error:
+        at = (simplest_between(*window[0]), simplest_between(*window[1]))
+        raise type(error)(f"{error}; {_witness(slice, system, parameters, at)}") from error
     clock.stage("variety")
 
     base, curves, verticals, costs = _choose_base(variety.components, keep)
@@ -269,6 +274,17 @@ def _count(slice: Slice, system: ParametricSystem, parameters: dict[str, Ratio],
 def point_values(parameters: dict[str, Ratio], at: tuple[fmpq, fmpq]) -> dict[str, fmpq]:
     """The parameters at a point where their denominators do not vanish."""
     return {name: evaluate(a, *at) / evaluate(b, *at) for name, (a, b) in parameters.items()}
+
+
+def _witness(slice: Slice, system: ParametricSystem, parameters: dict[str, Ratio], at: tuple[fmpq, fmpq]) -> str:
+    """What is wrong at one point of a slice that is degenerate everywhere."""
+    where = ", ".join(f"{name} = {value}" for name, value in zip(slice.axis_names, at, strict=True))
+    if any(evaluate(below, *at) == 0 for _, below in parameters.values()):
+        return f"at {where} a parameter has a zero denominator"
+    different, multiplicity = solutions_at(system, point_values(parameters, at))
+    if different is None:
+        return f"for example at {where} there are infinitely many solutions"
+    return f"for example at {where} only {different} of {multiplicity} solutions are different"
 
 
 def _key(counts: Counts, count: Count) -> tuple[int, ...]:

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from flint import Ordering, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpoly_vec, fmpz_poly
+from flint import Ordering, arb, arb_poly, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpoly_vec, fmpz_poly
 
 from ptmcad.algebra.groebner import Monomial, shifted
 from ptmcad.algebra.quotient import standard_monomials
@@ -135,6 +135,11 @@ def univariate_representation(algebra: Fibre) -> UnivariateRepresentation | None
         coordinates = tuple(fmpq_poly([solved[i, k] for i in range(size)]) for k in range(count))
         return UnivariateRepresentation(characteristic.numer(), coordinates, tuple(trial**k for k in range(count)))
     return None
+
+
+def coordinates_at(representation: UnivariateRepresentation, value: arb) -> list[arb]:
+    """Enclosures of the unknowns at the roots of ``minimal`` that a ball contains."""
+    return [arb_poly(p)(value) for p in representation.coordinates]
 
 
 def hermite_matrix(algebra: Fibre, weight: fmpq_mat) -> fmpq_mat:

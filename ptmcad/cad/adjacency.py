@@ -28,6 +28,7 @@ from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import (
     RealRoot,
     disjoint,
+    halve,
     has_root_between,
     isolate,
     refine,
@@ -70,13 +71,14 @@ def passages(curves: Sequence[Curve], left: StackData, right: StackData, fibre: 
             tuple((w, refine(r, resolution)) for w, r in roots_over(curves, u, fibre)) for u in (low, high)
         )
         found = _barriers(curves, low, high, over_low, over_high, fibre, extra)
-        unresolved = _unresolved(curves, end, found, len(over_low), len(over_high), fibre, exact=bool(extra))
+        unresolved = _unresolved(curves, end, found, len(over_low), len(over_high), fibre, attempt > ROUNDS)
         if not unresolved:
             unique = {(p.left, p.right): p for p in reversed(found)}
             return tuple(sorted(unique.values(), key=lambda p: (p.left, p.right)))
         attempt += 1
-        if attempt >= ROUNDS:
-            extra = tuple(h for slot in unresolved for h in _between_points(curves, end, slot)) or extra
+        if attempt > ROUNDS:
+            separating = (h for slot in unresolved for h in _between_points(curves, end, slot))
+            extra = tuple(sorted({*extra, *separating}))
 
 
 def _bracket(end: BaseEnd, width: fmpq, low: fmpq, high: fmpq) -> tuple[fmpq, fmpq]:
@@ -194,10 +196,10 @@ def _points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> int:
 
 def _between_points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> list[fmpq]:
     """Heights between all points of the curves over the critical abscissa in the slot."""
-    points = _possible_points(curves, end, slot)
+    points = list(_possible_points(curves, end, slot))
+    while points and points[0].low <= slot.bottom:
+        points[0] = halve(points[0])
+    while points and points[-1].high >= slot.top:
+        points[-1] = halve(points[-1])
     levels = [slot.bottom, *(x for r in points for x in (r.low, r.high)), slot.top]
-    return [
-        simplest_between(levels[2 * k], levels[2 * k + 1])
-        for k in range(len(points) + 1)
-        if levels[2 * k] < levels[2 * k + 1]
-    ]
+    return [simplest_between(levels[2 * k], levels[2 * k + 1]) for k in range(len(points) + 1)]
