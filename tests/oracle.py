@@ -9,7 +9,7 @@ Where Q is not 0, e r = k3 L1 P / Q, so there is one solution over th2, H11 has 
     N = k3 L1 P^3 Q W - k3 L1 D P^2 Q^2 - (L2/L1) Q^4 D^2,   W = a2 c2 + F4 s2,   D = a1 c2 - F3 s2 - k3 L2.
 
 Roots are counted by Sturm sequences, signs at them by Tarski queries: everything is exact but the signs over P = Q = 0
-(loads that let a rod stand by itself), which are taken with 60 digits and a margin.
+(loads that let a rod stand by itself), which are taken with 100 digits and a margin.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ import mpmath
 
 Polynomial = list[int]
 """Coefficients, constant first."""
-MARGIN = 40
-"""Digits that a sign taken with 60 digits may lose."""
+DIGITS, MARGIN = 100, 40
+"""Working digits of the signs that are not exact, and how many of them rounding may take."""
 
 
 class Degenerate(Exception):
@@ -247,7 +247,7 @@ def quotient_at_infinity_too(p: Sequence[int | Fraction], q: Polynomial) -> list
 
 def _standing(along: tuple[Fraction, Fraction], side: int, e: int, values: Sequence[Fraction]) -> int:
     """Morse index of the solution with P = Q = 0, (c2, s2) along side * along, (c1, s1) = e (A, B) / r."""
-    with mpmath.workdps(60):
+    with mpmath.workdps(DIGITS):
         a1, a2, f3, f4, k3, length1, length2 = (mpmath.mpf(v.numerator) / v.denominator for v in values)
         x, y = (mpmath.mpf(v.numerator) / v.denominator for v in along)
         norm = mpmath.sqrt(x * x + y * y)
@@ -256,6 +256,6 @@ def _standing(along: tuple[Fraction, Fraction], side: int, e: int, values: Seque
         w, d = a2 * c2 + f4 * s2, a1 * c2 - f3 * s2 - k3 * length2
         terms = [e * r**3 * w, -k3 * length1 * d * r**2, -(k3**2) * length1 * length2 * d**2]
         value = mpmath.fsum(terms)
-        if abs(value) <= max(map(abs, terms)) * mpmath.mpf(10) ** (MARGIN - 60) or r == 0:
+        if abs(value) <= max(map(abs, terms)) * mpmath.mpf(10) ** (MARGIN - DIGITS) or r == 0:
             raise Degenerate("a singular Hessian where P = Q = 0")
         return 1 if value < 0 else 0 if e > 0 else 2
