@@ -1,0 +1,33 @@
+"""Hypothesis repeats the same examples in every run, and the region maps of the shipped slices are computed once."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+import ptmcad
+
+settings.register_profile(
+    "ptmcad",
+    derandomize=True,
+    deadline=None,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
+)
+settings.load_profile("ptmcad")
+
+CONFIGS = Path(__file__).parent.parent / "configs"
+
+
+@cache
+def shipped(name: str, count: str | None = None, area_tolerance: str = "1e-4") -> ptmcad.RegionMap:
+    """The region map of a shipped slice."""
+    return ptmcad.classify(ptmcad.load(CONFIGS / f"{name}.yaml"), count=count, area_tolerance=area_tolerance)
+
+
+@pytest.fixture(name="shipped")
+def shipped_fixture() -> object:
+    return shipped
