@@ -144,7 +144,7 @@ def classify(
 
     base, curves, verticals, costs = _choose_base(variety.components, keep)
     clock.report("projection", 0, 1)
-    projection = project(curves, verticals, window[base], window[1 - base])
+    projection = project(curves, verticals, window[base], window[1 - base], clock.check)
     clock.stage("projection")
     stacks = lift(curves, projection.abscissae, window[base], window[1 - base])
     clock.stage("stacks")
@@ -161,7 +161,7 @@ def classify(
     crossings = []
     for k, (left, right) in enumerate(pairwise(stacks)):
         clock.report("adjacency", k, len(stacks) - 1)
-        crossings.append(passages(curves, left, right, window[1 - base]))
+        crossings.append(passages(curves, left, right, window[1 - base], clock.check))
     vertical_components = {
         tuple(int(c) for c in line.coeffs()): n for n, line in _vertical_lines(variety.components, base).items()
     }

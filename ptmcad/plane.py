@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd
+from typing import Any
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +52,13 @@ class PlanePolynomial:
             sign = ("-" if c < 0 else "") if not text else (" - " if c < 0 else " + ")
             text += sign + "*".join(factors)
         return text or "0"
+
+    def to_sympy(self, names: tuple[str, str] = ("x", "y")) -> Any:
+        """The polynomial as a SymPy expression in symbols of these names."""
+        import sympy
+
+        x, y = (sympy.Symbol(name) for name in names)
+        return sympy.Add(*(c * x**i * y**j for i, j, c in self.terms))
 
     @classmethod
     def parse(cls, text: str, names: tuple[str, str] = ("x", "y")) -> PlanePolynomial:

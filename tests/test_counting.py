@@ -110,7 +110,9 @@ def test_methods_agree_at_every_sample_of(name: str) -> None:
 
 # ------------------------------------------------------------------------------------------------- extreme parameters
 
-corner = st.sampled_from([Fraction(1), Fraction(2), Fraction(1, 2), Fraction(3, 2), Fraction(1, 10**6), Fraction(10**6)])
+corner = st.sampled_from(
+    [Fraction(1), Fraction(2), Fraction(1, 2), Fraction(3, 2), Fraction(1, 10**6), Fraction(10**6)]
+)
 length = st.one_of(corner, st.fractions(min_value=Fraction(1, 100), max_value=100, max_denominator=100))
 force = st.one_of(
     st.sampled_from([Fraction(c) for c in ("0", "0", "-10", "10", "1e-9", "-1e9", "1/3")]),
@@ -161,7 +163,9 @@ PLAIN = {n: Fraction(v) for n, v in {"L1": 1, "L2": 1, "rho": 1, "k1": 100, "k2"
      ({"F3": "-10", "F4": "-10", "rho": "3/4"}, (2, 3, 1))],
     ids=lambda v: ",".join(f"{n}={x}" for n, x in v.items()) if isinstance(v, dict) else None,
 )  # fmt: skip
-@pytest.mark.parametrize("method", [count_by_isolation, count_by_signature, None], ids=["isolation", "signature", "oracle"])
+@pytest.mark.parametrize(
+    "method", [count_by_isolation, count_by_signature, None], ids=["isolation", "signature", "oracle"]
+)
 def test_reference_points(method: object, changed: dict[str, str], index: tuple[int, int, int]) -> None:
     """Unloaded: |L2 - 1| < 2 rho < L2 + 1 has two minima. Symmetric: sliver, rose, beyond the rose (REFERENCE)."""
     values = PLAIN | {n: Fraction(v) for n, v in changed.items()}

@@ -17,10 +17,18 @@ from math import floor
 from flint import fmpz, fmpz_poly
 
 Coefficients = Sequence[fmpz_poly]
+Check = Callable[[], None]
 
 
-def discriminant(p: Coefficients) -> fmpz_poly:
-    """The discriminant with respect to v of sum_i p_i(u) v^i, for degree at least 1 in v."""
+def nothing() -> None:
+    """The check that never stops a computation."""
+
+
+def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
+    """The discriminant with respect to v of sum_i p_i(u) v^i, for degree at least 1 in v.
+
+    ``check`` is called between evaluations; it may raise to stop.
+    """
     n = len(p) - 1
     if n < 2:
         return fmpz_poly([1])
@@ -35,11 +43,11 @@ def discriminant(p: Coefficients) -> fmpz_poly:
         # formal discriminant when the leading coefficient vanishes once: c_(n-1)^2 disc of the rest
         return value.leading_coefficient() ** 2 * (value.discriminant() if n > 2 else 1)
 
-    return interpolate(at, bound)
+    return interpolate(at, bound, check)
 
 
-def resultant(p: Coefficients, q: Coefficients) -> fmpz_poly:
-    """The resultant with respect to v, up to sign."""
+def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_poly:
+    """The resultant with respect to v, up to sign; ``check`` as for `discriminant`."""
     n, m = len(p) - 1, len(q) - 1
     if n == 0 or m == 0:
         return (p[0] ** m) if n == 0 else (q[0] ** n)
@@ -57,7 +65,7 @@ def resultant(p: Coefficients, q: Coefficients) -> fmpz_poly:
             value *= left.leading_coefficient() ** (m - right.degree())
         return value
 
-    return interpolate(at, bound)
+    return interpolate(at, bound, check)
 
 
 def _offset(p: Coefficients, slope: Fraction) -> Fraction:
@@ -71,7 +79,7 @@ def _slopes(p: Coefficients) -> set[Fraction]:
     return slopes
 
 
-def interpolate(at: Callable[[int], fmpz], degree: int) -> fmpz_poly:
+def interpolate(at: Callable[[int], fmpz], degree: int, check: Check = nothing) -> fmpz_poly:
     """The integer polynomial of degree at most ``degree`` with the given values at integers (Newton's form).
 
     Divided differences of an integer polynomial at integers are integers, so every division is exact.
@@ -79,7 +87,10 @@ def interpolate(at: Callable[[int], fmpz], degree: int) -> fmpz_poly:
     if degree < 0:
         return fmpz_poly([])
     first = -(degree // 2)
-    differences = [at(first + k) for k in range(degree + 1)]
+    differences = []
+    for k in range(degree + 1):
+        check()
+        differences.append(at(first + k))
     newton, factorial = [], fmpz(1)
     for k in range(degree + 1):
         factorial *= max(k, 1)

@@ -36,7 +36,7 @@ from ptmcad.algebra.real_roots import (
     simplest_between,
     squarefree_part,
 )
-from ptmcad.algebra.resultants import resultant
+from ptmcad.algebra.resultants import Check, nothing, resultant
 from ptmcad.algebra.window import Interval
 from ptmcad.cad.curves import Curve
 from ptmcad.cad.stacks import BaseEnd, StackData, Wall, roots_over
@@ -56,7 +56,9 @@ class Passage:
     height: fmpq
 
 
-def passages(curves: Sequence[Curve], left: StackData, right: StackData, fibre: Interval) -> tuple[Passage, ...]:
+def passages(
+    curves: Sequence[Curve], left: StackData, right: StackData, fibre: Interval, check: Check = nothing
+) -> tuple[Passage, ...]:
     """All adjacent pairs of cells across the abscissa between two neighbouring stacks, one witness for each pair."""
     end = left.right
     assert end.root is not None
@@ -65,6 +67,7 @@ def passages(curves: Sequence[Curve], left: StackData, right: StackData, fibre: 
     extra: tuple[fmpq, ...] = ()
     attempt = 0
     while True:
+        check()
         width, resolution = width / 256, resolution / 64
         low, high = _bracket(end, width, left.sample, right.sample)
         over_low, over_high = (

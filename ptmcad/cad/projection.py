@@ -18,7 +18,7 @@ from math import gcd
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, refine
-from ptmcad.algebra.resultants import discriminant, resultant
+from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
 from ptmcad.algebra.window import Interval
 from ptmcad.cad.curves import Curve, base_deflation, deflation
 
@@ -50,7 +50,11 @@ def predicted_cost(curves: Sequence[Curve]) -> int:
 
 
 def project(
-    curves: Sequence[Curve], verticals: Sequence[UnivariatePolynomial], base: Interval, fibre: Interval
+    curves: Sequence[Curve],
+    verticals: Sequence[UnivariatePolynomial],
+    base: Interval,
+    fibre: Interval,
+    check: Check = nothing,
 ) -> Projection:
     """The projection of the curves (and of vertical lines, given by their polynomials in u) and its real roots."""
     found: dict[tuple[int, ...], tuple[UnivariatePolynomial, str]] = {}
@@ -64,11 +68,11 @@ def project(
     for line in verticals:
         adopt(line, "vertical line")
     for c in curves:
-        for p, origin in _of_one(c, fibre):
+        for p, origin in _of_one(c, fibre, check):
             adopt(p, origin)
     for i, c in enumerate(curves):
         for d in curves[i + 1 :]:
-            adopt(_of_two(c, d), f"components {c.component} and {d.component} meet")
+            adopt(_of_two(c, d, check), f"components {c.component} and {d.component} meet")
     roots = [r for p, _ in found.values() for r in isolate(p, *base)]
     # intervals that are short against the window leave room for simple samples between them
     width = (base[1] - base[0]) / 2**16
@@ -76,11 +80,11 @@ def project(
     return Projection(tuple(found.values()), disjoint(short))
 
 
-def _of_one(c: Curve, fibre: Interval) -> list[tuple[UnivariatePolynomial, str]]:
+def _of_one(c: Curve, fibre: Interval, check: Check) -> list[tuple[UnivariatePolynomial, str]]:
     k = deflation(c.in_v)
     (deflated,), inflation = _deflated([c.in_v[::k]])
     name = f"component {c.component}"
-    result = [(discriminant(deflated).inflate(inflation), f"{name}: turning or singular point")]
+    result = [(discriminant(deflated, check).inflate(inflation), f"{name}: turning or singular point")]
     if k > 1 and fibre[0] < 0 < fibre[1]:
         result.append((c.in_v[0], f"{name}: turning point on the axis"))
     for edge in fibre:
@@ -88,10 +92,10 @@ def _of_one(c: Curve, fibre: Interval) -> list[tuple[UnivariatePolynomial, str]]
     return result
 
 
-def _of_two(c: Curve, d: Curve) -> UnivariatePolynomial:
+def _of_two(c: Curve, d: Curve, check: Check) -> UnivariatePolynomial:
     k = gcd(deflation(c.in_v), deflation(d.in_v))
     (first, second), inflation = _deflated([c.in_v[::k], d.in_v[::k]])
-    return resultant(first, second).inflate(inflation)
+    return resultant(first, second, check).inflate(inflation)
 
 
 Coefficients = tuple[UnivariatePolynomial, ...]
