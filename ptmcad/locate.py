@@ -58,7 +58,8 @@ def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction
     values = []
     for name in names:
         try:
-            values.append(rational(at[name]))
+            value = at[name]
+            values.append(rational(repr(value) if isinstance(value, float) else value))
         except ExpressionError as error:
             raise ConfigError(str(error), key=name) from error
     return values[0], values[1]

@@ -172,7 +172,7 @@ class PlanStep:
         return f"{'computed' if self.done else 'left out'}: {self.what} ({self.reason})"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class RegionMap:
     """The answer to a `Slice`.
 
@@ -199,8 +199,16 @@ class RegionMap:
     versions: Mapping[str, str]
     timings: Mapping[str, float] = field(default_factory=dict, compare=False)
 
+    def __str__(self) -> str:
+        return self.table()
+
+    def __repr__(self) -> str:
+        return f"<RegionMap {self.slice.name}: {len(self.regions)} regions, {self.status.value}>"
+
     def locate(self, **at: Any) -> Location:
         """The region of a rational point, exactly; names are the two axes, values numbers or text such as "7/10".
+
+        A float stands for its shortest decimal, as in a problem record: 0.1 is 1/10.
 
         Raises
         ------

@@ -45,11 +45,12 @@ def table(result: RegionMap) -> str:
     tally = Counter(count_text(r, count) for r in result.regions)
     counts = "; ".join(f"{text} {_NAMES[count]}: {n} region{'s' * (n > 1)}" for text, n in sorted(tally.items()))
     areas = "; ".join(f"{count_text(r, count)}: {certified_digits(r.area)}" for r in result.regions)
+    alike = Counter(
+        (c.kind.value, c.polynomial.degrees, len(c.polynomial.terms)) for c in result.components if c.separates
+    )
     curves = "; ".join(
-        f"{c.kind.value}, degree {c.polynomial.degrees[0]} in {names[0]} and {c.polynomial.degrees[1]} in {names[1]}, "
-        f"{len(c.polynomial.terms)} terms"
-        for c in result.components
-        if c.separates
+        f"{n} {kind} of degree {degrees[0]} in {names[0]}, {degrees[1]} in {names[1]} ({terms} terms)"
+        for (kind, degrees, terms), n in alike.items()
     )
     error = max(((r.area[1] - r.area[0]) / r.area[0] for r in result.regions if r.area[0]), default=Fraction(0))
     seconds = result.timings.get("total")

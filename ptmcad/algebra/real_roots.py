@@ -220,6 +220,16 @@ def disjoint(roots: Sequence[RealRoot]) -> tuple[RealRoot, ...]:
     return tuple(ordered)
 
 
+def inside(roots: Sequence[RealRoot], interval: tuple[fmpq, fmpq]) -> tuple[RealRoot, ...]:
+    """The same roots, in order, all inside an open interval, with closed isolating intervals inside it too."""
+    inner = list(roots)
+    while inner and inner[0].low <= interval[0]:
+        inner[0] = halve(inner[0])
+    while inner and inner[-1].high >= interval[1]:
+        inner[-1] = halve(inner[-1])
+    return tuple(inner)
+
+
 def simplest_between(low: fmpq, high: fmpq) -> fmpq:
     """The rational with the smallest denominator strictly between low and high, the one nearest to zero of these."""
     if low < 0 < high:

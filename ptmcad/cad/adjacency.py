@@ -28,8 +28,8 @@ from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import (
     RealRoot,
     disjoint,
-    halve,
     has_root_between,
+    inside,
     isolate,
     refine,
     sign_at,
@@ -199,10 +199,6 @@ def _points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> int:
 
 def _between_points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> list[fmpq]:
     """Heights between all points of the curves over the critical abscissa in the slot."""
-    points = list(_possible_points(curves, end, slot))
-    while points and points[0].low <= slot.bottom:
-        points[0] = halve(points[0])
-    while points and points[-1].high >= slot.top:
-        points[-1] = halve(points[-1])
+    points = inside(_possible_points(curves, end, slot), (slot.bottom, slot.top))
     levels = [slot.bottom, *(x for r in points for x in (r.low, r.high)), slot.top]
     return [simplest_between(levels[2 * k], levels[2 * k + 1]) for k in range(len(points) + 1)]

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from math import gcd
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, refine
+from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine
 from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
 from ptmcad.algebra.window import Interval
 from ptmcad.cad.curves import Curve, base_deflation, deflation
@@ -77,7 +77,7 @@ def project(
     # intervals that are short against the window leave room for simple samples between them
     width = (base[1] - base[0]) / 2**16
     short = [refine(r, width) for r in roots]
-    return Projection(tuple(found.values()), disjoint(short))
+    return Projection(tuple(found.values()), inside(disjoint(short), base))
 
 
 def _of_one(c: Curve, fibre: Interval, check: Check) -> list[tuple[UnivariatePolynomial, str]]:

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from flint import fmpq
 
-from ptmcad.algebra.real_roots import RealRoot, disjoint, halve, isolate, simplest_between
+from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.cad.curves import Curve
 
@@ -86,10 +86,6 @@ def lift(
 
 def heights_between(roots: Sequence[tuple[Wall, RealRoot]], fibre: Interval) -> tuple[fmpq, ...]:
     """Simple rational heights below, between and above the given roots, within the fibre interval."""
-    separated = [r for _, r in roots]
-    while separated and separated[0].low <= fibre[0]:
-        separated[0] = halve(separated[0])
-    while separated and separated[-1].high >= fibre[1]:
-        separated[-1] = halve(separated[-1])
+    separated = inside([r for _, r in roots], fibre)
     levels = [fibre[0], *(x for r in separated for x in (r.low, r.high)), fibre[1]]
     return tuple(simplest_between(levels[2 * k], levels[2 * k + 1]) for k in range(len(separated) + 1))
