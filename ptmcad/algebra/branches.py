@@ -12,6 +12,7 @@ for each u (s has no zero, as s p_v >= b / 2). If the isolated root at u = m lie
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import perm
 
 from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
 
@@ -44,7 +45,7 @@ def branch_integral(
     last, first = abs(series[order]).upper(), max((abs(c).upper() for c in series.coeffs()[1:]), default=arb(0))
     if not 8 * last < first and not last < arb((fibre[1] - fibre[0]) / 2**20):
         return None  # the series does not converge on this panel; trying on would only take time
-    residual, slope, bend = _along(local, series)
+    residual, slope = _along(local, series)
     scale = _inverse(slope, order)
     error = _norm(scale * residual).upper()
     least = (1 - _norm(scale * slope - 1)).lower()
@@ -53,14 +54,12 @@ def branch_integral(
     start = abs(series[0]) + arb(root.high - root.low)
     tube = (2 * error / least).upper()
     tube = tube if tube > start.upper() else start.upper()
-    reach = _norm(series) + tube
-    third, power = arb(0), arb(1)
-    for i in range(3, len(local)):
-        third += i * (i - 1) * (i - 2) * _norm(local[i]) * power
-        power = power * reach
-    curvature = _norm(scale * bend) + _norm(scale) * third * tube
-    if not 2 * curvature * tube < least:
-        return None
+    size, reach = _norm(scale), _norm(series) + tube
+    if not 2 * size * _derivative_bound(local, 2, reach) * tube < least:
+        # a finer bound: the second derivative along z itself, and the third in the tube
+        bend = _norm(scale * _second_along(local, series)) + size * _derivative_bound(local, 3, reach) * tube
+        if not 2 * bend * tube < least:
+            return None
     # w(h) is integrated over -1 <= h <= 1: odd powers cancel
     mean = arb(origin)
     for k, c in enumerate(series.coeffs()):
@@ -112,14 +111,30 @@ def _inverse(p: arb_poly, order: int) -> arb_poly:
     return arb_poly([c.mid() for c in inverse.coeffs()])
 
 
-def _along(local: Sequence[arb_poly], w: arb_poly) -> tuple[arb_poly, arb_poly, arb_poly]:
-    """p and its first two derivatives by v along the approximation."""
-    value, slope, half = local[-1], arb_poly([0]), arb_poly([0])
+def _along(local: Sequence[arb_poly], w: arb_poly) -> tuple[arb_poly, arb_poly]:
+    """p and its derivative by v along the approximation."""
+    value, slope = local[-1], arb_poly([0])
     for b in reversed(local[:-1]):
-        half = half * w + slope
         slope = slope * w + value
         value = value * w + b
-    return value, slope, 2 * half
+    return value, slope
+
+
+def _second_along(local: Sequence[arb_poly], w: arb_poly) -> arb_poly:
+    """The second derivative of p by v along the approximation."""
+    total = arb_poly([0])
+    for i in range(len(local) - 1, 1, -1):
+        total = total * w + i * (i - 1) * local[i]
+    return total
+
+
+def _derivative_bound(local: Sequence[arb_poly], k: int, reach: arb) -> arb:
+    """A bound for the k-th derivative by w of sum_i b_i(h) w^i where |h| <= 1 and |w| <= reach."""
+    total, power = arb(0), arb(1)
+    for i in range(k, len(local)):
+        total += perm(i, k) * _norm(local[i]) * power
+        power = power * reach
+    return total
 
 
 def _norm(p: arb_poly) -> arb:

@@ -18,7 +18,7 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.branches import branch_integral
 from ptmcad.algebra.polynomials import to_fraction
-from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine
+from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.cad.curves import Curve
 from ptmcad.cad.stacks import StackData
@@ -26,10 +26,10 @@ from ptmcad.cad.stacks import StackData
 
 @dataclass(frozen=True, slots=True)
 class _Effort:
-    """Degree of the polynomial on a panel, working precision, and the narrowest panel this precision is good for."""
+    """Degree of the polynomial on a panel, width of the base, and the narrowest panel the precision is good for."""
 
     order: int
-    bits: int
+    width: fmpq
     narrowest: fmpq
 
 
@@ -74,7 +74,7 @@ def region_areas(
     strip = width * fmpq(1, 10 ** (digits + 3) * 4 * (len(stacks) + 1))
     bits = 64 + 6 * digits + max((int(q.height_bits()) for c in curves for q in c.in_v), default=0) // 2
     while True:
-        effort = _Effort(digits + 2, bits, width / 2 ** (bits // 4))
+        effort = _Effort(digits + 2, width, width / 2 ** (bits // 4))
         try:
             with ctx.workprec(bits):
                 return _areas(stacks, regions, curves, strip, fibre, tolerance, count, effort, check)
@@ -118,9 +118,14 @@ def _areas(
 
 
 def _span(stack: StackData, strip: fmpq) -> Interval:
-    """The stack's base interval shortened to rational ends."""
-    left = stack.left.value if stack.left.root is None else refine(stack.left.root, strip).high
-    right = stack.right.value if stack.right.root is None else refine(stack.right.root, strip).low
+    """The stack's base interval shortened to rational ends, of small height as all arithmetic starts from them."""
+    left, right = stack.left.value, stack.right.value
+    if stack.left.root is not None:
+        after = refine(stack.left.root, strip / 2).high
+        left = simplest_between(after, min(after + strip / 2, stack.sample))
+    if stack.right.root is not None:
+        before = refine(stack.right.root, strip / 2).low
+        right = simplest_between(max(before - strip / 2, stack.sample), before)
     return left, right
 
 
@@ -158,7 +163,8 @@ def _refine(
                 check()
                 if p.high - p.low < effort.narrowest:
                     raise _Unreachable(strips=False)
-                middle = (p.low + p.high) / 2
+                margin = (p.high - p.low) * fmpq(7, 16)
+                middle = simplest_between(p.low + margin, p.high - margin)
                 refined.append(_panel(p.curve, p.root, p.low, middle, p.below, p.above, fibre, effort))
                 refined.append(_panel(p.curve, p.root, middle, p.high, p.below, p.above, fibre, effort))
             else:
@@ -192,32 +198,28 @@ def _panel(
     at_middle = isolate(curve.fibre(middle), *fibre)[root]
     integral = branch_integral(curve.in_v, at_middle, middle, (high - low) / 2, fibre, effort.order)
     if integral is None:
-        bottom, top = _horizontals(curve, root, low, high, at_middle, fibre)
+        bottom, top = _horizontals(curve, low, high, effort.width, at_middle, fibre)
         integral = arb(bottom).union(arb(top)) * arb(high - low)
     return _Panel(curve, root, low, high, below, above, integral)
 
 
 def _horizontals(
-    curve: Curve, root: int, low: fmpq, high: fmpq, at_middle: RealRoot, fibre: Interval
+    curve: Curve, low: fmpq, high: fmpq, width: fmpq, at_middle: RealRoot, fibre: Interval
 ) -> tuple[fmpq, fmpq]:
     """Two heights between which the branch stays over [low, high]: horizontals that the curve does not meet there."""
-    step = (fibre[1] - fibre[0]) / 2**12 * min(fmpq(1), (high - low) * 16)
-    seen = [refine(at_middle, step)]
-    inset = (high - low) / 1024  # the ends themselves may be critical
-    for u in (low + inset, high - inset):
-        over = isolate(curve.fibre(u), *fibre)
-        seen.append(refine(over[root], step))
-    bottom, top = min(r.low for r in seen), max(r.high for r in seen)
-    margin = (top - bottom) / 2 + step
-    lower, upper = fibre
-    for _ in range(6):
-        if (
-            bottom - margin > fibre[0]
-            and lower == fibre[0]
-            and not has_root_between(curve.trace(bottom - margin), low, high)
-        ):
-            lower = bottom - margin
-        if top + margin < fibre[1] and upper == fibre[1] and not has_root_between(curve.trace(top + margin), low, high):
-            upper = top + margin
-        margin = margin * 4
-    return lower, upper
+    height = fibre[1] - fibre[0]
+    start = height * min(fmpq(1, 8), (high - low) / width) / 4
+    near = refine(at_middle, start / 4)
+    bounds = []
+    for edge, end, direction in ((fibre[0], near.low, -1), (fibre[1], near.high, 1)):
+        margin, bound = start, edge
+        while margin < direction * (edge - end):
+            # of small height, because the test's cost grows with it
+            inner, outer = sorted((end + direction * margin * fmpq(3, 4), end + direction * margin))
+            candidate = simplest_between(inner, outer)
+            if not has_root_between(curve.trace(candidate), low, high):
+                bound = candidate
+                break
+            margin = margin * 2
+        bounds.append(bound)
+    return bounds[0], bounds[1]
