@@ -7,11 +7,11 @@ from fractions import Fraction
 
 import oracle
 import pytest
+from conftest import CONFIGS, shipped
 from flint import fmpq
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from conftest import CONFIGS, shipped
 from ptmcad import load
 from ptmcad.counting import DegeneratePoint, count_by_isolation, count_by_signature
 from ptmcad.models import system_of
@@ -37,7 +37,7 @@ def oracle_counts(values: Values) -> tuple[int, int, int] | None:
 
 
 def random_values(generator: random.Random) -> Values:
-    """Simple numbers of all kinds: unequal springs, horizontal loads, no loads, loads that cancel, a base of length 0."""
+    """Simple numbers of all kinds: unequal springs, horizontal loads, loads that are zero or cancel, rho = 0."""
 
     def number() -> Fraction:
         return Fraction(generator.randint(-9, 9), generator.randint(1, 7))
@@ -110,7 +110,9 @@ def test_methods_agree_at_every_sample_of(name: str) -> None:
 
 # ------------------------------------------------------------------------------------------------- extreme parameters
 
-corner = st.sampled_from([Fraction(1), Fraction(2), Fraction(1, 2), Fraction(3, 2), Fraction(1, 10**6), Fraction(10**6)])
+corner = st.sampled_from(
+    [Fraction(1), Fraction(2), Fraction(1, 2), Fraction(3, 2), Fraction(1, 10**6), Fraction(10**6)]
+)
 length = st.one_of(corner, st.fractions(min_value=Fraction(1, 100), max_value=100, max_denominator=100))
 force = st.one_of(
     st.sampled_from([Fraction(c) for c in ("0", "0", "-10", "10", "1e-9", "-1e9", "1/3")]),
@@ -161,7 +163,9 @@ PLAIN = {n: Fraction(v) for n, v in {"L1": 1, "L2": 1, "rho": 1, "k1": 100, "k2"
      ({"F3": "-10", "F4": "-10", "rho": "3/4"}, (2, 3, 1))],
     ids=lambda v: ",".join(f"{n}={x}" for n, x in v.items()) if isinstance(v, dict) else None,
 )  # fmt: skip
-@pytest.mark.parametrize("method", [count_by_isolation, count_by_signature, None], ids=["isolation", "signature", "oracle"])
+@pytest.mark.parametrize(
+    "method", [count_by_isolation, count_by_signature, None], ids=["isolation", "signature", "oracle"]
+)
 def test_reference_points(method: object, changed: dict[str, str], index: tuple[int, int, int]) -> None:
     """Unloaded: |L2 - 1| < 2 rho < L2 + 1 has two minima. Symmetric: sliver, rose, beyond the rose (REFERENCE)."""
     values = PLAIN | {n: Fraction(v) for n, v in changed.items()}
