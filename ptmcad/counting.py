@@ -13,11 +13,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from flint import arb, arb_poly, ctx, fmpq
+from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.fibre import (
     Fibre,
     UnivariateRepresentation,
+    coordinates_at,
     evaluate,
     fibre,
     hermite_matrix,
@@ -73,9 +74,8 @@ def point_system(system: ParametricSystem, values: Mapping[str, fmpq]) -> PointS
     gradient, hessian = at_point(system, values)
     unknowns = 2 * system.dimension
     circles = [
-        {
-            tuple(2 if i == 2 * k + offset else 0 for i in range(unknowns)): fmpq(1) for offset in (0, 1)
-        } | {(0,) * unknowns: fmpq(-1)}
+        {tuple(2 if i == 2 * k + offset else 0 for i in range(unknowns)): fmpq(1) for offset in (0, 1)}
+        | {(0,) * unknowns: fmpq(-1)}
         for k in range(system.dimension)
     ]
     algebra = fibre([g for g in gradient if g] + circles, unknowns)
@@ -100,7 +100,8 @@ def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
     representation = univariate_representation(point.algebra)
     if representation is None:
         raise DegeneratePoint(f"an equilibrium has a singular Hessian at {_text(values)}")
-    bound = root_bound(representation)
+    # at a real solution cosines and sines are at most 1, and real values of the form come from real solutions only
+    bound = fmpq(sum(representation.form) + 1)
     numbers = [0, 0, 0]
     for root in isolate(representation.minimal, -bound, bound):
         numbers[morse_index(point, representation, root)] += 1
@@ -110,27 +111,18 @@ def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
     return counts
 
 
-def root_bound(representation: UnivariateRepresentation) -> fmpq:
-    """A power of two above the modulus of every root (Cauchy)."""
-    coefficients = [abs(int(c)) for c in representation.minimal.coeffs()]
-    ratio = max(coefficients[:-1]) // coefficients[-1] + 2
-    return fmpq(2 ** ratio.bit_length())
-
-
 def morse_index(point: PointSystem, representation: UnivariateRepresentation, root: RealRoot) -> int:
     """The number of negative eigenvalues of the (2 x 2) Hessian at a real solution.
 
     Guarantee: certain; the precision is doubled until det H, and if it is positive H11, has a certain sign.
     """
-    bits = 64
+    bits = 40
     while True:
         with ctx.workprec(bits):
             root = refine(root, fmpq(1, 2 ** (bits - 8)) * (abs(root.middle) + 1))
             at = arb(root.low).union(arb(root.high))
-            unknowns = [arb_poly(p)(at) for p in representation.coordinates]
-            h11, h12, h22 = (
-                _value(point.hessian[i][j], unknowns) for i, j in ((0, 0), (0, 1), (1, 1))
-            )
+            unknowns = coordinates_at(representation, at)
+            h11, h12, h22 = (_value(point.hessian[i][j], unknowns) for i, j in ((0, 0), (0, 1), (1, 1)))
             determinant = h11 * h22 - h12 * h12
             if determinant < 0:
                 return 1
@@ -151,6 +143,16 @@ def _value(p: RationalPolynomial, unknowns: list[arb]) -> arb:
                 term = term * value**e
         total = total + term
     return total
+
+
+def solutions_at(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int | None, int]:
+    """Number of different complex solutions, and their number with multiplicity; (None, 0) for infinitely many."""
+    try:
+        algebra = point_system(system, values).algebra
+    except DegeneratePoint:
+        return None, 0
+    one = evaluate(algebra, {(0,) * len(algebra.multiplication): fmpq(1)})
+    return sum(signature(hermite_matrix(algebra, one))), algebra.dimension
 
 
 def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> Counts:
@@ -175,7 +177,8 @@ def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
     if positive + negative != point.algebra.dimension:
         raise DegeneratePoint(f"an equilibrium has a singular Hessian at {_text(values)}")
     definite_minus_saddles = positive - negative
-    # with N(s, t) solutions of sign s of det H and t of tr H: the query of tr H gives sum t N, that of det H tr H sum s t N
+    # let N(s, t) solutions have det H of sign s and tr H of sign t:
+    # the query of tr H gives the sum of t N(s, t), that of det H tr H the sum of s t N(s, t); half their sum has s = 1
     positive, negative = query(trace)
     trace_sum = positive - negative
     positive, negative = query(determinant * trace)
@@ -183,5 +186,3 @@ def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
     saddles = (total - definite_minus_saddles) // 2
     definite = total - saddles
     return Counts((definite + minima_minus_maxima) // 2, saddles, (definite - minima_minus_maxima) // 2)
-
-

@@ -127,17 +127,13 @@ class Expression:
 
     def __mul__(self, other: Expression | Fraction | int) -> Expression:
         other = _as_expression(other)
-        return _reduced(
-            _product(self.numerator, other.numerator), _product(self.denominator, other.denominator)
-        )
+        return _reduced(_product(self.numerator, other.numerator), _product(self.denominator, other.denominator))
 
     def __truediv__(self, other: Expression | Fraction | int) -> Expression:
         other = _as_expression(other)
         if not other.numerator:
             raise ExpressionError("division by zero")
-        return _reduced(
-            _product(self.numerator, other.denominator), _product(self.denominator, other.numerator)
-        )
+        return _reduced(_product(self.numerator, other.denominator), _product(self.denominator, other.numerator))
 
     def __pow__(self, exponent: int) -> Expression:
         if self.is_constant:
@@ -321,7 +317,7 @@ def parse(text: str | int | Fraction, names: Mapping[str, Expression] | None = N
     """
     if isinstance(text, bool) or not isinstance(text, str | int | Fraction):
         raise ExpressionError(
-            f"{text!r} is not an exact number: write it as text, such as \"0.1\", or as a fractions.Fraction"
+            f'{text!r} is not an exact number: write it as text, such as "0.1", or as a fractions.Fraction'
         )
     if not isinstance(text, str):
         return constant(text)

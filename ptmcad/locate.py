@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-from flint import fmpq, fmpz_poly
+from flint import fmpq
 
-from ptmcad.algebra.polynomials import from_fraction, from_plane
+from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction, from_plane
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at
 from ptmcad.cad.curves import Curve, curve
 from ptmcad.errors import ConfigError, ExpressionError
@@ -37,9 +37,7 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
         return Location(Status.ON_VARIETY)
     base = result.base
     u, v = from_fraction(point[base]), from_fraction(point[1 - base])
-    curves = [
-        curve(n, from_plane(c.polynomial), base) for n, c in used if c.polynomial.degrees[1 - base] > 0
-    ]
+    curves = [curve(n, from_plane(c.polynomial), base) for n, c in used if c.polynomial.degrees[1 - base] > 0]
     stack, on_critical = _stack(result, u)
     if on_critical:
         # the point lies on an artefact of the decomposition: step to the stack at its left along a free segment
@@ -54,7 +52,9 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
 def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
     names = result.slice.axis_names
     if set(at) != set(names):
-        raise ConfigError(f"a point of this map needs {names[0]} and {names[1]}, not {', '.join(map(str, at)) or 'nothing'}")
+        raise ConfigError(
+            f"a point of this map needs {names[0]} and {names[1]}, not {', '.join(map(str, at)) or 'nothing'}"
+        )
     values = []
     for name in names:
         try:
@@ -80,7 +80,7 @@ def _compare(u: fmpq, critical: CriticalValue) -> int:
         return -1 if u < low else 1
     if low == high:
         return 0
-    p = fmpz_poly(list(critical.polynomial))
+    p = UnivariatePolynomial(list(critical.polynomial))
     at = sign_at(p, u)
     if at == 0:
         return 0
@@ -95,5 +95,5 @@ def _step_left(result: RegionMap, curves: list[Curve], u: fmpq, v: fmpq, stack: 
     return u - width
 
 
-def _roots_below(p: fmpz_poly, low: fmpq, v: fmpq) -> int:
+def _roots_below(p: UnivariatePolynomial, low: fmpq, v: fmpq) -> int:
     return len(isolate(p, low, v))

@@ -9,15 +9,17 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from time import perf_counter
 from typing import Any
 
 import flint
-from flint import fmpq, fmpz_poly
+from flint import fmpq
 
 from ptmcad.algebra.polynomials import (
     Coefficient,
     Ratio,
+    UnivariatePolynomial,
     coefficients_in,
     evaluate,
     from_expression,
@@ -25,13 +27,14 @@ from ptmcad.algebra.polynomials import (
     from_plane,
     to_fraction,
 )
+from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.cad.adjacency import Passage, passages
 from ptmcad.cad.area import region_areas
 from ptmcad.cad.curves import Curve, curve
 from ptmcad.cad.projection import Projection, predicted_cost, project
 from ptmcad.cad.stacks import StackData, lift
-from ptmcad.counting import Counts, DegeneratePoint, count_by_isolation
-from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, LimitReached
+from ptmcad.counting import Counts, DegeneratePoint, count_by_isolation, solutions_at
+from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
 from ptmcad.expressions import rational
 from ptmcad.models import ParametricSystem, system_of
 from ptmcad.plan import plan_of
@@ -132,9 +135,11 @@ def classify(
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     window = tuple((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
     clock.report("variety", 0, 1)
-    variety = discriminant_variety(
-        system, parameters, (window[0], window[1]), _limits(system, parameters), keep
-    )
+    try:
+        variety = discriminant_variety(system, parameters, (window[0], window[1]), _limits(system, parameters), keep)
+    except (DegenerateSliceError, InfiniteSolutionsError) as error:
+        at = (simplest_between(*window[0]), simplest_between(*window[1]))
+        raise type(error)(f"{error}; {_witness(slice, system, parameters, at)}") from error
     clock.stage("variety")
 
     base, curves, verticals, costs = _choose_base(variety.components, keep)
@@ -154,7 +159,7 @@ def classify(
     clock.stage("counts")
 
     crossings = []
-    for k, (left, right) in enumerate(zip(stacks, stacks[1:], strict=False)):
+    for k, (left, right) in enumerate(pairwise(stacks)):
         clock.report("adjacency", k, len(stacks) - 1)
         crossings.append(passages(curves, left, right, window[1 - base]))
     vertical_components = {
@@ -219,7 +224,7 @@ def _limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coef
     return [parameters[name][0] for name in names if not parameters[name][0].is_constant()]
 
 
-def _vertical_lines(components: Sequence[Component], base: int) -> dict[int, fmpz_poly]:
+def _vertical_lines(components: Sequence[Component], base: int) -> dict[int, UnivariatePolynomial]:
     """The components that are lines across the fibre direction, as polynomials in the base coordinate."""
     lines = {}
     for n, c in enumerate(components):
@@ -230,7 +235,7 @@ def _vertical_lines(components: Sequence[Component], base: int) -> dict[int, fmp
 
 def _choose_base(
     components: Sequence[Component], keep: frozenset[str]
-) -> tuple[int, list[Curve], list[fmpz_poly], tuple[int, int]]:
+) -> tuple[int, list[Curve], list[UnivariatePolynomial], tuple[int, int]]:
     """The base axis of the cheaper decomposition, with the curves and lines as seen from it."""
     views = []
     for base in (0, 1):
@@ -271,6 +276,17 @@ def point_values(parameters: dict[str, Ratio], at: tuple[fmpq, fmpq]) -> dict[st
     return {name: evaluate(a, *at) / evaluate(b, *at) for name, (a, b) in parameters.items()}
 
 
+def _witness(slice: Slice, system: ParametricSystem, parameters: dict[str, Ratio], at: tuple[fmpq, fmpq]) -> str:
+    """What is wrong at one point of a slice that is degenerate everywhere."""
+    where = ", ".join(f"{name} = {value}" for name, value in zip(slice.axis_names, at, strict=True))
+    if any(evaluate(below, *at) == 0 for _, below in parameters.values()):
+        return f"at {where} a parameter has a zero denominator"
+    different, multiplicity = solutions_at(system, point_values(parameters, at))
+    if different is None:
+        return f"for example at {where} there are infinitely many solutions"
+    return f"for example at {where} only {different} of {multiplicity} solutions are different"
+
+
 def _key(counts: Counts, count: Count) -> tuple[int, ...]:
     if count is Count.STABLE:
         return (counts.stable,)
@@ -292,9 +308,7 @@ def _adjacencies(
             line = tuple(int(c) for c in projection.abscissae[s].polynomial.coeffs())
             for p in crossings[s]:
                 segment = (to_fraction(p.low), to_fraction(p.high), to_fraction(p.height))
-                found.append(
-                    Adjacency(first + p.left, following + p.right, vertical_components.get(line), segment)
-                )
+                found.append(Adjacency(first + p.left, following + p.right, vertical_components.get(line), segment))
         first = following
     return tuple(found)
 
@@ -339,5 +353,3 @@ def _regions(
 def _height(point: Point) -> tuple[int, ...]:
     x, y = point[0], point[1]
     return (max(abs(x.numerator), x.denominator, abs(y.numerator), y.denominator), x.denominator, y.denominator)
-
-

@@ -402,14 +402,16 @@ def _decode(data: Mapping[str, Any]) -> RegionMap:
         ),
         stacks=tuple(
             Stack(
-                s["left"], s["right"], rational(s["sample"]), tuple(Wall(c, k) for c, k in s["walls"]), tuple(s["cells"])
+                s["left"],
+                s["right"],
+                rational(s["sample"]),
+                tuple(Wall(c, k) for c, k in s["walls"]),
+                tuple(s["cells"]),
             )
             for s in data["stacks"]
         ),
         cells=tuple(
-            Cell(
-                c["stack"], c["level"], point(c["sample"]), c["region"], c["total"], c["stable"], _index(c["index"])
-            )
+            Cell(c["stack"], c["level"], point(c["sample"]), c["region"], c["total"], c["stable"], _index(c["index"]))
             for c in data["cells"]
         ),
         adjacencies=tuple(
@@ -442,5 +444,3 @@ def _decode(data: Mapping[str, Any]) -> RegionMap:
 def _triple(values: Any) -> tuple[Fraction, Fraction, Fraction]:
     low, high, height = (rational(v) for v in values)
     return (low, high, height)
-
-

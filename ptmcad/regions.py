@@ -43,7 +43,9 @@ def merge(keys: Sequence[Hashable], links: Sequence[Link]) -> tuple[int, ...]:
     for link in links:
         equal = keys[link.first] == keys[link.second]
         if link.component is None and not equal:
-            raise ArithmeticError(f"cells {link.first} and {link.second} are joined off the variety but differ in count")
+            raise ArithmeticError(
+                f"cells {link.first} and {link.second} are joined off the variety but differ in count"
+            )
         if equal:
             a, b = root(link.first), root(link.second)
             parent[max(a, b)] = min(a, b)

@@ -57,7 +57,7 @@ def table(result: RegionMap) -> str:
     undetermined = "0" if result.undetermined == 0 else f"{float(result.undetermined):.2g}"
     return "\n".join(
         [
-            f"regions   {len(result.regions)} in {len(result.cells)} cells ({result.slice.name}, {result.status.value})",
+            f"regions   {len(result.regions)} of {len(result.cells)} cells, {result.status.value}",
             f"counts    {counts}",
             f"areas     {areas}",
             f"curves    {curves or 'none separates counts'}",

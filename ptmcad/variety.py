@@ -7,7 +7,8 @@ Why. Over Q(x, y) the equations have finitely many solutions; let N be the norm 
 the product of J over them, and let P collect the poles of the characteristic polynomials of the unknowns. At a point
 with P != 0 the solutions at nearby generic points stay bounded, and with N != 0 none of them has J -> 0, so they are
 smooth functions there: real ones stay real and apart. The components are tagged CRITICAL (factors of N), INFINITY
-(factors of P, where a complex solution leaves every bounded set) and BOUNDARY (the slice's equations lose their meaning).
+(factors of P, where a complex solution leaves every bounded set) and BOUNDARY (there the slice's equations lose their
+meaning).
 
 Reference: Lazard & Rouillier, J. Symb. Comp. 42 (2007). N is used in place of the Hermite matrix's determinant because
 the latter also vanishes where the monomial basis degenerates; `hermite_determinant` computes it for comparison.
@@ -130,5 +131,3 @@ def hermite_determinant(system: ParametricSystem, parameters: Mapping[str, Ratio
     the set of solutions, degenerates.
     """
     return determinant(trace_form(_algebra(on_slice(system, parameters))))
-
-

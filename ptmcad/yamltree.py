@@ -148,7 +148,7 @@ def from_python(value: object, place: Place) -> Node:
         return Scalar(value, place, plain=False)
     if isinstance(value, int | Fraction):
         return Scalar(str(value), place)
-    remedy = ": write it as text, such as \"0.1\", or as a fractions.Fraction" if isinstance(value, float) else ""
+    remedy = ': write it as text, such as "0.1", or as a fractions.Fraction' if isinstance(value, float) else ""
     raise place.error(f"{value!r} of type {type(value).__name__} is not exact plain data{remedy}")
 
 

@@ -7,13 +7,14 @@ Reference: Rouillier, Solving zero-dimensional systems through the rational univ
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import reduce
+from itertools import pairwise
 
-from flint import Ordering, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpoly_vec, fmpz_poly
+from flint import Ordering, arb, arb_poly, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpoly_vec, fmpz_poly
 
-from ptmcad.algebra.groebner import Monomial
+from ptmcad.algebra.groebner import Monomial, shifted
 from ptmcad.algebra.quotient import standard_monomials
 from ptmcad.algebra.real_roots import sign
 
@@ -44,7 +45,7 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int) -> Fibre | Non
     context = fmpz_mpoly_ctx.get(tuple(f"u{k}" for k in range(unknowns)), Ordering.degrevlex)
     integral = []
     for equation in equations:
-        scale = reduce(_lcm, (int(c.q) for c in equation.values()), 1)
+        scale = math.lcm(*(int(c.q) for c in equation.values()))
         integral.append(context.from_dict({m: int(c.p) * (scale // int(c.q)) for m, c in equation.items()}))
     reduced = fmpz_mpoly_vec(integral, context).buchberger_naive().autoreduction()
     rules: dict[Monomial, tuple[fmpq, dict[Monomial, fmpq]]] = {}
@@ -57,10 +58,8 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int) -> Fibre | Non
         return None
     position = {m: i for i, m in enumerate(basis)}
     size = len(basis)
-    table: dict[Monomial, list[fmpq]] = {
-        m: [fmpq(int(i == k)) for i in range(size)] for m, k in position.items()
-    }
-    border = {m[:k] + (m[k] + 1,) + m[k + 1 :] for m in basis for k in range(unknowns)} - position.keys()
+    table: dict[Monomial, list[fmpq]] = {m: [fmpq(int(i == k)) for i in range(size)] for m, k in position.items()}
+    border = {shifted(m, k) for m in basis for k in range(unknowns)} - position.keys()
     for m in sorted(border, key=lambda m: (sum(m), *(-e for e in reversed(m)))):
         row = [fmpq(0)] * size
         if m in rules:
@@ -70,25 +69,18 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int) -> Fibre | Non
             k, below = next(
                 (k, below)
                 for k in range(unknowns)
-                if m[k] and (below := m[:k] + (m[k] - 1,) + m[k + 1 :]) in table and below not in position
+                if m[k] and (below := shifted(m, k, -1)) in table and below not in position
             )
             for n, c in zip(basis, table[below], strict=True):
                 if c:
-                    image = table[n[:k] + (n[k] + 1,) + n[k + 1 :]]
+                    image = table[shifted(n, k)]
                     row = [a + c * b for a, b in zip(row, image, strict=True)]
         table[m] = row
     matrices = []
     for k in range(unknowns):
-        columns = [table[m[:k] + (m[k] + 1,) + m[k + 1 :]] for m in basis]
+        columns = [table[shifted(m, k)] for m in basis]
         matrices.append(fmpq_mat(size, size, [columns[j][i] for i in range(size) for j in range(size)]))
     return Fibre(basis, tuple(matrices))
-
-
-def _lcm(a: int, b: int) -> int:
-    x, y = a, b
-    while y:
-        x, y = y, x % y
-    return a // x * b
 
 
 def evaluate(algebra: Fibre, p: RationalPolynomial) -> fmpq_mat:
@@ -112,10 +104,12 @@ class UnivariateRepresentation:
     ----------
     minimal : squarefree, in Z[T]; its roots are the values of a linear form that separates the solutions.
     coordinates : one polynomial in Q[T] for each unknown: its value at a root is the unknown's value there.
+    form : the coefficients of the linear form, one for each unknown.
     """
 
     minimal: fmpz_poly
     coordinates: tuple[fmpq_poly, ...]
+    form: tuple[int, ...]
 
 
 def univariate_representation(algebra: Fibre) -> UnivariateRepresentation | None:
@@ -128,7 +122,7 @@ def univariate_representation(algebra: Fibre) -> UnivariateRepresentation | None
     for trial in range(1, size * (size - 1) // 2 * (count - 1) + 2):
         form = fmpq_mat(size, size)
         for k, matrix in enumerate(algebra.multiplication):
-            form = form + matrix * fmpq(_form(trial, k))
+            form = form + matrix * fmpq(trial**k)  # points on a moment curve
         characteristic = form.charpoly()
         if characteristic.gcd(characteristic.derivative()).degree() > 0:
             continue
@@ -139,13 +133,13 @@ def univariate_representation(algebra: Fibre) -> UnivariateRepresentation | None
         targets = fmpq_mat(size, count, [m[i, 0] for i in range(size) for m in algebra.multiplication])
         solved = change.solve(targets)
         coordinates = tuple(fmpq_poly([solved[i, k] for i in range(size)]) for k in range(count))
-        return UnivariateRepresentation(characteristic.numer(), coordinates)
+        return UnivariateRepresentation(characteristic.numer(), coordinates, tuple(trial**k for k in range(count)))
     return None
 
 
-def _form(trial: int, k: int) -> int:
-    """Coefficient number k of the separating form number ``trial``: points on a moment curve."""
-    return trial**k
+def coordinates_at(representation: UnivariateRepresentation, value: arb) -> list[arb]:
+    """Enclosures of the unknowns at the roots of ``minimal`` that a ball contains."""
+    return [arb_poly(p)(value) for p in representation.coordinates]
 
 
 def hermite_matrix(algebra: Fibre, weight: fmpq_mat) -> fmpq_mat:
@@ -181,4 +175,4 @@ def signature(symmetric: fmpq_mat) -> tuple[int, int]:
 
 def _sign_changes(coefficients: Sequence[fmpq]) -> int:
     signs = [s for s in map(sign, coefficients) if s]
-    return sum(a != b for a, b in zip(signs, signs[1:], strict=False))
+    return sum(a != b for a, b in pairwise(signs))

@@ -80,6 +80,11 @@ def groebner_basis(generators: Sequence[UnknownPolynomial], order: MonomialOrder
     return _reduced(basis, order)
 
 
+def shifted(monomial: Monomial, k: int, by: int = 1) -> Monomial:
+    """The monomial times the unknown number k to the power ``by``."""
+    return (*monomial[:k], monomial[k] + by, *monomial[k + 1 :])
+
+
 def _join(a: Monomial, b: Monomial) -> Monomial:
     return tuple(map(max, a, b))
 
@@ -119,9 +124,7 @@ def _s_polynomial(
     return _combination(b, p, _quotient(join, lead_p), a, q, _quotient(join, lead_q))
 
 
-def _primitive(
-    rest: UnknownPolynomial, done: UnknownPolynomial
-) -> tuple[UnknownPolynomial, UnknownPolynomial]:
+def _primitive(rest: UnknownPolynomial, done: UnknownPolynomial) -> tuple[UnknownPolynomial, UnknownPolynomial]:
     """Both parts of one polynomial, divided by the factor common to all its coefficients."""
     common = common_factor([*done.values(), *rest.values()])
     if common.is_one() or common.is_zero():
@@ -130,7 +133,9 @@ def _primitive(
 
 
 def _reduce(
-    p: UnknownPolynomial, basis: Sequence[tuple[UnknownPolynomial, Monomial]], order: MonomialOrder,
+    p: UnknownPolynomial,
+    basis: Sequence[tuple[UnknownPolynomial, Monomial]],
+    order: MonomialOrder,
 ) -> UnknownPolynomial:
     """The full remainder of p, primitive; p is scaled by leading coefficients on the way."""
     rest, done = _primitive(p, {})
@@ -149,20 +154,14 @@ def _reduce(
     return done
 
 
-def _reduced(
-    basis: Sequence[tuple[UnknownPolynomial, Monomial]], order: MonomialOrder
-) -> GroebnerBasis:
+def _reduced(basis: Sequence[tuple[UnknownPolynomial, Monomial]], order: MonomialOrder) -> GroebnerBasis:
     minimal = [
         (p, m)
         for index, (p, m) in enumerate(basis)
-        if not any(
-            k != index and _divides(n, m) and (n != m or k < index) for k, (_, n) in enumerate(basis)
-        )
+        if not any(k != index and _divides(n, m) and (n != m or k < index) for k, (_, n) in enumerate(basis))
     ]
     elements, leading = [], []
     for index, (p, m) in enumerate(minimal):
         elements.append(_reduce(p, minimal[:index] + minimal[index + 1 :], order))
         leading.append(m)
     return GroebnerBasis(order, tuple(elements), tuple(leading))
-
-

@@ -5,6 +5,7 @@ Guarantee: exact. Fractions are kept in lowest terms up to sign.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import reduce
@@ -20,6 +21,8 @@ ONE: fmpz_mpoly = PLANE.constant(1)
 
 Coefficient = fmpz_mpoly
 """An element of Z[x, y]."""
+UnivariatePolynomial = fmpz_poly
+"""An element of Z[u] or Z[v], the polynomials in one axis."""
 Ratio = tuple[fmpz_mpoly, fmpz_mpoly]
 """Numerator and nonzero denominator."""
 
@@ -57,14 +60,8 @@ def common_factor(polynomials: Iterable[fmpz_mpoly]) -> fmpz_mpoly:
 def from_terms(terms: Iterable[tuple[int, int, Fraction]]) -> tuple[fmpz_mpoly, int]:
     """Terms with rational coefficients as (p, d), meaning p/d with p in Z[x, y] and an integer d > 0."""
     terms = tuple(terms)
-    scale = reduce(lambda a, b: a * b // _gcd(a, b), (c.denominator for _, _, c in terms), 1)
+    scale = math.lcm(*(c.denominator for _, _, c in terms))
     return PLANE.from_dict({(i, j): c.numerator * (scale // c.denominator) for i, j, c in terms}), scale
-
-
-def _gcd(a: int, b: int) -> int:
-    while b:
-        a, b = b, a % b
-    return a
 
 
 def from_expression(expression: Expression) -> Ratio:
@@ -88,7 +85,7 @@ def coefficients_in(p: fmpz_mpoly, variable: int) -> tuple[fmpz_poly, ...]:
     """Coefficients of p as a polynomial in one axis, constant first; each is a polynomial in the other axis."""
     rows: dict[int, dict[int, int]] = {}
     for monomial, c in p.terms():
-        rows.setdefault(monomial[variable], {})[monomial[1 - variable]] = c
+        rows.setdefault(int(monomial[variable]), {})[int(monomial[1 - variable])] = int(c)
     return tuple(
         fmpz_poly([row.get(i, 0) for i in range(max(row, default=-1) + 1)])
         for row in (rows.get(k, {}) for k in range(max(rows, default=0) + 1))
@@ -98,10 +95,7 @@ def coefficients_in(p: fmpz_mpoly, variable: int) -> tuple[fmpz_poly, ...]:
 def univariate(coefficients: tuple[fmpz_poly, ...], at: fmpq) -> fmpz_poly:
     """The integer polynomial proportional, by a positive factor, to sum_j c_j(at) v^j."""
     values = [fmpq(c(at)) for c in coefficients]
-    scale = 1
-    for value in values:
-        q = int(value.q)
-        scale = scale * q // _gcd(scale, q)
+    scale = math.lcm(*(int(value.q) for value in values))
     return fmpz_poly([int(value.p) * (scale // int(value.q)) for value in values])
 
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import add
 
-from ptmcad.algebra.groebner import GroebnerBasis, Monomial
+from ptmcad.algebra.groebner import GroebnerBasis, Monomial, shifted
 from ptmcad.algebra.polynomials import (
     ONE,
     ZERO,
@@ -37,11 +37,9 @@ def standard_monomials(leading: Sequence[Monomial], unknowns: int) -> tuple[Mono
     found: list[Monomial] = []
     layer = {(0,) * unknowns}
     while layer:
-        kept = sorted(
-            m for m in layer if not any(all(i <= j for i, j in zip(n, m, strict=True)) for n in leading)
-        )
+        kept = sorted(m for m in layer if not any(all(i <= j for i, j in zip(n, m, strict=True)) for n in leading))
         found += kept
-        layer = {m[:k] + (m[k] + 1,) + m[k + 1 :] for m in kept for k in range(unknowns)}
+        layer = {shifted(m, k) for m in kept for k in range(unknowns)}
     return tuple(found)
 
 
@@ -70,7 +68,7 @@ def quotient_algebra(groebner: GroebnerBasis) -> QuotientAlgebra | None:
     }
     rules = dict(zip(groebner.leading, groebner.elements, strict=True))
     algebra = QuotientAlgebra(basis, table)
-    border = {m[:k] + (m[k] + 1,) + m[k + 1 :] for m in basis for k in range(unknowns)} - position.keys()
+    border = {shifted(m, k) for m in basis for k in range(unknowns)} - position.keys()
     for m in sorted(border, key=groebner.order.key):
         if m in rules:
             row = [ZERO] * len(basis)
@@ -83,7 +81,7 @@ def quotient_algebra(groebner: GroebnerBasis) -> QuotientAlgebra | None:
             k, below = next(
                 (k, below)
                 for k in range(unknowns)
-                if m[k] and (below := m[:k] + (m[k] - 1,) + m[k + 1 :]) in table and below not in position
+                if m[k] and (below := shifted(m, k, -1)) in table and below not in position
             )
             table[m] = _times_unknown(algebra, k, table[below])
     return algebra
@@ -111,7 +109,7 @@ def _sum(terms: Sequence[tuple[Coefficient, Coefficient, Vector]], dimension: in
 def _times_unknown(algebra: QuotientAlgebra, k: int, vector: Vector) -> Vector:
     row, denominator = vector
     terms = [
-        (c, denominator, algebra.table[m[:k] + (m[k] + 1,) + m[k + 1 :]])
+        (c, denominator, algebra.table[shifted(m, k)])
         for m, c in zip(algebra.basis, row, strict=True)
         if not c.is_zero()
     ]
@@ -122,7 +120,7 @@ def normal_form(algebra: QuotientAlgebra, monomial: Monomial) -> Vector:
     """Coordinates of a monomial on the basis."""
     if monomial not in algebra.table:
         k = next(k for k, e in enumerate(monomial) if e)
-        below = monomial[:k] + (monomial[k] - 1,) + monomial[k + 1 :]
+        below = shifted(monomial, k, -1)
         algebra.table[monomial] = _times_unknown(algebra, k, normal_form(algebra, below))
     return algebra.table[monomial]
 
@@ -136,18 +134,14 @@ def norm(algebra: QuotientAlgebra, p: UnknownPolynomial) -> Ratio:
     """The product of p over all complex solutions, as a rational function of the axes."""
     images: dict[Monomial, Vector] = {algebra.basis[0]: element(algebra, p)}
     for m in algebra.basis[1:]:
-        k, below = next(
-            (k, below)
-            for k in range(len(m))
-            if m[k] and (below := m[:k] + (m[k] - 1,) + m[k + 1 :]) in images
-        )
+        k, below = next((k, below) for k in range(len(m)) if m[k] and (below := shifted(m, k, -1)) in images)
         images[m] = _times_unknown(algebra, k, images[below])
     return determinant([[ratio(c, images[m][1]) for c in images[m][0]] for m in algebra.basis])
 
 
 def multiplication_denominator(algebra: QuotientAlgebra) -> Coefficient:
     """A common denominator of the multiplication matrices of the unknowns."""
-    return lcm(algebra.table[m[:k] + (m[k] + 1,) + m[k + 1 :]][1] for m in algebra.basis for k in range(len(m)))
+    return lcm(algebra.table[shifted(m, k)][1] for m in algebra.basis for k in range(len(m)))
 
 
 def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:
@@ -170,9 +164,7 @@ def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:
 def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:
     """The Hermite matrix trace(b_i b_j); its determinant vanishes where solutions coincide."""
     basis = algebra.basis
-    products = [
-        [normal_form(algebra, tuple(map(add, a, b))) for b in basis] for a in basis
-    ]
+    products = [[normal_form(algebra, tuple(map(add, a, b))) for b in basis] for a in basis]
     traces = []
     for row in products:
         total: Ratio = (ZERO, ONE)
@@ -195,27 +187,27 @@ def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:
 def determinant(rows: list[list[Ratio]]) -> Ratio:
     """The determinant of a square matrix over Q(x, y): rows and columns made primitive, then Bareiss elimination."""
     below = ONE
-    matrix = []
+    matrix: list[list[Coefficient]] = []
     for row in rows:
         scale = lcm(d for _, d in row)
         matrix.append([n * (scale / d) for n, d in row])
         below = below * scale
     above = ONE
     for j in range(len(matrix)):
-        common = common_factor(row[j] for row in matrix)
+        common = common_factor(line[j] for line in matrix)
         if common.is_zero():
             return ZERO, ONE
         if not common.is_one():
             above = above * common
-            for row in matrix:
-                row[j] = row[j] / common
-    for i, row in enumerate(matrix):
-        common = common_factor(row)
+            for line in matrix:
+                line[j] = line[j] / common
+    for i, line in enumerate(matrix):
+        common = common_factor(line)
         if common.is_zero():
             return ZERO, ONE
         if not common.is_one():
             above = above * common
-            matrix[i] = [c / common for c in row]
+            matrix[i] = [c / common for c in line]
     return ratio(above * _bareiss(matrix), below)
 
 

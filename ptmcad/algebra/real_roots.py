@@ -79,7 +79,7 @@ def _on_unit_interval(p: fmpz_poly, low: fmpq, high: fmpq) -> fmpz_poly:
 def _descartes_bound(q: fmpz_poly, degree: int) -> int:
     """Sign changes of (1 + t)^n q(1/(1 + t)): a bound for the number of roots of q in (0, 1), exact when 0 or 1."""
     coefficients = q.coeffs()
-    coefficients += [0] * (degree + 1 - len(coefficients))
+    coefficients += [fmpz(0)] * (degree + 1 - len(coefficients))
     return variations(fmpz_poly(coefficients[::-1])(_SHIFT))
 
 
@@ -87,7 +87,6 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
     """The roots of a squarefree polynomial in the open interval (low, high), in increasing order."""
     if p.degree() < 1:
         return ()
-    degree = p.degree()
     width = high - low
     found: list[tuple[fmpq, fmpq]] = []
     start = _on_unit_interval(p, low, high)
@@ -111,7 +110,6 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
             found.append((middle, middle))
         stack.append((half, 2 * number, level + 1))
         stack.append((other, 2 * number + 1, level + 1))
-    del degree
     return tuple(_tidy(p, left, right) for left, right in sorted(found))
 
 

@@ -1,6 +1,6 @@
 """Discriminants and resultants in Z[u] of polynomials in Z[u][v], by evaluation at integers and interpolation.
 
-Guarantee: exact. The number of evaluation points comes from a proved bound for the degree, so nothing is left to chance.
+Guarantee: exact. The number of evaluation points comes from a proved bound for the degree: nothing is left to chance.
 
 The bound: if deg c_i <= A - a i for the coefficients c_i of v^i and some rational a, then substituting v = u^a w shows
 deg disc_v(p) <= (2n - 2) A - a n (n - 1) for n = deg_v p, and deg res_v(p, q) <= m A + n B - a n m for a second
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from itertools import pairwise
 from math import floor
 
 from flint import fmpz, fmpz_poly
@@ -83,7 +84,7 @@ def interpolate(at: Callable[[int], fmpz], degree: int) -> fmpz_poly:
     for k in range(degree + 1):
         factorial *= max(k, 1)
         newton.append(differences[0] // factorial)
-        differences = [b - a for a, b in zip(differences, differences[1:], strict=False)]
+        differences = [b - a for a, b in pairwise(differences)]
     result = fmpz_poly([newton[-1]])
     for k in range(degree - 1, -1, -1):
         result = result * fmpz_poly([-(first + k), 1]) + newton[k]

@@ -1,6 +1,7 @@
 """Polynomials over a rectangle of the plane: a proof that one has no zero there.
 
-Guarantee: `nowhere_zero` answers True only with proof. False means that the test did not decide, not that there is a zero.
+Guarantee: `nowhere_zero` answers True only with proof. False means that the test did not decide, not that there is a
+zero.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ def nowhere_zero(p: Coefficient, x: Interval, y: Interval, depth: int = 4) -> bo
     """Whether p is proved to have no zero in the open rectangle, by the signs of its Bernstein coefficients.
 
     If all coefficients of p in the Bernstein basis of the rectangle are >= 0 and one is positive, then p > 0 in its
-    interior (Farouki, Comput. Aided Geom. Design 29, 2012). Rectangles that do not decide are cut in four, ``depth`` times;
+    interior (Farouki, Comput. Aided Geom. Design 29, 2012). Undecided rectangles are cut in four, ``depth`` times;
     then the cuts must be free of zeros too, so strict signs are asked for. A p in one variable is decided exactly.
     """
     n, m = (int(d) for d in p.degrees())

@@ -6,11 +6,11 @@ adjacent exactly when an open segment of the line u = a, free of the curves, bel
 A *barrier* is a rational height e such that no curve meets the horizontal segment [l, r] x {e}, where l < a < r lie in
 the two stacks; it proves that the cells at (l, e) and (r, e) are adjacent. Between consecutive barriers lies a *slot*
 that some branches enter from the left and some from the right. All pairs are found once every slot contains at most one
-point of the curves on the line u = a that branches run into, because then barriers stand on both sides of each such point.
+point of the line u = a that branches run into, because then barriers stand on both sides of each such point.
 
 * A slot with at most two branches is such a slot: through every point of a real algebraic curve (no vertical line among
-  them) runs an even number of half-branches, so two branches in a slot end at the same point. At the window's edge there
-  is one point, which may take an odd number.
+  them) runs an even number of half-branches, so two branches in a slot end at the same point. Only the point on the
+  window's edge, if a curve passes there, may take an odd number: so an edge slot with one branch is such a slot.
 * A slot with more branches is split, if it can be, by bracketing a more closely; if that fails, all real roots of
   res_u(q, p) in the slot are isolated, q being a's polynomial: they include every point of the curves over a, so
   heights between them are barriers once the bracket is narrow enough.
@@ -20,12 +20,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
-from flint import fmpq, fmpz_poly
+from flint import fmpq
 
+from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import (
     RealRoot,
     disjoint,
+    halve,
     has_root_between,
     isolate,
     refine,
@@ -68,13 +71,14 @@ def passages(curves: Sequence[Curve], left: StackData, right: StackData, fibre: 
             tuple((w, refine(r, resolution)) for w, r in roots_over(curves, u, fibre)) for u in (low, high)
         )
         found = _barriers(curves, low, high, over_low, over_high, fibre, extra)
-        unresolved = _unresolved(curves, end, found, len(over_low), len(over_high), fibre, exact=bool(extra))
+        unresolved = _unresolved(curves, end, found, len(over_low), len(over_high), fibre, attempt > ROUNDS)
         if not unresolved:
             unique = {(p.left, p.right): p for p in reversed(found)}
             return tuple(sorted(unique.values(), key=lambda p: (p.left, p.right)))
         attempt += 1
-        if attempt >= ROUNDS:
-            extra = tuple(h for slot in unresolved for h in _between_points(curves, end, slot, fibre)) or extra
+        if attempt > ROUNDS:
+            separating = (h for slot in unresolved for h in _between_points(curves, end, slot))
+            extra = tuple(sorted({*extra, *separating}))
 
 
 def _bracket(end: BaseEnd, width: fmpq, low: fmpq, high: fmpq) -> tuple[fmpq, fmpq]:
@@ -139,22 +143,18 @@ def _unresolved(
     """The slots that may contain more than one point into which branches run."""
     if not found:
         return [_Slot(fibre[0], fibre[1], count_left, count_right, fibre[0])]
-    slots = [
-        _Slot(a.height, b.height, b.left - a.left, b.right - a.right, None)
-        for a, b in zip(found, found[1:], strict=False)
-    ]
+    slots = [_Slot(a.height, b.height, b.left - a.left, b.right - a.right, None) for a, b in pairwise(found)]
     slots.insert(0, _Slot(fibre[0], found[0].height, found[0].left, found[0].right, fibre[0]))
     last = found[-1]
     slots.append(_Slot(last.height, fibre[1], count_left - last.left, count_right - last.right, fibre[1]))
     result = []
     for slot in slots:
         branches = slot.from_left + slot.from_right
-        if slot.edge is not None:
-            if branches and not _meets(curves, end, slot.edge):
-                result.append(slot)
-            elif branches > 2 and not (exact and _points(curves, end, slot, fibre) <= 1):
-                result.append(slot)
-        elif branches % 2 or (branches > 2 and not (exact and _points(curves, end, slot, fibre) <= 1)):
+        if slot.edge is None:
+            doubtful, several = branches % 2 == 1, branches > 2
+        else:
+            doubtful, several = branches > 0 and not _meets(curves, end, slot.edge), branches > 1
+        if doubtful or (several and not (exact and _points(curves, end, slot) <= 1)):
             result.append(slot)
     return result
 
@@ -179,27 +179,27 @@ def _possible_points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> tupl
     q = end.root.polynomial
     if end.root.is_rational:
         value = end.root.low
-        q = fmpz_poly([-int(value.p), int(value.q)])
-    constant = [fmpz_poly([c]) for c in q.coeffs()]
-    product = fmpz_poly([1])
+        q = UnivariatePolynomial([-int(value.p), int(value.q)])
+    constant = [UnivariatePolynomial([c]) for c in q.coeffs()]
+    product = UnivariatePolynomial([1])
     for c in curves:
         points = squarefree_part(resultant(c.in_u, constant))
         product = product * (points // points.gcd(product)) if points else product
     return disjoint(isolate(product, slot.bottom, slot.top))
 
 
-def _points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot, fibre: Interval) -> int:
+def _points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> int:
     """An upper bound for the number of points of the curves over the critical abscissa in the slot."""
     points = len(_possible_points(curves, end, slot))
     return points + (1 if slot.edge is not None and _meets(curves, end, slot.edge) else 0)
 
 
-def _between_points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot, fibre: Interval) -> list[fmpq]:
+def _between_points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> list[fmpq]:
     """Heights between all points of the curves over the critical abscissa in the slot."""
-    points = _possible_points(curves, end, slot)
+    points = list(_possible_points(curves, end, slot))
+    while points and points[0].low <= slot.bottom:
+        points[0] = halve(points[0])
+    while points and points[-1].high >= slot.top:
+        points[-1] = halve(points[-1])
     levels = [slot.bottom, *(x for r in points for x in (r.low, r.high)), slot.top]
-    return [
-        simplest_between(levels[2 * k], levels[2 * k + 1])
-        for k in range(len(points) + 1)
-        if levels[2 * k] < levels[2 * k + 1]
-    ]
+    return [simplest_between(levels[2 * k], levels[2 * k + 1]) for k in range(len(points) + 1)]

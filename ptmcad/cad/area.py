@@ -2,12 +2,9 @@
 
 Guarantee: each area is an interval that contains the true value; its relative width is at most the tolerance asked for.
 
-On a panel [m - r, m + r] a branch v = y(u) of p(u, v) = 0 is approximated by a polynomial z(h), u = m + r h, from the
-branch's Taylor series. If |p(u, z)| <= e and |p_v(u, z)| >= b on the panel and |p_vv| <= K in the tube |v - z| <= t with
-t >= 2 e / b and K t <= b / 2, then p_v has no zero in the tube and p changes sign across it (mean value theorem), so the
-tube contains exactly one root for each u; if the isolated root at u = m lies in it, this root is the branch. Panels that
-fail, as they must at turning points, are halved; there the branch is shut in between two horizontals that the curve does
-not meet. The number of panels grows with the logarithm of 1/tolerance.
+The branch of a wall is integrated on panels by `algebra.branches`; panels where that fails, as it must at turning
+points, are halved, and there the branch is shut in between two horizontals that the curve does not meet. The number of
+panels grows with the logarithm of 1/tolerance.
 """
 
 from __future__ import annotations
@@ -15,17 +12,25 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
-from flint import arb, arb_poly, arb_series, ctx, fmpq
+from flint import arb, ctx, fmpq
 
+from ptmcad.algebra.branches import branch_integral
 from ptmcad.algebra.polynomials import to_fraction
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine
 from ptmcad.algebra.window import Interval
 from ptmcad.cad.curves import Curve
 from ptmcad.cad.stacks import StackData
 
-ORDER = 10
-"""Degree of the polynomial on a panel."""
+
+@dataclass(frozen=True, slots=True)
+class _Effort:
+    """Degree of the polynomial on a panel, working precision, and the narrowest panel this precision is good for."""
+
+    order: int
+    bits: int
+    narrowest: fmpq
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,29 +69,52 @@ def region_areas(
     check : called between panels; may raise to stop.
     """
     count = 1 + max(max(row) for row in regions)
-    by_component = {c.component: c for c in curves}
     digits = len(str(tolerance.denominator // tolerance.numerator))
-    height = fibre[1] - fibre[0]
-    bits = 96 + 8 * digits + max((int(q.height_bits()) for c in curves for q in c.in_v), default=0)
-    with ctx.workprec(bits):
-        strip = (base[1] - base[0]) * fmpq(1, 10 ** (digits + 3) * 4 * (len(stacks) + 1))
-        spans = [_span(stack, strip) for stack in stacks]
-        while True:
-            lost = (base[1] - base[0] - sum((b - a for a, b in spans), fmpq(0))) * height
-            fixed = _edges(spans, regions, fibre, count)
-            panels = []
-            for (low, high), stack, row in zip(spans, stacks, regions, strict=True):
-                for j, wall in enumerate(stack.walls):
-                    if row[j] != row[j + 1]:
-                        check()
-                        panels.append(
-                            _panel(by_component[wall.component], wall.root, low, high, row[j], row[j + 1], fibre)
-                        )
-            bounds = _refine(panels, fixed, lost, fibre, tolerance, check)
-            if bounds is not None:
-                return bounds
-            strip = strip / 2**20  # a region is tiny: the strips around the critical abscissae must be narrower
-            spans = [_span(stack, strip) for stack in stacks]
+    width = base[1] - base[0]
+    strip = width * fmpq(1, 10 ** (digits + 3) * 4 * (len(stacks) + 1))
+    bits = 64 + 6 * digits + max((int(q.height_bits()) for c in curves for q in c.in_v), default=0) // 2
+    while True:
+        effort = _Effort(digits + 2, bits, width / 2 ** (bits // 4))
+        try:
+            with ctx.workprec(bits):
+                return _areas(stacks, regions, curves, strip, fibre, tolerance, count, effort, check)
+        except _Unreachable as obstacle:
+            # a region is tiny, or the precision is too low for it: both are raised, so this ends
+            bits, strip = bits * 3 // 2, strip / 2**20 if obstacle.strips else strip
+
+
+class _Unreachable(ArithmeticError):
+    """The tolerance can not be reached at this precision, or with strips of this width left out."""
+
+    def __init__(self, strips: bool) -> None:
+        super().__init__()
+        self.strips = strips
+
+
+def _areas(
+    stacks: Sequence[StackData],
+    regions: Sequence[Sequence[int]],
+    curves: Sequence[Curve],
+    strip: fmpq,
+    fibre: Interval,
+    tolerance: Fraction,
+    count: int,
+    effort: _Effort,
+    check: Callable[[], None],
+) -> tuple[tuple[Fraction, Fraction], ...]:
+    """One attempt: strips of at most the given width around the critical abscissae are left to any region."""
+    by_component = {c.component: c for c in curves}
+    spans = [_span(stack, strip) for stack in stacks]
+    gaps = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0))
+    fixed = _edges(spans, regions, fibre, count)
+    panels = []
+    for (low, high), stack, row in zip(spans, stacks, regions, strict=True):
+        for j, wall in enumerate(stack.walls):
+            if row[j] != row[j + 1]:
+                check()
+                source = by_component[wall.component]
+                panels.append(_panel(source, wall.root, low, high, row[j], row[j + 1], fibre, effort))
+    return _refine(panels, fixed, gaps * (fibre[1] - fibre[0]), fibre, tolerance, effort, check)
 
 
 def _span(stack: StackData, strip: fmpq) -> Interval:
@@ -96,9 +124,7 @@ def _span(stack: StackData, strip: fmpq) -> Interval:
     return left, right
 
 
-def _edges(
-    spans: Sequence[Interval], regions: Sequence[Sequence[int]], fibre: Interval, count: int
-) -> list[fmpq]:
+def _edges(spans: Sequence[Interval], regions: Sequence[Sequence[int]], fibre: Interval, count: int) -> list[fmpq]:
     """The exact contributions of the window's edges to each region's area."""
     total = [fmpq(0)] * count
     for (low, high), row in zip(spans, regions, strict=True):
@@ -113,35 +139,34 @@ def _refine(
     lost: fmpq,
     fibre: Interval,
     tolerance: Fraction,
+    effort: _Effort,
     check: Callable[[], None],
-) -> tuple[tuple[Fraction, Fraction], ...] | None:
-    """Halve panels until every region is known well enough; None when the lost strips are too wide for that."""
+) -> tuple[tuple[Fraction, Fraction], ...]:
+    """Halve panels until every region is known well enough."""
     while True:
         bounds = _bounds(panels, fixed, lost)
         poor = {i for i, (low, high) in enumerate(bounds) if high - low > tolerance * low}
         if not poor:
             return bounds
         if any(to_fraction(lost) * 4 > tolerance * bounds[i][1] for i in poor):
-            return None
+            raise _Unreachable(strips=True)
         load = {i: sum(i in (p.below, p.above) for p in panels) for i in poor}
-        target = {
-            i: float(tolerance * max(bounds[i][0], bounds[i][1] / 8)) / (2 * max(load[i], 1)) for i in poor
-        }
+        target = {i: float(tolerance * max(bounds[i][0], bounds[i][1] / 8)) / (2 * max(load[i], 1)) for i in poor}
         refined: list[_Panel] = []
         for p in panels:
             if any(p.width > target[i] for i in poor & {p.below, p.above}):
                 check()
+                if p.high - p.low < effort.narrowest:
+                    raise _Unreachable(strips=False)
                 middle = (p.low + p.high) / 2
-                refined.append(_panel(p.curve, p.root, p.low, middle, p.below, p.above, fibre))
-                refined.append(_panel(p.curve, p.root, middle, p.high, p.below, p.above, fibre))
+                refined.append(_panel(p.curve, p.root, p.low, middle, p.below, p.above, fibre, effort))
+                refined.append(_panel(p.curve, p.root, middle, p.high, p.below, p.above, fibre, effort))
             else:
                 refined.append(p)
         panels = refined
 
 
-def _bounds(
-    panels: Sequence[_Panel], fixed: Sequence[fmpq], lost: fmpq
-) -> tuple[tuple[Fraction, Fraction], ...]:
+def _bounds(panels: Sequence[_Panel], fixed: Sequence[fmpq], lost: fmpq) -> tuple[tuple[Fraction, Fraction], ...]:
     totals = [arb(f) for f in fixed]
     for p in panels:
         totals[p.below] += p.integral
@@ -159,99 +184,24 @@ def _exact(value: arb) -> Fraction:
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
-def _panel(curve: Curve, root: int, low: fmpq, high: fmpq, below: int, above: int, fibre: Interval) -> _Panel:
+def _panel(
+    curve: Curve, root: int, low: fmpq, high: fmpq, below: int, above: int, fibre: Interval, effort: _Effort
+) -> _Panel:
     """A panel with the better of two enclosures."""
     middle = (low + high) / 2
     at_middle = isolate(curve.fibre(middle), *fibre)[root]
-    integral = _taylor_enclosure(curve, at_middle, middle, (high - low) / 2, fibre)
+    integral = branch_integral(curve.in_v, at_middle, middle, (high - low) / 2, fibre, effort.order)
     if integral is None:
         bottom, top = _horizontals(curve, root, low, high, at_middle, fibre)
         integral = arb(bottom).union(arb(top)) * arb(high - low)
     return _Panel(curve, root, low, high, below, above, integral)
 
 
-def _taylor_enclosure(curve: Curve, at_middle: RealRoot, middle: fmpq, radius: fmpq, fibre: Interval) -> arb | None:
-    """An enclosure of the branch's integral over the panel, or None when the tube could not be proved."""
-    root = refine(at_middle, (fibre[1] - fibre[0]) / 2 ** (ctx.prec // 3))
-    origin = root.low
-    local = _local_coefficients(curve, middle, radius, origin)
-    if not abs(local[1][0]) > 0:
-        return None
-    series = _series(local)
-    residual, slope, bend = _along(local, series)
-    error = _norm(residual).upper()
-    steep = slope.coeffs()
-    least = (2 * abs(steep[0]) - _norm(slope)).lower()
-    if not least > 0:
-        return None
-    start = abs(series[0]) + arb(root.high - root.low)
-    tube = (2 * error / least).upper()
-    tube = tube if tube > start.upper() else start.upper()
-    reach = _norm(series) + tube
-    third, power = arb(0), arb(1)
-    for i in range(3, len(local)):
-        third += i * (i - 1) * (i - 2) * _norm(local[i]) * power
-        power = power * reach
-    curvature = _norm(bend) + third * tube
-    if not 2 * curvature * tube < least:
-        return None
-    mean = arb(origin)
-    for k, c in enumerate(series.coeffs()):
-        if k % 2 == 0:
-            mean += c / (k + 1)
-    return (mean + tube * arb(0, 1)) * arb(2 * radius)
-
-
-def _local_coefficients(curve: Curve, middle: fmpq, radius: fmpq, origin: fmpq) -> list[arb_poly]:
-    """Coefficients b_i(h) of p(middle + radius h, origin + w) = sum_i b_i(h) w^i."""
-    line = arb_poly([arb(middle), arb(radius)])
-    rows = [arb_poly(c)(line) for c in curve.in_v]
-    shift = arb(origin)
-    for start in range(len(rows) - 1):
-        for i in range(len(rows) - 2, start - 1, -1):
-            rows[i] = rows[i] + rows[i + 1] * shift
-    return rows
-
-
-def _series(local: Sequence[arb_poly]) -> arb_poly:
-    """The first coefficients of the solution w(h) of sum_i b_i(h) w^i = 0 near w = 0, each an exact midpoint."""
-    length = ORDER + 1
-    previous = ctx.cap
-    ctx.cap = length
-    try:
-        rows = [arb_series(b.coeffs()[:length], prec=length) for b in local]
-        w = arb_series([0], prec=length)
-        for _ in range(5):
-            value, slope = rows[-1], arb_series([0], prec=length)
-            for b in reversed(rows[:-1]):
-                slope = slope * w + value
-                value = value * w + b
-            w = arb_series([c.mid() for c in (w - value / slope).coeffs()], prec=length)
-    finally:
-        ctx.cap = previous
-    return arb_poly(w.coeffs()) if w.length() else arb_poly([0])
-
-
-def _along(local: Sequence[arb_poly], w: arb_poly) -> tuple[arb_poly, arb_poly, arb_poly]:
-    """p and its first two derivatives by v along the approximation."""
-    value, slope, half = local[-1], arb_poly([0]), arb_poly([0])
-    for b in reversed(local[:-1]):
-        half = half * w + slope
-        slope = slope * w + value
-        value = value * w + b
-    return value, slope, 2 * half
-
-
-def _norm(p: arb_poly) -> arb:
-    """The sum of the coefficients' moduli: a bound for |p(h)|, |h| <= 1."""
-    return sum((abs(c) for c in p.coeffs()), arb(0))
-
-
 def _horizontals(
     curve: Curve, root: int, low: fmpq, high: fmpq, at_middle: RealRoot, fibre: Interval
 ) -> tuple[fmpq, fmpq]:
     """Two heights between which the branch stays over [low, high]: horizontals that the curve does not meet there."""
-    step = (fibre[1] - fibre[0]) / 2**40
+    step = (fibre[1] - fibre[0]) / 2**12 * min(fmpq(1), (high - low) * 16)
     seen = [refine(at_middle, step)]
     inset = (high - low) / 1024  # the ends themselves may be critical
     for u in (low + inset, high - inset):
@@ -261,13 +211,13 @@ def _horizontals(
     margin = (top - bottom) / 2 + step
     lower, upper = fibre
     for _ in range(6):
-        if bottom - margin > fibre[0] and lower == fibre[0] and not has_root_between(
-            curve.trace(bottom - margin), low, high
+        if (
+            bottom - margin > fibre[0]
+            and lower == fibre[0]
+            and not has_root_between(curve.trace(bottom - margin), low, high)
         ):
             lower = bottom - margin
-        if top + margin < fibre[1] and upper == fibre[1] and not has_root_between(
-            curve.trace(top + margin), low, high
-        ):
+        if top + margin < fibre[1] and upper == fibre[1] and not has_root_between(curve.trace(top + margin), low, high):
             upper = top + margin
         margin = margin * 4
     return lower, upper

@@ -5,11 +5,13 @@ Guarantee: exact. ``u`` is the coordinate on the base axis, ``v`` the one on the
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from math import gcd
 
-from flint import fmpq, fmpz_poly
+from flint import fmpq
 
-from ptmcad.algebra.polynomials import Coefficient, coefficients_in, univariate
+from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, univariate
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,14 +26,14 @@ class Curve:
     """
 
     component: int
-    in_v: tuple[fmpz_poly, ...]
-    in_u: tuple[fmpz_poly, ...]
+    in_v: tuple[UnivariatePolynomial, ...]
+    in_u: tuple[UnivariatePolynomial, ...]
 
-    def fibre(self, u: fmpq) -> fmpz_poly:
+    def fibre(self, u: fmpq) -> UnivariatePolynomial:
         """A positive multiple of p(u, v) in Z[v]."""
         return univariate(self.in_v, u)
 
-    def trace(self, v: fmpq) -> fmpz_poly:
+    def trace(self, v: fmpq) -> UnivariatePolynomial:
         """A positive multiple of p(u, v) in Z[u]."""
         return univariate(self.in_u, v)
 
@@ -41,26 +43,11 @@ def curve(component: int, p: Coefficient, base: int) -> Curve:
     return Curve(component, coefficients_in(p, 1 - base), coefficients_in(p, base))
 
 
-def deflation(coefficients: tuple[fmpz_poly, ...]) -> int:
+def deflation(coefficients: Sequence[UnivariatePolynomial]) -> int:
     """The largest k for which only powers of v^k occur."""
-    k = 0
-    for i, c in enumerate(coefficients):
-        if c and i:
-            k = _gcd(k, i)
-    return max(k, 1)
+    return max(1, gcd(*(i for i, c in enumerate(coefficients) if c)))
 
 
-def base_deflation(coefficients: tuple[fmpz_poly, ...]) -> int:
+def base_deflation(coefficients: Sequence[UnivariatePolynomial]) -> int:
     """The largest k for which only powers of u^k occur."""
-    k = 0
-    for c in coefficients:
-        for i, d in enumerate(c.coeffs()):
-            if d and i:
-                k = _gcd(k, i)
-    return max(k, 1)
-
-
-def _gcd(a: int, b: int) -> int:
-    while b:
-        a, b = b, a % b
-    return a
+    return max(1, gcd(*(i for c in coefficients for i, d in enumerate(c.coeffs()) if d)))

@@ -6,17 +6,17 @@ window, and the order of all these roots, are constant.
 Why these polynomials: within a bounded window the roots of p(u, .) change in number only at a multiple root (a zero of
 the discriminant) or through the window's edge (a zero of p(u, edge)); roots of two curves meet at zeros of the
 resultant. Leading coefficients are left out: where one vanishes a root leaves through infinity, not through the window.
-Powers are deflated: for p(u, v^k) the discriminant's zeros are those of disc_V p(u, V) and, if the window contains v = 0,
-of p(u, 0). References: McCallum, J. Symb. Comp. 5 (1988); Strzebonski, J. Symb. Comp. 29 (2000) for open cells.
+Powers are deflated: for p(u, v^k) the discriminant's zeros are those of disc_V p(u, V) and, if the window contains
+v = 0, of p(u, 0). References: McCallum, J. Symb. Comp. 5 (1988); Strzebonski, J. Symb. Comp. 29 (2000) for open cells.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import gcd
 
-from flint import fmpz_poly
-
+from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, refine
 from ptmcad.algebra.resultants import discriminant, resultant
 from ptmcad.algebra.window import Interval
@@ -27,10 +27,10 @@ from ptmcad.cad.curves import Curve, base_deflation, deflation
 class Projection:
     """Irreducible polynomials in Z[u], each with its origin, and their roots in the base interval."""
 
-    polynomials: tuple[tuple[fmpz_poly, str], ...]
+    polynomials: tuple[tuple[UnivariatePolynomial, str], ...]
     abscissae: tuple[RealRoot, ...]
 
-    def origin(self, polynomial: fmpz_poly) -> str:
+    def origin(self, polynomial: UnivariatePolynomial) -> str:
         """Why a polynomial belongs to the projection."""
         return next(origin for p, origin in self.polynomials if p == polynomial)
 
@@ -49,11 +49,13 @@ def predicted_cost(curves: Sequence[Curve]) -> int:
     return cost
 
 
-def project(curves: Sequence[Curve], verticals: Sequence[fmpz_poly], base: Interval, fibre: Interval) -> Projection:
+def project(
+    curves: Sequence[Curve], verticals: Sequence[UnivariatePolynomial], base: Interval, fibre: Interval
+) -> Projection:
     """The projection of the curves (and of vertical lines, given by their polynomials in u) and its real roots."""
-    found: dict[tuple[int, ...], tuple[fmpz_poly, str]] = {}
+    found: dict[tuple[int, ...], tuple[UnivariatePolynomial, str]] = {}
 
-    def adopt(p: fmpz_poly, origin: str) -> None:
+    def adopt(p: UnivariatePolynomial, origin: str) -> None:
         if p.degree() < 1:
             return
         for factor, _ in p.factor()[1]:
@@ -74,35 +76,29 @@ def project(curves: Sequence[Curve], verticals: Sequence[fmpz_poly], base: Inter
     return Projection(tuple(found.values()), disjoint(short))
 
 
-def _of_one(c: Curve, fibre: Interval) -> list[tuple[fmpz_poly, str]]:
+def _of_one(c: Curve, fibre: Interval) -> list[tuple[UnivariatePolynomial, str]]:
     k = deflation(c.in_v)
-    result = [(_deflated(lambda p: discriminant(p[0]), [c.in_v[::k]]), f"component {c.component}: turning or singular point")]
+    (deflated,), inflation = _deflated([c.in_v[::k]])
+    name = f"component {c.component}"
+    result = [(discriminant(deflated).inflate(inflation), f"{name}: turning or singular point")]
     if k > 1 and fibre[0] < 0 < fibre[1]:
-        result.append((c.in_v[0], f"component {c.component}: turning point on the axis"))
+        result.append((c.in_v[0], f"{name}: turning point on the axis"))
     for edge in fibre:
-        result.append((c.trace(edge), f"component {c.component}: crosses the window's edge"))
+        result.append((c.trace(edge), f"{name}: crosses the window's edge"))
     return result
 
 
-def _of_two(c: Curve, d: Curve) -> fmpz_poly:
-    k = _gcd(deflation(c.in_v), deflation(d.in_v))
-    return _deflated(lambda p: resultant(p[0], p[1]), [c.in_v[::k], d.in_v[::k]])
+def _of_two(c: Curve, d: Curve) -> UnivariatePolynomial:
+    k = gcd(deflation(c.in_v), deflation(d.in_v))
+    (first, second), inflation = _deflated([c.in_v[::k], d.in_v[::k]])
+    return resultant(first, second).inflate(inflation)
 
 
-def _deflated(operation, arguments: list[tuple[fmpz_poly, ...]]) -> fmpz_poly:  # type: ignore[no-untyped-def]
-    """Apply an operation on coefficients in Z[u] after replacing u^k by u, and replace u by u^k in the result."""
-    k = 0
-    for coefficients in arguments:
-        if any(q.degree() > 0 for q in coefficients):
-            k = _gcd(k, base_deflation(coefficients))
-    k = max(k, 1)
-    result: fmpz_poly = operation([tuple(q.deflate(k) if k > 1 else q for q in p) for p in arguments])
-    return result.inflate(k) if k > 1 else result
+Coefficients = tuple[UnivariatePolynomial, ...]
 
 
-def _gcd(a: int, b: int) -> int:
-    while b:
-        a, b = b, a % b
-    return a
-
-
+def _deflated(polynomials: list[Coefficients]) -> tuple[list[Coefficients], int]:
+    """The polynomials with u in place of u^k, and the largest k for which that can be done in all of them."""
+    varying = [base_deflation(p) for p in polynomials if any(q.degree() > 0 for q in p)]
+    k = gcd(*varying) if varying else 1
+    return [tuple(q.deflate(k) if q else q for q in p) for p in polynomials], k

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from flint import fmpq
 
@@ -74,7 +75,7 @@ def lift(
     ends += [BaseEnd(r.middle, r, k) for k, r in enumerate(abscissae)]
     ends.append(BaseEnd(base[1], None, None))
     stacks = []
-    for left, right in zip(ends, ends[1:], strict=False):
+    for left, right in pairwise(ends):
         low = left.root.high if left.root else left.value
         high = right.root.low if right.root else right.value
         sample = simplest_between(low, high)

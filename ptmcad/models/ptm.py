@@ -1,6 +1,6 @@
 """The planar tensegrity mechanism of Wenger & Chablat: two crossed bars, three springs, one slider.
 
-Guarantee: potential, equations and Hessian follow from the node coordinates below; no equation of the paper is typed in.
+Guarantee: potential, equations and Hessian follow from the node coordinates; no equation of the paper is typed in.
 
 The nodes are A1 = (0, 0), A2 = (rho, 0), A3 = L1 (cos th1, sin th1), A4 = (rho - L2 cos th2, L2 sin th2); the springs
 are A1A4 (k1), A2A3 (k2), A3A4 (k3), of free length zero; the loads are (F3x, F3) at A3 and (F4x, F4) at A4.

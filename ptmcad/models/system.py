@@ -26,6 +26,9 @@ from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricR
 RationalPolynomial = dict[tuple[int, ...], fmpq]
 """A polynomial in the unknowns with rational coefficients: exponent vector -> coefficient."""
 
+Terms = tuple[tuple[tuple[int, ...], tuple[tuple[tuple[tuple[int, int], ...], fmpq], ...]], ...]
+"""(exponents of the unknowns, ((parameter number, exponent) pairs, coefficient) for each term) for each monomial."""
+
 
 @dataclass(frozen=True, slots=True)
 class ParametricSystem:
@@ -37,14 +40,17 @@ class ParametricSystem:
     potential : U, in units of force times length.
     gradient : dU/d(angle), one for each angle.
     hessian : second derivatives of U, row by row.
+    gradient_terms, hessian_terms : the same, sorted for evaluation at many points.
     positive : parameters that must be positive (rod lengths and stiffnesses).
-    lengths : parameters that must not be negative anywhere in the window.
+    nonnegative : parameters that must not be negative (the base length).
     """
 
     ring: TrigonometricRing
     potential: TrigonometricPolynomial
     gradient: tuple[TrigonometricPolynomial, ...]
     hessian: tuple[tuple[TrigonometricPolynomial, ...], ...]
+    gradient_terms: tuple[Terms, ...]
+    hessian_terms: tuple[tuple[Terms, ...], ...]
     positive: tuple[str, ...]
     nonnegative: tuple[str, ...]
 
@@ -60,7 +66,23 @@ def from_potential(
     """The system of equilibria of a potential, by differentiation."""
     gradient = tuple(ring.reduce(ring.derivative(potential, a)) for a in ring.angles)
     hessian = tuple(tuple(ring.reduce(ring.derivative(g, a)) for a in ring.angles) for g in gradient)
-    return ParametricSystem(ring, potential, gradient, hessian, positive, nonnegative)
+    return ParametricSystem(
+        ring,
+        potential,
+        gradient,
+        hessian,
+        tuple(_terms(ring, g) for g in gradient),
+        tuple(tuple(_terms(ring, h) for h in row) for row in hessian),
+        positive,
+        nonnegative,
+    )
+
+
+def _terms(ring: TrigonometricRing, p: TrigonometricPolynomial) -> Terms:
+    return tuple(
+        (monomial, tuple((tuple((k, e) for k, e in enumerate(powers) if e), c) for powers, c in part.items()))
+        for monomial, part in ring.split(p).items()
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,27 +178,26 @@ def _without_denominators(p: dict[tuple[int, ...], Ratio]) -> UnknownPolynomial:
     return {m: n * (scale / d) for m, (n, d) in p.items()}
 
 
-def at_point(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[
-    tuple[RationalPolynomial, ...], tuple[tuple[RationalPolynomial, ...], ...]
-]:
+def at_point(
+    system: ParametricSystem, values: Mapping[str, fmpq]
+) -> tuple[tuple[RationalPolynomial, ...], tuple[tuple[RationalPolynomial, ...], ...]]:
     """Gradient and Hessian with rational numbers for the parameters, exactly and with their true signs."""
     numbers = [values[name] for name in system.ring.parameters]
 
-    def specialise(p: TrigonometricPolynomial) -> RationalPolynomial:
+    def specialise(terms: Terms) -> RationalPolynomial:
         result: RationalPolynomial = {}
-        for monomial, part in system.ring.split(p).items():
+        for monomial, part in terms:
             total = fmpq(0)
-            for exponents, coefficient in part.items():
+            for powers, coefficient in part:
                 term = coefficient
-                for number, e in zip(numbers, exponents, strict=True):
-                    if e:
-                        term = term * number**e
+                for k, e in powers:
+                    term = term * numbers[k] ** e
                 total += term
             if total:
                 result[monomial] = total
         return result
 
     return (
-        tuple(specialise(g) for g in system.gradient),
-        tuple(tuple(specialise(h) for h in row) for row in system.hessian),
+        tuple(specialise(g) for g in system.gradient_terms),
+        tuple(tuple(specialise(h) for h in row) for row in system.hessian_terms),
     )

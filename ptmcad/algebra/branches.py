@@ -1,0 +1,127 @@
+"""Branches of a plane curve: proved enclosures of their integrals.
+
+Guarantee: an enclosure that is returned contains the integral of the branch that was asked for; None means not proved.
+
+On a panel [m - r, m + r] a branch v = y(u) of p(u, v) = 0 is approximated by a polynomial z(h), u = m + r h, from the
+branch's Taylor series. Let q = s p with a polynomial s(h) close to 1/p_v(u, z). Suppose |q(u, z)| <= e and
+q_v(u, z) >= b > 0 on the panel, and |q_vv| <= K in the tube |v - z| <= t, with t >= 2 e / b and K t <= b / 2. Then q_v
+has no zero in the tube and q changes sign across it (mean value theorem), so the tube contains exactly one root of p
+for each u (s has no zero, as s p_v >= b / 2). If the isolated root at u = m lies in it, this root is the branch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
+
+from ptmcad.algebra.real_roots import RealRoot, refine
+from ptmcad.algebra.window import Interval
+
+
+def branch_integral(
+    in_v: Sequence[fmpz_poly], at_middle: RealRoot, middle: fmpq, radius: fmpq, fibre: Interval, order: int
+) -> arb | None:
+    """An enclosure of the integral of a branch over a panel.
+
+    Parameters
+    ----------
+    in_v : coefficients in Z[u] of p as a polynomial in v.
+    at_middle : the branch's value at the middle of the panel, isolated among the roots of p(middle, v).
+    middle, radius : of the panel, over whose interior no branches of the curve meet.
+    order : degree of the polynomial approximation.
+
+    Returns
+    -------
+    The enclosure at the context's precision, or None when the tube could not be proved.
+    """
+    root = refine(at_middle, (fibre[1] - fibre[0]) / 2 ** (ctx.prec // 3))
+    origin = root.low
+    local = _local_coefficients(in_v, middle, radius, origin)
+    if not abs(local[1][0]) > 0:
+        return None
+    series = _series(local, order)
+    last, first = abs(series[order]).upper(), max((abs(c).upper() for c in series.coeffs()[1:]), default=arb(0))
+    if not 8 * last < first and not last < arb((fibre[1] - fibre[0]) / 2**20):
+        return None  # the series does not converge on this panel; trying on would only take time
+    residual, slope, bend = _along(local, series)
+    scale = _inverse(slope, order)
+    error = _norm(scale * residual).upper()
+    least = (1 - _norm(scale * slope - 1)).lower()
+    if not least > 0:
+        return None
+    start = abs(series[0]) + arb(root.high - root.low)
+    tube = (2 * error / least).upper()
+    tube = tube if tube > start.upper() else start.upper()
+    reach = _norm(series) + tube
+    third, power = arb(0), arb(1)
+    for i in range(3, len(local)):
+        third += i * (i - 1) * (i - 2) * _norm(local[i]) * power
+        power = power * reach
+    curvature = _norm(scale * bend) + _norm(scale) * third * tube
+    if not 2 * curvature * tube < least:
+        return None
+    # w(h) is integrated over -1 <= h <= 1: odd powers cancel
+    mean = arb(origin)
+    for k, c in enumerate(series.coeffs()):
+        if k % 2 == 0:
+            mean += c / (k + 1)
+    return (mean + tube * arb(0, 1)) * arb(2 * radius)
+
+
+def _local_coefficients(in_v: Sequence[fmpz_poly], middle: fmpq, radius: fmpq, origin: fmpq) -> list[arb_poly]:
+    """Coefficients b_i(h) of p(middle + radius h, origin + w) = sum_i b_i(h) w^i."""
+    line = arb_poly([arb(middle), arb(radius)])
+    rows = [arb_poly(c)(line) for c in in_v]
+    shift = arb(origin)
+    for start in range(len(rows) - 1):
+        for i in range(len(rows) - 2, start - 1, -1):
+            rows[i] = rows[i] + rows[i + 1] * shift
+    return rows
+
+
+def _series(local: Sequence[arb_poly], order: int) -> arb_poly:
+    """The first coefficients of the solution w(h) of sum_i b_i(h) w^i = 0 near w = 0, each an exact midpoint.
+
+    Newton's iteration on power series; each step doubles the number of right coefficients.
+    """
+    w = arb_poly([0])
+    known = 1
+    while True:
+        length = min(2 * known, order + 1)
+        value, slope = local[-1].truncate(length), arb_poly([0])
+        for b in reversed(local[:-1]):
+            slope = (slope * w).truncate(length) + value
+            value = (value * w).truncate(length) + b.truncate(length)
+        step = (value * _inverse(slope, length - 1)).truncate(length)
+        w = arb_poly([c.mid() for c in (w - step).coeffs()])
+        if known == order + 1:
+            return w
+        known = length
+
+
+def _inverse(p: arb_poly, order: int) -> arb_poly:
+    """The first coefficients of 1/p, each an exact midpoint."""
+    length = order + 1
+    previous = ctx.cap
+    ctx.cap = length
+    try:
+        inverse = arb_series([1], prec=length) / arb_series(p.coeffs()[:length], prec=length)
+    finally:
+        ctx.cap = previous
+    return arb_poly([c.mid() for c in inverse.coeffs()])
+
+
+def _along(local: Sequence[arb_poly], w: arb_poly) -> tuple[arb_poly, arb_poly, arb_poly]:
+    """p and its first two derivatives by v along the approximation."""
+    value, slope, half = local[-1], arb_poly([0]), arb_poly([0])
+    for b in reversed(local[:-1]):
+        half = half * w + slope
+        slope = slope * w + value
+        value = value * w + b
+    return value, slope, 2 * half
+
+
+def _norm(p: arb_poly) -> arb:
+    """The sum of the coefficients' moduli: a bound for |p(h)|, |h| <= 1."""
+    return sum((abs(c) for c in p.coeffs()), arb(0))

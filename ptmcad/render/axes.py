@@ -1,0 +1,120 @@
+"""The axes of a picture: symbols, units and scales that stay readable for windows of any size and place.
+
+Guarantee: the numbers at the ticks have few digits: a large offset and a power of ten are taken out, exactly, and put
+into the axis's name.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from ptmcad.slice import Axis, Slice
+
+_UNITS = (("rho|L[12]", "length"), ("k[123]?", "force/length"), ("F[34]x?", "force"))
+_GREEK = {"rho": "ρ", "alpha": "α", "beta": "β", "theta": "θ", "lambda": "λ", "mu": "μ", "phi": "φ", "kappa": "κ"}
+_SUBSCRIPT = str.maketrans("0123456789x", "₀₁₂₃₄₅₆₇₈₉ₓ")
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_FEW_DIGITS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """What the ticks show: (value - offset) / 10^exponent, from ``low`` to ``high``."""
+
+    offset: Fraction
+    exponent: int
+    low: float
+    high: float
+
+    def name(self, symbol: str) -> str:
+        """The name of what is shown, such as ``(k - 1000) / 10⁻³``."""
+        if self.offset:
+            sign = "−" if self.offset > 0 else "+"
+            symbol = f"{symbol} {sign} {_decimal(abs(self.offset))}"
+        if self.exponent:
+            symbol = f"({symbol})" if self.offset else symbol
+            symbol = f"{symbol} / 10{str(self.exponent).translate(_SUPERSCRIPT)}"
+        return symbol
+
+
+def scale_of(low: Fraction, high: Fraction) -> Scale:
+    """The scale for an interval, low < high.
+
+    >>> scale_of(Fraction(0), Fraction(2))
+    Scale(offset=Fraction(0, 1), exponent=0, low=0.0, high=2.0)
+    >>> scale_of(Fraction(10**20), Fraction(10**20 + 1)).name("k")
+    'k − 100000000000000000000'
+    >>> scale_of(Fraction(0), Fraction(1, 10**20)).name("ρ")
+    'ρ / 10⁻²⁰'
+    """
+    largest, width = max(abs(low), abs(high)), high - low
+    offset = Fraction(0)
+    if largest > width * 10**_FEW_DIGITS:
+        unit = Fraction(10) ** (_magnitude(width) + 1)
+        offset = low // unit * unit
+    largest = max(abs(low - offset), abs(high - offset))
+    exponent = _magnitude(largest)
+    if -4 <= exponent <= _FEW_DIGITS:
+        exponent = 0
+    power = Fraction(10) ** exponent
+    return Scale(offset, exponent, float((low - offset) / power), float((high - offset) / power))
+
+
+def symbol(name: str) -> str:
+    """A parameter's name as it is printed: ``L1`` as L₁, ``F3x`` as F₃ₓ, ``rho`` as ρ; other names as they are."""
+    match = re.fullmatch(r"([A-Za-z])(\d{1,2}x?)", name)
+    if match:
+        return match[1] + match[2].translate(_SUBSCRIPT)
+    return _GREEK.get(name, name)
+
+
+def unit(slice: Slice, axis: int) -> str:
+    """The unit of an axis, empty when none is known: that of the parameters which are a number times the axis."""
+    if slice.mechanism != "ptm":
+        return ""
+    exponents = (1, 0) if axis == 0 else (0, 1)
+    found = set()
+    for name, expression in slice.parameters.items():
+        if expression.is_polynomial and [term[:2] for term in expression.numerator] == [exponents]:
+            found |= {u for pattern, u in _UNITS if re.fullmatch(pattern, name)}
+    return found.pop() if len(found) == 1 else ""
+
+
+def dress(axes: Any, slice: Slice, x: tuple[Fraction, Fraction], y: tuple[Fraction, Fraction], small: bool) -> None:
+    """Give matplotlib axes their limits, ticks and names; in small ones (insets) without units."""
+    from matplotlib.ticker import MaxNLocator, ScalarFormatter
+
+    size = 7 if small else 9
+    for number, (matplotlib_axis, interval) in enumerate(((axes.xaxis, x), (axes.yaxis, y))):
+        scale = scale_of(*interval)
+        (axes.set_ylim if number else axes.set_xlim)(scale.low, scale.high)
+        matplotlib_axis.set_major_locator(MaxNLocator(nbins=4 if small else 8, steps=[1, 2, 2.5, 5, 10]))
+        formatter = ScalarFormatter(useOffset=False)
+        formatter.set_scientific(False)
+        matplotlib_axis.set_major_formatter(formatter)
+        text = scale.name(symbol(_name(slice.axes[number])))
+        known = "" if small else unit(slice, number)
+        matplotlib_axis.set_label_text(f"{text} ({known})" if known else text, fontsize=size if small else size + 2)
+        axes.tick_params(axis="y" if number else "x", labelsize=size, length=2 if small else 3.5, direction="out")
+
+
+def _name(axis: Axis) -> str:
+    return axis.name if len(axis.name) <= 40 else axis.name[:39] + "…"
+
+
+def _magnitude(value: Fraction) -> int:
+    """The largest e with 10^e <= value, for value > 0."""
+    e = len(str(value.numerator)) - len(str(value.denominator))
+    return e if Fraction(10) ** e <= value else e - 1
+
+
+def _decimal(value: Fraction) -> str:
+    """A decimal fraction, exactly."""
+    digits = 0
+    while (value * 10**digits).denominator != 1:
+        digits += 1
+    text = str((value * 10**digits).numerator).rjust(digits + 1, "0")
+    return f"{text[:-digits]}.{text[-digits:]}" if digits else text

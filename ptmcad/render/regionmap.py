@@ -1,0 +1,249 @@
+"""The picture of a region map: regions coloured by count, walls, legend, and an inset for every sliver.
+
+Guarantee: the same map gives the same bytes (SVG and PNG) with the same matplotlib; regions that the drawing's
+resolution hides are marked by an arrow and shown in insets. Global state of matplotlib is neither used nor changed.
+
+Not guaranteed: anything that only the picture tells. It is drawn in floating point from the exact map.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from html import escape
+from io import BytesIO, StringIO
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from ptmcad.regionmap import RegionMap
+from ptmcad.render.axes import dress
+from ptmcad.render.colours import fill_of
+from ptmcad.render.labels import Placement, place
+from ptmcad.render.legend import INK, STRONG, THIN, draw_legend, entries, height
+from ptmcad.render.outline import Outline, outline
+from ptmcad.render.slivers import Sliver, slivers
+from ptmcad.table import certified_digits, count_text
+
+RESOLVED = 42
+"""What is thinner than three pixels of this many to the inch (5 points) is taken for hidden by the walls around it."""
+
+FORMATS = ("png", "svg", "pdf")
+
+SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15
+"""In inches: the map's side, the space at its left and below, a column at its right, the space before, the rim."""
+INSET_WIDTH, INSET_HEIGHT, INSET_LEFT, INSET_BELOW, INSET_ABOVE = 1.75, 1.2, 0.62, 0.48, 0.42
+BLOCK = INSET_ABOVE + INSET_HEIGHT + INSET_BELOW
+TITLE_LINE, TITLE_COLUMNS, TITLE_LINES = 0.22, 92, 3
+
+_SETTINGS: dict[str, Any] = {
+    "font.family": ["DejaVu Sans"],  # comes with matplotlib
+    "text.parse_math": False,
+    "text.usetex": False,
+    "axes.unicode_minus": True,
+    "axes.linewidth": 0.8,
+    "hatch.linewidth": 0.6,
+    "path.simplify": False,
+    "path.snap": True,
+    "savefig.bbox": None,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "ptmcad",
+    "svg.image_inline": True,
+    "pdf.compression": 6,
+}
+
+
+def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150) -> None:
+    """Write the picture of a map.
+
+    Parameters
+    ----------
+    path : its suffix tells the format: png, svg or pdf.
+    samples : whether to draw the cells' sample points.
+    dpi : resolution of a PNG; slivers are what is not seen at this resolution, in every format.
+
+    Raises
+    ------
+    ValueError
+        For another suffix.
+    OSError
+        When the file can not be written.
+
+    Guarantee
+    ---------
+    No region is invisible.
+    """
+    suffix = path.suffix.lower().removeprefix(".")
+    if suffix not in FORMATS:
+        raise ValueError(f"{path.name}: the format {suffix!r} is not among {', '.join(FORMATS)}")
+    # matplotlib's own defaults, not those of a user's matplotlibrc
+    settings: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS
+    with matplotlib.rc_context(settings):
+        data = _printed(_figure(result, samples, dpi), result, suffix, dpi)
+    path.write_bytes(data)
+
+
+_KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
+
+
+def _figure(result: RegionMap, samples: bool, dpi: int) -> Figure:
+    whole = outline(result)
+    thin = slivers(whole, round(SIDE * min(dpi, RESOLVED)))
+    legend = entries(result, any(not separates for _, separates, _ in whole.walls()), samples)
+    title = _title(result)
+
+    below = height(legend) + 0.1
+    tall = max(SIDE + BOTTOM, below + 0.1, BLOCK)
+    places = _places(len(thin), below, tall)
+    columns = 1 + max((column for column, _ in places), default=0)
+    size = (LEFT + SIDE + GAP + columns * COLUMN + MARGIN, tall + TITLE_LINE * len(title) + 2 * MARGIN)
+    top = tall
+
+    figure = Figure(figsize=size, dpi=dpi, facecolor="white")
+    inches = figure.dpi_scale_trans
+    for k, line in enumerate(title):
+        figure.text(LEFT, size[1] - MARGIN - TITLE_LINE * (k + 0.5), line, transform=inches, fontsize=11, va="center")
+    axes = _axes(figure, (LEFT, top - SIDE, SIDE, SIDE), "map")
+    _paint(axes, whole, "")
+    if samples:
+        points = np.array([whole.view.approximate_position(c.sample) for c in result.cells])
+        axes.plot(*points.T, "o", markersize=2.5, color=INK, transform=axes.transAxes, gid="samples", clip_on=False)
+    dress(axes, result.slice, whole.view.x, whole.view.y, small=False)
+    draw_legend(figure, legend, LEFT + SIDE + GAP, top)
+    names = [_name_of(result, thin, k) for k in range(len(thin))]
+    for sliver, name, (column, down) in zip(thin, names, places, strict=True):
+        corner = (LEFT + SIDE + GAP + column * COLUMN + INSET_LEFT, top - down - INSET_ABOVE - INSET_HEIGHT)
+        _inset(figure, sliver, name, corner)
+    _mark(axes, whole, thin, names)
+    return figure
+
+
+def _places(number: int, below: float, tall: float) -> list[tuple[int, float]]:
+    """Columns and distances from the top for insets: the first ones go below the legend, others to further columns."""
+    first = int((tall - below) // BLOCK)
+    places = [(0, below + k * BLOCK) for k in range(first)]
+    per_column = int(tall // BLOCK)
+    places += [(1 + k // per_column, k % per_column * BLOCK) for k in range(max(0, number - first))]
+    return places[:number]
+
+
+def _title(result: RegionMap) -> list[str]:
+    text = " ".join((result.slice.title or result.slice.name).split())
+    return textwrap.wrap(text, TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …") or [""]
+
+
+def _name_of(result: RegionMap, thin: Sequence[Sliver], number: int) -> str:
+    """The sliver's count, with a letter when there are several."""
+    text = count_text(result.regions[thin[number].region], result.slice.count)
+    letter = ""
+    while len(thin) > 1 and number >= 0:
+        number, rest = divmod(number, 26)
+        letter, number = chr(ord("A") + rest) + letter, number - 1
+    return f"{letter}: {text}" if letter else text
+
+
+def _axes(figure: Figure, box: tuple[float, float, float, float], gid: str) -> Any:
+    """Axes at a place given in inches: left, bottom, width, height."""
+    width, tall = figure.get_size_inches()
+    axes = figure.add_axes((box[0] / width, box[1] / tall, box[2] / width, box[3] / tall))
+    axes.set_gid(gid)
+    return axes
+
+
+def _paint(axes: Any, seen: Outline, prefix: str) -> None:
+    """Fill the regions and draw the walls."""
+    from matplotlib.collections import LineCollection
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Curve
+
+    result = seen.result
+    for number, region in enumerate(result.regions):
+        polygons = [Curve(p, closed=False) for p in seen.polygons(number)]
+        if not polygons:
+            continue
+        fill = fill_of(region, result.slice.count)
+        # one path for all parts: where two of them share an edge, their coverage adds up and no seam is left
+        axes.add_patch(
+            PathPatch(
+                Curve.make_compound_path(*polygons), transform=axes.transAxes, facecolor=fill.face, edgecolor=INK,
+                hatch=fill.hatch or None, linewidth=0, snap=False, gid=f"{prefix}region-{number}",
+            )
+        )  # fmt: skip
+    lines: dict[tuple[bool, int], list[Any]] = {}
+    for component, separates, line in seen.walls():
+        lines.setdefault((separates, component), []).append(line)
+    for (separates, component), parts in sorted(lines.items()):
+        axes.add_collection(
+            LineCollection(
+                parts, transform=axes.transAxes, colors=INK, linewidths=STRONG if separates else THIN,
+                capstyle="round", joinstyle="round", zorder=3 if separates else 2,
+                gid=f"{prefix}curve-{component}" + ("" if separates else "-thin"),
+            ),
+            autolim=False,
+        )  # fmt: skip
+
+
+def _inset(figure: Figure, sliver: Sliver, name: str, corner: tuple[float, float]) -> None:
+    """Axes with the zoomed view of a sliver."""
+    result = sliver.outline.result
+    number = sliver.region
+    axes = _axes(figure, (*corner, INSET_WIDTH, INSET_HEIGHT), f"sliver-{number}")
+    _paint(axes, sliver.outline, f"sliver-{number}-")
+    dress(axes, result.slice, sliver.outline.view.x, sliver.outline.view.y, small=True)
+    area = certified_digits(result.regions[number].area, 4)
+    axes.set_title(f"{name}\narea {area}, zoomed", fontsize=7.5, loc="left", pad=3)
+
+
+def _mark(axes: Any, whole: Outline, thin: Sequence[Sliver], names: Sequence[str]) -> None:
+    """An arrow to every sliver, labels apart from each other."""
+    tips = [whole.view.approximate_position(s.at) for s in thin]
+    marks: list[Placement] = place(tips, names, whole, SIDE * 72)
+    for sliver, mark, name in zip(thin, marks, names, strict=True):
+        axes.annotate(
+            name, xy=mark.tip, xytext=mark.label, xycoords="axes fraction", textcoords="axes fraction",
+            ha="center", va="center", fontsize=mark.size, color=INK, zorder=6, gid=f"arrow-{sliver.region}",
+            annotation_clip=False,
+            bbox={"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": INK, "linewidth": 0.5},
+            arrowprops={
+                "arrowstyle": "-|>", "color": INK, "linewidth": 0.9, "mutation_scale": 8, "shrinkA": 0, "shrinkB": 0,
+            },
+        )  # fmt: skip
+
+
+def _printed(figure: Figure, result: RegionMap, suffix: str, dpi: int) -> bytes:
+    """The picture as a file's content, without dates and versions."""
+    title = " ".join(_title(result))
+    canvas: Any
+    if suffix == "svg":
+        from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+        text = StringIO()
+        canvas = FigureCanvasSVG(figure)
+        canvas.print_svg(text, metadata={"Date": None, "Creator": "ptmcad", "Title": title})
+        head = f"<title>{escape(title, quote=False)}</title>"
+        described = f"{head}\n <desc>{escape(_description(result), quote=False)}</desc>"
+        return text.getvalue().replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
+    data = BytesIO()
+    if suffix == "pdf":
+        from matplotlib.backends.backend_pdf import FigureCanvasPdf
+
+        canvas = FigureCanvasPdf(figure)
+        metadata = {"CreationDate": None, "Creator": "ptmcad", "Producer": None, "Title": title}
+        canvas.print_pdf(data, metadata=metadata)
+    else:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+        canvas = FigureCanvasAgg(figure)
+        canvas.print_png(data, metadata={"Software": None, "Title": title})
+    return data.getvalue()
+
+
+def _description(result: RegionMap) -> str:
+    """What the picture shows, in words."""
+    count = result.slice.count
+    window = " and ".join(f"{a.name} from {a.low} to {a.high}" for a in result.slice.axes)
+    regions = "; ".join(f"{count_text(r, count)} ({certified_digits(r.area, 7)})" for r in result.regions)
+    return f"Regions of equal count ({count.value} equilibria; area in brackets) over {window}: {regions}."
