@@ -7,11 +7,11 @@ from fractions import Fraction
 
 import oracle
 import pytest
+from conftest import CONFIGS, shipped
 from flint import fmpq
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from conftest import CONFIGS, shipped
 from ptmcad import load
 from ptmcad.counting import DegeneratePoint, count_by_isolation, count_by_signature
 from ptmcad.models import system_of
@@ -37,7 +37,7 @@ def oracle_counts(values: Values) -> tuple[int, int, int] | None:
 
 
 def random_values(generator: random.Random) -> Values:
-    """Simple numbers of all kinds: unequal springs, horizontal loads, no loads, loads that cancel, a base of length 0."""
+    """Simple numbers of all kinds: unequal springs, horizontal loads, loads that are zero or cancel, rho = 0."""
 
     def number() -> Fraction:
         return Fraction(generator.randint(-9, 9), generator.randint(1, 7))

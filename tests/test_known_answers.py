@@ -1,4 +1,4 @@
-"""Every shipped slice against the answers that its record carries under `reference:`; the test's id names their source."""
+"""Every shipped slice against the answers under `reference:` in its record; the tests' ids name their source."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Any
 
 import oracle
 import pytest
+from conftest import CONFIGS, shipped
 from flint import fmpq
 from structure import check_structure, key
 
-from conftest import CONFIGS, shipped
 from ptmcad import Count, RegionMap, load
 from ptmcad.algebra.polynomials import from_fraction, from_plane, to_fraction
 from ptmcad.algebra.real_roots import disjoint, isolate, refine, squarefree_part
@@ -165,10 +165,10 @@ def _number(count: Count, index: tuple[int, int, int]) -> object:
 
 @pytest.mark.parametrize(("name", "interval"), cases("intervals", list))
 def test_no_other_end(name: str, interval: dict[str, Any]) -> None:
-    """Between the printed ends the count does not change: located between all points where the line meets the variety."""
+    """Between the printed ends the count does not change: asked between all points of the variety on the line."""
     slice = SLICES[name]
     count = Count(interval.get("count", slice.count.value))
-    (fixed, value), along = next(iter(interval["at"].items())), interval["along"]
+    (_, value), along = next(iter(interval["at"].items())), interval["along"]
     base = 1 - slice.axis_names.index(along)
     window = slice.axes[1 - base]
     low, high = from_fraction(window.low), from_fraction(window.high)
@@ -220,7 +220,7 @@ def test_unloaded_region_of_two(numerator: int) -> None:
 
 
 def test_symmetric_regions_by_index() -> None:
-    """REFERENCE: (4,1) in the rose, between the curves (6,2) for x > y and (6,1) for x < y, (4,1) outside the astroid."""
+    """REFERENCE: (4,1) in the rose and outside the astroid; between them (6,2) for x > y and (6,1) for x < y."""
     result = shipped("fig3", "index", "1/10")
     assert sorted((r.total, r.stable) for r in result.regions) == [(4, 1), (4, 1), (6, 1), (6, 2)]
     for k in range(1, 40):
@@ -292,7 +292,7 @@ def changes_on_line(name: str, value: Fraction, grid: int, steps: int) -> list[t
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["horizontal", "stiffness", "forces", "rods", "unequal-springs"])
 def test_area_by_the_oracle_alone(name: str) -> None:
-    """The midpoint rule over 60 lines, on each of them a grid and bisection with the oracle: within 1 % of the record."""
+    """The midpoint rule over 60 lines, a grid and bisection with the oracle on each: within 1 % of the record."""
     slice = SLICES[name]
     y, lines = slice.axes[1], 60
     total = Fraction(0)

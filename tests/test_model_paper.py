@@ -39,7 +39,7 @@ def substituted(p: fmpq_mpoly, **values: fmpq_mpoly | int) -> fmpq_mpoly:
 
 
 def half_angles(p: fmpq_mpoly) -> fmpq_mpoly:
-    """p times (1 + t1^2)(1 + t2^2) with cos = (1 - t^2)/(1 + t^2), sin = 2t/(1 + t^2), for p of degree 1 in each angle."""
+    """p (1 + t1^2)(1 + t2^2) with cos = (1 - t^2)/(1 + t^2), sin = 2t/(1 + t^2), p of degree 1 in each angle."""
     total = ZERO
     for exponents, coefficient in p.terms():
         power = dict(zip(NAMES, exponents, strict=True))
@@ -204,7 +204,7 @@ def test_hessian() -> None:
 
 
 def test_gradient_is_the_slope_of_the_potential() -> None:
-    """A third way, by difference quotients of the lengths themselves: not through any formula of the paper or of ours."""
+    """A third way, by difference quotients of the lengths themselves: through no formula of the paper or of ours."""
     length1, length2, rho, k1, k2, k3, f3, f4, f3x, f4x = 1.0, 1.5, 0.7, 100.0, 150.0, 80.0, -10.0, 7.0, 3.0, -5.0
     values = (length1, length2, rho, k1, k2, k3, f3, f4, f3x, f4x)
 
@@ -233,8 +233,9 @@ def test_gradient_is_the_slope_of_the_potential() -> None:
             assert tuple(ours(g, a, b) for g in SYSTEM.gradient) == pytest.approx(slope, abs=1e-4)
 
 
-def free_length_equilibria(rho: float, length1: float, length2: float, l0: float, f3: float, f4: float) -> int:
-    """Different equilibria with free lengths found by Newton's method from a grid, with steep slopes at each."""
+def free_length_equilibria(*values: float) -> int:
+    """Different equilibria for (rho, L1, L2, l0, f3, f4), found by Newton's method from a grid; all of them regular."""
+    rho, length1, length2, l0, f3, f4 = values
 
     def gradient(a: float, b: float) -> tuple[float, float]:
         d1 = (rho - length2 * cos(b), length2 * sin(b))
