@@ -11,13 +11,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.slice import Axis, Slice
+from ptmcad.slice import Slice
 
 _UNITS = (("rho|L[12]", "length"), ("k[123]?", "force/length"), ("F[34]x?", "force"))
 _GREEK = {"rho": "ρ", "alpha": "α", "beta": "β", "theta": "θ", "lambda": "λ", "mu": "μ", "phi": "φ", "kappa": "κ"}
 _SUBSCRIPT = str.maketrans("0123456789x", "₀₁₂₃₄₅₆₇₈₉ₓ")
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_FEW_DIGITS = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,19 +28,20 @@ class Scale:
     low: float
     high: float
 
-    def name(self, symbol: str) -> str:
-        """The name of what is shown, such as ``(k - 1000) / 10⁻³``."""
+    def name(self, symbol: str, most: int = 24) -> str:
+        """The name of what is shown, such as ``(k - 1000) / 10⁻³``; an offset of more characters is cut off."""
         if self.offset:
             sign = "−" if self.offset > 0 else "+"
-            symbol = f"{symbol} {sign} {_decimal(abs(self.offset))}"
+            digits = _decimal(abs(self.offset))
+            symbol = f"{symbol} {sign} {digits if len(digits) <= most else digits[: most - 1] + '…'}"
         if self.exponent:
             symbol = f"({symbol})" if self.offset else symbol
             symbol = f"{symbol} / 10{str(self.exponent).translate(_SUPERSCRIPT)}"
         return symbol
 
 
-def scale_of(low: Fraction, high: Fraction) -> Scale:
-    """The scale for an interval, low < high.
+def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
+    """The scale for an interval, low < high, such that ticks have about so many digits more than they need.
 
     >>> scale_of(Fraction(0), Fraction(2))
     Scale(offset=Fraction(0, 1), exponent=0, low=0.0, high=2.0)
@@ -52,12 +52,12 @@ def scale_of(low: Fraction, high: Fraction) -> Scale:
     """
     largest, width = max(abs(low), abs(high)), high - low
     offset = Fraction(0)
-    if largest > width * 10**_FEW_DIGITS:
+    if largest > width * 10**digits:
         unit = Fraction(10) ** (_magnitude(width) + 1)
         offset = low // unit * unit
     largest = max(abs(low - offset), abs(high - offset))
     exponent = _magnitude(largest)
-    if -4 <= exponent <= _FEW_DIGITS:
+    if -min(digits, 3) <= exponent <= digits:
         exponent = 0
     power = Fraction(10) ** exponent
     return Scale(offset, exponent, float((low - offset) / power), float((high - offset) / power))
@@ -89,20 +89,20 @@ def dress(axes: Any, slice: Slice, x: tuple[Fraction, Fraction], y: tuple[Fracti
 
     size = 7 if small else 9
     for number, (matplotlib_axis, interval) in enumerate(((axes.xaxis, x), (axes.yaxis, y))):
-        scale = scale_of(*interval)
+        scale = scale_of(*interval, digits=2 if small else 4)
         (axes.set_ylim if number else axes.set_xlim)(scale.low, scale.high)
         matplotlib_axis.set_major_locator(MaxNLocator(nbins=4 if small else 8, steps=[1, 2, 2.5, 5, 10]))
         formatter = ScalarFormatter(useOffset=False)
         formatter.set_scientific(False)
         matplotlib_axis.set_major_formatter(formatter)
-        text = scale.name(symbol(_name(slice.axes[number])))
+        text = scale.name(_cut(symbol(slice.axes[number].name), 10 if small else 40), 9 if small else 24)
         known = "" if small else unit(slice, number)
         matplotlib_axis.set_label_text(f"{text} ({known})" if known else text, fontsize=size if small else size + 2)
         axes.tick_params(axis="y" if number else "x", labelsize=size, length=2 if small else 3.5, direction="out")
 
 
-def _name(axis: Axis) -> str:
-    return axis.name if len(axis.name) <= 40 else axis.name[:39] + "…"
+def _cut(text: str, most: int) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"
 
 
 def _magnitude(value: Fraction) -> int:

@@ -1,7 +1,7 @@
 """The colour of a count: the same in every picture, told apart by the colour-blind and on grey prints.
 
 Guarantee: two different counts of a torus (where saddles = minima + maxima) never have the same fill. Along a row of
-the palette the lightness falls by at least seven units of CIE L* a step; the hues start from those of Okabe & Ito.
+the palette the lightness falls by at least six units of CIE L* a step; the hues start from those of Okabe & Ito.
 
 Reference: Okabe & Ito, Color universal design, 2008.
 """

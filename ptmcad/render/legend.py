@@ -38,17 +38,18 @@ class Entry:
     strong: bool = False
 
 
-def entries(result: RegionMap, thin: bool, samples: bool) -> tuple[Entry, ...]:
+def entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> tuple[Entry, ...]:
     """The legend's entries, from above.
 
     Parameters
     ----------
     thin : whether the picture shows walls that separate nothing.
+    hidden : number of regions that are too thin to be seen and are shown by no inset.
     """
-    return tuple(_entries(result, thin, samples))
+    return tuple(_entries(result, thin, samples, hidden))
 
 
-def _entries(result: RegionMap, thin: bool, samples: bool) -> Iterator[Entry]:
+def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> Iterator[Entry]:
     count = result.slice.count
     groups: dict[str, list[Region]] = {}
     for region in sorted(result.regions, key=lambda r: (_key(r, count), -r.area[0])):
@@ -63,6 +64,8 @@ def _entries(result: RegionMap, thin: bool, samples: bool) -> Iterator[Entry]:
         yield Entry(("equilibria merge or vanish,", "the count does not change"), THIN)
     if samples:
         yield Entry(("sample point of a cell",), "dot")
+    if hidden:
+        yield Entry((f"{hidden} more regions are too thin to be seen",))
 
 
 def _key(region: Region, count: Count) -> tuple[int, ...]:

@@ -9,6 +9,7 @@ Not guaranteed: anything that only the picture tells. It is drawn in floating po
 from __future__ import annotations
 
 import textwrap
+import warnings
 from collections.abc import Sequence
 from html import escape
 from io import BytesIO, StringIO
@@ -25,7 +26,7 @@ from ptmcad.render.colours import fill_of
 from ptmcad.render.labels import Placement, place
 from ptmcad.render.legend import INK, STRONG, THIN, draw_legend, entries, height
 from ptmcad.render.outline import Outline, outline
-from ptmcad.render.slivers import Sliver, slivers
+from ptmcad.render.slivers import Sliver, Zoom, thin_regions, zooms
 from ptmcad.table import certified_digits, count_text
 
 RESOLVED = 42
@@ -37,7 +38,7 @@ SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15
 """In inches: the map's side, the space at its left and below, a column at its right, the space before, the rim."""
 INSET_WIDTH, INSET_HEIGHT, INSET_LEFT, INSET_BELOW, INSET_ABOVE = 1.75, 1.2, 0.62, 0.48, 0.42
 BLOCK = INSET_ABOVE + INSET_HEIGHT + INSET_BELOW
-TITLE_LINE, TITLE_COLUMNS, TITLE_LINES = 0.22, 92, 3
+TITLE_LINE, TITLE_COLUMNS, TITLE_LINES = 0.22, 80, 3
 
 _SETTINGS: dict[str, Any] = {
     "font.family": ["DejaVu Sans"],  # comes with matplotlib
@@ -81,7 +82,9 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
         raise ValueError(f"{path.name}: the format {suffix!r} is not among {', '.join(FORMATS)}")
     # matplotlib's own defaults, not those of a user's matplotlibrc
     settings: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS
-    with matplotlib.rc_context(settings):
+    with matplotlib.rc_context(settings), warnings.catch_warnings():
+        # a title in a script that the font lacks is shown with boxes; SVG's title and the JSON keep it
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
         data = _printed(_figure(result, samples, dpi), result, suffix, dpi)
     path.write_bytes(data)
 
@@ -91,13 +94,20 @@ _KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
 
 def _figure(result: RegionMap, samples: bool, dpi: int) -> Figure:
     whole = outline(result)
-    thin = slivers(whole, round(SIDE * min(dpi, RESOLVED)))
-    legend = entries(result, any(not separates for _, separates, _ in whole.walls()), samples)
+    thin = thin_regions(whole, round(SIDE * min(dpi, RESOLVED)))
+    views = zooms(whole, thin)
+    marked = [sliver for zoom in views for sliver in zoom.slivers]
+    legend = entries(
+        result,
+        thin=any(not separates for _, separates, _ in whole.walls()),
+        samples=samples,
+        hidden=len(thin) - len(marked),
+    )
     title = _title(result)
 
     below = height(legend) + 0.1
     tall = max(SIDE + BOTTOM, below + 0.1, BLOCK)
-    places = _places(len(thin), below, tall)
+    places = _places(len(views), below, tall)
     columns = 1 + max((column for column, _ in places), default=0)
     size = (LEFT + SIDE + GAP + columns * COLUMN + MARGIN, tall + TITLE_LINE * len(title) + 2 * MARGIN)
     top = tall
@@ -113,11 +123,11 @@ def _figure(result: RegionMap, samples: bool, dpi: int) -> Figure:
         axes.plot(*points.T, "o", markersize=2.5, color=INK, transform=axes.transAxes, gid="samples", clip_on=False)
     dress(axes, result.slice, whole.view.x, whole.view.y, small=False)
     draw_legend(figure, legend, LEFT + SIDE + GAP, top)
-    names = [_name_of(result, thin, k) for k in range(len(thin))]
-    for sliver, name, (column, down) in zip(thin, names, places, strict=True):
+    names = {s.region: _name_of(result, s.region, k if len(marked) > 1 else None) for k, s in enumerate(marked)}
+    for zoom, (column, down) in zip(views, places, strict=True):
         corner = (LEFT + SIDE + GAP + column * COLUMN + INSET_LEFT, top - down - INSET_ABOVE - INSET_HEIGHT)
-        _inset(figure, sliver, name, corner)
-    _mark(axes, whole, thin, names)
+        _inset(figure, zoom, [names[s.region] for s in zoom.slivers], corner)
+    _mark(axes, whole, marked, list(names.values()))
     return figure
 
 
@@ -131,18 +141,20 @@ def _places(number: int, below: float, tall: float) -> list[tuple[int, float]]:
 
 
 def _title(result: RegionMap) -> list[str]:
-    text = " ".join((result.slice.title or result.slice.name).split())
+    text = "".join(c if c.isprintable() else " " for c in result.slice.title or result.slice.name)
     return textwrap.wrap(text, TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …") or [""]
 
 
-def _name_of(result: RegionMap, thin: Sequence[Sliver], number: int) -> str:
-    """The sliver's count, with a letter when there are several."""
-    text = count_text(result.regions[thin[number].region], result.slice.count)
-    letter = ""
-    while len(thin) > 1 and number >= 0:
+def _name_of(result: RegionMap, region: int, number: int | None) -> str:
+    """A sliver's count, after a letter when there are several."""
+    text = count_text(result.regions[region], result.slice.count)
+    if number is None:
+        return text
+    letters = ""
+    while number >= 0:
         number, rest = divmod(number, 26)
-        letter, number = chr(ord("A") + rest) + letter, number - 1
-    return f"{letter}: {text}" if letter else text
+        letters, number = chr(ord("A") + rest) + letters, number - 1
+    return f"{letters}: {text}"
 
 
 def _axes(figure: Figure, box: tuple[float, float, float, float], gid: str) -> Any:
@@ -186,15 +198,18 @@ def _paint(axes: Any, seen: Outline, prefix: str) -> None:
         )  # fmt: skip
 
 
-def _inset(figure: Figure, sliver: Sliver, name: str, corner: tuple[float, float]) -> None:
-    """Axes with the zoomed view of a sliver."""
-    result = sliver.outline.result
-    number = sliver.region
+def _inset(figure: Figure, zoom: Zoom, names: Sequence[str], corner: tuple[float, float]) -> None:
+    """Axes with the zoomed view of one or more slivers."""
+    result = zoom.outline.result
+    number = zoom.slivers[0].region
     axes = _axes(figure, (*corner, INSET_WIDTH, INSET_HEIGHT), f"sliver-{number}")
-    _paint(axes, sliver.outline, f"sliver-{number}-")
-    dress(axes, result.slice, sliver.outline.view.x, sliver.outline.view.y, small=True)
-    area = certified_digits(result.regions[number].area, 4)
-    axes.set_title(f"{name}\narea {area}, zoomed", fontsize=7.5, loc="left", pad=3)
+    _paint(axes, zoom.outline, f"sliver-{number}-")
+    dress(axes, result.slice, zoom.outline.view.x, zoom.outline.view.y, small=True)
+    if len(names) == 1:
+        title = f"{names[0]}\narea {certified_digits(result.regions[number].area, 4)}, zoomed"
+    else:
+        title = textwrap.shorten(", ".join(names), 34, placeholder=" …") + "\nzoomed"
+    axes.set_title(title, fontsize=7.5, loc="left", pad=3)
 
 
 def _mark(axes: Any, whole: Outline, thin: Sequence[Sliver], names: Sequence[str]) -> None:

@@ -1,7 +1,7 @@
 """Slivers: regions too thin to be seen at a drawing's resolution, and the views in which they are seen clearly.
 
-Guarantee: a region of which no square of three pixels' side fits into the drawing is reported; its view shows a square
-of it with at least a tenth of the view's sides, or as much as `STEPS` halvings of the view reach.
+Guarantee: a region of which no square of three pixels' side fits into the drawing is reported; the view for it shows a
+square of it with at least a twelfth of the view's sides, or as much as `STEPS` steps of shortening the view reach.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from ptmcad.regionmap import RegionMap
 from ptmcad.render.outline import Interval, Outline, View, outline
 
-STEPS = 60
+STEPS = 100
+MOST_ZOOMS = 12
 _PIXELS = 60
 _CLEAR = 2
 """A square of 2 * _CLEAR + 1 pixels of the view's _PIXELS is seen clearly."""
@@ -26,32 +27,46 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class Sliver:
-    """A thin region.
-
-    Attributes
-    ----------
-    outline : of the zoomed view.
-    at : a point in the thick of it, in the axes' order.
-    """
+    """A thin region and a point in the thick of it, in the axes' order."""
 
     region: int
-    outline: Outline
     at: tuple[Fraction, Fraction]
 
 
-def slivers(whole: Outline, pixels: int) -> tuple[Sliver, ...]:
-    """The regions that are thinner than three of the drawing's pixels everywhere, in the order of their numbers.
+@dataclass(frozen=True, slots=True)
+class Zoom:
+    """A view that shows some slivers clearly."""
+
+    outline: Outline
+    slivers: tuple[Sliver, ...]
+
+
+def thin_regions(whole: Outline, pixels: int) -> tuple[int, ...]:
+    """The regions that are thinner than three of the drawing's pixels everywhere.
 
     Parameters
     ----------
     pixels : of the drawing's side.
     """
     image = whole.raster(pixels, pixels)
-    thin = [n for n in range(len(whole.result.regions)) if not _eroded(image == n).any()]
-    return tuple(_zoom(whole, n) for n in thin)
+    return tuple(n for n in range(len(whole.result.regions)) if not _eroded(image == n).any())
 
 
-def _zoom(whole: Outline, region: int) -> Sliver:
+def zooms(whole: Outline, thin: Sequence[int], most: int = MOST_ZOOMS) -> tuple[Zoom, ...]:
+    """Views that show the thin regions clearly, each as many of them as it happens to; at most so many views."""
+    waiting = list(thin)
+    found: list[Zoom] = []
+    while waiting and len(found) < most:
+        seen = _zoom(whole, waiting[0])
+        thick = {n: _thick(seen, n) for n in waiting}
+        shown = [n for n, (depth, _) in thick.items() if depth >= _CLEAR or n == waiting[0]]
+        found.append(Zoom(seen, tuple(Sliver(n, thick[n][1]) for n in shown)))
+        waiting = [n for n in waiting if n not in shown]
+    return tuple(found)
+
+
+def _zoom(whole: Outline, region: int) -> Outline:
+    """A view around the region, shortened until the region is clearly seen."""
     view, seen = whole.view, whole
     window = whole.view
     for _ in range(STEPS):
@@ -64,9 +79,10 @@ def _zoom(whole: Outline, region: int) -> Sliver:
         depth, at = _thick(seen, region)
         if depth >= _CLEAR:
             break
-        view = View(_halved(view.x, at[0], window.x), _halved(view.y, at[1], window.y))
+        factor = Fraction(1, 16 if depth < 0 else 2)
+        view = View(_shortened(view.x, at[0], window.x, factor), _shortened(view.y, at[1], window.y, factor))
         seen = outline(whole.result, view)
-    return Sliver(region, seen, _thick(seen, region)[1])
+    return seen
 
 
 def _bounding_box(seen: Outline, region: int) -> tuple[float, float, float, float] | None:
@@ -92,11 +108,11 @@ def _stretched(shown: Interval, part: Sequence[float], window: Interval) -> Inte
     )
 
 
-def _halved(shown: Interval, at: Fraction, window: Interval) -> Interval:
-    """An interval half as long around a point, within the window."""
-    quarter = (shown[1] - shown[0]) / 4
-    low = max(window[0], min(at - quarter, window[1] - 2 * quarter))
-    return low, low + 2 * quarter
+def _shortened(shown: Interval, at: Fraction, window: Interval, factor: Fraction) -> Interval:
+    """A shorter interval around a point, within the window."""
+    width = (shown[1] - shown[0]) * factor
+    low = max(window[0], min(at - width / 2, window[1] - width))
+    return low, low + width
 
 
 def _thick(seen: Outline, region: int) -> tuple[int, tuple[Fraction, Fraction]]:
