@@ -362,6 +362,8 @@ def decimal(value: Fraction, up: bool, digits: int = 18) -> str:
     if value == 0:
         return "0"
     exponent = len(str(value.numerator)) - len(str(value.denominator)) - digits
+    if value >= Fraction(10) ** (exponent + digits):
+        exponent += 1
     scaled = value / Fraction(10) ** exponent
     mantissa = -((-scaled.numerator) // scaled.denominator) if up else scaled.numerator // scaled.denominator
     text = str(mantissa)

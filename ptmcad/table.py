@@ -33,7 +33,7 @@ def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
     for exponent in range(top - most, top + 1):
         unit = Fraction(10) ** exponent
         digits = round(middle / unit)
-        if len(str(digits)) <= most and 0 < digits and high - digits * unit <= unit and digits * unit - low <= unit:
+        if len(str(digits)) <= most and digits > 0 and high - digits * unit <= unit and digits * unit - low <= unit:
             return decimal(digits * unit, up=False, digits=most)
     return f"{decimal(low, up=False, digits=2)} to {decimal(high, up=True, digits=2)}"
 
