@@ -357,13 +357,22 @@ def _encode(result: RegionMap) -> dict[str, Any]:
     }
 
 
+def magnitude(value: Fraction) -> int:
+    """The e with 10^e <= value < 10^(e+1), for a positive value."""
+    # 2^10 is just above 10^3; numbers may be too long to be written out
+    e = (value.numerator.bit_length() - value.denominator.bit_length()) * 3 // 10
+    while value >= Fraction(10) ** (e + 1):
+        e += 1
+    while value < Fraction(10) ** e:
+        e -= 1
+    return e
+
+
 def decimal(value: Fraction, up: bool, digits: int = 18) -> str:
     """A decimal text with ``digits`` significant digits that bounds a nonnegative value from the side asked for."""
     if value == 0:
         return "0"
-    exponent = len(str(value.numerator)) - len(str(value.denominator)) - digits
-    if value >= Fraction(10) ** (exponent + digits):
-        exponent += 1
+    exponent = magnitude(value) + 1 - digits
     scaled = value / Fraction(10) ** exponent
     mantissa = -((-scaled.numerator) // scaled.denominator) if up else scaled.numerator // scaled.denominator
     text = str(mantissa)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from fractions import Fraction
 
-from ptmcad.regionmap import Region, RegionMap, decimal
+from ptmcad.regionmap import Region, RegionMap, decimal, magnitude
 from ptmcad.slice import Count
 
 _NAMES = {Count.STABLE: "stable", Count.TOTAL: "in all", Count.INDEX: "(minima, saddles, maxima)"}
@@ -29,7 +29,7 @@ def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
     middle = (low + high) / 2
     if high == 0:
         return "0"
-    top = len(str(middle.numerator)) - len(str(middle.denominator))  # 10^(top-1) < middle < 10^(top+1)
+    top = magnitude(middle)
     for exponent in range(top - most, top + 1):
         unit = Fraction(10) ** exponent
         digits = round(middle / unit)

@@ -254,7 +254,8 @@ def test_many_arrangements_of_lines(coefficients: list[tuple[int, int, int]], ba
 curves_of_degree_2_and_3 = st.lists(
     st.lists(st.integers(-2, 2), min_size=10, max_size=10).map(
         lambda c: sum(
-            (k * X**i * Y**j for k, (i, j) in zip(c, [(i, j) for i in range(4) for j in range(4 - i)], strict=True)), 0 * X
+            (k * X**i * Y**j for k, (i, j) in zip(c, [(i, j) for i in range(4) for j in range(4 - i)], strict=True)),
+            0 * X,
         )
     ),
     min_size=1,

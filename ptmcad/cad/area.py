@@ -87,14 +87,18 @@ def region_areas(
     width = base[1] - base[0]
     strip = width * fmpq(1, 10 ** (digits + 3) * 4 * (len(stacks) + 1))
     bits = 64 + 6 * digits + max((int(q.height_bits()) for c in curves for q in c.in_v), default=0) // 2
+    finer = 20
     while True:
-        effort = _Effort(digits + 2, width, width * fmpq(1, 2 ** (3 * digits // 2)), width / 2 ** (bits // 4))
+        effort = _Effort(digits + 2, width, width * fmpq(1, 2 ** (3 * digits // 2)), width / 2 ** (bits // 2))
         try:
             with ctx.workprec(bits):
                 return _areas(stacks, regions, curves, strip, fibre, tolerance, count, effort, check)
         except _Unreachable as obstacle:
-            # a region is tiny, or the precision is too low for it: both are raised, so this ends
-            bits, strip = bits * 3 // 2, strip / 2**20 if obstacle.strips else strip
+            # a region is tiny, or the precision is too low for it: the effort grows fast, so this ends soon
+            if obstacle.strips:
+                bits, strip, finer = bits + finer, strip / 2**finer, 2 * finer
+            else:
+                bits = 3 * bits // 2
 
 
 class _Unreachable(ArithmeticError):
