@@ -1,4 +1,4 @@
-"""Theorem 5 of the reference: the same mechanism in other units, mirrored, or with its rods exchanged has the same map."""
+"""Theorem 5 of the reference: in other units, mirrored, or with its rods exchanged, a mechanism has the same map."""
 
 from __future__ import annotations
 

@@ -308,7 +308,7 @@ AREAS: dict[str, tuple[list[fmpz_mpoly], Window, str, str, tuple[Fraction, Fract
         [Y**2 - X**3, Y - X], ("0", "2", "0", "2"), "1/2", "2/5", (Fraction(1, 10), Fraction(1, 10))),
     "loop of a node": ([Y**2 - X**2 * (X + 1)], SQUARE, "-1/2", "0", (Fraction(8, 15), Fraction(8, 15))),
     "astroid": (
-        [(X**2 + Y**2 - 4) ** 3 + 108 * X**2 * Y**2], WIDE, "0", "0", (PI[0] * 3 / 2, PI[1] * 3 / 2)),
+        [(X**2 + Y**2 - 4) ** 3 + 108 * X**2 * Y**2], WIDE, "1/3", "1/4", (PI[0] * 3 / 2, PI[1] * 3 / 2)),
     "petal of a rose": (
         [(X**2 + Y**2) ** 3 - 4 * X**2 * Y**2], SQUARE, "1/2", "1/2", (PI[0] / 8, PI[1] / 8)),
     "triangle": ([X + Y - 1], ("0", "2", "0", "2"), "1/4", "1/4", (Fraction(1, 2), Fraction(1, 2))),
