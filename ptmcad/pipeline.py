@@ -43,6 +43,7 @@ from ptmcad.regionmap import (
     Cell,
     Component,
     CriticalValue,
+    Merge,
     Region,
     RegionMap,
     Stack,
@@ -165,10 +166,10 @@ def classify(
     vertical_components = {
         tuple(int(c) for c in line.coeffs()): n for n, line in _vertical_lines(variety.components, base).items()
     }
-    adjacencies = _adjacencies(stacks, crossings, projection, vertical_components)
     clock.stage("adjacency")
 
     keys = [_key(c, slice.count) for c in counts]
+    adjacencies = _adjacencies(stacks, crossings, projection, vertical_components, keys)
     region_of = merge(keys, [Link(a.first, a.second, a.component) for a in adjacencies])
     rows, start = [], 0
     for stack in stacks:
@@ -180,7 +181,7 @@ def classify(
 
     names = slice.axis_names
     samples = [Point(names, to_fraction(x), to_fraction(y)) for x, y in points]
-    separating = {a.component for a in adjacencies if region_of[a.first] != region_of[a.second]}
+    separating = {a.component for a in adjacencies if a.merge is Merge.SEPARATED}
     components = tuple(replace(c, separates=n in separating) for n, c in enumerate(variety.components))
     seconds = dict(clock.seconds)
     seconds["total"] = perf_counter() - clock.started
@@ -298,17 +299,29 @@ def _adjacencies(
     crossings: Sequence[Sequence[Passage]],
     projection: Projection,
     vertical_components: dict[tuple[int, ...], int],
+    keys: Sequence[tuple[int, ...]],
 ) -> tuple[Adjacency, ...]:
-    found, first = [], 0
+    found: list[Adjacency] = []
+
+    def link(
+        first: int, second: int, component: int | None, segment: tuple[Fraction, Fraction, Fraction] | None
+    ) -> None:
+        if component is None:
+            kind = Merge.PROVEN
+        else:
+            kind = Merge.EQUAL_COUNT if keys[first] == keys[second] else Merge.SEPARATED
+        found.append(Adjacency(first, second, component, segment, kind))
+
+    first = 0
     for s, stack in enumerate(stacks):
         for level, wall in enumerate(stack.walls):
-            found.append(Adjacency(first + level, first + level + 1, wall.component, None))
+            link(first + level, first + level + 1, wall.component, None)
         following = first + len(stack.heights)
         if s < len(crossings):
             line = tuple(int(c) for c in projection.abscissae[s].polynomial.coeffs())
             for p in crossings[s]:
                 segment = (to_fraction(p.low), to_fraction(p.high), to_fraction(p.height))
-                found.append(Adjacency(first + p.left, following + p.right, vertical_components.get(line), segment))
+                link(first + p.left, following + p.right, vertical_components.get(line), segment)
         first = following
     return tuple(found)
 

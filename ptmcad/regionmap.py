@@ -111,12 +111,22 @@ class Cell:
     index: MorseIndex | None
 
 
+class Merge(Enum):
+    """What joins or parts two adjacent cells."""
+
+    PROVEN = "proven"
+    EQUAL_COUNT = "equal count"
+    SEPARATED = "separated"
+
+
 @dataclass(frozen=True, slots=True)
 class Adjacency:
     """Two cells that share an open arc.
 
     Attributes
     ----------
+    merge : PROVEN when the arc is an artefact of the decomposition; EQUAL_COUNT when it lies on the variety and the
+        counts on both sides are equal; SEPARATED when they differ.
     component : the variety's component that contains the arc; None when the arc is an artefact of the decomposition.
     segment : for cells of neighbouring stacks, (low, high, height): the open segment that joins them, free of all
         curves but a vertical line.
@@ -126,6 +136,7 @@ class Adjacency:
     second: int
     component: int | None
     segment: tuple[Fraction, Fraction, Fraction] | None
+    merge: Merge
 
 
 @dataclass(frozen=True, slots=True)
@@ -335,6 +346,7 @@ def _encode(result: RegionMap) -> dict[str, Any]:
         "adjacencies": [
             {
                 "cells": [a.first, a.second],
+                "merge": a.merge.value,
                 "component": a.component,
                 "segment": None if a.segment is None else [str(q) for q in a.segment],
             }
@@ -345,11 +357,22 @@ def _encode(result: RegionMap) -> dict[str, Any]:
     }
 
 
+def magnitude(value: Fraction) -> int:
+    """The e with 10^e <= value < 10^(e+1), for a positive value."""
+    # 2^10 is just above 10^3; numbers may be too long to be written out
+    e = (value.numerator.bit_length() - value.denominator.bit_length()) * 3 // 10
+    while value >= Fraction(10) ** (e + 1):
+        e += 1
+    while value < Fraction(10) ** e:
+        e -= 1
+    return e
+
+
 def decimal(value: Fraction, up: bool, digits: int = 18) -> str:
     """A decimal text with ``digits`` significant digits that bounds a nonnegative value from the side asked for."""
     if value == 0:
         return "0"
-    exponent = len(str(value.numerator)) - len(str(value.denominator)) - digits
+    exponent = magnitude(value) + 1 - digits
     scaled = value / Fraction(10) ** exponent
     mantissa = -((-scaled.numerator) // scaled.denominator) if up else scaled.numerator // scaled.denominator
     text = str(mantissa)
@@ -428,6 +451,7 @@ def _decode(data: Mapping[str, Any]) -> RegionMap:
                 a["cells"][1],
                 a["component"],
                 None if a["segment"] is None else _triple(a["segment"]),
+                Merge(a["merge"]),
             )
             for a in data["adjacencies"]
         ),

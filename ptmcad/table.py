@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from fractions import Fraction
 
-from ptmcad.regionmap import Region, RegionMap
+from ptmcad.regionmap import Region, RegionMap, decimal, magnitude
 from ptmcad.slice import Count
 
 _NAMES = {Count.STABLE: "stable", Count.TOTAL: "in all", Count.INDEX: "(minima, saddles, maxima)"}
@@ -21,21 +21,21 @@ def count_text(region: Region, count: Count) -> str:
 
 
 def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
-    """A decimal of which all digits hold: both bounds round to it, or to it give or take one in the last digit."""
+    """The longest decimal, of at most ``most`` digits, that is within one unit of its last digit of both bounds.
+
+    Two decimals, joined by "to", when not even one digit is certain.
+    """
     low, high = bounds
     middle = (low + high) / 2
-    for digits in range(most, 0, -1):
-        text = f"{float(middle):.{digits}g}"
-        if "e" in text or "." not in text:
-            step = Fraction(10) ** (len(str(int(middle))) - digits) if middle >= 1 else Fraction(0)
-            if "e" in text:
-                mantissa, exponent = text.split("e")
-                step = Fraction(10) ** (int(exponent) - (len(mantissa.split(".")[1]) if "." in mantissa else 0))
-        else:
-            step = Fraction(1, 10 ** len(text.split(".")[1]))
-        if high - Fraction(text) <= step and Fraction(text) - low <= step:
-            return text
-    return f"{float(low):.2g} to {float(high):.2g}"
+    if high == 0:
+        return "0"
+    top = magnitude(middle)
+    for exponent in range(top - most, top + 1):
+        unit = Fraction(10) ** exponent
+        digits = round(middle / unit)
+        if len(str(digits)) <= most and digits > 0 and high - digits * unit <= unit and digits * unit - low <= unit:
+            return decimal(digits * unit, up=False, digits=most)
+    return f"{decimal(low, up=False, digits=2)} to {decimal(high, up=True, digits=2)}"
 
 
 def table(result: RegionMap) -> str:

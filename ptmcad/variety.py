@@ -20,7 +20,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
-from ptmcad.algebra.polynomials import Coefficient, Ratio, to_plane
+from ptmcad.algebra.polynomials import Coefficient, Ratio, irreducible_factors, to_plane
 from ptmcad.algebra.quotient import (
     QuotientAlgebra,
     determinant,
@@ -85,11 +85,11 @@ def discriminant_variety(
         found[polynomial] = Component(polynomial, kind, left_out)
 
     for polynomial in (*equations.boundary, *limits):
-        for factor in _factors(polynomial):
+        for factor in irreducible_factors(polynomial):
             adopt(factor, Kind.BOUNDARY)
-    for factor in _factors(jacobian_norm):
+    for factor in irreducible_factors(jacobian_norm):
         adopt(factor, Kind.CRITICAL)
-    suspects = [f for f in _factors(multiplication_denominator(algebra)) if to_plane(f) not in found]
+    suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in found]
     visible = [f for f in suspects if not nowhere_zero(f, *window)]
     # the costly test is made only for factors that may have a point in the window
     poles = [power_trace_denominators(algebra, k) for k in range(0, equations.unknowns, 2)] if visible else []
@@ -117,11 +117,6 @@ def _algebra(equations: SliceSystem) -> QuotientAlgebra:
     if algebra is None:
         raise infinitely_many
     return algebra
-
-
-def _factors(p: Coefficient) -> list[Coefficient]:
-    """The irreducible factors over Q, without multiplicity."""
-    return [factor for factor, _ in p.factor()[1]]
 
 
 def hermite_determinant(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Ratio:

@@ -26,6 +26,7 @@ from ptmcad.regionmap import Cell, Component, Kind, Region, RegionMap, Stack, St
 from ptmcad.render import draw
 from ptmcad.render.axes import scale_of, symbol, unit
 from ptmcad.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of
+from ptmcad.render.labels import place
 from ptmcad.render.outline import View, outline
 from ptmcad.render.regionmap import _figure
 from ptmcad.render.slivers import thin_regions, zooms
@@ -157,8 +158,7 @@ def test_the_raster_agrees_with_locate(name: str, count: str) -> None:
                 assert image[row, column] == located.region
 
 
-@pytest.mark.parametrize("base", [0, 1])
-def test_neighbouring_stacks_meet(base: int) -> None:
+def test_neighbouring_stacks_meet() -> None:
     """Branches that end at a turning point meet there: no gap is left at a stack's end."""
     seen = outline(classified("fig4", "index"))
     ends = [line[k] for _, _, line in seen.walls() for k in (0, -1)]
@@ -168,12 +168,11 @@ def test_neighbouring_stacks_meet(base: int) -> None:
         assert min(np.abs(p - q).max() for j, q in enumerate(inner) if j != k) < 1e-5
 
 
-def test_vertical_lines_are_drawn() -> None:
+def test_vertical_lines_are_drawn(tmp_path: Path) -> None:
     """Without load the boundaries do not depend on k: over rho they are vertical lines."""
-    source = ptmcad.load(ROOT / "configs" / "stiffness.yaml")
-    text = "mechanism: ptm\nparameters: {L1: 1, L2: 3/2}\naxes: {rho: [0, 2], k: [1, 200]}\n"
-    assert source.mechanism == "ptm"
-    result = ptmcad.classify(load_text(text))
+    record = tmp_path / "record.yaml"
+    record.write_text("name: lines\nmechanism: ptm\nparameters: {L1: 1, L2: 3/2}\naxes: {rho: [0, 2], k: [1, 200]}\n")
+    result = ptmcad.classify(ptmcad.load(record))
     assert len(result.regions) == 3
     strong = [line for _, separates, line in outline(result).walls() if separates]
     across = sorted({round(float(x), 6) for line in strong for x in line[:, 0]})
@@ -181,15 +180,6 @@ def test_vertical_lines_are_drawn() -> None:
     for x in across:
         covered = sum(abs(line[-1, 1] - line[0, 1]) for line in strong if abs(line[0, 0] - x) < 1e-5)
         assert covered == pytest.approx(1, abs=1e-6)
-
-
-def load_text(text: str) -> Slice:
-    import tempfile
-
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "record.yaml"
-        path.write_text("name: record\n" + text, encoding="utf-8")
-        return ptmcad.load(path)
 
 
 # ------------------------------------------------------------------------------------------------------ the slivers
@@ -253,11 +243,19 @@ def test_labels_and_texts_do_not_overlap() -> None:
             assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height
 
 
+def test_labels_of_crowded_tips_are_apart() -> None:
+    tips = [(0.5 + 0.01 * k, 0.5) for k in range(8)]
+    marks = place(tips, ["A: (1, 3, 2)"] * len(tips), outline(bands([])), side=331.0)
+    for first, second in combinations(marks, 2):
+        dx, dy = (331 * abs(a - b) for a, b in zip(first.label, second.label, strict=True))
+        assert dx > 60 or dy > 14
+    assert all(0 < c < 1 for m in marks for c in m.label)
+
+
 # ----------------------------------------------------------------------------------------------------- the picture
 
 
-@pytest.mark.parametrize(("name", "count"), MAPS)
-@pytest.mark.parametrize("dpi", [100, 300])
+@pytest.mark.parametrize(("name", "count", "dpi"), [(*m, 100) for m in MAPS] + [("fig4", "index", 300)])
 def test_every_colour_is_in_the_picture(name: str, count: str, dpi: int, tmp_path: Path) -> None:
     result = classified(name, count)
     draw(result, tmp_path / "map.png", dpi=dpi)
@@ -320,7 +318,9 @@ def test_the_same_bytes_in_other_processes_without_pyplot(tmp_path: Path) -> Non
         "draw(RegionMap.from_json(Path('map.json').read_text()), Path(sys.argv[1]))\n"
         "assert 'matplotlib.pyplot' not in sys.modules\n"
     )
-    (tmp_path / "matplotlibrc").write_text("font.family: serif\nlines.linewidth: 7\nsvg.fonttype: none\n")
+    (tmp_path / "matplotlibrc").write_text(
+        "font.family: serif\naxes.grid: True\nxtick.color: red\nsvg.fonttype: none\n"
+    )
     for k in range(2):
         arguments = [sys.executable, "-W", "error", "-c", code, f"{k}.svg"]
         done = subprocess.run(arguments, cwd=tmp_path, capture_output=True, text=True, check=False)
@@ -365,6 +365,10 @@ def test_walls_that_separate_nothing_are_thin(tmp_path: Path) -> None:
     stable, index = svg(classified("fig3", "stable"), tmp_path), svg(classified("fig3", "index"), tmp_path)
     assert re.search(r'id="curve-\d+-thin"', stable)
     assert not re.search(r'id="curve-\d+-thin"', index)
+
+
+def test_dollars_are_no_mathematics(tmp_path: Path) -> None:
+    assert "Oblique" not in svg(bands([], title="$x_1$"), tmp_path), "the font of mathematics"
 
 
 def test_another_format_is_refused(tmp_path: Path) -> None:

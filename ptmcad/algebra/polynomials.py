@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from functools import reduce
 
-from flint import Ordering, fmpq, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from ptmcad.expressions import Expression
 from ptmcad.plane import PlanePolynomial
@@ -55,6 +55,25 @@ def common_factor(polynomials: Iterable[fmpz_mpoly]) -> fmpz_mpoly:
         if common.is_one():
             break
     return common
+
+
+_RATIONAL_PLANE: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("x", "y"), Ordering.degrevlex)
+
+
+def irreducible_factors(p: Coefficient) -> list[Coefficient]:
+    """The irreducible factors over Q that are not constant, primitive and without multiplicity.
+
+    The factorisation goes through Q[x, y], because python-flint 0.9 sorts the factors over Z[x, y] by coefficients as
+    machine integers and raises OverflowError for longer ones.
+    """
+    over_q = _RATIONAL_PLANE.from_dict({(int(i), int(j)): c for (i, j), c in p.terms()})
+    return [from_plane(_primitive(factor)) for factor, _ in over_q.factor()[1]]
+
+
+def _primitive(p: fmpq_mpoly) -> PlanePolynomial:
+    terms = [(int(i), int(j), c) for (i, j), c in p.terms()]
+    scale = math.lcm(*(int(c.q) for _, _, c in terms))
+    return PlanePolynomial.of((i, j, int(c.p) * (scale // int(c.q))) for i, j, c in terms)
 
 
 def from_terms(terms: Iterable[tuple[int, int, Fraction]]) -> tuple[fmpz_mpoly, int]:

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from flint import fmpq, fmpz, fmpz_poly
 
 _SHIFT = fmpz_poly([1, 1])
+_PATIENCE = 50
+"""Levels of bisection after which `isolate` asks whether its polynomial is squarefree."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +86,13 @@ def _descartes_bound(q: fmpz_poly, degree: int) -> int:
 
 
 def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
-    """The roots of a squarefree polynomial in the open interval (low, high), in increasing order."""
+    """The roots of a squarefree polynomial in the open interval (low, high), in increasing order.
+
+    Raises
+    ------
+    ValueError
+        When the polynomial has a multiple root in the interval.
+    """
     if p.degree() < 1:
         return ()
     width = high - low
@@ -98,6 +106,8 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
         bound = _descartes_bound(q, q.degree())
         if bound == 0:
             continue
+        if level % _PATIENCE == _PATIENCE - 1 and p.gcd(p.derivative()).degree() > 0:
+            raise ValueError(f"a polynomial of degree {p.degree()} is not squarefree")
         left, right = low + width * fmpq(number, 2**level), low + width * fmpq(number + 1, 2**level)
         if bound == 1:
             found.append((left, right))

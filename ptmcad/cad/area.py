@@ -10,7 +10,7 @@ panels grows with the logarithm of 1/tolerance.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 
@@ -26,16 +26,28 @@ from ptmcad.cad.stacks import StackData
 
 @dataclass(frozen=True, slots=True)
 class _Effort:
-    """Degree of the polynomial on a panel, width of the base, and the narrowest panel the precision is good for."""
+    """Degree of the polynomial on a panel, and what is worth trying on panels of which width.
+
+    Attributes
+    ----------
+    width : of the base.
+    broad : on panels broader than this horizontals would be too coarse to be worth their time.
+    narrowest : narrower panels would need a higher precision.
+    """
 
     order: int
     width: fmpq
+    broad: fmpq
     narrowest: fmpq
 
 
 @dataclass(frozen=True, slots=True)
 class _Panel:
-    """A part of a wall that separates region ``below`` from region ``above``, with the enclosure of its integral."""
+    """A part of a wall that separates region ``below`` from region ``above``, with the enclosure of its integral.
+
+    ``smooth`` tells whether the branch was enclosed by its Taylor series; ``singular`` is -1 or 1 when that is not
+    even tried because the branch seems to turn at the left or right end, else 0. Neither affects the guarantee.
+    """
 
     curve: Curve
     root: int
@@ -44,11 +56,13 @@ class _Panel:
     below: int
     above: int
     integral: arb
+    smooth: bool
+    singular: int
 
     @property
-    def width(self) -> float:
-        """Twice the enclosure's radius, rounded up: used to choose what to refine, and checked exactly at the end."""
-        return 2 * float(self.integral.rad())
+    def width(self) -> Fraction:
+        """Twice the enclosure's radius."""
+        return 2 * _exact(self.integral.rad())
 
 
 def region_areas(
@@ -73,14 +87,18 @@ def region_areas(
     width = base[1] - base[0]
     strip = width * fmpq(1, 10 ** (digits + 3) * 4 * (len(stacks) + 1))
     bits = 64 + 6 * digits + max((int(q.height_bits()) for c in curves for q in c.in_v), default=0) // 2
+    finer = 20
     while True:
-        effort = _Effort(digits + 2, width, width / 2 ** (bits // 4))
+        effort = _Effort(digits + 2, width, width * fmpq(1, 2 ** (3 * digits // 2)), width / 2 ** (bits // 2))
         try:
             with ctx.workprec(bits):
                 return _areas(stacks, regions, curves, strip, fibre, tolerance, count, effort, check)
         except _Unreachable as obstacle:
-            # a region is tiny, or the precision is too low for it: both are raised, so this ends
-            bits, strip = bits * 3 // 2, strip / 2**20 if obstacle.strips else strip
+            # a region is tiny, or the precision is too low for it: the effort grows fast, so this ends soon
+            if obstacle.strips:
+                bits, strip, finer = bits + finer, strip / 2**finer, 2 * finer
+            else:
+                bits = 3 * bits // 2
 
 
 class _Unreachable(ArithmeticError):
@@ -121,11 +139,15 @@ def _span(stack: StackData, strip: fmpq) -> Interval:
     """The stack's base interval shortened to rational ends, of small height as all arithmetic starts from them."""
     left, right = stack.left.value, stack.right.value
     if stack.left.root is not None:
-        after = refine(stack.left.root, strip / 2).high
-        left = simplest_between(after, min(after + strip / 2, stack.sample))
+        root = refine(stack.left.root, strip / 2)
+        left = root.high
+        if not root.is_rational:
+            left = simplest_between(left, min(left + strip / 2, stack.sample))
     if stack.right.root is not None:
-        before = refine(stack.right.root, strip / 2).low
-        right = simplest_between(max(before - strip / 2, stack.sample), before)
+        root = refine(stack.right.root, strip / 2)
+        right = root.low
+        if not root.is_rational:
+            right = simplest_between(max(right - strip / 2, stack.sample), right)
     return left, right
 
 
@@ -156,17 +178,14 @@ def _refine(
         if any(to_fraction(lost) * 4 > tolerance * bounds[i][1] for i in poor):
             raise _Unreachable(strips=True)
         load = {i: sum(i in (p.below, p.above) for p in panels) for i in poor}
-        target = {i: float(tolerance * max(bounds[i][0], bounds[i][1] / 8)) / (2 * max(load[i], 1)) for i in poor}
+        target = {i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor}
         refined: list[_Panel] = []
         for p in panels:
             if any(p.width > target[i] for i in poor & {p.below, p.above}):
                 check()
                 if p.high - p.low < effort.narrowest:
                     raise _Unreachable(strips=False)
-                margin = (p.high - p.low) * fmpq(7, 16)
-                middle = simplest_between(p.low + margin, p.high - margin)
-                refined.append(_panel(p.curve, p.root, p.low, middle, p.below, p.above, fibre, effort))
-                refined.append(_panel(p.curve, p.root, middle, p.high, p.below, p.above, fibre, effort))
+                refined += _halves(p, fibre, effort)
             else:
                 refined.append(p)
         panels = refined
@@ -190,17 +209,43 @@ def _exact(value: arb) -> Fraction:
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
+def _halves(p: _Panel, fibre: Interval, effort: _Effort) -> tuple[_Panel, _Panel]:
+    """The two parts of a panel; if only one of them is smooth, the other one's far end is taken to be singular."""
+    margin = (p.high - p.low) * fmpq(7, 16)
+    middle = simplest_between(p.low + margin, p.high - margin)
+    left = _panel(p.curve, p.root, p.low, middle, p.below, p.above, fibre, effort, min(p.singular, 0))
+    right = _panel(p.curve, p.root, middle, p.high, p.below, p.above, fibre, effort, max(p.singular, 0))
+    if left.smooth and not right.smooth:
+        right = replace(right, singular=1)
+    elif right.smooth and not left.smooth:
+        left = replace(left, singular=-1)
+    return left, right
+
+
 def _panel(
-    curve: Curve, root: int, low: fmpq, high: fmpq, below: int, above: int, fibre: Interval, effort: _Effort
+    curve: Curve,
+    root: int,
+    low: fmpq,
+    high: fmpq,
+    below: int,
+    above: int,
+    fibre: Interval,
+    effort: _Effort,
+    singular: int = 0,
 ) -> _Panel:
-    """A panel with the better of two enclosures."""
+    """A panel with the first enclosure that works: Taylor series, horizontals, the window's edges."""
     middle = (low + high) / 2
     at_middle = isolate(curve.fibre(middle), *fibre)[root]
-    integral = branch_integral(curve.in_v, at_middle, middle, (high - low) / 2, fibre, effort.order)
+    integral = None
+    if singular == 0:
+        integral = branch_integral(curve.in_v, at_middle, middle, (high - low) / 2, fibre, effort.order)
+    smooth = integral is not None
     if integral is None:
-        bottom, top = _horizontals(curve, low, high, effort.width, at_middle, fibre)
+        bottom, top = fibre
+        if high - low < effort.broad:
+            bottom, top = _horizontals(curve, low, high, effort.width, at_middle, fibre)
         integral = arb(bottom).union(arb(top)) * arb(high - low)
-    return _Panel(curve, root, low, high, below, above, integral)
+    return _Panel(curve, root, low, high, below, above, integral, smooth, singular)
 
 
 def _horizontals(

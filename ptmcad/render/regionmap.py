@@ -178,7 +178,7 @@ def _paint(axes: Any, seen: Outline, prefix: str) -> None:
             continue
         fill = fill_of(region, result.slice.count)
         # one path for all parts: where two of them share an edge, their coverage adds up and no seam is left
-        axes.add_patch(
+        axes.add_artist(
             PathPatch(
                 Curve.make_compound_path(*polygons), transform=axes.transAxes, facecolor=fill.face, edgecolor=INK,
                 hatch=fill.hatch or None, linewidth=0, snap=False, gid=f"{prefix}region-{number}",
@@ -188,13 +188,12 @@ def _paint(axes: Any, seen: Outline, prefix: str) -> None:
     for component, separates, line in seen.walls():
         lines.setdefault((separates, component), []).append(line)
     for (separates, component), parts in sorted(lines.items()):
-        axes.add_collection(
+        axes.add_artist(
             LineCollection(
                 parts, transform=axes.transAxes, colors=INK, linewidths=STRONG if separates else THIN,
                 capstyle="round", joinstyle="round", zorder=3 if separates else 2,
                 gid=f"{prefix}curve-{component}" + ("" if separates else "-thin"),
-            ),
-            autolim=False,
+            )
         )  # fmt: skip
 
 
