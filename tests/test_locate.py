@@ -8,8 +8,8 @@ from fractions import Fraction
 
 import oracle
 import pytest
-
 from conftest import CONFIGS, shipped
+
 from ptmcad import RegionMap, load
 from ptmcad.algebra.polynomials import from_fraction, from_plane, to_fraction
 from ptmcad.algebra.real_roots import isolate, refine
@@ -52,7 +52,8 @@ def test_on_the_variety_and_next_to_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("rho", "length"), [("-1", "1"), ("3", "1"), ("0", "1"), ("2", "1"), ("1", "0"), ("1", "2"), ("0", "0"), ("1", "1e9")]
+    ("rho", "length"),
+    [("-1", "1"), ("3", "1"), ("0", "1"), ("2", "1"), ("1", "0"), ("1", "2"), ("0", "0"), ("1", "1e9")],
 )
 def test_outside_and_on_the_edge(rho: str, length: str) -> None:
     """The window is open: its edge is outside."""

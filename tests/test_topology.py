@@ -18,7 +18,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
-from ptmcad.algebra.real_roots import has_root_between, isolate, squarefree_part, sign_at
+from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
 from ptmcad.cad.adjacency import Passage, passages
 from ptmcad.cad.area import region_areas
 from ptmcad.cad.curves import Curve, curve
