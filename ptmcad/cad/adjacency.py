@@ -42,7 +42,7 @@ from ptmcad.cad.curves import Curve
 from ptmcad.cad.stacks import BaseEnd, StackData, Wall, roots_over
 
 ROUNDS = 4
-"""Bracketings that are tried before the exact separation; each is 2^-8 as wide as the one before."""
+"""Bracketings that are tried before the exact separation; each has twice as many bits as the one before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,25 +62,30 @@ def passages(
     """All adjacent pairs of cells across the abscissa between two neighbouring stacks, one witness for each pair."""
     end = left.right
     assert end.root is not None
-    reach = min(end.value - left.sample, right.sample - end.value)
-    width, resolution = reach, fibre[1] - fibre[0]
+    width = min(end.value - left.sample, right.sample - end.value)
+    resolution, step = fibre[1] - fibre[0], 8
     extra: tuple[fmpq, ...] = ()
+    points: UnivariatePolynomial | None = None  # costly, computed once if the rounds do not suffice
     attempt = 0
     while True:
         check()
-        width, resolution = width / 256, resolution / 64
+        width, resolution = width / 2**step, resolution / 2 ** (step - 2)
         low, high = _bracket(end, width, left.sample, right.sample)
         over_low, over_high = (
             tuple((w, refine(r, resolution)) for w, r in roots_over(curves, u, fibre)) for u in (low, high)
         )
         found = _barriers(curves, low, high, over_low, over_high, fibre, extra)
-        unresolved = _unresolved(curves, end, found, len(over_low), len(over_high), fibre, attempt > ROUNDS)
+        unresolved = _unresolved(curves, end, found, len(over_low), len(over_high), fibre, points)
         if not unresolved:
             unique = {(p.left, p.right): p for p in reversed(found)}
             return tuple(sorted(unique.values(), key=lambda p: (p.left, p.right)))
         attempt += 1
-        if attempt > ROUNDS:
-            separating = (h for slot in unresolved for h in _between_points(curves, end, slot))
+        if attempt < ROUNDS:
+            step = 2 * step
+        else:
+            if points is None:
+                points = _points_polynomial(curves, end)
+            separating = (h for slot in unresolved for h in _between_points(points, slot))
             extra = tuple(sorted({*extra, *separating}))
 
 
@@ -141,9 +146,12 @@ def _unresolved(
     count_left: int,
     count_right: int,
     fibre: Interval,
-    exact: bool,
+    points: UnivariatePolynomial | None,
 ) -> list[_Slot]:
-    """The slots that may contain more than one point into which branches run."""
+    """The slots that may contain more than one point into which branches run.
+
+    ``points`` is the polynomial of `_points_polynomial`, or None while it is not known.
+    """
     if not found:
         return [_Slot(fibre[0], fibre[1], count_left, count_right, fibre[0])]
     slots = [_Slot(a.height, b.height, b.left - a.left, b.right - a.right, None) for a, b in pairwise(found)]
@@ -157,7 +165,7 @@ def _unresolved(
             doubtful, several = branches % 2 == 1, branches > 2
         else:
             doubtful, several = branches > 0 and not _meets(curves, end, slot.edge), branches > 1
-        if doubtful or (several and not (exact and _points(curves, end, slot) <= 1)):
+        if doubtful or (several and (points is None or _count(points, curves, end, slot) > 1)):
             result.append(slot)
     return result
 
@@ -176,8 +184,8 @@ def _meets(curves: Sequence[Curve], end: BaseEnd, edge: fmpq) -> bool:
     return False
 
 
-def _possible_points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> tuple[RealRoot, ...]:
-    """Real numbers in the slot among which are all points of the curves over the critical abscissa."""
+def _points_polynomial(curves: Sequence[Curve], end: BaseEnd) -> UnivariatePolynomial:
+    """A squarefree polynomial in v among whose roots are all points of the curves over the critical abscissa."""
     assert end.root is not None
     q = end.root.polynomial
     if end.root.is_rational:
@@ -187,18 +195,18 @@ def _possible_points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> tupl
     product = UnivariatePolynomial([1])
     for c in curves:
         points = squarefree_part(resultant(c.in_u, constant))
-        product = product * (points // points.gcd(product)) if points else product
-    return disjoint(isolate(product, slot.bottom, slot.top))
+        product = product * (points // points.gcd(product))
+    return product
 
 
-def _points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> int:
+def _count(points: UnivariatePolynomial, curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> int:
     """An upper bound for the number of points of the curves over the critical abscissa in the slot."""
-    points = len(_possible_points(curves, end, slot))
-    return points + (1 if slot.edge is not None and _meets(curves, end, slot.edge) else 0)
+    on_edge = slot.edge is not None and _meets(curves, end, slot.edge)
+    return len(isolate(points, slot.bottom, slot.top)) + int(on_edge)
 
 
-def _between_points(curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> list[fmpq]:
-    """Heights between all points of the curves over the critical abscissa in the slot."""
-    points = inside(_possible_points(curves, end, slot), (slot.bottom, slot.top))
-    levels = [slot.bottom, *(x for r in points for x in (r.low, r.high)), slot.top]
-    return [simplest_between(levels[2 * k], levels[2 * k + 1]) for k in range(len(points) + 1)]
+def _between_points(points: UnivariatePolynomial, slot: _Slot) -> list[fmpq]:
+    """Heights between all possible points in the slot."""
+    roots = inside(disjoint(isolate(points, slot.bottom, slot.top)), (slot.bottom, slot.top))
+    levels = [slot.bottom, *(x for r in roots for x in (r.low, r.high)), slot.top]
+    return [simplest_between(levels[2 * k], levels[2 * k + 1]) for k in range(len(roots) + 1)]
