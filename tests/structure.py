@@ -76,7 +76,8 @@ def check_structure(result: RegionMap) -> None:
 
     # areas
     window = (x.high - x.low) * (y.high - y.low)
-    assert all(0 <= region.area[0] <= region.area[1] <= window for region in result.regions)
+    rounded_up = window * (1 + Fraction(1, 10**17))  # bounds are decimals of 18 digits
+    assert all(0 <= region.area[0] <= region.area[1] <= rounded_up for region in result.regions)
     assert all(region.area[1] > 0 for region in result.regions)
     low, high = (sum(region.area[i] for region in result.regions) for i in (0, 1))
     assert low <= window <= high

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import signal
 from fractions import Fraction
 
 import oracle
@@ -179,6 +180,21 @@ def test_degenerate_points_have_no_count(changed: dict[str, str]) -> None:
     assert counts(count_by_isolation, values) is None
     assert counts(count_by_signature, values) is None
     assert oracle_counts(values) is None
+
+
+@pytest.mark.parametrize("rho", ["81/65", "1/3", "1", "5/4", "13/10", "2"])
+@pytest.mark.parametrize("length", ["3/2", "1", "2/3"])
+def test_flat_equilibria(rho: str, length: str) -> None:
+    """Sines that are exactly zero: a ball around 0 has no integer power in python-flint 0.9, only products."""
+    values = PLAIN | {"rho": Fraction(rho), "L2": Fraction(length)}
+    expected = oracle_counts(values)
+    assert counts(count_by_signature, values) == expected
+    signal.signal(signal.SIGALRM, lambda *_: pytest.fail("the Hessian's sign was never decided"))
+    signal.alarm(10)
+    try:
+        assert counts(count_by_isolation, values) == expected
+    finally:
+        signal.alarm(0)
 
 
 def test_oracle_is_independent() -> None:

@@ -42,7 +42,7 @@ def classified(name: str, count: str) -> RegionMap:
     return ptmcad.classify(ptmcad.load(ROOT / "configs" / f"{name}.yaml"), count=count)
 
 
-def bands(  # noqa: PLR0917
+def bands(
     heights: list[Fraction],
     slope: Fraction = HALF,
     counts: list[int] | None = None,
