@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import signal
-from collections.abc import Iterator
 from fractions import Fraction
-from types import FrameType
 from typing import Any
 
 import oracle
@@ -17,21 +14,6 @@ from ptmcad import RegionMap, classify, load, slice_from_mapping
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
 
 RHO_L2 = {"rho": [0, 2], "L2": [0, 2]}
-SECONDS = 30
-
-
-@pytest.fixture(autouse=True)
-def no_endless_loop() -> Iterator[None]:
-    """A computation that does not end must fail, not hang."""
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        raise TimeoutError(f"not finished within {SECONDS} s")
-
-    previous = signal.signal(signal.SIGALRM, stop)
-    signal.alarm(SECONDS)
-    yield
-    signal.alarm(0)
-    signal.signal(signal.SIGALRM, previous)
 
 
 def region_map(axes: dict[str, Any], count: str = "index", **parameters: Any) -> RegionMap:

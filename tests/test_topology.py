@@ -6,11 +6,10 @@ The number of pieces into which the curves cut the window is known by hand, or f
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from types import FrameType
 
 import pytest
 from flint import fmpq, fmpz_mpoly, fmpz_poly
@@ -28,21 +27,6 @@ from ptmcad.regions import Link, merge
 
 X, Y = PLANE.gens()
 Window = tuple[str, str, str, str]
-SECONDS = 20
-
-
-@pytest.fixture(autouse=True)
-def no_endless_loop() -> Iterator[None]:
-    """An adjacency that is never resolved must fail, not hang."""
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        raise TimeoutError(f"not finished within {SECONDS} s")
-
-    previous = signal.signal(signal.SIGALRM, stop)
-    signal.alarm(SECONDS)
-    yield
-    signal.alarm(0)
-    signal.signal(signal.SIGALRM, previous)
 
 
 @dataclass(frozen=True)
