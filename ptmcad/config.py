@@ -377,7 +377,7 @@ def _slice(record: _Record) -> Slice:
     for index, name in enumerate(record.axes):
         if not any(expression.uses(index) for expression in effective.values()):
             hint = did_you_mean(name, tuple(PARAMETERS)) if name not in PARAMETERS else ""
-            remedy = f"no parameter depends on it{hint}; use it in an expression, such as F3: {name}"
+            remedy = f"no parameter depends on it{hint or ';'} use it in an expression, such as F3: {name}"
             if name in PARAMETERS:
                 remedy = "k1, k2 and k3 are all given and none depends on it; use it in one of them"
             raise record.axes[name].place.error(f"the axis {name} is not used: {remedy}")

@@ -62,6 +62,30 @@ class Slice:
     def axis_names(self) -> tuple[str, str]:
         return (self.axes[0].name, self.axes[1].name)
 
+    @property
+    def heading(self) -> str:
+        """The title; without one, what is fixed and how parameters depend on the axes, such as "L1 = 1, k = 100"."""
+        return self.title or ", ".join(self._fixed()) or self.name
+
+    def _fixed(self) -> Iterator[str]:
+        values = {name: expression.to_text(self.axis_names) for name, expression in self.parameters.items()}
+        springs = {values[name] for name in ("k1", "k2", "k3") if name in values}
+        if len(springs) == 1:
+            values = {n: v for n, v in values.items() if n not in ("k1", "k2", "k3")} | {"k": springs.pop()}
+        else:
+            values.pop("k", None)
+        loads = [name for name in values if name.startswith("F")]
+        for name, value in values.items():
+            if value not in (name, "0"):
+                shown = value if len(value) <= LONGEST else self.text.get(name, value)
+                yield f"{name} = {shown if len(shown) <= LONGEST else shown[: LONGEST - 1] + '…'}"
+        if loads and all(values[name] == "0" for name in loads):
+            yield "no load"
+
+
+LONGEST = 24
+"""Longer values are cut in a heading."""
+
 
 class Point(tuple[Fraction, Fraction]):
     """A point of the window: a pair of exact rationals, indexed by position or by the axis's name.

@@ -19,6 +19,7 @@ from typing import NoReturn
 import click
 
 from ptmcad.errors import LimitReached, PtmcadError
+from ptmcad.version import __version__
 
 COMMANDS = {
     "classify": "ptmcad.cli.classify",
@@ -57,13 +58,7 @@ def group() -> None:
 
 def _show_version(context: click.Context, wanted: bool) -> None:
     if wanted and not context.resilient_parsing:
-        from importlib.metadata import PackageNotFoundError, version
-
-        try:
-            number = version("ptmcad")
-        except PackageNotFoundError:
-            number = "(run from its sources, not installed)"
-        click.echo(f"ptmcad {number}")
+        click.echo(f"ptmcad {__version__}")
         context.exit()
 
 

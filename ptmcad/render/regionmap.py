@@ -141,7 +141,7 @@ def _places(number: int, below: float, tall: float) -> list[tuple[int, float]]:
 
 
 def _title(result: RegionMap) -> list[str]:
-    text = "".join(c if c.isprintable() else " " for c in result.slice.title or result.slice.name)
+    text = "".join(c if c.isprintable() else " " for c in result.slice.heading)
     return textwrap.wrap(text, TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …") or [""]
 
 
