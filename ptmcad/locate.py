@@ -32,6 +32,8 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     inside = all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, point, strict=True))
     if not inside:
         return Location(Status.OUTSIDE)
+    if not result.cells:
+        return Location(Status.UNDECIDED)
     used = [(n, c) for n, c in enumerate(result.components) if not c.left_out]
     if any(c.polynomial(*point) == 0 for _, c in used):
         return Location(Status.ON_VARIETY)
@@ -46,7 +48,9 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     below = sum(_roots_below(c.fibre(u), low, v) for c in curves)
     number = result.stacks[stack].cells[below]
     cell = result.cells[number]
-    return Location(result.status, cell.region, number, cell.total, cell.stable, cell.index)
+    # in a map that was stopped before its areas were known, the counts are exact all the same
+    status = Status.EXACT if result.status is Status.PARTIAL else result.status
+    return Location(status, cell.region, number, cell.total, cell.stable, cell.index)
 
 
 def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction]:

@@ -6,12 +6,11 @@ Guarantee: the map is exact (`Status.EXACT`): no step decides anything by roundi
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from time import perf_counter
-from typing import Any
 
 import flint
 from flint import fmpq
@@ -25,34 +24,20 @@ from ptmcad.algebra.polynomials import (
     from_expression,
     from_fraction,
     from_plane,
-    to_fraction,
 )
 from ptmcad.algebra.real_roots import simplest_between
-from ptmcad.cad.adjacency import Passage, passages
+from ptmcad.assembly import assemble, with_areas
+from ptmcad.cad.adjacency import passages
 from ptmcad.cad.area import region_areas
 from ptmcad.cad.curves import Curve, curve
-from ptmcad.cad.projection import Projection, predicted_cost, project
-from ptmcad.cad.stacks import StackData, lift
+from ptmcad.cad.projection import predicted_cost, project
+from ptmcad.cad.stacks import lift
 from ptmcad.counting import Counts, DegeneratePoint, count_by_isolation, solutions_at
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
-from ptmcad.expressions import rational
 from ptmcad.models import ParametricSystem, system_of
 from ptmcad.plan import plan_of
-from ptmcad.regionmap import (
-    Adjacency,
-    Cell,
-    Component,
-    CriticalValue,
-    Merge,
-    Region,
-    RegionMap,
-    Stack,
-    Status,
-    Wall,
-    decimal,
-)
-from ptmcad.regions import Link, merge
-from ptmcad.slice import Count, Point, Slice
+from ptmcad.regionmap import Component, RegionMap, Status
+from ptmcad.slice import Count, Slice
 from ptmcad.variety import discriminant_variety
 from ptmcad.version import __version__
 
@@ -73,7 +58,7 @@ class _Clock:
 
     def check(self) -> None:
         if self.deadline is not None and perf_counter() > self.deadline:
-            raise LimitReached("the time limit was reached before the region map was complete; nothing was decided")
+            raise LimitReached("the time limit was reached before the region map was complete")
 
     def report(self, stage: str, done: int, total: int) -> None:
         self.check()
@@ -118,7 +103,7 @@ def classify(
     HypothesisError
         When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
     LimitReached
-        After ``timeout`` seconds.
+        After ``timeout`` seconds, with what there is of the map as ``partial``.
     """
     if engine not in ("auto", "exact"):
         raise ConfigError(f"the engine {engine!r} is not available: choose auto or exact", key="engine")
@@ -132,6 +117,18 @@ def classify(
     now = perf_counter()
     clock = _Clock(progress, None if timeout is None else now + timeout, now, now, {})
 
+    best: RegionMap | None = None
+    try:
+        for reached in _stages(slice, relative, clock, keep):
+            best = reached
+    except LimitReached as stop:
+        raise LimitReached(str(stop), partial=best) from stop
+    assert best is not None
+    return best
+
+
+def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str]) -> Iterator[RegionMap]:
+    """The region map after the variety, after the counts, and complete; the first two are marked as partial."""
     system = system_of(slice.mechanism)
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     window = tuple((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
@@ -141,9 +138,30 @@ def classify(
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
         at = (simplest_between(*window[0]), simplest_between(*window[1]))
         raise type(error)(f"{error}; {_witness(slice, system, parameters, at)}") from error
+    base, curves, verticals, costs = _choose_base(variety.components, keep)
+    started = RegionMap(
+        slice=slice,
+        status=Status.PARTIAL,
+        base=base,
+        complex_solutions=variety.complex_solutions,
+        components=variety.components,
+        critical_values=(),
+        stacks=(),
+        cells=(),
+        adjacencies=(),
+        regions=(),
+        plan=plan_of(slice, variety.components, slice.axis_names[base], costs, keep),
+        undetermined=Fraction(1),
+        versions={
+            "ptmcad": __version__,
+            "python": ".".join(map(str, sys.version_info[:2])),
+            "python-flint": flint.__version__,
+            "flint": flint.__FLINT_VERSION__,
+        },
+    )
+    yield started
     clock.stage("variety")
 
-    base, curves, verticals, costs = _choose_base(variety.components, keep)
     clock.report("projection", 0, 1)
     projection = project(curves, verticals, window[base], window[1 - base], clock.check)
     clock.stage("projection")
@@ -163,59 +181,19 @@ def classify(
     for k, (left, right) in enumerate(pairwise(stacks)):
         clock.report("adjacency", k, len(stacks) - 1)
         crossings.append(passages(curves, left, right, window[1 - base], clock.check))
-    vertical_components = {
-        tuple(int(c) for c in line.coeffs()): n for n, line in _vertical_lines(variety.components, base).items()
-    }
+    lines = {tuple(int(c) for c in p.coeffs()): n for n, p in _vertical_lines(variety.components, base).items()}
+    counted = assemble(started, projection, stacks, points, counts, crossings, lines)
+    yield counted
     clock.stage("adjacency")
 
-    keys = [_key(c, slice.count) for c in counts]
-    adjacencies = _adjacencies(stacks, crossings, projection, vertical_components, keys)
-    region_of = merge(keys, [Link(a.first, a.second, a.component) for a in adjacencies])
-    rows, start = [], 0
-    for stack in stacks:
-        rows.append(region_of[start : start + len(stack.heights)])
-        start += len(stack.heights)
     clock.report("areas", 0, 1)
+    rows = [tuple(counted.cells[n].region for n in stack.cells) for stack in counted.stacks]
     areas = region_areas(stacks, rows, curves, window[base], window[1 - base], relative, clock.check)
     clock.stage("areas")
-
-    names = slice.axis_names
-    samples = [Point(names, to_fraction(x), to_fraction(y)) for x, y in points]
-    separating = {a.component for a in adjacencies if a.merge is Merge.SEPARATED}
-    components = tuple(replace(c, separates=n in separating) for n, c in enumerate(variety.components))
-    seconds = dict(clock.seconds)
-    seconds["total"] = perf_counter() - clock.started
-    return RegionMap(
-        slice=slice,
+    yield replace(
+        with_areas(counted, areas),
         status=Status.EXACT,
-        base=base,
-        complex_solutions=variety.complex_solutions,
-        components=components,
-        critical_values=tuple(
-            CriticalValue(
-                tuple(int(c) for c in r.polynomial.coeffs()),
-                to_fraction(r.low),
-                to_fraction(r.high),
-                projection.origin(r.polynomial),
-            )
-            for r in projection.abscissae
-        ),
-        stacks=_stacks(stacks),
-        cells=tuple(
-            Cell(s, level, samples[n], region_of[n], counts[n].total, counts[n].stable, counts[n].index)
-            for n, (s, level) in enumerate((s, i) for s, stack in enumerate(stacks) for i in range(len(stack.heights)))
-        ),
-        adjacencies=adjacencies,
-        regions=_regions(region_of, counts, samples, areas),
-        plan=plan_of(slice, components, names[base], costs, keep),
-        undetermined=Fraction(0),
-        versions={
-            "ptmcad": __version__,
-            "python": ".".join(map(str, sys.version_info[:2])),
-            "python-flint": flint.__version__,
-            "flint": flint.__FLINT_VERSION__,
-        },
-        timings=seconds,
+        timings={**clock.seconds, "total": perf_counter() - clock.started},
     )
 
 
@@ -286,83 +264,3 @@ def _witness(slice: Slice, system: ParametricSystem, parameters: dict[str, Ratio
     if different is None:
         return f"for example at {where} there are infinitely many solutions"
     return f"for example at {where} only {different} of {multiplicity} solutions are different"
-
-
-def _key(counts: Counts, count: Count) -> tuple[int, ...]:
-    if count is Count.STABLE:
-        return (counts.stable,)
-    return (counts.total,) if count is Count.TOTAL else counts.index
-
-
-def _adjacencies(
-    stacks: Sequence[StackData],
-    crossings: Sequence[Sequence[Passage]],
-    projection: Projection,
-    vertical_components: dict[tuple[int, ...], int],
-    keys: Sequence[tuple[int, ...]],
-) -> tuple[Adjacency, ...]:
-    found: list[Adjacency] = []
-
-    def link(
-        first: int, second: int, component: int | None, segment: tuple[Fraction, Fraction, Fraction] | None
-    ) -> None:
-        if component is None:
-            kind = Merge.PROVEN
-        else:
-            kind = Merge.EQUAL_COUNT if keys[first] == keys[second] else Merge.SEPARATED
-        found.append(Adjacency(first, second, component, segment, kind))
-
-    first = 0
-    for s, stack in enumerate(stacks):
-        for level, wall in enumerate(stack.walls):
-            link(first + level, first + level + 1, wall.component, None)
-        following = first + len(stack.heights)
-        if s < len(crossings):
-            line = tuple(int(c) for c in projection.abscissae[s].polynomial.coeffs())
-            for p in crossings[s]:
-                segment = (to_fraction(p.low), to_fraction(p.high), to_fraction(p.height))
-                link(first + p.left, following + p.right, vertical_components.get(line), segment)
-        first = following
-    return tuple(found)
-
-
-def _stacks(stacks: Sequence[StackData]) -> tuple[Stack, ...]:
-    result, first = [], 0
-    for stack in stacks:
-        cells = tuple(range(first, first + len(stack.heights)))
-        walls = tuple(Wall(w.component, w.root) for w in stack.walls)
-        result.append(Stack(stack.left.critical, stack.right.critical, to_fraction(stack.sample), walls, cells))
-        first += len(cells)
-    return tuple(result)
-
-
-def _regions(
-    region_of: Sequence[int],
-    counts: Sequence[Counts],
-    samples: Sequence[Point],
-    areas: Sequence[tuple[Fraction, Fraction]],
-) -> tuple[Region, ...]:
-    regions = []
-    for number, area in enumerate(areas):
-        cells = tuple(n for n, r in enumerate(region_of) if r == number)
-        members = [counts[n] for n in cells]
-
-        def common(values: list[Any]) -> Any:
-            return values[0] if all(v == values[0] for v in values) else None
-
-        regions.append(
-            Region(
-                stable=common([c.stable for c in members]),
-                total=common([c.total for c in members]),
-                index=common([c.index for c in members]),
-                area=(rational(decimal(area[0], up=False)), rational(decimal(area[1], up=True))),
-                cells=cells,
-                sample=min((samples[n] for n in cells), key=_height),
-            )
-        )
-    return tuple(regions)
-
-
-def _height(point: Point) -> tuple[int, ...]:
-    x, y = point[0], point[1]
-    return (max(abs(x.numerator), x.denominator, abs(y.numerator), y.denominator), x.denominator, y.denominator)

@@ -24,10 +24,11 @@ MorseIndex = tuple[int, int, int]
 
 
 class Status(Enum):
-    """How far a result, or a point's answer, is proved."""
+    """How far a result, or a point's answer, is proved; a PARTIAL result was stopped by a limit."""
 
     EXACT = "exact"
     CERTIFIED = "certified"
+    PARTIAL = "partial"
     UNDECIDED = "undecided"
     ON_VARIETY = "on the variety"
     OUTSIDE = "outside the window"

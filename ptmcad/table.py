@@ -52,16 +52,17 @@ def table(result: RegionMap) -> str:
         f"{n} {kind} of degree {degrees[0]} in {names[0]}, {degrees[1]} in {names[1]} ({terms} terms)"
         for (kind, degrees, terms), n in alike.items()
     )
-    error = max(((r.area[1] - r.area[0]) / r.area[0] for r in result.regions if r.area[0]), default=Fraction(0))
+    widths = [(r.area[1] - r.area[0]) / r.area[0] for r in result.regions if r.area[0]]
+    error = f"{float(max(widths)):.1e}" if widths and len(widths) == len(result.regions) else "unknown"
     seconds = result.timings.get("total")
     time = "not recorded" if seconds is None else f"{seconds:.2f} s"
     undetermined = "0" if result.undetermined == 0 else f"{float(result.undetermined):.2g}"
     return "\n".join(
         [
             f"regions   {len(result.regions)} of {len(result.cells)} cells, {result.status.value}",
-            f"counts    {counts}",
-            f"areas     {areas}",
+            f"counts    {counts or 'none yet'}",
+            f"areas     {areas or 'none yet'}",
             f"curves    {curves or 'none separates counts'}",
-            f"time      {time}; undetermined {undetermined}; area bounds within {float(error):.1e}",
+            f"time      {time}; undetermined {undetermined}; area bounds within {error}",
         ]
     )

@@ -173,3 +173,46 @@ def test_a_time_limit_stops() -> None:
 def test_wrong_options(options: dict[str, Any]) -> None:
     with pytest.raises(ConfigError):
         classify(load(CONFIGS / "fig2.yaml"), **options)
+
+
+@pytest.mark.parametrize("stage", ["discriminant_variety", "project", "region_areas"])
+def test_a_limit_leaves_the_best_map_so_far(stage: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever was reached is a partial map that can be written, read and asked, and gives no undecided count."""
+    record = load(CONFIGS / "stiffness.yaml")
+    expected = classify(record, area_tolerance="1/10").locate(k=100, rho="7/10")
+
+    def stop(*_arguments: object) -> None:
+        raise LimitReached("the limit of this test")
+
+    monkeypatch.setattr(f"ptmcad.pipeline.{stage}", stop)
+    with pytest.raises(LimitReached) as stopped:
+        classify(record)
+    partial = stopped.value.partial
+    if stage == "discriminant_variety":
+        assert partial is None
+        return
+    assert isinstance(partial, RegionMap)
+    assert partial.status.value == "partial"
+    assert RegionMap.from_json(partial.to_json()) == partial
+    assert len(partial.table().splitlines()) == 5
+    place = partial.locate(k=100, rho="7/10")
+    if stage == "project":
+        assert (place.status.value, place.stable) == ("undecided", None)
+    else:
+        assert place == expected
+        assert all(r.area == (0, 400) for r in partial.regions)
+
+
+def test_a_time_limit_of_no_time_stops_at_once() -> None:
+    with pytest.raises(LimitReached):
+        classify(load(CONFIGS / "fig4.yaml"), timeout=1e-9)
+
+
+def test_plain_decimals_with_long_coefficients() -> None:
+    """F3 = -0.001 and a 40-digit rod: factors with coefficients longer than a machine word."""
+    small = region_map(RHO_L2, F3="-0.001", F4="-10")
+    assert {r.stable for r in small.regions} == {1, 2}
+    record = {"axes": {"L2": ["0", "4e-30"], "rho": ["0", "4e-30"]}, "parameters": {"L1": "1e-30"}}
+    scaled = classify(slice_from_mapping(record))
+    assert len(scaled.regions) == 4
+    assert min(r.area[0] for r in scaled.regions) <= Fraction("0.25e-60") <= min(r.area[1] for r in scaled.regions)
