@@ -124,6 +124,8 @@ def morse_index(point: PointSystem, representation: UnivariateRepresentation, ro
             unknowns = coordinates_at(representation, at)
             h11, h12, h22 = (_value(point.hessian[i][j], unknowns) for i, j in ((0, 0), (0, 1), (1, 1)))
             determinant = h11 * h22 - h12 * h12
+            if not determinant.is_finite():
+                raise ArithmeticError(f"the Hessian's determinant is {determinant} at {bits} bits")
             if determinant < 0:
                 return 1
             if determinant > 0:
@@ -139,8 +141,8 @@ def _value(p: RationalPolynomial, unknowns: list[arb]) -> arb:
     for monomial, c in p.items():
         term = arb(c)
         for value, e in zip(unknowns, monomial, strict=True):
-            if e:
-                term = term * value**e
+            for _ in range(e):  # python-flint's ball ** int is not a number when the ball's middle is zero
+                term = term * value
         total = total + term
     return total
 

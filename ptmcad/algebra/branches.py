@@ -19,6 +19,13 @@ from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.algebra.window import Interval
 
+ENOUGH = 24
+"""Bits of the curve's derivative at the panel's middle that have to be right for the rest to make sense."""
+
+
+class PrecisionTooLow(ArithmeticError):
+    """The context's precision does not suffice for this curve at this place."""
+
 
 def branch_integral(
     in_v: Sequence[fmpz_poly], at_middle: RealRoot, middle: fmpq, radius: fmpq, fibre: Interval, order: int
@@ -35,12 +42,17 @@ def branch_integral(
     Returns
     -------
     The enclosure at the context's precision, or None when the tube could not be proved.
+
+    Raises
+    ------
+    PrecisionTooLow
+        When cancellation leaves too few bits.
     """
     root = refine(at_middle, (fibre[1] - fibre[0]) / 2 ** (ctx.prec // 3))
     origin = root.low
     local = _local_coefficients(in_v, middle, radius, origin)
-    if not abs(local[1][0]) > 0:
-        return None
+    if local[1][0].rel_accuracy_bits() < ENOUGH:
+        raise PrecisionTooLow  # the root is simple, so the derivative is not zero
     series = _series(local, order)
     last, first = abs(series[order]).upper(), max((abs(c).upper() for c in series.coeffs()[1:]), default=arb(0))
     if not 8 * last < first and not last < arb((fibre[1] - fibre[0]) / 2**20):

@@ -16,7 +16,7 @@ from itertools import pairwise
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.branches import branch_integral
+from ptmcad.algebra.branches import PrecisionTooLow, branch_integral
 from ptmcad.algebra.polynomials import to_fraction
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine, simplest_between
 from ptmcad.algebra.window import Interval
@@ -93,6 +93,8 @@ def region_areas(
         try:
             with ctx.workprec(bits):
                 return _areas(stacks, regions, curves, strip, fibre, tolerance, count, effort, check)
+        except PrecisionTooLow:
+            bits = 3 * bits // 2
         except _Unreachable as obstacle:
             # a region is tiny, or the precision is too low for it: the effort grows fast, so this ends soon
             if obstacle.strips:
