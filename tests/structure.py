@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from ptmcad import Count, RegionMap
 from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import Cell, Status
+from ptmcad.regionmap import Cell, Merge, Status
 
 
 def key(cell: Cell, count: Count) -> object:
@@ -50,6 +50,7 @@ def check_structure(result: RegionMap) -> None:
         first, second = result.cells[a.first], result.cells[a.second]
         equal = key(first, result.slice.count) == key(second, result.slice.count)
         assert equal == (first.region == second.region), "a separating wall, or a merge that was missed"
+        assert a.merge is (Merge.PROVEN if a.component is None else Merge.EQUAL_COUNT if equal else Merge.SEPARATED)
         if a.component is None:
             assert first.index == second.index
         else:

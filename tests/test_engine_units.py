@@ -318,6 +318,7 @@ BOTH = (fmpq(-1), fmpq(1))
      (X - 2, UNIT, UNIT, True), (2 * X - 1, UNIT, UNIT, False), (X + Y - 1, UNIT, UNIT, False),
      (X - Y, UNIT, UNIT, False),
      (X**2 + Y**2 - 1, BOTH, BOTH, False), (X**2 + Y**2 - 9, BOTH, BOTH, True), (X**2 + Y**2, BOTH, BOTH, False),
+     (-(X**2) - Y**2, BOTH, BOTH, False),
      (1000 * (X**2 + Y**2) - 1, BOTH, BOTH, False), (X + Y - 2, UNIT, UNIT, True),
      ((X - 1) ** 2 + Y**2, UNIT, UNIT, True),
      (X**2 - 2, UNIT, UNIT, True), (X**2 - 2, (fmpq(1), fmpq(2)), UNIT, False), (Y * (X - 5), BOTH, UNIT, True)],

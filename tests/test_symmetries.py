@@ -163,7 +163,7 @@ def test_symmetry(symmetry: Callable[[Record, Fraction], Image], record: Record,
 @pytest.mark.slow
 @pytest.mark.parametrize("symmetry", SYMMETRIES, ids=lambda s: s.__name__)
 @given(record=records(), factor=factors)
-@settings(max_examples=80, phases=[Phase.generate])
+@settings(max_examples=25, phases=[Phase.generate])
 def test_symmetry_of_many_slices(
     symmetry: Callable[[Record, Fraction], Image], record: Record, factor: Fraction
 ) -> None:

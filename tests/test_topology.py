@@ -230,7 +230,7 @@ def test_arrangements_of_lines(coefficients: list[tuple[int, int, int]], base: i
 
 @pytest.mark.slow
 @given(arrangements, st.sampled_from([0, 1]))
-@settings(max_examples=1500)
+@settings(max_examples=600)
 def test_many_arrangements_of_lines(coefficients: list[tuple[int, int, int]], base: int) -> None:
     signal.alarm(0)
     check_lines(coefficients, base)
