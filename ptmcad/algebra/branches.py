@@ -112,8 +112,16 @@ def _series(local: Sequence[arb_poly], order: int) -> arb_poly:
 
 
 def _inverse(p: arb_poly, order: int) -> arb_poly:
-    """The first coefficients of 1/p, each an exact midpoint."""
+    """The first coefficients of 1/p, each an exact midpoint.
+
+    Raises
+    ------
+    PrecisionTooLow
+        When the constant coefficient is not known to differ from zero.
+    """
     length = order + 1
+    if not abs(p[0]) > 0:
+        raise PrecisionTooLow
     previous = ctx.cap
     ctx.cap = length
     try:
