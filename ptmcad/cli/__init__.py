@@ -22,6 +22,8 @@ from ptmcad.errors import LimitReached, PtmcadError
 
 COMMANDS = {
     "classify": "ptmcad.cli.classify",
+    "locate": "ptmcad.cli.locate",
+    "verify": "ptmcad.cli.verify",
 }
 
 
