@@ -100,8 +100,8 @@ def command(*, result: Path, at: str | None, table: Path | None) -> None:
     \b
     Examples:
         ptmcad classify --slice L2,rho --format json
-        ptmcad locate L2-rho.json --at rho=7/10,L2=3/2
-        ptmcad locate L2-rho.json --csv points.csv
+        ptmcad locate slice-L2-rho.json --at rho=7/10,L2=3/2
+        ptmcad locate slice-L2-rho.json --csv points.csv
     """
     if (at is None) == (table is None):
         raise ConfigError("give a point, as in --at rho=7/10,L2=3/2, or --csv FILE")

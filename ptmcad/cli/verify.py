@@ -16,13 +16,13 @@ from ptmcad.cli.stored import read_result
 def command(*, result: Path, seed: int) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
 
-    Prints what was checked, and how. The exit status is 0 when every check passed, 1 when one failed (the first violated
-    claim is printed with a witness), 2 when the file can not be read.
+    Prints what was checked, and how. The exit status is 0 when every check passed, 1 when one failed (the first
+    violated claim is printed with a witness), 2 when the file can not be read.
 
     \b
     Example:
         ptmcad classify --slice L2,rho --format json
-        ptmcad verify L2-rho.json
+        ptmcad verify slice-L2-rho.json
     """
     stored = read_result(result)
     from ptmcad.verification import verify

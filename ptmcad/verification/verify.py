@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from ptmcad.regionmap import RegionMap
+from ptmcad.verification.areas import check_areas
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
@@ -53,6 +54,7 @@ def verify(result: RegionMap, seed: int = 20231) -> VerifyReport:
         ("no adjacency missing", "parity, resultants, Sturm", check_no_adjacency_missing),
         ("merges", "comparison of counts", check_merges),
         ("regions", "breadth-first search", check_regions),
+        ("areas", "midpoint rule with slope balls", check_areas),
     )
     checks: list[Check] = []
     failed = False
