@@ -1,7 +1,7 @@
 """Checks of the areas: another enclosure of each region's area, which every stored bound must be compatible with.
 
 Each wall between two regions is integrated by the midpoint rule. On a panel of half width h a box that the branch can
-not leave is proved (the curve's polynomial has no zero on its lower and upper side, and its v-derivative none inside); with
+not leave is proved (the curve's polynomial has no zero on its lower and upper side, its v-derivative none inside); with
 the slopes in the box within s +- r the rule's error is at most r h^2. Panels are halved until that is small; the
 narrowest ones, near turning points, count as error, and so do narrow strips around the critical values.
 
