@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ptmcad.pipeline import classify
     from ptmcad.regionmap import RegionMap
     from ptmcad.slice import Count, Point, Slice
+    from ptmcad.verification import VerifyReport, verify
 
 _HOMES = {
     "load": "config",
@@ -27,6 +28,8 @@ _HOMES = {
     "Count": "slice",
     "Point": "slice",
     "Slice": "slice",
+    "VerifyReport": "verification",
+    "verify": "verification",
 }
 
 __all__ = [
@@ -34,11 +37,13 @@ __all__ = [
     "Point",
     "RegionMap",
     "Slice",
+    "VerifyReport",
     "__version__",
     "classify",
     "load",
     "slice_from_mapping",
     "slice_from_options",
+    "verify",
 ]
 
 

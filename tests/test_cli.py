@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
@@ -269,7 +270,18 @@ def help_examples() -> list[str]:
     return examples
 
 
-@pytest.mark.parametrize("example", help_examples())
+@pytest.mark.parametrize("example", [e for e in help_examples() if not e.startswith("classify")])
+def test_help_examples_about_a_result_run(
+    shipped: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, example: str
+) -> None:
+    """After the example's first line, which has written the result."""
+    monkeypatch.chdir(tmp_path)
+    Path("slice-L2-rho.json").write_text(shipped("fig2").to_json(), encoding="utf-8")
+    Path("points.csv").write_text("rho,L2\n7/10,3/2\n", encoding="utf-8")
+    assert run(example.split()) == 0
+
+
+@pytest.mark.parametrize("example", [e for e in help_examples() if e.startswith("classify")])
 def test_help_examples_run(
     engine: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, example: str
 ) -> None:

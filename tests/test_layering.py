@@ -26,7 +26,7 @@ EXACT = (
     "regionmap",
     "pipeline",
     "locate",
-    "verify",
+    "verification",
 )
 FLINT_POLYNOMIALS = ("poly", "mpoly", "mpoly_ctx", "mpoly_vec", "series")
 
@@ -81,7 +81,7 @@ def test_only_render_imports_matplotlib(path: Path) -> None:
 
 @pytest.mark.parametrize("path", MODULES, ids=relative)
 def test_flint_stays_in_the_exact_engine(path: Path) -> None:
-    """FLINT's numbers and balls are used where counts are made; its polynomials in algebra/ only."""
+    """FLINT's numbers and balls are used where counts are made; its polynomials in algebra/ and verification/."""
     names = {name for module, name in imports(path) if module.partition(".")[0] == "flint"}
     used = {
         node.attr
@@ -90,7 +90,7 @@ def test_flint_stays_in_the_exact_engine(path: Path) -> None:
     }
     if names or used:
         assert part(path) in EXACT
-    if part(path) != "algebra":
+    if part(path) not in {"algebra", "verification"}:
         assert not [name for name in names | used if name.endswith(FLINT_POLYNOMIALS)]
 
 
@@ -99,6 +99,28 @@ def test_the_engines_are_independent(path: Path) -> None:
     """A check of one engine by the other proves something only while they share no mathematics."""
     if part(path) == "interval":
         assert not imported_parts(path) & {"algebra", "cad", "variety", "counting", "area"}
+
+
+@pytest.mark.parametrize("path", MODULES, ids=relative)
+def test_verification_shares_no_code_with_what_it_verifies(path: Path) -> None:
+    """Only the result's own data classes, and FLINT, are common to both; and the engine never asks its checker."""
+    if part(path) == "verification":
+        assert imported_parts(path) <= {"verification", "regionmap", "plane", "expressions", "slice", "errors"}
+    elif part(path) not in {"cli", "__init__"}:
+        assert "verification" not in imported_parts(path)
+
+
+def test_verification_loads_nothing_of_the_engine(tmp_path: Path) -> None:
+    """Not even through another module."""
+    code = (
+        "import sys, ptmcad\n"
+        "ptmcad.verify\n"
+        "engine = ('algebra', 'cad', 'models', 'variety', 'counting', 'regions', 'pipeline', 'locate')\n"
+        "loaded = [name for name in sys.modules if name.startswith(tuple('ptmcad.' + e for e in engine))\n"
+        "          and not name.startswith('ptmcad.regionmap')]\n"
+        "assert not loaded, loaded\n"
+    )
+    loaded_after(code, tmp_path)
 
 
 @pytest.mark.parametrize("path", MODULES, ids=relative)

@@ -23,6 +23,8 @@ from ptmcad.version import __version__
 
 COMMANDS = {
     "classify": "ptmcad.cli.classify",
+    "locate": "ptmcad.cli.locate",
+    "verify": "ptmcad.cli.verify",
 }
 
 

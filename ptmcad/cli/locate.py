@@ -1,0 +1,115 @@
+"""``ptmcad locate``: the cell, region and counts of rational points in a stored result."""
+
+from __future__ import annotations
+
+import csv
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import click
+
+from ptmcad.cli.stored import read_result
+from ptmcad.errors import ConfigError
+from ptmcad.regionmap import Location, RegionMap
+
+FIELDS = ("status", "region", "cell", "total", "stable", "index")
+
+
+def answer(location: Location) -> list[str]:
+    """The entries of a location in the order of `FIELDS`; empty where there is none."""
+    index = "" if location.index is None else "-".join(map(str, location.index))
+    numbers = (location.region, location.cell, location.total, location.stable)
+    return [location.status.value, *("" if n is None else str(n) for n in numbers), index]
+
+
+def point_of(text: str) -> dict[str, str]:
+    """``rho=7/10,L2=3/2`` as a mapping.
+
+    Raises
+    ------
+    ConfigError
+        When the text is not of that form.
+    """
+    point: dict[str, str] = {}
+    for part in text.split(","):
+        name, equals, value = (piece.strip() for piece in part.partition("="))
+        if not (name and equals and value) or name in point:
+            raise ConfigError(f"'{part[:60]}' is not NAME=VALUE: write both axes, as in rho=7/10,L2=3/2", key="--at")
+        point[name] = value
+    return point
+
+
+def rows_of(path: Path, result: RegionMap) -> Iterator[dict[str, str]]:
+    """The points of a CSV file whose first row names the two axes (other columns are not looked at).
+
+    Raises
+    ------
+    ConfigError
+        When the file can not be read, or an axis has no column or no value.
+    """
+    names = result.slice.axis_names
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            reader = csv.DictReader(file, skipinitialspace=True)
+            columns = [c.strip() for c in reader.fieldnames or ()]
+            if not set(names) <= set(columns):
+                raise ConfigError(f"the first row must name the axes {names[0]} and {names[1]}", file=str(path), line=1)
+            reader.fieldnames = columns
+            for row in reader:
+                point = {name: (row[name] or "").strip() for name in names}
+                if "" in point.values():
+                    raise ConfigError("a value is missing", file=str(path), line=reader.line_num)
+                yield point
+    except OSError as error:
+        raise ConfigError(f"can not be read: {error.strerror or error}", file=str(path)) from error
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise ConfigError(f"is not a CSV file: {error}", file=str(path)) from error
+
+
+def _table(result: RegionMap, points: Iterator[dict[str, str]], path: Path) -> None:
+    writer = csv.writer(sys.stdout, lineterminator="\n")
+    writer.writerow([*result.slice.axis_names, *FIELDS])
+    for number, point in enumerate(points, start=2):
+        try:
+            location = result.locate(**point)
+        except ConfigError as error:
+            raise ConfigError(error.message, key=error.key, file=str(path), line=number) from error
+        writer.writerow([*(point[name] for name in result.slice.axis_names), *answer(location)])
+
+
+def _lines(location: Location, point: Mapping[str, str]) -> Iterator[str]:
+    yield f"{'point':8}{', '.join(f'{name} = {value}' for name, value in point.items())}"
+    for name, value in zip(FIELDS, answer(location), strict=True):
+        if value:
+            note = " (minima-saddles-maxima)" if name == "index" else ""
+            yield f"{name:8}{value}{note}"
+
+
+@click.command("locate")
+@click.argument("result", type=click.Path(path_type=Path))
+@click.option("--at", "at", metavar="NAME=VALUE,NAME=VALUE", help="A point: both axes, exact numbers.")
+@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="FILE",
+              help="A CSV file whose first row names the axes; prints a CSV row for each of its points.")  # fmt: skip
+def command(*, result: Path, at: str | None, table: Path | None) -> None:
+    """Tell in which cell and region of RESULT a rational point lies, and the number of equilibria there.
+
+    The answer is exact, however near the point is to a boundary: "on the variety" exactly on a curve, "outside the
+    window" otherwise outside. Numbers such as 7/10, 0.7 and 7e-1 are exact.
+
+    \b
+    Examples:
+        ptmcad classify --slice L2,rho --format json
+        ptmcad locate slice-L2-rho.json --at rho=7/10,L2=3/2
+        ptmcad locate slice-L2-rho.json --csv points.csv
+    """
+    if (at is None) == (table is None):
+        raise ConfigError("give a point, as in --at rho=7/10,L2=3/2, or --csv FILE")
+    stored = read_result(result)
+    if table is not None:
+        _table(stored, rows_of(table, stored), table)
+    elif at is not None:
+        point = point_of(at)
+        location = stored.locate(**point)
+        for line in _lines(location, point):
+            click.echo(line)

@@ -1,0 +1,35 @@
+"""``ptmcad verify``: an independent check of a stored result."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from ptmcad.cli.stored import read_result
+
+
+@click.command("verify")
+@click.argument("result", type=click.Path(path_type=Path))
+@click.option("--seed", type=click.IntRange(min=0), default=20231, show_default=True,
+              help="Seed of the random points at which the variety is checked.")  # fmt: skip
+def command(*, result: Path, seed: int) -> int:
+    """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
+
+    Prints what was checked, and how. The exit status is 0 when every check passed, 1 when one failed (the first
+    violated claim is printed with a witness), 2 when the file can not be read.
+
+    \b
+    Example:
+        ptmcad classify --slice L2,rho --format json
+        ptmcad verify slice-L2-rho.json
+    """
+    stored = read_result(result)
+    from ptmcad.verification import verify
+
+    report = verify(stored, seed=seed)
+    click.echo(report.table())
+    if report.ok:
+        return 0
+    click.echo(f"violated: {report.violation}", err=True)
+    return 1

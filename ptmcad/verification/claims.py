@@ -1,0 +1,144 @@
+"""A stored region map as the checks see it: its polynomials in FLINT, seen from the base axis.
+
+Guarantee: only the result's own data are used. ``u`` is the coordinate on the base axis, ``v`` the other one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import gcd, lcm
+
+from flint import Ordering, fmpq, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
+
+from ptmcad.plane import PlanePolynomial
+from ptmcad.regionmap import CriticalValue, RegionMap
+from ptmcad.verification.fibre import rational
+from ptmcad.verification.sturm import roots_between, roots_within
+
+PLANE: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
+
+
+@dataclass(frozen=True)
+class PlaneCurve:
+    """A component as a polynomial in u and v."""
+
+    number: int
+    terms: tuple[tuple[int, int, int], ...]
+
+    @classmethod
+    def of(cls, number: int, p: PlanePolynomial, base: int) -> PlaneCurve:
+        """The curve seen from a base axis."""
+        return cls(number, tuple((t[base], t[1 - base], t[2]) for t in p.terms))
+
+    @cached_property
+    def degrees(self) -> tuple[int, int]:
+        return (max(i for i, _, _ in self.terms), max(j for _, j, _ in self.terms))
+
+    def _coefficients(self, kept: int) -> list[fmpz_poly]:
+        """Coefficients, each in the other variable, of the powers of variable ``kept``."""
+        rows: list[list[int]] = [[0] * (self.degrees[1 - kept] + 1) for _ in range(self.degrees[kept] + 1)]
+        for term in self.terms:
+            rows[term[kept]][term[1 - kept]] = term[2]
+        return [fmpz_poly(row) for row in rows]
+
+    @cached_property
+    def in_v(self) -> list[fmpz_poly]:
+        """Coefficients in Z[u] of the powers of v."""
+        return self._coefficients(1)
+
+    @cached_property
+    def in_u(self) -> list[fmpz_poly]:
+        """Coefficients in Z[v] of the powers of u."""
+        return self._coefficients(0)
+
+    def over(self, u: fmpq) -> fmpz_poly:
+        """A positive multiple of p(u, v), in Z[v]."""
+        return _scaled([fmpq(c(u)) for c in self.in_v])
+
+    def along(self, v: fmpq) -> fmpz_poly:
+        """A positive multiple of p(u, v), in Z[u]."""
+        return _scaled([fmpq(c(v)) for c in self.in_u])
+
+    def exponent_gcd(self, variable: int) -> int:
+        """The largest k such that only powers of the variable's k-th power occur."""
+        return max(1, gcd(*(t[variable] for t in self.terms)))
+
+    def flint(self, k: int = 1, m: int = 1) -> fmpz_mpoly:
+        """The polynomial with u for u^k and v for v^m."""
+        return PLANE.from_dict({(i // k, j // m): c for i, j, c in self.terms})
+
+
+def _scaled(values: list[fmpq]) -> fmpz_poly:
+    scale = lcm(*(int(v.q) for v in values))
+    return fmpz_poly([int(v.p) * (scale // int(v.q)) for v in values])
+
+
+def univariate(p: fmpz_mpoly, variable: int) -> fmpz_poly:
+    """A polynomial in which only one of u, v occurs."""
+    row: dict[int, int] = {int(m[variable]): int(c) for m, c in p.to_dict().items()}
+    return fmpz_poly([row.get(i, 0) for i in range(max(row, default=0) + 1)])
+
+
+@dataclass(frozen=True)
+class Claims:
+    """The result with its window and curves as FLINT sees them."""
+
+    result: RegionMap
+
+    @cached_property
+    def base(self) -> tuple[fmpq, fmpq]:
+        axis = self.result.slice.axes[self.result.base]
+        return rational(axis.low), rational(axis.high)
+
+    @cached_property
+    def height(self) -> tuple[fmpq, fmpq]:
+        axis = self.result.slice.axes[1 - self.result.base]
+        return rational(axis.low), rational(axis.high)
+
+    def _used(self) -> list[PlaneCurve]:
+        return [
+            PlaneCurve.of(n, c.polynomial, self.result.base)
+            for n, c in enumerate(self.result.components)
+            if not c.left_out
+        ]
+
+    @cached_property
+    def curves(self) -> list[PlaneCurve]:
+        """Components that are used and have walls."""
+        return [c for c in self._used() if c.degrees[1] > 0]
+
+    @cached_property
+    def lines(self) -> list[PlaneCurve]:
+        """Components that are used and consist of lines u = constant."""
+        return [c for c in self._used() if c.degrees[1] == 0]
+
+    def level(self, u: fmpq, v: fmpq) -> int:
+        """How many roots of the curves over u lie below v."""
+        return sum(roots_between(c.over(u), self.height[0], v) for c in self.curves)
+
+    def free(self, low: fmpq, high: fmpq, v: fmpq) -> PlaneCurve | None:
+        """None when no curve meets the closed segment [low, high] x {v}, else one that does."""
+        return next((c for c in self.curves if roots_within(c.along(v), low, high) > 0), None)
+
+
+def polynomial(value: CriticalValue) -> fmpz_poly:
+    """The polynomial of a critical value."""
+    return fmpz_poly(list(value.polynomial))
+
+
+def side(u: fmpq, value: CriticalValue) -> int:
+    """The sign of u minus the critical value, by a Sturm count."""
+    low, high = rational(value.low), rational(value.high)
+    if u < low or u > high:
+        return -1 if u < low else 1
+    p = polynomial(value)
+    if p(u) == 0:
+        return 0
+    return 1 if roots_within(p, low, u) > 0 else -1
+
+
+def fraction(value: fmpq) -> Fraction:
+    """A FLINT rational as a Python fraction."""
+    return Fraction(int(value.p), int(value.q))

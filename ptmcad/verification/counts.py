@@ -1,0 +1,35 @@
+"""Checks of the counts: at every cell's sample, by signatures of trace forms.
+
+Guarantee: exact at the samples; that the counts hold in the whole cells follows from the checks of the variety and of
+the decomposition.
+"""
+
+from __future__ import annotations
+
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.fibre import NotFinite, fibre
+from ptmcad.verification.report import Violation
+from ptmcad.verification.variety import positive_at
+
+
+def check_counts(claims: Claims) -> str:
+    """Total, stable and Morse index of every cell; Euler sum; lengths and stiffnesses positive."""
+    parameters = dict(claims.result.slice.parameters)
+    for n, cell in enumerate(claims.result.cells):
+        where = ", ".join(f"{name}={cell.sample[name]}" for name in cell.sample.names)
+        if (name := positive_at(parameters, *cell.sample)) is not None:
+            raise Violation(f"{name} is not positive at {where} in cell {n}")
+        try:
+            index = fibre({k: e.evaluate(*cell.sample) for k, e in parameters.items()}).morse_index()
+        except NotFinite:
+            raise Violation(f"there are infinitely many solutions at {where} in cell {n}") from None
+        if index is None:
+            raise Violation(f"an equilibrium is degenerate at {where} in cell {n}")
+        if index[0] - index[1] + index[2] != 0:
+            raise Violation(f"the Euler sum of {index} at {where} in cell {n} is not zero")
+        if (cell.index, cell.total, cell.stable) != (index, sum(index), index[0]):
+            raise Violation(
+                f"cell {n} is said to have {cell.total} equilibria, {cell.stable} stable, index "
+                f"{cell.index}; at {where} there are {sum(index)}, {index[0]} stable, index {index}"
+            )
+    return f"{len(claims.result.cells)} samples"

@@ -1,0 +1,132 @@
+"""Checks of the map's shape, of merges and of regions, from the stored tables alone.
+
+Guarantee: cells, stacks and regions refer to each other consistently; the regions are the connected components of the
+joined adjacencies, found by breadth-first search.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from itertools import pairwise
+
+from ptmcad.regionmap import Cell, Merge, Status
+from ptmcad.slice import Count
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.fibre import PARAMETERS
+from ptmcad.verification.report import Violation
+
+
+def check_shape(claims: Claims) -> str:
+    """Numbers refer to what exists, in order."""
+    r = claims.result
+    if r.status is not Status.EXACT or r.undetermined != 0:
+        raise Violation(f"the status {r.status.value!r} with {r.undetermined} undetermined can not be checked: only "
+                        "exact results can")  # fmt: skip
+    if r.slice.mechanism != "ptm" or not set(PARAMETERS) <= set(r.slice.parameters):
+        raise Violation(f"the mechanism {r.slice.mechanism!r} is not known or lacks parameters")
+    if any(a.low >= a.high for a in r.slice.axes) or r.base not in (0, 1):
+        raise Violation("the window is empty")
+    if not r.stacks or len(r.critical_values) != len(r.stacks) - 1:
+        raise Violation(f"{len(r.critical_values)} critical values do not part {len(r.stacks)} stacks")
+    number = 0
+    for s, stack in enumerate(r.stacks):
+        ends = (s - 1 if s else None, s if s < len(r.stacks) - 1 else None)
+        if (stack.left, stack.right) != ends:
+            raise Violation(f"stack {s} is said to lie between critical values {stack.left} and {stack.right}, not "
+                            f"{ends[0]} and {ends[1]}")  # fmt: skip
+        expected = tuple(range(number, number + len(stack.walls) + 1))
+        if stack.cells != expected:
+            raise Violation(f"stack {s} has cells {stack.cells}, not {expected}")
+        for wall in stack.walls:
+            if not _is_index(wall.component, len(r.components)) or r.components[wall.component].left_out:
+                raise Violation(f"a wall of stack {s} is on component {wall.component}, which is not used")
+        for level, n in enumerate(expected):
+            if n >= len(r.cells) or (r.cells[n].stack, r.cells[n].level) != (s, level):
+                raise Violation(f"cell {n} is not the one at level {level} of stack {s}")
+        number += len(expected)
+    if number != len(r.cells):
+        raise Violation(f"{len(r.cells)} cells are stored, the stacks have {number}")
+    for k, a in enumerate(r.adjacencies):
+        if not (_is_index(a.first, number) and _is_index(a.second, number)):
+            raise Violation(f"adjacency {k} joins cells {a.first} and {a.second}, which are not both there")
+        if a.component is not None and not _is_index(a.component, len(r.components)):
+            raise Violation(f"adjacency {k} names component {a.component}, which is not there")
+    for n, cell in enumerate(r.cells):
+        if not _is_index(cell.region, len(r.regions)):
+            raise Violation(f"cell {n} is in region {cell.region}, which is not there")
+    return f"{len(r.stacks)} stacks, {len(r.cells)} cells, {len(r.adjacencies)} adjacencies, {len(r.regions)} regions"
+
+
+def _is_index(value: object, length: int) -> bool:
+    return isinstance(value, int) and 0 <= value < length
+
+
+def _key(cell: Cell, count: Count) -> object:
+    return {Count.STABLE: cell.stable, Count.TOTAL: cell.total, Count.INDEX: cell.index}[count]
+
+
+def check_merges(claims: Claims) -> str:
+    """The kind of every adjacency, and which components separate."""
+    r = claims.result
+    separating = set()
+    for k, a in enumerate(r.adjacencies):
+        first, second = r.cells[a.first], r.cells[a.second]
+        equal = _key(first, r.slice.count) == _key(second, r.slice.count)
+        if a.component is None:
+            kind = Merge.PROVEN
+            if first.index != second.index:
+                raise Violation(f"adjacency {k} crosses no component, but cells {a.first} and {a.second} have "
+                                f"different counts {first.index} and {second.index}")  # fmt: skip
+        else:
+            kind = Merge.EQUAL_COUNT if equal else Merge.SEPARATED
+        if kind is Merge.SEPARATED:
+            separating.add(a.component)
+        if a.merge is not kind:
+            raise Violation(f"adjacency {k} of cells {a.first} and {a.second} is {kind.value!r}, not {a.merge.value!r}")
+    for n, c in enumerate(r.components):
+        if c.separates != (n in separating):
+            raise Violation(f"component {n} is said to {'' if c.separates else 'not '}separate two regions")
+    return f"{len(r.adjacencies)} adjacencies"
+
+
+def check_regions(claims: Claims) -> str:
+    """The partition, and each region's counts, cells and sample."""
+    r = claims.result
+    joined: dict[int, list[int]] = defaultdict(list)
+    for a in r.adjacencies:
+        if a.merge is not Merge.SEPARATED:
+            joined[a.first].append(a.second)
+            joined[a.second].append(a.first)
+    label: dict[int, int] = {}
+    found: list[set[int]] = []
+    for start in range(len(r.cells)):
+        if start in label:
+            continue
+        label[start] = len(found)
+        members, waiting = {start}, deque([start])
+        while waiting:
+            for n in joined[waiting.popleft()]:
+                if n not in members:
+                    members.add(n)
+                    label[n] = len(found)
+                    waiting.append(n)
+        found.append(members)
+    for one, two in pairwise(sorted(range(len(r.cells)), key=lambda n: (label[n], n))):
+        same = label[one] == label[two]
+        if same and r.cells[one].region != r.cells[two].region:
+            raise Violation(f"cells {one} and {two} are joined, but in regions {r.cells[one].region} and "
+                            f"{r.cells[two].region}")  # fmt: skip
+    if len(found) != len(r.regions):
+        raise Violation(f"{len(r.regions)} regions are stored, the adjacencies make {len(found)}")
+    for number, region in enumerate(r.regions):
+        members = {n for n, cell in enumerate(r.cells) if cell.region == number}
+        if members not in found or tuple(sorted(members)) != region.cells:
+            raise Violation(f"region {number} is said to have cells {region.cells}, not {tuple(sorted(members))}")
+        for name in ("stable", "total", "index"):
+            values = {getattr(r.cells[n], name) for n in members}
+            expected = values.pop() if len(values) == 1 else None
+            if getattr(region, name) != expected:
+                raise Violation(f"region {number}: {name} is {expected}, not {getattr(region, name)}")
+        if tuple(region.sample) not in {tuple(r.cells[n].sample) for n in members}:
+            raise Violation(f"the sample of region {number} is not the sample of one of its cells")
+    return f"{len(found)} regions"

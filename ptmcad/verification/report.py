@@ -1,0 +1,56 @@
+"""What a verification found: one line for each claim, with the method that checked it.
+
+Guarantee: `VerifyReport.ok` is True only when no check failed; a claim that was not checked is listed as such.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+class Violation(Exception):
+    """A claim of the result is false; the message holds the claim and a witness."""
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One kind of claim.
+
+    Attributes
+    ----------
+    passed : None when the claim was not checked; ``detail`` then says why.
+    detail : how many were checked; of a failed check the violated claim with a witness.
+    """
+
+    name: str
+    method: str
+    passed: bool | None
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
+class VerifyReport:
+    """The checks in their order; those after a failed one are not reached."""
+
+    checks: tuple[Check, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Whether no check failed."""
+        return all(c.passed is not False for c in self.checks)
+
+    @property
+    def violation(self) -> str | None:
+        """The first violated claim with its witness."""
+        return next((f"{c.name}: {c.detail}" for c in self.checks if c.passed is False), None)
+
+    def __str__(self) -> str:
+        return self.table()
+
+    def table(self) -> str:
+        """One line for each check: the answer, the claim, the method and the detail."""
+        words = {True: "ok", False: "FALSE", None: "not checked"}
+        rows = [("", "claim", "method", "detail")]
+        rows += [(words[c.passed], c.name, c.method, c.detail) for c in self.checks]
+        widths = [max(len(row[k]) for row in rows) for k in range(3)]
+        return "\n".join("  ".join([*(row[k].ljust(widths[k]) for k in range(3)), row[3]]).rstrip() for row in rows)

@@ -1,0 +1,82 @@
+"""Real roots of integer polynomials, counted by Sturm sequences.
+
+Guarantee: exact, multiple roots counted once. (The decomposition itself isolates by Descartes' rule; see
+`ptmcad.algebra.real_roots`, which is not used here.)
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from itertools import pairwise
+
+from flint import fmpq, fmpq_poly, fmpz_poly
+
+
+def squarefree(p: fmpz_poly) -> fmpz_poly:
+    """The squarefree part of a nonzero polynomial, up to a constant."""
+    common = p.gcd(p.derivative())
+    return p if common.degree() < 1 else p // common
+
+
+def _primitive(p: fmpz_poly) -> fmpz_poly:
+    return p / int(p.content()) if int(p.content()) > 1 else p
+
+
+@lru_cache(maxsize=4096)
+def _chain(coefficients: tuple[int, ...]) -> tuple[fmpz_poly, ...]:
+    first = squarefree(_primitive(fmpz_poly(list(coefficients))))
+    chain = [first, _primitive(first.derivative())]
+    while chain[-1].degree() > 0:
+        remainder = -(fmpq_poly(chain[-2]) % fmpq_poly(chain[-1]))
+        chain.append(_primitive(remainder.numer()))
+    return tuple(chain)
+
+
+def _variations(chain: tuple[fmpz_poly, ...], at: fmpq) -> int:
+    signs = [1 if value > 0 else -1 for q in chain if (value := q(at)) != 0]
+    return sum(a != b for a, b in pairwise(signs))
+
+
+def roots_between(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
+    """The number of different roots in the open interval (low, high)."""
+    if p.degree() < 1 or low >= high:
+        return 0
+    if low >= 0:
+        deflated, power = p.deflation()
+        if power > 1:
+            return roots_between(deflated, low**power, high**power)
+    chain = _chain(tuple(int(c) for c in p.coeffs()))
+    return _variations(chain, low) - _variations(chain, high) - (1 if p(high) == 0 else 0)
+
+
+def roots_within(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
+    """The number of different roots in the closed interval [low, high]."""
+    if low == high:
+        return int(p(low) == 0)
+    return roots_between(p, low, high) + (p(low) == 0) + (p(high) == 0)
+
+
+def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq, fmpq]]:
+    """Disjoint open intervals, strictly inside, with one root each; no end is a root."""
+    waiting, found = [(low, high)], []
+    while waiting:
+        a, b = waiting.pop()
+        n = roots_between(p, a, b)
+        if n == 0:
+            continue
+        if n == 1 and a > low and b < high:
+            found.append((a, b))
+            continue
+        k = 2
+        while p(middle := a + (b - a) * fmpq(k // 2, k)) == 0:
+            k += 1
+        waiting += [(a, middle), (middle, b)]
+    return sorted(found, key=lambda interval: fmpq(interval[0]))
+
+
+def points_apart(p: fmpz_poly, low: fmpq, high: fmpq) -> list[fmpq]:
+    """A rational point in each open interval that the roots of p leave of (low, high)."""
+    roots = isolating_intervals(p, low, high)
+    if not roots:
+        return [(low + high) / 2]
+    return [roots[0][0], *(b for _, b in roots)]
