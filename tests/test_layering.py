@@ -25,6 +25,7 @@ EXACT = (
     "regions",
     "regionmap",
     "pipeline",
+    "assembly",
     "locate",
     "verification",
 )

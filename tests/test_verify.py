@@ -175,8 +175,8 @@ def adjacency_component(r: RegionMap, rng: random.Random) -> RegionMap:
 def segment_end(r: RegionMap, rng: random.Random) -> RegionMap:
     """The segment no longer reaches the other stack."""
     k = rng.choice([n for n, a in enumerate(r.adjacencies) if a.segment is not None])
-    low, _, height = r.adjacencies[k].segment or (Fraction(0),) * 3
-    return replace(r, adjacencies=put(r.adjacencies, k, segment=(low, low + Fraction(1, 10**30), height)))
+    low, high, height = r.adjacencies[k].segment or (Fraction(0),) * 3
+    return replace(r, adjacencies=put(r.adjacencies, k, segment=(low, low + (high - low) / 10**30, height)))
 
 
 def merge_kind(r: RegionMap, rng: random.Random) -> RegionMap:

@@ -62,8 +62,8 @@ def passages(
     """All adjacent pairs of cells across the abscissa between two neighbouring stacks, one witness for each pair."""
     end = left.right
     assert end.root is not None
-    width = min(end.value - left.sample, right.sample - end.value)
-    resolution, step = fibre[1] - fibre[0], 8
+    reach, height = min(end.value - left.sample, right.sample - end.value), fibre[1] - fibre[0]
+    width, resolution, step = reach, height, 8
     extra: tuple[fmpq, ...] = ()
     points: UnivariatePolynomial | None = None  # costly, computed once if the rounds do not suffice
     attempt = 0
@@ -80,11 +80,11 @@ def passages(
             unique = {(p.left, p.right): p for p in reversed(found)}
             return tuple(sorted(unique.values(), key=lambda p: (p.left, p.right)))
         attempt += 1
-        if attempt < ROUNDS:
-            step = 2 * step
-        else:
+        step = 2 * step
+        if attempt >= ROUNDS:
             if points is None:
                 points = _points_polynomial(curves, end)
+                width, resolution, step = reach, height, 8  # with the heights now known, wide brackets may do
             separating = (h for slot in unresolved for h in _between_points(points, slot))
             extra = tuple(sorted({*extra, *separating}))
 
