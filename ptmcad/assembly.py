@@ -13,21 +13,24 @@ from typing import Any
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import to_fraction
-from ptmcad.cad.adjacency import Passage
+from ptmcad.cad.adjacency import Crossing, Passage
 from ptmcad.cad.projection import Projection
 from ptmcad.cad.stacks import StackData
-from ptmcad.counting import Counts
-from ptmcad.expressions import rational
+from ptmcad.counting import Counts, Equilibria
+from ptmcad.numerals import decimal, fraction_of
 from ptmcad.regionmap import (
     Adjacency,
     Cell,
     CriticalValue,
     Merge,
+    NonAdjacency,
+    Reason,
     Region,
     RegionMap,
+    Segment,
+    Solution,
     Stack,
     Wall,
-    decimal,
 )
 from ptmcad.regions import Link, merge
 from ptmcad.slice import Count, Point
@@ -38,8 +41,8 @@ def assemble(
     projection: Projection,
     stacks: Sequence[StackData],
     points: Sequence[tuple[fmpq, fmpq]],
-    counts: Sequence[Counts],
-    crossings: Sequence[Sequence[Passage]],
+    found: Sequence[Equilibria],
+    crossings: Sequence[Crossing],
     lines: dict[tuple[int, ...], int],
 ) -> RegionMap:
     """The map with cells, adjacencies and regions, whose areas are known only to lie within the window's.
@@ -47,11 +50,12 @@ def assemble(
     Parameters
     ----------
     started : the map with its slice and components.
-    points, counts : of the cells, stack by stack from below.
+    points, found : sample and equilibria of each cell, stack by stack from below.
     crossings : between neighbouring stacks.
     lines : the components that are lines across the fibre direction, by the coefficients of their polynomials.
     """
     names = started.slice.axis_names
+    counts = [e.counts for e in found]
     keys = [count_key(c, started.slice.count) for c in counts]
     adjacencies = _adjacencies(stacks, crossings, projection, lines, keys)
     region_of = merge(keys, [Link(a.first, a.second, a.component) for a in adjacencies])
@@ -73,19 +77,39 @@ def assemble(
         ),
         stacks=_stacks(stacks),
         cells=tuple(
-            Cell(s, level, samples[n], region_of[n], counts[n].total, counts[n].stable, counts[n].index)
+            Cell(
+                s,
+                level,
+                samples[n],
+                region_of[n],
+                counts[n].total,
+                counts[n].stable,
+                counts[n].index,
+                _solutions(found[n]),
+            )
             for n, (s, level) in enumerate(places)
         ),
         adjacencies=adjacencies,
+        non_adjacencies=_non_adjacencies(stacks, crossings),
         regions=_regions(region_of, counts, samples, (first.high - first.low) * (second.high - second.low)),
         undetermined=Fraction(0),
+        precision={"solutions": max(e.bits for e in found)},
     )
 
 
-def with_areas(counted: RegionMap, areas: Sequence[tuple[Fraction, Fraction]]) -> RegionMap:
-    """The map with the regions' areas, each bound written outwards in decimals."""
-    bounds = [(rational(decimal(low, up=False)), rational(decimal(high, up=True))) for low, high in areas]
-    return replace(counted, regions=tuple(replace(r, area=b) for r, b in zip(counted.regions, bounds, strict=True)))
+def with_areas(counted: RegionMap, areas: Sequence[tuple[Fraction, Fraction]], bits: int) -> RegionMap:
+    """The map with the regions' areas, each bound written outwards in decimals.
+
+    Parameters
+    ----------
+    bits : the precision that the areas needed.
+    """
+    bounds = [(fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True))) for low, high in areas]
+    return replace(
+        counted,
+        regions=tuple(replace(r, area=b) for r, b in zip(counted.regions, bounds, strict=True)),
+        precision={**counted.precision, "areas": bits},
+    )
 
 
 def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
@@ -97,16 +121,14 @@ def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
 
 def _adjacencies(
     stacks: Sequence[StackData],
-    crossings: Sequence[Sequence[Passage]],
+    crossings: Sequence[Crossing],
     projection: Projection,
     vertical_components: dict[tuple[int, ...], int],
     keys: Sequence[tuple[int, ...]],
 ) -> tuple[Adjacency, ...]:
     found: list[Adjacency] = []
 
-    def link(
-        first: int, second: int, component: int | None, segment: tuple[Fraction, Fraction, Fraction] | None
-    ) -> None:
+    def link(first: int, second: int, component: int | None, segment: Segment | None) -> None:
         if component is None:
             kind = Merge.PROVEN
         else:
@@ -120,11 +142,44 @@ def _adjacencies(
         following = first + len(stack.heights)
         if s < len(crossings):
             line = tuple(int(c) for c in projection.abscissae[s].polynomial.coeffs())
-            for p in crossings[s]:
-                segment = (to_fraction(p.low), to_fraction(p.high), to_fraction(p.height))
-                link(first + p.left, following + p.right, vertical_components.get(line), segment)
+            for p in crossings[s].passages:
+                link(first + p.left, following + p.right, vertical_components.get(line), _segment(p))
         first = following
     return tuple(found)
+
+
+def _segment(p: Passage) -> Segment:
+    return (to_fraction(p.low), to_fraction(p.high), to_fraction(p.height))
+
+
+def _non_adjacencies(stacks: Sequence[StackData], crossings: Sequence[Crossing]) -> tuple[NonAdjacency, ...]:
+    found, first = [], 0
+    for s, crossing in enumerate(crossings):
+        following = first + len(stacks[s].heights)
+        found += [
+            NonAdjacency(
+                critical_value=s,
+                left=tuple(range(first + slot.left[0], first + slot.left[1] + 1)),
+                right=tuple(range(following + slot.right[0], following + slot.right[1] + 1)),
+                below=None if slot.below is None else _segment(slot.below),
+                above=None if slot.above is None else _segment(slot.above),
+                reason=Reason(slot.closing.value),
+            )
+            for slot in crossing.slots
+        ]
+        first = following
+    return tuple(found)
+
+
+def _solutions(found: Equilibria) -> tuple[Solution, ...]:
+    return tuple(
+        Solution(
+            tuple(to_fraction(x) for x in s.center),
+            to_fraction(s.radius),
+            "+" * (len(s.center) // 2 - s.negative) + "-" * s.negative,
+        )
+        for s in found.solutions
+    )
 
 
 def _stacks(stacks: Sequence[StackData]) -> tuple[Stack, ...]:

@@ -10,8 +10,9 @@ weighted with 1, det H, tr H and their product (Tarski queries). The two share t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 from flint import arb, ctx, fmpq
 
@@ -88,8 +89,48 @@ def _text(values: Mapping[str, fmpq]) -> str:
     return ", ".join(f"{name}={value}" for name, value in values.items())
 
 
+@dataclass(frozen=True, slots=True)
+class Equilibrium:
+    """A real solution: the only one within ``radius`` of ``center`` in every unknown, and its Hessian's signs.
+
+    Attributes
+    ----------
+    center, radius : decimals.
+    negative : number of negative eigenvalues of the Hessian.
+    """
+
+    center: tuple[fmpq, ...]
+    radius: fmpq
+    negative: int
+
+
+@dataclass(frozen=True, slots=True)
+class Equilibria:
+    """All real solutions at a rational point, in disjoint boxes.
+
+    Attributes
+    ----------
+    bits : the precision at which every sign was certain and the boxes were disjoint.
+    """
+
+    counts: Counts
+    solutions: tuple[Equilibrium, ...]
+    bits: int
+
+
 def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq]) -> Counts:
     """Counts at rational values of all parameters, by real-root isolation.
+
+    Raises
+    ------
+    DegeneratePoint
+        When some solution, real or not, is singular, or there are infinitely many.
+    """
+    return equilibria(system, values).counts
+
+
+def equilibria(system: ParametricSystem, values: Mapping[str, fmpq]) -> Equilibria:
+    """All real solutions at rational values of all parameters, by real-root isolation.
 
     Raises
     ------
@@ -102,38 +143,74 @@ def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
         raise DegeneratePoint(f"an equilibrium has a singular Hessian at {_text(values)}")
     # at a real solution cosines and sines are at most 1, and real values of the form come from real solutions only
     bound = fmpq(sum(representation.form) + 1)
+    roots = isolate(representation.minimal, -bound, bound)
+    bits = 40
+    while (found := _enclosed(point, representation, roots, bits)) is None:
+        bits *= 2
     numbers = [0, 0, 0]
-    for root in isolate(representation.minimal, -bound, bound):
-        numbers[morse_index(point, representation, root)] += 1
+    for solution in found:
+        numbers[solution.negative] += 1
     counts = Counts(*numbers)
     if counts.minima - counts.saddles + counts.maxima != 0:
         raise ArithmeticError(f"the Euler sum of {counts} at {_text(values)} is not zero")
-    return counts
+    return Equilibria(counts, found, bits)
 
 
-def morse_index(point: PointSystem, representation: UnivariateRepresentation, root: RealRoot) -> int:
-    """The number of negative eigenvalues of the (2 x 2) Hessian at a real solution.
+def _enclosed(
+    point: PointSystem, representation: UnivariateRepresentation, roots: Sequence[RealRoot], bits: int
+) -> tuple[Equilibrium, ...] | None:
+    """The solutions at these roots in disjoint boxes; None when the precision is too low to tell all signs."""
+    found: list[Equilibrium] = []
+    with ctx.workprec(bits):
+        for root in roots:
+            short = refine(root, fmpq(1, 2 ** (bits - 8)) * (abs(root.middle) + 1))
+            unknowns = coordinates_at(representation, arb(short.low).union(arb(short.high)))
+            negative = _negative_eigenvalues(point, unknowns)
+            box = _decimal_box(unknowns)
+            if negative is None or box is None:
+                return None
+            found.append(Equilibrium(*box, negative))
+    apart = all(
+        any(abs(x - y) > a.radius + b.radius for x, y in zip(a.center, b.center, strict=True))
+        for a, b in combinations(found, 2)
+    )
+    return tuple(found) if apart else None
 
-    Guarantee: certain; the precision is doubled until det H, and if it is positive H11, has a certain sign.
+
+def _negative_eigenvalues(point: PointSystem, unknowns: list[arb]) -> int | None:
+    """The number of negative eigenvalues of the (2 x 2) Hessian in a box; None when its signs are not certain."""
+    h11, h12, h22 = (_value(point.hessian[i][j], unknowns) for i, j in ((0, 0), (0, 1), (1, 1)))
+    determinant = h11 * h22 - h12 * h12
+    if not determinant.is_finite():
+        raise ArithmeticError(f"the Hessian's determinant is {determinant} at {ctx.prec} bits")
+    if determinant < 0:
+        return 1
+    if determinant > 0:
+        if h11 > 0:
+            return 0
+        if h11 < 0:
+            return 2
+    return None
+
+
+def _decimal_box(unknowns: Sequence[arb]) -> tuple[tuple[fmpq, ...], fmpq] | None:
+    """Center and radius, in decimals, of a box around the balls; None when these are wider than the coarsest box.
+
+    The finest box has 12 digits after the point, and more as the precision grows, so that all boxes come apart.
     """
-    bits = 40
-    while True:
-        with ctx.workprec(bits):
-            root = refine(root, fmpq(1, 2 ** (bits - 8)) * (abs(root.middle) + 1))
-            at = arb(root.low).union(arb(root.high))
-            unknowns = coordinates_at(representation, at)
-            h11, h12, h22 = (_value(point.hessian[i][j], unknowns) for i, j in ((0, 0), (0, 1), (1, 1)))
-            determinant = h11 * h22 - h12 * h12
-            if not determinant.is_finite():
-                raise ArithmeticError(f"the Hessian's determinant is {determinant} at {bits} bits")
-            if determinant < 0:
-                return 1
-            if determinant > 0:
-                if h11 > 0:
-                    return 0
-                if h11 < 0:
-                    return 2
-        bits *= 2
+    for digits in range(max(12, ctx.prec // 5), 5, -1):
+        unit = fmpq(1, 10**digits)
+        center = tuple(fmpq(_nearest(x, 10**digits), 10**digits) for x in unknowns)
+        if all(abs(x - c) < arb(unit) for x, c in zip(unknowns, center, strict=True)):
+            return center, unit
+    return None
+
+
+def _nearest(ball: arb, scale: int) -> int:
+    """The integer nearest to scale times the ball's middle."""
+    mantissa, exponent = (int(n) for n in ball.mid().man_exp())
+    scaled = mantissa * scale
+    return scaled << exponent if exponent >= 0 else (scaled + (1 << (-exponent - 1))) >> -exponent
 
 
 def _value(p: RationalPolynomial, unknowns: list[arb]) -> arb:

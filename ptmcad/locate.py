@@ -26,7 +26,7 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     Raises
     ------
     ConfigError
-        When the names are not the two axes, or a value is not an exact number.
+        When the names are not the two axes, a value is not an exact number, or the map contradicts itself.
     """
     point = _point(result, at)
     inside = all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, point, strict=True))
@@ -41,13 +41,20 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     u, v = from_fraction(point[base]), from_fraction(point[1 - base])
     curves = [curve(n, from_plane(c.polynomial), base) for n, c in used if c.polynomial.degrees[1 - base] > 0]
     stack, on_critical = _stack(result, u)
+    if stack >= len(result.stacks):
+        raise ConfigError(f"the map contradicts itself: there is no stack {stack}; check it with ptmcad verify")
     if on_critical:
         # the point lies on an artefact of the decomposition: step to the stack at its left along a free segment
         u = _step_left(result, curves, u, v, stack)
     low = from_fraction(result.slice.axes[1 - base].low)
     below = sum(_roots_below(c.fibre(u), low, v) for c in curves)
-    number = result.stacks[stack].cells[below]
-    cell = result.cells[number]
+    try:
+        number = result.stacks[stack].cells[below]
+        cell = result.cells[number]
+    except IndexError as error:
+        raise ConfigError(
+            f"the map contradicts itself: stack {stack} has no cell above {below} walls; check it with ptmcad verify"
+        ) from error
     # in a map that was stopped before its areas were known, the counts are exact all the same
     status = Status.EXACT if result.status is Status.PARTIAL else result.status
     return Location(status, cell.region, number, cell.total, cell.stable, cell.index)

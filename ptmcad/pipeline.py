@@ -27,14 +27,15 @@ from ptmcad.algebra.polynomials import (
 )
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.assembly import assemble, with_areas
-from ptmcad.cad.adjacency import passages
+from ptmcad.cad.adjacency import cross
 from ptmcad.cad.area import region_areas
 from ptmcad.cad.curves import Curve, curve
 from ptmcad.cad.projection import predicted_cost, project
 from ptmcad.cad.stacks import lift
-from ptmcad.counting import Counts, DegeneratePoint, count_by_isolation, solutions_at
+from ptmcad.counting import DegeneratePoint, Equilibria, equilibria, solutions_at
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
 from ptmcad.models import ParametricSystem, system_of
+from ptmcad.models.text import system_text
 from ptmcad.plan import plan_of
 from ptmcad.regionmap import Component, RegionMap, Status
 from ptmcad.slice import Count, Slice
@@ -142,6 +143,7 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
     started = RegionMap(
         slice=slice,
         status=Status.PARTIAL,
+        system=system_text(system),
         base=base,
         complex_solutions=variety.complex_solutions,
         components=variety.components,
@@ -149,6 +151,7 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
         stacks=(),
         cells=(),
         adjacencies=(),
+        non_adjacencies=(),
         regions=(),
         plan=plan_of(slice, variety.components, slice.axis_names[base], costs, keep),
         undetermined=Fraction(1),
@@ -158,6 +161,7 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
             "python-flint": flint.__version__,
             "flint": flint.__FLINT_VERSION__,
         },
+        precision={},
     )
     yield started
     clock.stage("variety")
@@ -180,7 +184,7 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
     crossings = []
     for k, (left, right) in enumerate(pairwise(stacks)):
         clock.report("adjacency", k, len(stacks) - 1)
-        crossings.append(passages(curves, left, right, window[1 - base], clock.check))
+        crossings.append(cross(curves, left, right, window[1 - base], clock.check))
     lines = {tuple(int(c) for c in p.coeffs()): n for n, p in _vertical_lines(variety.components, base).items()}
     counted = assemble(started, projection, stacks, points, counts, crossings, lines)
     yield counted
@@ -188,19 +192,20 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
 
     clock.report("areas", 0, 1)
     rows = [tuple(counted.cells[n].region for n in stack.cells) for stack in counted.stacks]
-    areas = region_areas(stacks, rows, curves, window[base], window[1 - base], relative, clock.check)
+    areas, bits = region_areas(stacks, rows, curves, window[base], window[1 - base], relative, clock.check)
     clock.stage("areas")
     yield replace(
-        with_areas(counted, areas),
+        with_areas(counted, areas, bits),
         status=Status.EXACT,
         timings={**clock.seconds, "total": perf_counter() - clock.started},
     )
 
 
 def _limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coefficient]:
-    """Numerators of the parameters that have to be positive and vary over the window."""
+    """What bounds the slice's domain: lengths and stiffnesses that vary, and the parameters' denominators."""
     names = (*system.positive, *system.nonnegative)
-    return [parameters[name][0] for name in names if not parameters[name][0].is_constant()]
+    limits = [*(parameters[name][0] for name in names), *(below for _, below in parameters.values())]
+    return [limit for limit in limits if not limit.is_constant()]
 
 
 def _vertical_lines(components: Sequence[Component], base: int) -> dict[int, UnivariatePolynomial]:
@@ -232,8 +237,8 @@ def _choose_base(
     return base, curves, list(_vertical_lines(components, base).values()), costs
 
 
-def _count(slice: Slice, system: ParametricSystem, parameters: dict[str, Ratio], at: tuple[fmpq, fmpq]) -> Counts:
-    """The counts at a sample point, after a check that the geometry exists there."""
+def _count(slice: Slice, system: ParametricSystem, parameters: dict[str, Ratio], at: tuple[fmpq, fmpq]) -> Equilibria:
+    """The equilibria at a sample point, after a check that the geometry exists there."""
     values = point_values(parameters, at)
     where = ", ".join(f"{name} = {value}" for name, value in zip(slice.axis_names, at, strict=True))
     for name in (*system.positive, *system.nonnegative):
@@ -243,7 +248,7 @@ def _count(slice: Slice, system: ParametricSystem, parameters: dict[str, Ratio],
                 f"narrow the range or change {name}"
             )
     try:
-        return count_by_isolation(system, values)
+        return equilibria(system, values)
     except DegeneratePoint as error:
         raise DegenerateSliceError(
             f"{error}, a point that should lie off the variety: the slice has a whole area of singular equilibria"

@@ -13,6 +13,8 @@ from fractions import Fraction
 from math import gcd
 from typing import Any
 
+from ptmcad.numerals import MAX_DIGITS, integer_of, integer_text
+
 
 @dataclass(frozen=True, slots=True)
 class PlanePolynomial:
@@ -48,7 +50,7 @@ class PlanePolynomial:
         for i, j, c in self.terms:
             factors = [f"{n}{power}{e}" if e > 1 else n for n, e in zip(names, (i, j), strict=True) if e]
             if abs(c) != 1 or not factors:
-                factors.insert(0, str(abs(c)))
+                factors.insert(0, integer_text(abs(c)))
             sign = ("-" if c < 0 else "") if not text else (" - " if c < 0 else " + ")
             text += sign + "*".join(factors)
         return text or "0"
@@ -77,11 +79,17 @@ class PlanePolynomial:
             for factor in body.split("*"):
                 name, _, exponent = factor.partition("^")
                 if name in names:
-                    powers[names.index(name)] += int(exponent or 1)
+                    powers[names.index(name)] += _natural(exponent) if exponent else 1
                 else:
-                    coefficient *= int(factor)
+                    coefficient *= _natural(factor)
             terms.append((powers[0], powers[1], -coefficient if sign == "-" else coefficient))
         result = cls.of(terms)
         if result.text(names) != text:
             raise ValueError(f"not a primitive polynomial in {names[0]} and {names[1]}: {text[:60]}")
         return result
+
+
+def _natural(digits: str) -> int:
+    if not (digits.isascii() and digits.isdigit()) or len(digits) > MAX_DIGITS:
+        raise ValueError(f"{digits[:40]!r} is not a natural number")
+    return integer_of(digits)

@@ -5,19 +5,14 @@ Guarantee: every number in it is exact or an enclosure; `RegionMap.from_json(res
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.expressions import Expression, parse, rational
-from ptmcad.expressions import axis as axis_function
 from ptmcad.plane import PlanePolynomial
-from ptmcad.slice import Axis, Count, Point, Slice
-
-FORMAT = "ptmcad-region-map/1"
+from ptmcad.slice import Point, Slice
 
 MorseIndex = tuple[int, int, int]
 """Numbers of minima, saddles and maxima."""
@@ -40,6 +35,26 @@ class Kind(Enum):
     CRITICAL = "critical"
     INFINITY = "infinity"
     BOUNDARY = "boundary"
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """The exact equations, as text: polynomials over Q in the unknowns and the mechanism's parameters.
+
+    Attributes
+    ----------
+    unknowns : cosine and sine of each angle, in this order; the boxes of `Solution` are in these coordinates.
+    relations : polynomials that vanish on the torus.
+    potential : energy, in units of force times length.
+    gradient : its derivatives by the angles; the equilibria are their common zeros.
+    hessian : its second derivatives by the angles.
+    """
+
+    unknowns: tuple[str, ...]
+    relations: tuple[str, ...]
+    potential: str
+    gradient: tuple[str, ...]
+    hessian: tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +115,27 @@ class Stack:
 
 
 @dataclass(frozen=True, slots=True)
+class Solution:
+    """One equilibrium at a sample: the only one within ``radius`` of ``center`` in every unknown.
+
+    Attributes
+    ----------
+    center : rational, in the order of the system's unknowns.
+    signs : the signs of the Hessian's eigenvalues there, positive ones first, such as ``"+-"`` for a saddle.
+    """
+
+    center: tuple[Fraction, ...]
+    radius: Fraction
+    signs: str
+
+
+@dataclass(frozen=True, slots=True)
 class Cell:
-    """An open cell with its rational sample point and the counts there, which hold in the whole cell."""
+    """An open cell with its rational sample point and the counts there, which hold in the whole cell.
+
+    ``solutions`` proves the counts: disjoint boxes, one around each of the real solutions at the sample. Empty when the
+    counts were proved in another way.
+    """
 
     stack: int
     level: int
@@ -110,6 +144,7 @@ class Cell:
     total: int | None
     stable: int | None
     index: MorseIndex | None
+    solutions: tuple[Solution, ...] = ()
 
 
 class Merge(Enum):
@@ -136,8 +171,47 @@ class Adjacency:
     first: int
     second: int
     component: int | None
-    segment: tuple[Fraction, Fraction, Fraction] | None
+    segment: Segment | None
     merge: Merge
+
+
+class Reason(Enum):
+    """Why two or more half-branches leave no gap between them where they reach the line over a critical value.
+
+    PAIR: there are two of them, and an even number runs into each inner point of the window.
+    EDGE: there is a single one, so it ends on the window's edge.
+    POINT: the curves have no two points in that part of the line.
+    """
+
+    PAIR = "two half-branches meet"
+    EDGE = "a half-branch ends on the window's edge"
+    POINT = "one point of the curves"
+
+
+Segment = tuple[Fraction, Fraction, Fraction]
+"""(low, high, height): the segment from low to high along the base axis, at a height on the other axis."""
+
+
+@dataclass(frozen=True, slots=True)
+class NonAdjacency:
+    """Cells of two neighbouring stacks that are not adjacent although their order would allow it.
+
+    Attributes
+    ----------
+    critical_value : number of the critical value between the stacks.
+    left, right : numbers of consecutive cells, from below. No cell of ``left`` is adjacent to a cell of ``right`` but,
+        where there is a segment ``below``, the first to the first, and where there is one ``above``, the last to the
+        last.
+    below, above : segments free of the curves between which these cells reach the critical value; None at the window's
+        edge.
+    """
+
+    critical_value: int
+    left: tuple[int, ...]
+    right: tuple[int, ...]
+    below: Segment | None
+    above: Segment | None
+    reason: Reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,11 +267,13 @@ class RegionMap:
     base : the axis (0 or 1) over which the stacks stand.
     undetermined : fraction of the window's area that is not decided; 0 for the exact engine.
     complex_solutions : number of complex solutions at a generic point.
+    precision : largest number of bits that signs of Hessians and areas needed.
     timings : seconds by stage; not part of equality.
     """
 
     slice: Slice
     status: Status
+    system: System
     base: int
     complex_solutions: int
     components: tuple[Component, ...]
@@ -205,10 +281,12 @@ class RegionMap:
     stacks: tuple[Stack, ...]
     cells: tuple[Cell, ...]
     adjacencies: tuple[Adjacency, ...]
+    non_adjacencies: tuple[NonAdjacency, ...]
     regions: tuple[Region, ...]
     plan: tuple[PlanStep, ...]
     undetermined: Fraction
     versions: Mapping[str, str]
+    precision: Mapping[str, int]
     timings: Mapping[str, float] = field(default_factory=dict, compare=False)
 
     def __str__(self) -> str:
@@ -233,10 +311,9 @@ class RegionMap:
 
     def to_json(self, timings: bool = True) -> str:
         """The map as JSON text; the same text for the same slice when ``timings`` is False."""
-        data = _encode(self)
-        if timings:
-            data["timings"] = {name: round(seconds, 6) for name, seconds in self.timings.items()}
-        return _dumps(data)
+        from ptmcad.document import write
+
+        return write(self, timings)
 
     @classmethod
     def from_json(cls, text: str) -> RegionMap:
@@ -245,235 +322,14 @@ class RegionMap:
         Raises
         ------
         ValueError
-            When the text is not such a map.
+            When the text is not such a map; the message names the place.
         """
-        try:
-            return _decode(json.loads(text))
-        except (KeyError, TypeError, IndexError, AttributeError) as error:
-            raise ValueError(f"this is not a {FORMAT} file: {error!r}") from error
+        from ptmcad.document import read
+
+        return read(text)
 
     def table(self) -> str:
         """Five lines for the terminal: regions, counts, areas, boundary curves, time and error."""
         from ptmcad.table import table
 
         return table(self)
-
-
-# ---------------------------------------------------------------------------------------------------------- JSON
-
-
-def _dumps(data: dict[str, Any]) -> str:
-    """JSON with one record of a list per line: readable, and small differences stay small."""
-    lines = []
-    for key, value in data.items():
-        if isinstance(value, list) and value and isinstance(value[0], dict):
-            items = ",\n".join("    " + json.dumps(item, ensure_ascii=False) for item in value)
-            lines.append(f"  {json.dumps(key)}: [\n{items}\n  ]")
-        else:
-            lines.append(f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}")
-    return "{\n" + ",\n".join(lines) + "\n}\n"
-
-
-def _point(point: Point) -> dict[str, str]:
-    return {name: str(point[name]) for name in point.names}
-
-
-def _encode(result: RegionMap) -> dict[str, Any]:
-    names = result.slice.axis_names
-    return {
-        "format": FORMAT,
-        "status": result.status.value,
-        "slice": {
-            "name": result.slice.name,
-            "title": result.slice.title,
-            "mechanism": result.slice.mechanism,
-            "axes": {a.name: [str(a.low), str(a.high)] for a in result.slice.axes},
-            "parameters": {n: e.to_text(names) for n, e in result.slice.parameters.items()},
-            "text": dict(result.slice.text),
-            "count": result.slice.count.value,
-            "reference": dict(result.slice.reference),
-        },
-        "base": names[result.base],
-        "complex_solutions": result.complex_solutions,
-        "undetermined": str(result.undetermined),
-        "regions": [
-            {
-                "stable": r.stable,
-                "total": r.total,
-                "index": r.index,
-                "area": [decimal(r.area[0], up=False), decimal(r.area[1], up=True)],
-                "sample": _point(r.sample),
-                "cells": r.cells,
-            }
-            for r in result.regions
-        ],
-        "components": [
-            {
-                "kind": c.kind.value,
-                "separates": c.separates,
-                "left_out": c.left_out,
-                "degrees": dict(zip(names, c.polynomial.degrees, strict=True)),
-                "terms": len(c.polynomial.terms),
-                "polynomial": c.polynomial.text(names),
-            }
-            for c in result.components
-        ],
-        "critical_values": [
-            {"polynomial": [str(c) for c in v.polynomial], "low": str(v.low), "high": str(v.high), "origin": v.origin}
-            for v in result.critical_values
-        ],
-        "stacks": [
-            {
-                "left": s.left,
-                "right": s.right,
-                "sample": str(s.sample),
-                "walls": [[w.component, w.root] for w in s.walls],
-                "cells": s.cells,
-            }
-            for s in result.stacks
-        ],
-        "cells": [
-            {
-                "stack": c.stack,
-                "level": c.level,
-                "sample": _point(c.sample),
-                "region": c.region,
-                "total": c.total,
-                "stable": c.stable,
-                "index": c.index,
-            }
-            for c in result.cells
-        ],
-        "adjacencies": [
-            {
-                "cells": [a.first, a.second],
-                "merge": a.merge.value,
-                "component": a.component,
-                "segment": None if a.segment is None else [str(q) for q in a.segment],
-            }
-            for a in result.adjacencies
-        ],
-        "plan": [{"what": p.what, "done": p.done, "reason": p.reason} for p in result.plan],
-        "versions": dict(result.versions),
-    }
-
-
-def magnitude(value: Fraction) -> int:
-    """The e with 10^e <= value < 10^(e+1), for a positive value."""
-    # 2^10 is just above 10^3; numbers may be too long to be written out
-    e = (value.numerator.bit_length() - value.denominator.bit_length()) * 3 // 10
-    while value >= Fraction(10) ** (e + 1):
-        e += 1
-    while value < Fraction(10) ** e:
-        e -= 1
-    return e
-
-
-def decimal(value: Fraction, up: bool, digits: int = 18) -> str:
-    """A decimal text with ``digits`` significant digits that bounds a nonnegative value from the side asked for."""
-    if value == 0:
-        return "0"
-    exponent = magnitude(value) + 1 - digits
-    scaled = value / Fraction(10) ** exponent
-    mantissa = -((-scaled.numerator) // scaled.denominator) if up else scaled.numerator // scaled.denominator
-    text = str(mantissa)
-    point = len(text) + exponent
-    if -7 < point <= 0:
-        return ("0." + "0" * -point + text).rstrip("0")
-    if 0 < point < len(text):
-        return (text[:point] + "." + text[point:]).rstrip("0").rstrip(".")
-    if len(text) <= point <= 21:
-        return text + "0" * (point - len(text))
-    return f"{text[0]}.{text[1:].rstrip('0') or '0'}e{point - 1}"
-
-
-def _index(value: Any) -> MorseIndex | None:
-    if value is None:
-        return None
-    minima, saddles, maxima = value
-    return (int(minima), int(saddles), int(maxima))
-
-
-def _decode(data: Mapping[str, Any]) -> RegionMap:
-    if data["format"] != FORMAT:
-        raise ValueError(f"format {data['format']!r} is not {FORMAT!r}")
-    head = data["slice"]
-    axes = tuple(Axis(n, rational(low), rational(high)) for n, (low, high) in head["axes"].items())
-    if len(axes) != 2:
-        raise ValueError("a region map has two axes")
-    names = (axes[0].name, axes[1].name)
-    functions: dict[str, Expression] = {names[0]: axis_function(0), names[1]: axis_function(1)}
-
-    def point(values: Mapping[str, str]) -> Point:
-        return Point(names, rational(values[names[0]]), rational(values[names[1]]))
-
-    def polynomial(text: str) -> PlanePolynomial:
-        return PlanePolynomial.parse(text, names)
-
-    return RegionMap(
-        slice=Slice(
-            name=head["name"],
-            mechanism=head["mechanism"],
-            axes=(axes[0], axes[1]),
-            parameters={n: parse(text, functions) for n, text in head["parameters"].items()},
-            count=Count(head["count"]),
-            title=head["title"],
-            text=head["text"],
-            reference=head["reference"],
-        ),
-        status=Status(data["status"]),
-        base=names.index(data["base"]),
-        complex_solutions=data["complex_solutions"],
-        components=tuple(
-            Component(polynomial(c["polynomial"]), Kind(c["kind"]), c["left_out"], c["separates"])
-            for c in data["components"]
-        ),
-        critical_values=tuple(
-            CriticalValue(tuple(int(c) for c in v["polynomial"]), rational(v["low"]), rational(v["high"]), v["origin"])
-            for v in data["critical_values"]
-        ),
-        stacks=tuple(
-            Stack(
-                s["left"],
-                s["right"],
-                rational(s["sample"]),
-                tuple(Wall(c, k) for c, k in s["walls"]),
-                tuple(s["cells"]),
-            )
-            for s in data["stacks"]
-        ),
-        cells=tuple(
-            Cell(c["stack"], c["level"], point(c["sample"]), c["region"], c["total"], c["stable"], _index(c["index"]))
-            for c in data["cells"]
-        ),
-        adjacencies=tuple(
-            Adjacency(
-                a["cells"][0],
-                a["cells"][1],
-                a["component"],
-                None if a["segment"] is None else _triple(a["segment"]),
-                Merge(a["merge"]),
-            )
-            for a in data["adjacencies"]
-        ),
-        regions=tuple(
-            Region(
-                r["stable"],
-                r["total"],
-                _index(r["index"]),
-                (rational(r["area"][0]), rational(r["area"][1])),
-                tuple(r["cells"]),
-                point(r["sample"]),
-            )
-            for r in data["regions"]
-        ),
-        plan=tuple(PlanStep(p["what"], p["done"], p["reason"]) for p in data["plan"]),
-        undetermined=rational(data["undetermined"]),
-        versions=data["versions"],
-        timings=data.get("timings", {}),
-    )
-
-
-def _triple(values: Any) -> tuple[Fraction, Fraction, Fraction]:
-    low, high, height = (rational(v) for v in values)
-    return (low, high, height)

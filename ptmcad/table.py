@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from fractions import Fraction
 
-from ptmcad.regionmap import Region, RegionMap, decimal, magnitude
+from ptmcad.numerals import decimal, magnitude
+from ptmcad.regionmap import Region, RegionMap
 from ptmcad.slice import Count
 
 _NAMES = {Count.STABLE: "stable", Count.TOTAL: "in all", Count.INDEX: "(minima, saddles, maxima)"}

@@ -95,7 +95,7 @@ def discriminant_variety(
     poles = [power_trace_denominators(algebra, k) for k in range(0, equations.unknowns, 2)] if visible else []
     for factor in suspects:
         if factor not in visible:
-            adopt(factor, Kind.INFINITY, "no point in the window")
+            adopt(factor, Kind.INFINITY, "no point in the window, so whether it has poles was not examined")
         elif any(pole.gcd(factor).total_degree() > 0 for pole in poles):
             adopt(factor, Kind.INFINITY)
     order = {Kind.CRITICAL: 0, Kind.INFINITY: 1, Kind.BOUNDARY: 2}

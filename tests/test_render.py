@@ -22,7 +22,7 @@ from matplotlib.text import Annotation
 
 import ptmcad
 from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import Cell, Component, Kind, Region, RegionMap, Stack, Status, Wall
+from ptmcad.regionmap import Cell, Component, Kind, Region, RegionMap, Stack, Status, System, Wall
 from ptmcad.render import draw
 from ptmcad.render.axes import scale_of, symbol, unit
 from ptmcad.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of
@@ -75,6 +75,7 @@ def bands(
     return RegionMap(
         slice=Slice("bands", "other", (Axis(names[0], *window[0]), Axis(names[1], *window[1])), {}, title=title),
         status=Status.EXACT,
+        system=System((), (), "0", (), ()),
         base=base,
         complex_solutions=0,
         components=tuple(lines),
@@ -82,12 +83,14 @@ def bands(
         stacks=(Stack(None, None, (p + q) / 2, tuple(Wall(k, 0) for k in range(len(heights))), tuple(numbers)),),
         cells=tuple(Cell(0, k, sample(k), k, None, counts[k], None) for k in numbers),
         adjacencies=(),
+        non_adjacencies=(),
         regions=tuple(
             Region(counts[k], None, None, (levels[k + 1] - levels[k],) * 2, (k,), sample(k)) for k in numbers
         ),
         plan=(),
         undetermined=Fraction(0),
         versions={},
+        precision={},
     )
 
 

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
-from ptmcad.cad.adjacency import Passage, passages
+from ptmcad.cad.adjacency import Passage, cross
 from ptmcad.cad.area import region_areas
 from ptmcad.cad.curves import Curve, curve
 from ptmcad.cad.projection import project
@@ -54,7 +54,7 @@ def decompose(polynomials: Sequence[fmpz_mpoly], window: Window, base: int) -> D
     lines = [coefficients_in(f, 1 - base)[0] for f in factors if f.degrees()[1 - base] == 0]
     projection = project(curves, lines, inner, outer)
     stacks = lift(curves, projection.abscissae, inner, outer)
-    crossings = [passages(curves, a, b, outer) for a, b in pairwise(stacks)]
+    crossings = [cross(curves, a, b, outer).passages for a, b in pairwise(stacks)]
     starts = [0]
     for stack in stacks:
         assert len(stack.heights) == len(stack.walls) + 1
@@ -305,7 +305,7 @@ AREAS: dict[str, tuple[list[fmpz_mpoly], Window, str, str, tuple[Fraction, Fract
 def check_area(name: str, base: int, tolerance: Fraction) -> None:
     polynomials, window, x, y, (low, high) = AREAS[name]
     found = decompose(polynomials, window, base)
-    areas = region_areas(found.stacks, found.pieces, found.curves, found.base, found.fibre, tolerance)
+    areas, _ = region_areas(found.stacks, found.pieces, found.curves, found.base, found.fibre, tolerance)
     at = (rational(x), rational(y))
     u, v = at[base], at[1 - base]
     stack = next(

@@ -21,6 +21,8 @@ from ptmcad.algebra.window import Interval
 
 ENOUGH = 24
 """Bits of the curve's derivative at the panel's middle that have to be right for the rest to make sense."""
+BETWEEN = 40
+"""Bits by which rounding has to be smaller than the distance to the next branch."""
 
 
 class PrecisionTooLow(ArithmeticError):
@@ -53,6 +55,9 @@ def branch_integral(
     local = _local_coefficients(in_v, middle, radius, origin)
     if local[1][0].rel_accuracy_bits() < ENOUGH:
         raise PrecisionTooLow  # the root is simple, so the derivative is not zero
+    steepness = abs(local[1][0])
+    if len(local) > 2 and not _noise(local[0]) * _norm(local[2]) * 2**BETWEEN < steepness * steepness:
+        raise PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
     series = _series(local, order)
     last, first = abs(series[order]).upper(), max((abs(c).upper() for c in series.coeffs()[1:]), default=arb(0))
     if not 8 * last < first and not last < arb((fibre[1] - fibre[0]) / 2**20):
@@ -155,6 +160,11 @@ def _derivative_bound(local: Sequence[arb_poly], k: int, reach: arb) -> arb:
         total += perm(i, k) * _norm(local[i]) * power
         power = power * reach
     return total
+
+
+def _noise(p: arb_poly) -> arb:
+    """How much of `_norm` is rounding."""
+    return sum((c.rad() for c in p.coeffs()), arb(0))
 
 
 def _norm(p: arb_poly) -> arb:

@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
 from itertools import pairwise
 
 from flint import fmpq
@@ -56,10 +57,42 @@ class Passage:
     height: fmpq
 
 
-def passages(
+class Closing(Enum):
+    """Why a slot has no room for further pairs; see the module's text."""
+
+    PAIR = "two half-branches meet"
+    EDGE = "a half-branch ends on the window's edge"
+    POINT = "one point of the curves"
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """Heights between two barriers (None at the window's edge) which branches enter, and why no other barrier fits.
+
+    Attributes
+    ----------
+    left, right : the lowest and the highest level, in either stack, of the cells that reach into the slot.
+    """
+
+    left: tuple[int, int]
+    right: tuple[int, int]
+    below: Passage | None
+    above: Passage | None
+    closing: Closing
+
+
+@dataclass(frozen=True, slots=True)
+class Crossing:
+    """What happens between two neighbouring stacks: one passage for each adjacent pair, and the slots between them."""
+
+    passages: tuple[Passage, ...]
+    slots: tuple[Slot, ...]
+
+
+def cross(
     curves: Sequence[Curve], left: StackData, right: StackData, fibre: Interval, check: Check = nothing
-) -> tuple[Passage, ...]:
-    """All adjacent pairs of cells across the abscissa between two neighbouring stacks, one witness for each pair."""
+) -> Crossing:
+    """All adjacent pairs of cells across the abscissa between two neighbouring stacks, with proof."""
     end = left.right
     assert end.root is not None
     reach, height = min(end.value - left.sample, right.sample - end.value), fibre[1] - fibre[0]
@@ -75,17 +108,20 @@ def passages(
             tuple((w, refine(r, resolution)) for w, r in roots_over(curves, u, fibre)) for u in (low, high)
         )
         found = _barriers(curves, low, high, over_low, over_high, fibre, extra)
-        unresolved = _unresolved(curves, end, found, len(over_low), len(over_high), fibre, points)
+        gaps = _gaps(found, len(over_low), len(over_high), fibre)
+        # without any barrier nothing is proved, even if no branch runs up to the line
+        unresolved = [g for g in gaps if not found or _closing(g, curves, end, points) is None]
         if not unresolved:
             unique = {(p.left, p.right): p for p in reversed(found)}
-            return tuple(sorted(unique.values(), key=lambda p: (p.left, p.right)))
+            slots = (_slot(g, curves, end, points) for g in gaps if g.branches)
+            return Crossing(tuple(sorted(unique.values(), key=lambda p: (p.left, p.right))), tuple(slots))
         attempt += 1
         step = 2 * step
         if attempt >= ROUNDS:
             if points is None:
                 points = _points_polynomial(curves, end)
                 width, resolution, step = reach, height, 8  # with the heights now known, wide brackets may do
-            separating = (h for slot in unresolved for h in _between_points(points, slot))
+            separating = (h for gap in unresolved for h in _between_points(points, gap))
             extra = tuple(sorted({*extra, *separating}))
 
 
@@ -129,45 +165,57 @@ def _barriers(
 
 
 @dataclass(frozen=True, slots=True)
-class _Slot:
-    """Heights between two barriers (or a barrier and the window's edge) and the branches that enter."""
+class _Gap:
+    """Heights between two barriers, or a barrier and the window's edge, or both edges."""
 
     bottom: fmpq
     top: fmpq
-    from_left: int
-    from_right: int
-    edge: fmpq | None
+    below: Passage | None
+    above: Passage | None
+    left: tuple[int, int]
+    right: tuple[int, int]
+
+    @property
+    def branches(self) -> int:
+        """The number of half-branches that enter."""
+        return self.left[1] - self.left[0] + self.right[1] - self.right[0]
+
+    @property
+    def edges(self) -> list[fmpq]:
+        """The window's edges among the ends."""
+        return [height for height, end in ((self.bottom, self.below), (self.top, self.above)) if end is None]
 
 
-def _unresolved(
-    curves: Sequence[Curve],
-    end: BaseEnd,
-    found: Sequence[Passage],
-    count_left: int,
-    count_right: int,
-    fibre: Interval,
-    points: UnivariatePolynomial | None,
-) -> list[_Slot]:
-    """The slots that may contain more than one point into which branches run.
+def _gaps(found: Sequence[Passage], count_left: int, count_right: int, fibre: Interval) -> list[_Gap]:
+    """The gaps between consecutive barriers, from below, the window's edges included."""
+    ends: list[tuple[fmpq, int, int, Passage | None]] = [(fibre[0], 0, 0, None)]
+    ends += [(p.height, p.left, p.right, p) for p in found]
+    ends.append((fibre[1], count_left, count_right, None))
+    return [_Gap(a[0], b[0], a[3], b[3], (a[1], b[1]), (a[2], b[2])) for a, b in pairwise(ends)]
 
-    ``points`` is the polynomial of `_points_polynomial`, or None while it is not known.
+
+def _closing(gap: _Gap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Closing | None:
+    """Why branches run into at most one point of the gap; None when that is not known.
+
+    ``points`` is the polynomial of `_points_polynomial`, or None while it is not known. A gap without branches may
+    be closed in any way.
     """
-    if not found:
-        return [_Slot(fibre[0], fibre[1], count_left, count_right, fibre[0])]
-    slots = [_Slot(a.height, b.height, b.left - a.left, b.right - a.right, None) for a, b in pairwise(found)]
-    slots.insert(0, _Slot(fibre[0], found[0].height, found[0].left, found[0].right, fibre[0]))
-    last = found[-1]
-    slots.append(_Slot(last.height, fibre[1], count_left - last.left, count_right - last.right, fibre[1]))
-    result = []
-    for slot in slots:
-        branches = slot.from_left + slot.from_right
-        if slot.edge is None:
-            doubtful, several = branches % 2 == 1, branches > 2
-        else:
-            doubtful, several = branches > 0 and not _meets(curves, end, slot.edge), branches > 1
-        if doubtful or (several and (points is None or _count(points, curves, end, slot) > 1)):
-            result.append(slot)
-    return result
+    branches, edges = gap.branches, gap.edges
+    if branches == 0:
+        return Closing.POINT
+    if len(edges) == 2 or (not edges and branches % 2 == 1) or (edges and not _meets(curves, end, edges[0])):
+        return None
+    if branches <= 2 - len(edges):
+        return Closing.EDGE if edges else Closing.PAIR
+    if points is None or len(isolate(points, gap.bottom, gap.top)) > 1 - len(edges):
+        return None
+    return Closing.POINT
+
+
+def _slot(gap: _Gap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Slot:
+    closing = _closing(gap, curves, end, points)
+    assert closing is not None
+    return Slot(gap.left, gap.right, gap.below, gap.above, closing)
 
 
 def _meets(curves: Sequence[Curve], end: BaseEnd, edge: fmpq) -> bool:
@@ -199,14 +247,8 @@ def _points_polynomial(curves: Sequence[Curve], end: BaseEnd) -> UnivariatePolyn
     return product
 
 
-def _count(points: UnivariatePolynomial, curves: Sequence[Curve], end: BaseEnd, slot: _Slot) -> int:
-    """An upper bound for the number of points of the curves over the critical abscissa in the slot."""
-    on_edge = slot.edge is not None and _meets(curves, end, slot.edge)
-    return len(isolate(points, slot.bottom, slot.top)) + int(on_edge)
-
-
-def _between_points(points: UnivariatePolynomial, slot: _Slot) -> list[fmpq]:
-    """Heights between all possible points in the slot."""
-    roots = inside(disjoint(isolate(points, slot.bottom, slot.top)), (slot.bottom, slot.top))
-    levels = [slot.bottom, *(x for r in roots for x in (r.low, r.high)), slot.top]
+def _between_points(points: UnivariatePolynomial, gap: _Gap) -> list[fmpq]:
+    """Heights between all possible points in the gap."""
+    roots = inside(disjoint(isolate(points, gap.bottom, gap.top)), (gap.bottom, gap.top))
+    levels = [gap.bottom, *(x for r in roots for x in (r.low, r.high)), gap.top]
     return [simplest_between(levels[2 * k], levels[2 * k + 1]) for k in range(len(roots) + 1)]

@@ -73,8 +73,8 @@ def region_areas(
     fibre: Interval,
     tolerance: Fraction,
     check: Callable[[], None] = lambda: None,
-) -> tuple[tuple[Fraction, Fraction], ...]:
-    """Bounds for the area of each region, in the product of the axes' units.
+) -> tuple[tuple[tuple[Fraction, Fraction], ...], int]:
+    """Bounds for the area of each region, in the product of the axes' units, and the bits of precision they needed.
 
     Parameters
     ----------
@@ -83,16 +83,21 @@ def region_areas(
     check : called between panels; may raise to stop.
     """
     count = 1 + max(max(row) for row in regions)
+    whole = to_fraction((base[1] - base[0]) * (fibre[1] - fibre[0]))
+    if count == 1:
+        return ((whole, whole),), 0
     digits = len(str(tolerance.denominator // tolerance.numerator))
     width = base[1] - base[0]
     strip = width * fmpq(1, 10 ** (digits + 3) * 4 * (len(stacks) + 1))
     bits = 64 + 6 * digits + max((int(q.height_bits()) for c in curves for q in c.in_v), default=0) // 2
+    bits += _bits_lost(base) + _bits_lost(fibre)
     finer = 20
     while True:
         effort = _Effort(digits + 2, width, width * fmpq(1, 2 ** (3 * digits // 2)), width / 2 ** (bits // 2))
         try:
             with ctx.workprec(bits):
-                return _areas(stacks, regions, curves, strip, fibre, tolerance, count, effort, check)
+                bounds = _areas(stacks, regions, curves, strip, fibre, tolerance * 3 / 4, count, effort, check)
+                return tuple(_with_room(b, tolerance, whole) for b in bounds), bits
         except PrecisionTooLow:
             bits = 3 * bits // 2
         except _Unreachable as obstacle:
@@ -101,6 +106,23 @@ def region_areas(
                 bits, strip, finer = bits + finer, strip / 2**finer, 2 * finer
             else:
                 bits = 3 * bits // 2
+
+
+def _bits_lost(interval: Interval) -> int:
+    """Bits that cancel when the interval's ends are subtracted."""
+    ratio = max(abs(interval[0]), abs(interval[1])) / (interval[1] - interval[0])
+    return max(0, int(ratio.floor()).bit_length())
+
+
+def _with_room(bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fraction) -> tuple[Fraction, Fraction]:
+    """Bounds a little wider, so that a checker who encloses the area less tightly can still confirm them."""
+    low, high = bounds
+    known = high - low <= low * _NEGLIGIBLE  # walls on which the Taylor polynomials are exact, such as straight lines
+    room = low * (_NEGLIGIBLE / 100 if known else tolerance / 16)
+    return max(low - room, Fraction(0)), min(high + room, whole)
+
+
+_NEGLIGIBLE = Fraction(1, 10**15)
 
 
 class _Unreachable(ArithmeticError):

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ptmcad.document import FORMAT
 from ptmcad.errors import ConfigError, PtmcadError
-from ptmcad.regionmap import FORMAT, RegionMap
+from ptmcad.regionmap import RegionMap
 
 
 def read_result(path: Path) -> RegionMap:

@@ -11,9 +11,9 @@ from ptmcad.cli.stored import read_result
 
 @click.command("verify")
 @click.argument("result", type=click.Path(path_type=Path))
-@click.option("--seed", type=click.IntRange(min=0), default=20231, show_default=True,
-              help="Seed of the random points at which the variety is checked.")  # fmt: skip
-def command(*, result: Path, seed: int) -> int:
+@click.option("--seed", type=click.IntRange(min=0), metavar="N",
+              help="Seed of the random points for the variety.  [default: a hash of the claims]")  # fmt: skip
+def command(*, result: Path, seed: int | None) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
 
     Prints what was checked, and how. The exit status is 0 when every check passed, 1 when one failed (the first

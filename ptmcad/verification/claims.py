@@ -10,11 +10,14 @@ from fractions import Fraction
 from functools import cached_property
 from math import gcd, lcm
 
-from flint import Ordering, fmpq, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
+from flint import Ordering, arb, fmpq, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
+from ptmcad.errors import PoleError
+from ptmcad.numerals import approximate_text
 from ptmcad.plane import PlanePolynomial
 from ptmcad.regionmap import CriticalValue, RegionMap
-from ptmcad.verification.fibre import rational
+from ptmcad.verification.fibre import Fibre, NotFinite, fibre, rational
+from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import roots_between, roots_within
 
 PLANE: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
@@ -114,6 +117,33 @@ class Claims:
         """Components that are used and consist of lines u = constant."""
         return [c for c in self._used() if c.degrees[1] == 0]
 
+    def parameters_at(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
+        """The values of the parameters at a point.
+
+        Raises
+        ------
+        Violation
+            When one has a pole there.
+        """
+        try:
+            return {name: e.evaluate(x, y) for name, e in self.result.slice.parameters.items()}
+        except PoleError as error:
+            raise Violation(str(error)) from error
+
+    def fibre_at(self, x: Fraction, y: Fraction) -> Fibre:
+        """The equilibria over a point.
+
+        Raises
+        ------
+        Violation
+            When there are infinitely many, or a parameter has a pole there.
+        """
+        try:
+            return fibre(self.parameters_at(x, y))
+        except NotFinite:
+            names = self.result.slice.axis_names
+            raise Violation(f"there are infinitely many solutions at {names[0]}={x}, {names[1]}={y}") from None
+
     def level(self, u: fmpq, v: fmpq) -> int:
         """How many roots of the curves over u lie below v."""
         return sum(roots_between(c.over(u), self.height[0], v) for c in self.curves)
@@ -142,3 +172,36 @@ def side(u: fmpq, value: CriticalValue) -> int:
 def fraction(value: fmpq) -> Fraction:
     """A FLINT rational as a Python fraction."""
     return Fraction(int(value.p), int(value.q))
+
+
+def short(value: fmpq) -> str:
+    """A number as a short decimal for messages."""
+    return approximate_text(fraction(value))
+
+
+def is_root(f: fmpz_poly, value: CriticalValue) -> bool:
+    """Whether a critical value is a root of f."""
+    common = f.gcd(polynomial(value))
+    return common.degree() > 0 and roots_within(common, rational(value.low), rational(value.high)) > 0
+
+
+def bracket(value: CriticalValue, width: fmpq) -> tuple[fmpq, fmpq]:
+    """A narrow bracket of a critical value."""
+    low, high = rational(value.low), rational(value.high)
+    p = polynomial(value)
+    below = p(low)
+    while high - low > width:
+        middle = (low + high) / 2
+        here = p(middle)
+        if here == 0:
+            return middle, middle
+        # the only root may have even multiplicity; then the ends do not tell on which side it lies
+        right = (here > 0) == (below > 0) if below * p(high) < 0 else side(middle, value) < 0
+        low, high = (middle, high) if right else (low, middle)
+    return low, high
+
+
+def ball(value: CriticalValue, width: fmpq) -> arb:
+    """A ball around a critical value."""
+    low, high = bracket(value, width)
+    return arb(low).union(arb(high))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict, deque
 from itertools import pairwise
 
+from ptmcad.numerals import approximate_text
 from ptmcad.regionmap import Cell, Merge, Status
 from ptmcad.slice import Count
 from ptmcad.verification.claims import Claims
@@ -19,14 +20,20 @@ from ptmcad.verification.report import Violation
 def check_shape(claims: Claims) -> str:
     """Numbers refer to what exists, in order."""
     r = claims.result
-    if r.status is not Status.EXACT or r.undetermined != 0:
-        raise Violation(f"the status {r.status.value!r} with {r.undetermined} undetermined can not be checked: only "
-                        "exact results can")  # fmt: skip
-    if r.slice.mechanism != "ptm" or not set(PARAMETERS) <= set(r.slice.parameters):
-        raise Violation(f"the mechanism {r.slice.mechanism!r} is not known or lacks parameters")
+    if r.status not in (Status.EXACT, Status.PARTIAL):
+        raise Violation(f"the status {r.status.value!r} can not be checked: only exact and partial results can")
+    if r.undetermined != (0 if r.stacks else 1):
+        raise Violation(f"{approximate_text(r.undetermined)} of the window is said to be undetermined, but "
+                        f"{'all cells' if r.stacks else 'no cells'} are stored")  # fmt: skip
+    if r.slice.mechanism != "ptm" or set(r.slice.parameters) - {"k"} != set(PARAMETERS):
+        raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
     if any(a.low >= a.high for a in r.slice.axes) or r.base not in (0, 1):
         raise Violation("the window is empty")
-    if not r.stacks or len(r.critical_values) != len(r.stacks) - 1:
+    if not r.stacks:
+        if r.status is Status.EXACT or r.critical_values or r.cells or r.adjacencies or r.non_adjacencies or r.regions:
+            raise Violation("there are no stacks")
+        return "no stacks yet"
+    if len(r.critical_values) != len(r.stacks) - 1:
         raise Violation(f"{len(r.critical_values)} critical values do not part {len(r.stacks)} stacks")
     number = 0
     for s, stack in enumerate(r.stacks):

@@ -1,0 +1,130 @@
+"""Exact numbers as text, of any length, and back.
+
+Guarantee: what `text_of` writes `fraction_of` reads back exactly; decimals made by `decimal` bound the value from the
+side that was asked for. Python's own conversion refuses integers of more than 4300 digits, which coefficients of a
+discriminant can have; here they are split at powers of ten.
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+
+MAX_DIGITS = 200_000
+"""Longer numbers are refused when reading."""
+MAX_EXPONENT = 20_000
+_PIECE = 4000
+
+_NUMBER = re.compile(r"(-?)([0-9]+)(?:/([0-9]+)|(?:\.([0-9]+))?(?:e(-?[0-9]{1,6}))?)", re.ASCII)
+
+
+def integer_text(n: int) -> str:
+    """The decimal digits of an integer.
+
+    >>> integer_text(-(10**5000)) == "-1" + 5000 * "0"
+    True
+    """
+    if n < 0:
+        return "-" + integer_text(-n)
+    if n.bit_length() < 3 * _PIECE:
+        return str(n)
+    half = n.bit_length() * 3 // 20
+    high, low = divmod(n, 10**half)
+    return integer_text(high) + integer_text(low).zfill(half)
+
+
+def integer_of(digits: str) -> int:
+    """The integer with these decimal digits (no sign)."""
+    if len(digits) <= _PIECE:
+        return int(digits)
+    half = len(digits) // 2
+    power: int = 10**half
+    return integer_of(digits[:-half]) * power + integer_of(digits[-half:])
+
+
+def text_of(value: Fraction | int) -> str:
+    """An exact number as ``7/10`` or ``-3``."""
+    if value.denominator == 1:
+        return integer_text(value.numerator)
+    return f"{integer_text(value.numerator)}/{integer_text(value.denominator)}"
+
+
+def shortest_text(value: Fraction) -> str:
+    """An exact number as a decimal where it is one with few digits, else as a fraction.
+
+    >>> shortest_text(Fraction(-1, 8)), shortest_text(Fraction(1, 10**12)), shortest_text(Fraction(1, 3))
+    ('-0.125', '1e-12', '1/3')
+    """
+    digits = next((k for k in range(1, 25) if 10**k % value.denominator == 0), 0)
+    if value.denominator == 1 or digits == 0:
+        return text_of(value)
+    scaled = value.numerator * (10**digits // value.denominator)
+    if abs(scaled) == 1 and digits > 6:
+        return f"{scaled}e-{digits}"
+    text = str(abs(scaled)).zfill(digits + 1)
+    return f"{'-' if scaled < 0 else ''}{text[:-digits]}.{text[-digits:]}"
+
+
+def fraction_of(text: str) -> Fraction:
+    """The number written as ``7/10``, ``-3``, ``0.25`` or ``1.5e-7``.
+
+    >>> fraction_of("-1.5e-3"), fraction_of("7/10")
+    (Fraction(-3, 2000), Fraction(7, 10))
+
+    Raises
+    ------
+    ValueError
+        For any other text, a zero denominator, or a number beyond the limits of this module.
+    """
+    if len(text) > 2 * MAX_DIGITS:
+        raise ValueError(f"a number has {len(text)} characters")
+    match = _NUMBER.fullmatch(text)
+    if match is None:
+        raise ValueError(f"{text[:40]!r} is not an exact number such as 7/10 or 0.25")
+    sign, whole, below, decimals, exponent = match.groups()
+    if len(whole) > MAX_DIGITS or (exponent is not None and abs(int(exponent)) > MAX_EXPONENT):
+        raise ValueError(f"the number {text[:20]}... is too long")
+    value = Fraction(integer_of(whole + (decimals or "")))
+    scale = int(exponent or 0) - len(decimals or "")
+    value *= Fraction(10) ** scale
+    if below is not None:
+        if (denominator := integer_of(below)) == 0:
+            raise ValueError(f"{text[:40]!r} has a zero denominator")
+        value /= denominator
+    return -value if sign else value
+
+
+def magnitude(value: Fraction) -> int:
+    """The e with 10^e <= value < 10^(e+1), for a positive value."""
+    # 2^10 is just above 10^3; numbers may be too long to be written out
+    e = (value.numerator.bit_length() - value.denominator.bit_length()) * 3 // 10
+    while value >= Fraction(10) ** (e + 1):
+        e += 1
+    while value < Fraction(10) ** e:
+        e -= 1
+    return e
+
+
+def decimal(value: Fraction, up: bool, digits: int = 18) -> str:
+    """A decimal text with ``digits`` significant digits that bounds a nonnegative value from the side asked for."""
+    if value == 0:
+        return "0"
+    exponent = magnitude(value) + 1 - digits
+    scaled = value / Fraction(10) ** exponent
+    mantissa = -((-scaled.numerator) // scaled.denominator) if up else scaled.numerator // scaled.denominator
+    text = str(mantissa)
+    point = len(text) + exponent
+    if -7 < point <= 0:
+        return ("0." + "0" * -point + text).rstrip("0")
+    if 0 < point < len(text):
+        return (text[:point] + "." + text[point:]).rstrip("0").rstrip(".")
+    if len(text) <= point <= 21:
+        return text + "0" * (point - len(text))
+    return f"{text[0]}.{text[1:].rstrip('0') or '0'}e{point - 1}"
+
+
+def approximate_text(value: Fraction) -> str:
+    """A number for a message: short, rounded towards zero, of any size."""
+    if value < 0:
+        return "-" + approximate_text(-value)
+    return decimal(value, up=False, digits=9)

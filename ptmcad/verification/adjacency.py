@@ -1,0 +1,200 @@
+"""Checks of adjacency: the pairs of cells that share an open arc, those that do not, and that none is missing.
+
+Guarantee: every stored segment joins its cells and meets no curve; every gap between the curves over a critical value
+belongs to a stored pair; every record of cells that are not adjacent holds, and there is one wherever order alone would
+allow another pair.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from flint import fmpq, fmpz_poly
+
+from ptmcad.regionmap import Adjacency, Cell, CriticalValue, NonAdjacency, Reason, Segment
+from ptmcad.verification.claims import Claims, is_root, short, side
+from ptmcad.verification.fibre import rational
+from ptmcad.verification.report import Violation
+from ptmcad.verification.structure import inside_stack, points_over
+from ptmcad.verification.sturm import points_apart, roots_between
+
+
+def check_adjacencies(claims: Claims) -> str:
+    """Every stored adjacency: its component, and the segment that proves it."""
+    result = claims.result
+    vertical, across = set(), []
+    pairs = set()
+    for number, a in enumerate(result.adjacencies):
+        if (pair := frozenset((a.first, a.second))) in pairs:
+            raise Violation(f"adjacency {number} is stored twice: cells {a.first} and {a.second}")
+        pairs.add(pair)
+        first, second = result.cells[a.first], result.cells[a.second]
+        if a.segment is None:
+            if (second.stack, second.level) != (first.stack, first.level + 1):
+                raise Violation(f"adjacency {number} has no segment, but cells {a.first} and {a.second} are not "
+                                "neighbours in one stack")  # fmt: skip
+            wall = result.stacks[first.stack].walls[first.level]
+            if wall.component != a.component:
+                raise Violation(f"adjacency {number}: the wall between the cells is on component {wall.component}, "
+                                f"not {a.component}")  # fmt: skip
+            vertical.add((a.first, a.second))
+        else:
+            _check_segment(claims, number, a)
+            across.append(a)
+    for stack in result.stacks:
+        for one, two in pairwise(stack.cells):
+            if (one, two) not in vertical:
+                raise Violation(f"the adjacency of cells {one} and {two}, neighbours in a stack, is missing")
+    return f"{len(vertical)} inside stacks, {len(across)} segments"
+
+
+def _check_segment(claims: Claims, number: int, a: Adjacency) -> None:
+    result = claims.result
+    assert a.segment is not None
+    first, second = result.cells[a.first], result.cells[a.second]
+    if second.stack != first.stack + 1:
+        raise Violation(f"adjacency {number}: cells {a.first} and {a.second} are not in neighbouring stacks")
+    _check_free(claims, f"adjacency {number}", a.segment, (a.first, first), (a.second, second))
+    value = result.critical_values[first.stack]
+    line = next((c.number for c in claims.lines if is_root(c.in_v[0], value)), None)
+    if line != a.component:
+        raise Violation(
+            f"adjacency {number}: the segment crosses component {line}, not {a.component} (None: no component)"
+        )
+
+
+def _check_free(claims: Claims, what: str, segment: Segment, first: tuple[int, Cell], second: tuple[int, Cell]) -> None:
+    """A segment joins two cells of neighbouring stacks and meets no curve."""
+    low, high, v = (rational(q) for q in segment)
+    if not (inside_stack(claims, low, first[1].stack) and inside_stack(claims, high, second[1].stack)):
+        raise Violation(f"{what}: the segment from {short(low)} to {short(high)} does not join the cells' stacks")
+    if not claims.height[0] < v < claims.height[1]:
+        raise Violation(f"{what}: the segment's height {short(v)} is outside the window")
+    hit = claims.free(low, high, v)
+    if hit is not None:
+        raise Violation(f"{what}: component {hit.number} meets the segment [{low}, {high}] at height {v}")
+    for (n, cell), u in ((first, low), (second, high)):
+        if (level := claims.level(u, v)) != cell.level:
+            raise Violation(
+                f"{what}: the segment's end ({u}, {v}) has {level} roots below it, so it is not in cell {n}"
+            )
+
+
+def check_no_adjacency_missing(claims: Claims) -> str:
+    """Every open segment of the line over a critical value joins a stored pair."""
+    result = claims.result
+    by_parity = by_points = 0
+    for s in range(len(result.stacks) - 1):
+        left, right = result.stacks[s], result.stacks[s + 1]
+        stored = sorted(
+            (a for a in result.adjacencies if a.segment is not None and result.cells[a.first].stack == s),
+            key=lambda a: (result.cells[a.first].level, result.cells[a.second].level),
+        )
+        pairs = {(result.cells[a.first].level, result.cells[a.second].level) for a in stored}
+        marks = [(claims.height[0], 0, 0, True)]
+        for a in stored:
+            assert a.segment is not None
+            marks.append((rational(a.segment[2]), result.cells[a.first].level, result.cells[a.second].level, False))
+        marks.append((claims.height[1], len(left.walls), len(right.walls), True))
+        marks.sort(key=lambda m: fmpq(m[0]))
+        for (bottom, l0, r0, edge0), (top, l1, r1, edge1) in pairwise(marks):
+            branches = (l1 - l0) + (r1 - r0)
+            edge = edge0 or edge1
+            # through an inner point runs an even number of half-branches; a single one ends on the window's edge
+            if branches == 0 or (branches == 2 and not edge) or (branches == 1 and edge0 != edge1):
+                by_parity += 1
+                continue
+            _search(claims, s, bottom, top, pairs)
+            by_points += 1
+    return (
+        f"{by_parity} gaps by parity of half-branches, {by_points} by all points of the curves over the critical value"
+    )
+
+
+def check_non_adjacencies(claims: Claims) -> str:
+    """Every pair of cells that order would allow to be adjacent, and that is not, has a record that proves it."""
+    result = claims.result
+    expected = set()
+    for s in range(len(result.stacks) - 1):
+        left, right = result.stacks[s].cells, result.stacks[s + 1].cells
+        chain = sorted(
+            (result.cells[a.first].level, result.cells[a.second].level)
+            for a in result.adjacencies
+            if a.segment is not None and result.cells[a.first].stack == s
+        )
+        for (l0, r0), (l1, r1) in pairwise([(0, 0), *chain, (len(left) - 1, len(right) - 1)]):
+            if (l0, r0) != (l1, r1):
+                expected.add((s, left[l0 : l1 + 1], right[r0 : r1 + 1]))
+    stored = [(a.critical_value, a.left, a.right) for a in result.non_adjacencies]
+    if len(set(stored)) != len(stored):
+        raise Violation("a record of cells that are not adjacent is stored twice")
+    if set(stored) != expected:
+        s, left, right = min(set(stored) ^ expected)
+        how = "not stored" if (s, left, right) in expected else "stored, but does not follow"
+        raise Violation(
+            f"critical value {s}: that cells {left} and {right} are adjacent at most at their ends is {how}"
+        )
+    for number, a in enumerate(result.non_adjacencies):
+        _check_non_adjacency(claims, number, a)
+    return f"{len(stored)} records"
+
+
+def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
+    result = claims.result
+    what = f"non-adjacency {number}"
+    for segment, n, m in ((a.below, a.left[0], a.right[0]), (a.above, a.left[-1], a.right[-1])):
+        if segment is not None:
+            _check_free(claims, what, segment, (n, result.cells[n]), (m, result.cells[m]))
+    at_edges = [height for height, segment in zip(claims.height, (a.below, a.above), strict=True) if segment is None]
+    whole = (a.left[0], a.right[0]) == (result.stacks[a.critical_value].cells[0],
+                                        result.stacks[a.critical_value + 1].cells[0])  # fmt: skip
+    top = (a.left[-1], a.right[-1]) == (result.stacks[a.critical_value].cells[-1],
+                                        result.stacks[a.critical_value + 1].cells[-1])  # fmt: skip
+    if (a.below is None and not whole) or (a.above is None and not top):
+        raise Violation(f"{what}: a segment is missing, and the cells do not reach the window's edge")
+    branches = len(a.left) + len(a.right) - 2
+    if a.reason is Reason.PAIR:
+        holds = branches == 2 and not at_edges
+    elif a.reason is Reason.EDGE:
+        holds = branches == 1 and len(at_edges) == 1
+    else:
+        bottom = claims.height[0] if a.below is None else rational(a.below[2])
+        top_height = claims.height[1] if a.above is None else rational(a.above[2])
+        points = _points(claims, result.critical_values[a.critical_value])
+        # at the window's edge the branches may only run into its corner over the critical value
+        holds = len(at_edges) < 2 and roots_between(points, bottom, top_height) <= 1 - len(at_edges)
+    if not holds:
+        raise Violation(f"{what}: {branches} half-branches between cells {a.left} and {a.right} are not closed because "
+                        f"of {a.reason.value!r}")  # fmt: skip
+
+
+def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[int, int]]) -> None:
+    """Try a free segment in each gap between the points of the curves over a critical value."""
+    value = claims.result.critical_values[s]
+    left, right = claims.result.stacks[s], claims.result.stacks[s + 1]
+    for v in points_apart(_points(claims, value), bottom, top):
+        low, high = rational(left.sample), rational(right.sample)
+        while claims.free(low, high, v) is not None:
+            low, high = _closer(low, high, value)
+        pair = (claims.level(low, v), claims.level(high, v))
+        if pair not in pairs:
+            first, second = left.cells[pair[0]], right.cells[pair[1]]
+            raise Violation(f"the adjacency of cells {first} and {second} is missing; the segment from {low} to {high} "
+                            f"at height {v} joins them")  # fmt: skip
+
+
+def _points(claims: Claims, value: CriticalValue) -> fmpz_poly:
+    """A polynomial in v among whose roots are all points of the curves over a critical value."""
+    product = fmpz_poly([1])
+    for c in claims.curves:
+        product = product * points_over(c, value)
+    return product
+
+
+def _closer(low: fmpq, high: fmpq, value: CriticalValue) -> tuple[fmpq, fmpq]:
+    """A bracket of the critical value at most three quarters as wide."""
+    middle = (low + high) / 2
+    where = side(middle, value)
+    if where == 0:
+        return (low + middle) / 2, (middle + high) / 2
+    return (middle, high) if where < 0 else (low, middle)
