@@ -8,12 +8,15 @@ Nothing is imported here but what the signals need, because a signal that comes 
 
 import os
 import signal
-import sys
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import NoReturn
 
 STOPPING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
-def main() -> None:
+def main() -> "NoReturn":
     """Run the command line in a process of its own, watched by this one, and exit with its status."""
     if not hasattr(os, "fork"):
         from ptmcad.cli import main as run_here
@@ -24,7 +27,7 @@ def main() -> None:
         signal.signal(number, lambda caught, _frame: os._exit(128 + caught))  # there is nothing to tidy up yet
     from ptmcad.supervisor import supervise
 
-    sys.exit(supervise(_command_line, heeded))
+    supervise(_command_line, heeded)
 
 
 def _command_line() -> int:
