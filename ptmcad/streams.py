@@ -31,8 +31,9 @@ class _Pipe(io.FileIO):
 def quiet_stream(descriptor: int, like: TextIO) -> TextIO:
     """A text stream for the descriptor with the encoding and the line buffering of another."""
     raw = _Pipe(descriptor, "w", closefd=False)
-    watched = raw.isatty() or descriptor != 1  # of the standard streams, only output to no terminal is held back
-    return io.TextIOWrapper(io.BufferedWriter(raw), like.encoding, like.errors, line_buffering=watched)
+    return io.TextIOWrapper(
+        io.BufferedWriter(raw), like.encoding, like.errors, line_buffering=bool(like.line_buffering)
+    )
 
 
 def reader_left(stream: TextIO) -> bool:

@@ -34,7 +34,7 @@ GRACE = 0.3
 LATE = 0.25
 """Seconds by which the child may overrun its time limit: it looks at the clock itself, and does so first."""
 
-OUT_OF_MEMORY = ("memory", "bad_alloc", "overflow in mpz")
+OUT_OF_MEMORY = ("llocate ", "bad_alloc", "overflow in mpz")
 """What libraries print before they abort because they could not allocate: FLINT and GMP, C++, and GMP's size limit."""
 
 _CHUNK = 1 << 16
@@ -50,7 +50,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     heeded : the signals that stop it.
     """
     _open_standard_streams()
-    messages, errors, lifeline, wake = os.pipe(), os.pipe(), os.pipe(), os.pipe()
+    messages, printed, lifeline, wake = os.pipe(), os.pipe(), os.pipe(), os.pipe()
     gc.freeze()  # what there is by now is not looked through again, which would copy its pages in the child
     parent = os.getpid()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, (*heeded, signal.SIGCHLD))
@@ -60,17 +60,17 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
         child = -1
     if child > 0:
         os.close(messages[1])
-        os.close(errors[1])
+        os.close(printed[1])
         os.close(lifeline[0])
-        os._exit(_Watch(child, messages[0], errors[0], heeded).run(wake, before))
+        os._exit(_Watch(child, messages[0], printed[0], heeded).run(wake, before))
     for number in heeded:
         signal.signal(number, _leave)
     if child == 0:
-        for descriptor in (messages[0], errors[0], lifeline[1], *wake):
+        for descriptor in (messages[0], printed[0], lifeline[1], *wake):
             os.close(descriptor)
         _die_with_the_parent(lifeline[0], parent)
         connect(messages[1])
-        _redirect(errors[1])
+        _redirect(printed[1])
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
     status = work()
     # Taking the interpreter down object by object costs more time than watching does; multiprocessing ends so, too.
@@ -84,21 +84,21 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
 class _Watch:
     """The parent's side: what the child has told, what has been asked of it, and what to do at its end."""
 
-    def __init__(self, child: int, messages: int, errors: int, heeded: Sequence[int]) -> None:
+    def __init__(self, child: int, messages: int, printed: int, heeded: Sequence[int]) -> None:
         self.child = child
         self.messages = messages
-        self.errors = errors
+        self.printed = printed
         self.heeded = heeded
         self.receiver = Receiver()
         self.caught: list[int] = []
-        self.printed = bytearray()
+        self.text = bytearray()
         self.told: dict[Topic, list[str]] = {}
         self.temporaries: list[str] = []
         self.out_of_time = False
 
     def run(self, wake: tuple[int, int], before: set[int | signal.Signals]) -> int:
         """Watch until the child has ended, tidy up, and return the exit status."""
-        for descriptor in (self.messages, self.errors, *wake):
+        for descriptor in (self.messages, self.printed, *wake):
             os.set_blocking(descriptor, False)
         signal.set_wakeup_fd(wake[1], warn_on_full_buffer=False)
         for number in self.heeded:
@@ -107,12 +107,12 @@ class _Watch:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
         ended = self._wait(wake[0])
         self._read(self.messages)
-        self._read(self.errors)
+        self._read(self.printed)
         return self._end(ended)
 
     def _wait(self, wake: int) -> int:
         """The child's exit code, or minus the signal that ended it."""
-        open_ends = {self.messages, self.errors, wake}
+        open_ends = {self.messages, self.printed, wake}
         kill_at: float | None = None
         while True:
             due = kill_at if kill_at is not None else self._deadline()
@@ -152,8 +152,8 @@ class _Watch:
                     self.told[topic] = texts
                     if topic is Topic.TEMPORARY:
                         self.temporaries += texts
-            elif end == self.errors:
-                self.printed += data
+            elif end == self.printed:
+                self.text += data
 
     def _end(self, ended: int) -> int:
         """Leave nothing behind, say what there is to say, and return the exit status."""
@@ -161,7 +161,7 @@ class _Watch:
             self._tidy()
         if self.caught:
             return 128 + self.caught[0]
-        text = self.printed.decode(errors="replace")
+        text = self.text.decode(errors="replace")
         aborted = ended == -signal.SIGABRT and any(sign in text for sign in OUT_OF_MEMORY)
         if self.out_of_time and (ended < 0 or ended > 128):
             return self._stopped(f"the time limit of {self.told[Topic.DEADLINE][1]} was reached")
@@ -189,7 +189,7 @@ class _Watch:
             _say(_CLEAR_LINE.decode())
 
     def _stopped(self, why: str) -> int:
-        """Save the result that was handed over last."""
+        """Save the result that was handed over last, unless the child had come to that itself."""
         if Topic.TARGET not in self.told:
             _say(f"stopped: {why}\n")
             return 3
@@ -204,7 +204,7 @@ class _Watch:
         target = Path(self.told[Topic.TARGET][0])
         state, text = self.told[Topic.RESULT]
         try:
-            place = save_stopped(target, text)
+            place = Path(self.told[Topic.RENAMES][-1]) if Topic.RENAMES in self.told else save_stopped(target, text)
         except OutputError as error:
             _say(f"error: {why}, and the {state} result was lost: {error}\n")
             return 2
@@ -240,15 +240,20 @@ def _die_with_the_parent(lifeline: int, parent: int) -> None:
         os._exit(1)
 
 
-def _redirect(errors: int) -> None:
-    """Give what libraries print on descriptor 2 to the parent, which knows what to make of it; keep Python's own."""
+def _redirect(printed: int) -> None:
+    """Give the parent what libraries print themselves, which knows what to make of it; keep Python's own streams.
+
+    FLINT prints its last words on standard output, GMP on standard error.
+    """
     if sys.stdout is not None:
-        sys.stdout = quiet_stream(1, sys.stdout)
+        sys.stdout = quiet_stream(fcntl.fcntl(1, fcntl.F_DUPFD_CLOEXEC, 3), sys.stdout)
+        sys.__stdout__ = sys.stdout  # type: ignore[misc, assignment]  # of which one asks for the terminal's size
     if sys.stderr is not None:
         sys.stderr = quiet_stream(fcntl.fcntl(2, fcntl.F_DUPFD_CLOEXEC, 3), sys.stderr)
-        os.set_blocking(errors, False)  # a flood of messages must not stop the computation
-        os.dup2(errors, 2)
-    os.close(errors)
+    os.set_blocking(printed, False)  # a flood of messages must not stop the computation
+    os.dup2(printed, 1)
+    os.dup2(printed, 2)
+    os.close(printed)
 
 
 def _say(text: str) -> None:
