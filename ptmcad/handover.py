@@ -18,8 +18,10 @@ _HEAD = 9  # a topic's letter and the length of the body in 8 bytes
 class Topic(Enum):
     """What a message is about, and the texts it consists of."""
 
-    TEMPORARY = b"T"  # path of a temporary file that is about to be made
-    RENAMES = b"R"  # temporary file, target, temporary file, target, ...: all written, about to be renamed
+    TEMPORARY = b"T"  # paths of temporary files that are about to be made
+    RENAMES = (
+        b"R"  # temporary file, target, temporary file, target, ...: all written, about to be renamed in this order
+    )
     DEADLINE = b"D"  # reading of time.monotonic() at which the time is over, the limit in words
     MEMORY = b"M"  # the memory limit in words
     TARGET = b"F"  # path of the result file

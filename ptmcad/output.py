@@ -1,9 +1,11 @@
 """The files of a result: all of them written beside their places first, then renamed together.
 
-Guarantee: at every moment each target file is either the old one or the new one, whole. Nothing is renamed before
-everything is written and on disk. Whatever stops the writing (an error, Ctrl-C, a signal that raises) leaves no
-temporary file; a process that is killed outright may leave a hidden ``.NAME.*.tmp.*`` file and nothing else, and the
-next `check_writable` for the same name removes it. Files of live processes are told by the lock that these hold.
+Guarantee: at every moment each target file is whole, and all that are there belong to one result: the old one or the
+new one. The file that vouches for the others is always there; the others may be missing for the moment of the renames,
+because old pictures beside new numbers would lie. Nothing is renamed before everything is written and on disk.
+Whatever stops the writing (an error, Ctrl-C, a signal that raises) leaves no temporary file; a process that is killed
+outright may leave a hidden ``.NAME.*.tmp.*`` file and nothing else, and the next `check_writable` for the same name
+removes it. Files of live processes are told by the lock that these hold.
 """
 
 from __future__ import annotations
@@ -71,13 +73,13 @@ def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
 
 
 def write_files(folder: Path, writers: Mapping[str, Writer]) -> tuple[Path, ...]:
-    """Write all files or none, and rename them into place in the given order.
+    """Write all files or none, and put them into place.
 
     Parameters
     ----------
     folder : where they go; it exists.
-    writers : for each file's name, a function that writes the file at the path it is given (the path has the name's
-        suffix). Put the file that vouches for the others last.
+    writers : not empty; for each file's name, a function that writes the file at the path it is given (the path has the name's
+        suffix). The last one is the file that vouches for the others.
 
     Raises
     ------
@@ -95,11 +97,7 @@ def write_files(folder: Path, writers: Mapping[str, Writer]) -> tuple[Path, ...]
             locks.append(lock)
             write(temporary)
             _flush_to_disk(temporary)
-        tell(Topic.RENAMES, *(str(path) for target, temporary in temporaries.items() for path in (temporary, target)))
-        with undisturbed():
-            for target, temporary in temporaries.items():
-                current = target
-                temporary.replace(target)
+        _put_into_place(temporaries)
     except OSError as error:
         raise OutputError(f"{current} can not be written: {_reason(error)}; earlier files are as they were") from error
     finally:
@@ -108,6 +106,43 @@ def write_files(folder: Path, writers: Mapping[str, Writer]) -> tuple[Path, ...]
         for lock in locks:
             os.close(lock)
     return tuple(temporaries)
+
+
+def _put_into_place(temporaries: Mapping[Path, Path]) -> None:
+    """Rename the files, the last one first, while the older files of the others are out of the way.
+
+    Raises
+    ------
+    OutputError
+        When a file can not be renamed.
+    """
+    *others, (voucher, temporary) = temporaries.items()
+    tell(Topic.RENAMES, str(temporary), str(voucher), *(str(path) for pair in others for path in reversed(pair)))
+    aside = {target: _name_beside(target) for target, _ in others if target.exists()}
+    if aside:
+        tell(Topic.TEMPORARY, *map(str, aside.values()))
+    current = voucher
+    with undisturbed():
+        try:
+            for current, place in aside.items():
+                current.replace(place)
+            current = voucher
+            temporary.replace(voucher)
+        except OSError as error:
+            for target, place in aside.items():
+                if place.exists():
+                    place.replace(target)
+            raise OutputError(
+                f"{current} can not be written: {_reason(error)}; earlier files are as they were"
+            ) from error
+        try:
+            for current, new in others:
+                new.replace(current)
+        except OSError as error:
+            raise OutputError(f"{current} can not be written: {_reason(error)}; {voucher} is new") from error
+        finally:
+            for place in aside.values():
+                place.unlink(missing_ok=True)
 
 
 def save_stopped(target: Path, text: str) -> Path:
@@ -167,13 +202,18 @@ def _remove_stale(folder: Path, names: Iterable[str]) -> None:
             os.close(descriptor)
 
 
+def _name_beside(target: Path) -> Path:
+    """A new hidden name in the target's folder with the target's suffix."""
+    return target.with_name(f".{target.stem}.{os.urandom(4).hex()}.tmp{target.suffix}")
+
+
 def _create(target: Path) -> tuple[Path, int]:
     """Create a hidden file in the target's folder with the target's suffix and the permissions that the umask gives.
 
     Returns its path and an open descriptor that holds a lock on it.
     """
     while True:
-        path = target.with_name(f".{target.stem}.{os.urandom(4).hex()}.tmp{target.suffix}")
+        path = _name_beside(target)
         tell(Topic.TEMPORARY, str(path))
         descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
         if sys.platform == "win32" or _locked(descriptor):

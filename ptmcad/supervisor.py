@@ -204,7 +204,7 @@ class _Watch:
         target = Path(self.told[Topic.TARGET][0])
         state, text = self.told[Topic.RESULT]
         try:
-            place = Path(self.told[Topic.RENAMES][-1]) if Topic.RENAMES in self.told else save_stopped(target, text)
+            place = Path(self.told[Topic.RENAMES][1]) if Topic.RENAMES in self.told else save_stopped(target, text)
         except OutputError as error:
             _say(f"error: {why}, and the {state} result was lost: {error}\n")
             return 2

@@ -1,7 +1,7 @@
 """Signals, kills, limits and full disks, all from outside: a real process, what it leaves, and how it ends.
 
-Where a test says "in C code", the computation is one call of FLINT that would last for hours and never returns to the
-interpreter meanwhile: the primality proof of a number of four thousand bits.
+Where a test says "in C code", the computation is one call of FLINT that would last for many minutes and never returns to the
+interpreter meanwhile: the primality proof of a number of a thousand digits.
 """
 
 from __future__ import annotations
@@ -56,10 +56,10 @@ class Result:
 def arrived():
     (here / "pid").write_text(str(os.getpid()))
     (here / "pid").rename(here / "arrived")
-def for_hours_in_c():
-    flint.fmpz(2**4423 - 1).is_prime()
+def for_long_in_c():
+    flint.fmpz(10**999 + 7).is_prime()
 def engine(progress, partial):
-    arrived()
+    pass
 def draw(result, path, samples):
     path.write_text("half a picture")
 {work}
@@ -75,7 +75,7 @@ from ptmcad.__main__ import main
 main()
 """
 
-IN_C = "def engine(progress, partial):\n    arrived()\n    for_hours_in_c()\n"
+IN_C = "def engine(progress, partial):\n    arrived()\n    for_long_in_c()\n"
 FILLING = """
 def engine(progress, partial):
     with open(here / "out" / "filler", "wb", buffering=0) as file:
@@ -83,7 +83,7 @@ def engine(progress, partial):
             while file.write(bytes(4096)):
                 pass
         except OSError:
-            for_hours_in_c()
+            for_long_in_c()
 """
 DRAWING = "def draw(result, path, samples):\n    path.write_text('half')\n    arrived()\n"
 
@@ -160,7 +160,7 @@ def test_a_signal_stops_c_code(tmp_path: Path, number: signal.Signals, status: i
 
 
 @linux
-@pytest.mark.parametrize("stay", ["    for_hours_in_c()\n", "    time.sleep(3600)\n"], ids=["in C code", "in Python"])
+@pytest.mark.parametrize("stay", ["    for_long_in_c()\n", "    time.sleep(3600)\n"], ids=["in C code", "in Python"])
 def test_a_signal_stops_drawing(tmp_path: Path, stay: str) -> None:
     old = put(tmp_path, json="old", png="old picture")
     running = Running(tmp_path, DRAWING + stay, formats="png,json")
@@ -222,7 +222,7 @@ def test_the_progress_bar_leaves_no_half_line(tmp_path: Path) -> None:
     work = (
         "import ptmcad.cli.progress\n"
         "ptmcad.cli.progress.PATIENCE = 0\n"
-        "def engine(progress, partial):\n    progress('counts', 1, 2)\n    arrived()\n    for_hours_in_c()\n"
+        "def engine(progress, partial):\n    progress('counts', 1, 2)\n    arrived()\n    for_long_in_c()\n"
     )
     terminal, other = os.openpty()
     running = Running(tmp_path, work, stderr=other)
@@ -248,32 +248,61 @@ def test_a_killed_program_takes_its_computation_along(tmp_path: Path) -> None:
     until(lambda: not lives(computing))
 
 
-@linux
-@pytest.mark.parametrize("victim", ["os.getpid()", "os.getppid()"], ids=["computation", "program"])
-def test_a_kill_between_two_renames(tmp_path: Path, victim: str) -> None:
-    """Whichever of the two processes is left completes them: never a new picture beside an old result."""
-    put(tmp_path, json="old", png="old picture")
-    work = (
-        "replace = Path.replace\n"
-        "def killed_after(path, target):\n"
-        "    replace(path, target)\n"
-        "    if not (here / 'arrived').exists():\n"
-        "        arrived()\n"
-        f"        os.kill({victim}, signal.SIGKILL)\n"
-        "        time.sleep(0.5)\n"
-        "Path.replace = killed_after\n"
-        "def engine(progress, partial): pass\n"
-    )
-    running = Running(tmp_path, work, formats="png,json")
+KILLER = """
+replace, steps = Path.replace, []
+def step_and_kill(path, target):
+    replace(path, target)
+    steps.append(target)
+    if len(steps) == {step}:
+        arrived()
+        for process in ({victims}):
+            os.kill(process, signal.SIGKILL)
+        time.sleep(0.5)
+Path.replace = step_and_kill
+def engine(progress, partial):
+    pass
+"""
+NEW = {
+    "fig2.json": '{"status": "exact", "stage": "variety"}',
+    "fig2.png": "half a picture",
+    "fig2.svg": "half a picture",
+}
+
+
+def killed_in_step(folder: Path, step: int, victims: str) -> tuple[Running, int, bytes]:
+    """Kill processes after one of the renames that put a result into place."""
+    put(folder, json="old", png="old picture", svg="old picture")
+    work = KILLER.replace("{step}", str(step)).replace("{victims}", victims)
+    running = Running(folder, work, formats="png,svg,json")
     running.process.wait(timeout=60)
-    until((tmp_path / "arrived").exists)
-    computing = int((tmp_path / "arrived").read_text())
+    until((folder / "arrived").exists)
+    computing = int((folder / "arrived").read_text())
     until(lambda: not lives(computing))
-    status, errors = running.end()
-    assert running.files() == {"fig2.json": '{"status": "exact", "stage": "variety"}', "fig2.png": "half a picture"}
+    _, errors = running.process.communicate(timeout=60)
+    return running, running.process.returncode, errors
+
+
+@linux
+@pytest.mark.parametrize("step", range(1, 6))
+@pytest.mark.parametrize("victim", ["os.getpid(),", "os.getppid(),"], ids=["computation", "program"])
+def test_a_kill_between_two_renames(tmp_path: Path, victim: str, step: int) -> None:
+    """Whichever of the two processes is left completes them."""
+    running, status, errors = killed_in_step(tmp_path, step, victim)
+    assert running.files() == NEW
     if status != -signal.SIGKILL:
         assert status == 3
-        assert errors.endswith(f"the complete result is in {running.out / 'fig2.json'}\n")
+        assert errors.decode().endswith(f"the complete result is in {running.out / 'fig2.json'}\n")
+
+
+@linux
+@pytest.mark.parametrize("step", range(1, 6))
+def test_a_kill_of_both_between_two_renames(tmp_path: Path, step: int) -> None:
+    """Never a new picture beside an old result, nor the other way round: the pictures may be missing then."""
+    running, _, _ = killed_in_step(tmp_path, step, "os.getppid(), os.getpid()")
+    files = {name: text for name, text in running.files().items() if not name.startswith(".")}
+    old = {"fig2.json": "old", "fig2.png": "old picture", "fig2.svg": "old picture"}
+    assert "fig2.json" in files
+    assert files.items() <= (old if step <= 2 else NEW).items()
 
 
 def killed_at_random(folder: Path, formats: str, times: int, seed: int) -> None:
@@ -290,9 +319,8 @@ def killed_at_random(folder: Path, formats: str, times: int, seed: int) -> None:
     moments = random.Random(seed)
     seen = []
     for k in range(times):
-        before = contents(out)
-        (now,) = (count for count, files in kinds.items() if files == before)
-        then = "total" if now == "stable" else "stable"
+        before = contents(out)["fig2.json"]
+        then = "total" if before == kinds["stable"]["fig2.json"] else "stable"
         process = subprocess.Popen(
             command(out, formats, then), cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
             start_new_session=True,
@@ -301,8 +329,10 @@ def killed_at_random(folder: Path, formats: str, times: int, seed: int) -> None:
         (os.killpg if k % 2 else os.kill)(process.pid, signal.SIGKILL)
         process.communicate(timeout=60)  # standard error is closed when both processes have ended
         after = contents(out)
-        assert after in kinds.values()
-        seen.append(after != before)
+        whole = {name: [kind for kind, files in kinds.items() if files[name] == text] for name, text in after.items()}
+        assert any(after.items() <= files.items() for files in kinds.values()), (k, whole)
+        assert "fig2.json" in after
+        seen.append(after["fig2.json"] != before)
     assert True in seen, "no run came to its end: the moments are too early to show anything"
     assert False in seen
     assert subprocess.run(command(out, formats, "total"), cwd=ROOT, capture_output=True, check=False).returncode == 0
@@ -369,7 +399,7 @@ def test_a_time_limit_stops_c_code(tmp_path: Path) -> None:
 
 @linux
 def test_a_time_limit_while_drawing_loses_no_result(tmp_path: Path) -> None:
-    work = f"{DRAWING}    for_hours_in_c()\n"
+    work = f"{DRAWING}    for_long_in_c()\n"
     running = Running(tmp_path, work, "--timeout", "0.2", formats="png,json")
     status, errors = running.end()
     assert (status, errors.count("\n")) == (3, 1)
@@ -395,7 +425,7 @@ def test_a_stopped_run_replaces_no_whole_result(tmp_path: Path, old: str, place:
 
 @linux
 def test_a_time_limit_before_there_is_anything(tmp_path: Path) -> None:
-    work = "class Result:\n    def __init__(self, state):\n        arrived()\n        for_hours_in_c()\n"
+    work = "class Result:\n    def __init__(self, state):\n        arrived()\n        for_long_in_c()\n"
     running = Running(tmp_path, work, "--timeout", "0.2")
     assert running.end() == (
         3,
@@ -653,7 +683,8 @@ def test_messages_arrive_whole_or_not_at_all(messages: list[tuple[Topic, list[st
 
 @pytest.mark.parametrize("old", [{}, {"fig2.json": "old"}, {"fig2.json": PARTIAL}])
 def test_where_a_stopped_result_goes(tmp_path: Path, old: Mapping[str, str]) -> None:
-    write_files(tmp_path, {name: text_writer(text) for name, text in old.items()})
+    for name, text in old.items():
+        write_files(tmp_path, {name: text_writer(text)})
     place = save_stopped(tmp_path / "fig2.json", "new")
     assert place.name == ("fig2.partial.json" if "old" in old.values() else "fig2.json")
     assert place.read_text() == "new"
