@@ -78,8 +78,8 @@ def write_files(folder: Path, writers: Mapping[str, Writer]) -> tuple[Path, ...]
     Parameters
     ----------
     folder : where they go; it exists.
-    writers : not empty; for each file's name, a function that writes the file at the path it is given (the path has the name's
-        suffix). The last one is the file that vouches for the others.
+    writers : for each file's name, one at least, a function that writes the file at the path it is given (the path has
+        the name's suffix). The last one is the file that vouches for the others.
 
     Raises
     ------

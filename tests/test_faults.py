@@ -1,7 +1,7 @@
 """Signals, kills, limits and full disks, all from outside: a real process, what it leaves, and how it ends.
 
-Where a test says "in C code", the computation is one call of FLINT that would last for many minutes and never returns to the
-interpreter meanwhile: the primality proof of a number of a thousand digits.
+Where a test says "in C code", the computation is one call of FLINT that would last for many minutes and never returns
+to the interpreter meanwhile: the primality proof of a number of a thousand digits.
 """
 
 from __future__ import annotations
@@ -306,14 +306,18 @@ def test_a_kill_of_both_between_two_renames(tmp_path: Path, step: int) -> None:
 
 
 def killed_at_random(folder: Path, formats: str, times: int, seed: int) -> None:
-    """Replace one result by another and kill the program meanwhile, over and over."""
+    """Replace one result by another and kill the program meanwhile, over and over.
+
+    The span of the moments follows the run time, whatever the machine's load: longer after a run that was killed too
+    early to change anything, shorter after one that came to its end.
+    """
     out = folder / "out"
     kinds: dict[str, dict[str, bytes]] = {}
-    seconds = 0.0
+    span = 0.0
     for count in ("total", "stable"):
         started = time.monotonic()
         assert subprocess.run(command(out, formats, count), cwd=ROOT, capture_output=True, check=False).returncode == 0
-        seconds = time.monotonic() - started
+        span = time.monotonic() - started
         kinds[count] = contents(out)
     assert kinds["total"] != kinds["stable"]
     moments = random.Random(seed)
@@ -325,16 +329,17 @@ def killed_at_random(folder: Path, formats: str, times: int, seed: int) -> None:
             command(out, formats, then), cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
             start_new_session=True,
         )  # fmt: skip
-        time.sleep(moments.uniform(0, 1.2 * seconds))
+        time.sleep(moments.uniform(0, span))
         (os.killpg if k % 2 else os.kill)(process.pid, signal.SIGKILL)
         process.communicate(timeout=60)  # standard error is closed when both processes have ended
         after = contents(out)
         whole = {name: [kind for kind, files in kinds.items() if files[name] == text] for name, text in after.items()}
         assert any(after.items() <= files.items() for files in kinds.values()), (k, whole)
         assert "fig2.json" in after
-        seen.append(after["fig2.json"] != before)
-    assert True in seen, "no run came to its end: the moments are too early to show anything"
-    assert False in seen
+        changed = after["fig2.json"] != before
+        span *= 0.8 if changed else 1.1
+        seen.append(changed)
+    assert set(seen) == {True, False}, "the moments were all too early or all too late to show anything"
     assert subprocess.run(command(out, formats, "total"), cwd=ROOT, capture_output=True, check=False).returncode == 0
     assert sorted(os.listdir(out)) == sorted(kinds["total"])
 
@@ -529,9 +534,9 @@ def test_a_crash_is_not_taken_for_a_limit(tmp_path: Path, number: signal.Signals
 
 @linux
 @pytest.mark.slow
-@pytest.mark.parametrize("options", [["--timeout", "3"], ["--max-memory", "90M"], []], ids=["time", "memory", "SIGINT"])
+@pytest.mark.parametrize("options", [["--timeout", "3"], []], ids=["time", "SIGINT"])
 def test_a_slice_of_high_degree(tmp_path: Path, options: list[str]) -> None:
-    """A real one: lengths that are quadratic in the axes; its projection takes ten seconds and 200 MB."""
+    """A real one: lengths that are quadratic in the axes; its projection takes ten seconds."""
     sets = ["--set", "rho=1+F3^2", "--set", "L1=1+F4^2", "--set", "L2=2+F3*F4"]
     slice = ["--slice", "F3,F4", "--range", "F3=-1:1", "--range", "F4=-1:1", *sets]
     arguments = [sys.executable, "-m", "ptmcad", "classify", *slice, "--out", str(tmp_path), "--format", "json"]
