@@ -180,6 +180,26 @@ def test_a_signal_to_the_computing_process_alone(tmp_path: Path) -> None:
 
 
 @linux
+def test_what_is_cleaned_up_is_cleaned_up_silently_and_to_the_end(tmp_path: Path) -> None:
+    """A second signal does not interrupt it; and what interrupted code has to say is nobody's concern."""
+    work = (
+        "def engine(progress, partial):\n"
+        "    try:\n"
+        "        arrived()\n"
+        "        time.sleep(3600)\n"
+        "    finally:\n"
+        "        print('interrupted', file=sys.stderr)\n"
+        "        os.kill(os.getpid(), signal.SIGINT)\n"
+        "        os.kill(os.getpid(), signal.SIGTERM)\n"
+        "        (here / 'clean').touch()\n"
+    )
+    running = Running(tmp_path, work)
+    os.kill(running.arrive(), signal.SIGINT)
+    assert running.end() == (130, "")
+    assert (tmp_path / "clean").exists()
+
+
+@linux
 def test_an_ignored_hang_up_stays_ignored(tmp_path: Path) -> None:
     """As nohup asks for."""
     wait = "while not (here / 'go').exists(): time.sleep(0.01)"
@@ -657,6 +677,19 @@ def test_a_reader_that_leaves(
     assert "Exception" not in done.stderr
     if "--out new" in arguments:
         assert ptmcad.RegionMap.from_json((tmp_path / "new" / "fig2.json").read_text()).regions
+
+
+@pytest.mark.skipif(not Path("/dev/stdin").exists(), reason="needs a name for standard input")
+def test_a_reader_that_leaves_ends_an_endless_table(shipped: Callable[..., Any], tmp_path: Path) -> None:
+    (tmp_path / "fig2.json").write_text(shipped("fig2").to_json())
+    program = f"'{sys.executable}' -m ptmcad locate fig2.json --csv /dev/stdin"
+    script = f"{{ echo rho,L2; yes 7/10,3/2; }} | {program} | head -1"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        ["sh", "-c", script], cwd=tmp_path, capture_output=True, text=True, check=True, env=environment
+    )
+    assert done.stdout.startswith("rho,L2,status") or done.stdout.startswith("L2,rho,status")
+    assert "Traceback" not in done.stderr
 
 
 # The parts
