@@ -8,11 +8,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 from ptmcad.version import __version__
 
+TYPE_CHECKING = False  # type checkers take it for true; the module typing would be half of the way to `__main__.main`
 if TYPE_CHECKING:
+    from typing import Any
+
     from ptmcad.config import load, slice_from_mapping, slice_from_options
     from ptmcad.pipeline import classify
     from ptmcad.regionmap import RegionMap

@@ -9,7 +9,8 @@
     * InfiniteSolutionsError -- infinitely many equilibria at every point of the slice: exit status 2
     * GeometryError        -- a length or a stiffness is not positive somewhere in the window: exit status 2
   * OutputError            -- a result could not be written: exit status 2
-  * LimitReached           -- a time limit stopped the computation: exit status 3
+  * LimitReached           -- a time limit stopped the computation: exit status 3 (so does the memory limit, which the
+                              operating system enforces: a MemoryError, or an abort that `supervisor` sees)
 
 "Undecided" is not in this tree: it is a value (`ptmcad.regionmap.Status.UNDECIDED`), never an exception.
 """

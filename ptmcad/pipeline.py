@@ -83,6 +83,7 @@ def classify(
     jobs: int | None = None,
     progress: Progress | None = None,
     keep: frozenset[str] = frozenset(),
+    partial: Callable[[RegionMap], None] | None = None,
 ) -> RegionMap:
     """The region map of a slice.
 
@@ -96,6 +97,7 @@ def classify(
     jobs : number of processes; the exact engine uses one.
     progress : called as progress(stage, done, total).
     keep : names of savings to switch off, see `ptmcad.plan`.
+    partial : called with the map after each stage that improves it, the complete one included.
 
     Raises
     ------
@@ -122,6 +124,8 @@ def classify(
     try:
         for reached in _stages(slice, relative, clock, keep):
             best = reached
+            if partial is not None:
+                partial(reached)
     except LimitReached as stop:
         raise LimitReached(str(stop), partial=best) from stop
     assert best is not None

@@ -126,6 +126,33 @@ def test_verification_loads_nothing_of_the_engine(tmp_path: Path) -> None:
     loaded_after(code, tmp_path)
 
 
+WATCHING = {
+    "__main__": {"cli", "supervisor"},
+    "supervisor": {"handover", "streams", "output", "errors"},
+    "handover": set(),
+    "streams": set(),
+    "memory": {"errors"},
+}
+
+
+@pytest.mark.parametrize("name", WATCHING)
+def test_what_watches_knows_nothing_of_what_is_computed(name: str) -> None:
+    assert imported_parts(PACKAGE / f"{name}.py") <= WATCHING[name]
+
+
+@pytest.mark.parametrize("path", MODULES, ids=relative)
+def test_only_the_entry_forks(path: Path) -> None:
+    """A library function must not turn its caller's process into two."""
+    if part(path) not in {"__main__", "supervisor"}:
+        assert "supervisor" not in imported_parts(path)
+
+
+def test_the_fork_comes_before_everything_large(tmp_path: Path) -> None:
+    """Handlers are set and the process is forked while little is loaded: a copy of little costs little."""
+    loaded = loaded_after("import ptmcad.__main__, ptmcad.supervisor", tmp_path)
+    assert not loaded & {"click", "yaml", "flint", "numpy", "dataclasses", "pathlib", "subprocess"}
+
+
 @pytest.mark.parametrize("path", MODULES, ids=relative)
 def test_data_flows_one_way(path: Path) -> None:
     """What computes knows nothing of how results are shown, asked for or timed."""

@@ -3,7 +3,8 @@
 A command module is listed in `COMMANDS` and defines ``command``, a click command that delegates to plain functions.
 
 Guarantee: the exit status is 0 when done, 1 when a check failed, 2 for bad input or output, 3 when a limit stopped
-the computation, 130 after Ctrl-C and 143 after SIGTERM; bad input gets one message on standard error, no traceback.
+the computation, 130 after Ctrl-C, 143 after SIGTERM and 129 after SIGHUP; bad input gets one message on standard
+error, no traceback.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from typing import NoReturn
 import click
 
 from ptmcad.errors import LimitReached, PtmcadError
+from ptmcad.handover import Topic, tell, watched
 from ptmcad.version import __version__
 
 COMMANDS = {
@@ -65,7 +67,7 @@ def _show_version(context: click.Context, wanted: bool) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
-    """Run the command line and exit with its status."""
+    """Run the command line in this process and exit with its status; `ptmcad.__main__` runs it in a watched one."""
     signal.signal(signal.SIGTERM, _terminate)
     sys.exit(run(arguments))
 
@@ -83,6 +85,11 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return 130
     except LimitReached as error:
         click.echo(f"stopped: {error}", err=True)
+        return 3
+    except MemoryError:
+        tell(Topic.EXHAUSTED)
+        if not watched():  # otherwise the other process says so, and saves what there is
+            click.echo("stopped: memory ran out", err=True)
         return 3
     except PtmcadError as error:
         click.echo(f"error: {error}", err=True)

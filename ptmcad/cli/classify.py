@@ -10,11 +10,14 @@ from typing import Any
 
 import click
 
+from ptmcad.cli.limits import limit_options, limits, tell_deadline
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.config import slice_from_options
 from ptmcad.errors import ConfigError, ExpressionError, LimitReached
 from ptmcad.expressions import rational
-from ptmcad.output import Writer, check_writable, text_writer, write_files
+from ptmcad.handover import Topic, tell, watched
+from ptmcad.memory import Bound
+from ptmcad.output import Writer, check_writable, save_stopped, text_writer, where_saved, write_files
 from ptmcad.slice import Count, Slice
 
 FORMATS = ("json", "png", "svg", "pdf")
@@ -43,13 +46,17 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
     Raises
     ------
     LimitReached
-        After what there is of the result has been saved.
+        After what there is of the result has been saved, by `save_stopped`.
     PtmcadError
         Any other of its kinds, with nothing written.
     """
     check_writable(request.out, tuple(f"{slice.name}.{suffix}" for suffix in request.formats))
     from ptmcad.pipeline import classify
 
+    target = request.out / f"{slice.name}.json"
+    if "json" in request.formats:
+        tell(Topic.TARGET, str(target))
+    tell_deadline(request.timeout)  # anew: the time that the import took is not the computation's
     with ProgressBar() as progress:
         try:
             result = classify(
@@ -59,13 +66,29 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
                 area_tolerance=request.area_tolerance,
                 jobs=request.jobs,
                 progress=progress,
+                partial=partial(_hand_over, request) if watched() else None,
             )
         except LimitReached as stopped:
-            if stopped.partial is not None and "json" in request.formats:
-                _save(stopped.partial, slice.name, ("json",), request)
-            raise
+            if stopped.partial is None or "json" not in request.formats:
+                raise
+            place = save_stopped(target, _text(stopped.partial, request))
+            why = where_saved(target, place)
+            raise LimitReached(
+                f"{stopped}; the partial result is in {place}{why}" if why else str(stopped)
+            ) from stopped
         _save(result, slice.name, request.formats, request)
     return result
+
+
+def _text(result: Any, request: Request) -> str:
+    text: str = result.to_json(timings=request.timings)
+    return text
+
+
+def _hand_over(request: Request, result: Any) -> None:
+    """Give the result so far to the process that watches, which saves it if this one has to be stopped."""
+    if "json" in request.formats:
+        tell(Topic.RESULT, "complete" if result.status.value == "exact" else "partial", _text(result, request))
 
 
 def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) -> None:
@@ -78,7 +101,7 @@ def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) ->
         for suffix in pictures:
             writers[f"{name}.{suffix}"] = partial(draw, result, samples=request.samples)
     if "json" in formats:
-        writers[f"{name}.json"] = text_writer(result.to_json(timings=request.timings))
+        writers[f"{name}.json"] = text_writer(_text(result, request))
     write_files(request.out, writers)
 
 
@@ -107,12 +130,6 @@ def _tolerance(_context: click.Context, _parameter: click.Parameter, value: str 
     return tolerance
 
 
-def _seconds(_context: click.Context, _parameter: click.Parameter, value: float | None) -> float | None:
-    if value is not None and not 0 < value < 1e9:
-        raise click.BadParameter(f"{value} is not a positive number of seconds")
-    return value
-
-
 @click.command("classify")
 @click.argument("config", required=False, type=click.Path(path_type=Path))
 @click.option("--slice", "axes", metavar="X,Y", help="The two axes, the horizontal one first.")
@@ -125,7 +142,7 @@ def _seconds(_context: click.Context, _parameter: click.Parameter, value: float 
               metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Number of processes.")
-@click.option("--timeout", type=float, callback=_seconds, metavar="S", help="Stop after S seconds (exit status 3).")
+@limit_options
 @click.option("--area-tolerance", callback=_tolerance, metavar="EPS", help="Relative width of the areas' bounds.")
 @click.option("--samples", is_flag=True, help="Draw the cells' sample points.")
 @click.option("--no-timings", is_flag=True, help="Leave run times out of the JSON, so that it is the same every time.")
@@ -142,6 +159,7 @@ def command(
     explain: bool,
     jobs: int | None,
     timeout: float | None,
+    max_memory: Bound | None,
     area_tolerance: Fraction | None,
     samples: bool,
     no_timings: bool,
@@ -170,7 +188,8 @@ def command(
         samples=samples,
         timings=not no_timings,
     )
-    result = classify_to_files(slice, request)
+    with limits(timeout, max_memory):
+        result = classify_to_files(slice, request)
     if explain:
         click.echo(explanation(result.plan))
     click.echo(result.table())

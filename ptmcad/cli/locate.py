@@ -9,9 +9,12 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.stored import read_result
 from ptmcad.errors import ConfigError
+from ptmcad.memory import Bound
 from ptmcad.regionmap import Location, RegionMap
+from ptmcad.streams import reader_left
 
 FIELDS = ("status", "region", "cell", "total", "stable", "index")
 
@@ -76,6 +79,8 @@ def _table(result: RegionMap, points: Iterator[dict[str, str]], path: Path) -> N
         except ConfigError as error:
             raise ConfigError(error.message, key=error.key, file=str(path), line=number) from error
         writer.writerow([*(point[name] for name in result.slice.axis_names), *answer(location)])
+        if reader_left(sys.stdout):
+            return
 
 
 def _lines(location: Location, point: Mapping[str, str]) -> Iterator[str]:
@@ -91,7 +96,10 @@ def _lines(location: Location, point: Mapping[str, str]) -> Iterator[str]:
 @click.option("--at", "at", metavar="NAME=VALUE,NAME=VALUE", help="A point: both axes, exact numbers.")
 @click.option("--csv", "table", type=click.Path(path_type=Path), metavar="FILE",
               help="A CSV file whose first row names the axes; prints a CSV row for each of its points.")  # fmt: skip
-def command(*, result: Path, at: str | None, table: Path | None) -> None:
+@limit_options
+def command(
+    *, result: Path, at: str | None, table: Path | None, timeout: float | None, max_memory: Bound | None
+) -> None:
     """Tell in which cell and region of RESULT a rational point lies, and the number of equilibria there.
 
     The answer is exact, however near the point is to a boundary: "on the variety" exactly on a curve, "outside the
@@ -105,11 +113,12 @@ def command(*, result: Path, at: str | None, table: Path | None) -> None:
     """
     if (at is None) == (table is None):
         raise ConfigError("give a point, as in --at rho=7/10,L2=3/2, or --csv FILE")
-    stored = read_result(result)
-    if table is not None:
-        _table(stored, rows_of(table, stored), table)
-    elif at is not None:
-        point = point_of(at)
-        location = stored.locate(**point)
-        for line in _lines(location, point):
-            click.echo(line)
+    with limits(timeout, max_memory):
+        stored = read_result(result)
+        if table is not None:
+            _table(stored, rows_of(table, stored), table)
+        elif at is not None:
+            point = point_of(at)
+            location = stored.locate(**point)
+            for line in _lines(location, point):
+                click.echo(line)

@@ -10,6 +10,8 @@ import sys
 import time
 from types import TracebackType
 
+from ptmcad.handover import Topic, tell
+
 PATIENCE = 1.0
 _INTERVAL = 0.1
 _WIDTH = 24
@@ -32,6 +34,8 @@ class ProgressBar:
             return
         filled = _WIDTH * min(done, total) // total if total > 0 else 0
         bar = "#" * filled + "." * (_WIDTH - filled)
+        if not self.shown:
+            tell(Topic.PROGRESS)  # this process may not live to clear the line
         sys.stderr.write(f"\r\x1b[K[{bar}] {stage} {done}/{total}, {now - self.start:.0f} s")
         sys.stderr.flush()
         self.shown, self.last = True, now

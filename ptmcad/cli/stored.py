@@ -28,6 +28,6 @@ def read_result(path: Path) -> RegionMap:
         raise ConfigError(f"is not a {FORMAT} file: it is not UTF-8 text", file=str(path)) from error
     try:
         return RegionMap.from_json(text)
-    except (ValueError, PtmcadError, ZeroDivisionError, RecursionError, MemoryError) as error:
+    except (ValueError, PtmcadError, ZeroDivisionError, RecursionError) as error:
         reason = " ".join(str(error).split())[:200]
         raise ConfigError(f"is damaged or not a {FORMAT} file: {reason}", file=str(path)) from error

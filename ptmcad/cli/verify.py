@@ -6,28 +6,32 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.stored import read_result
+from ptmcad.memory import Bound
 
 
 @click.command("verify")
 @click.argument("result", type=click.Path(path_type=Path))
 @click.option("--seed", type=click.IntRange(min=0), metavar="N",
               help="Seed of the random points for the variety.  [default: a hash of the claims]")  # fmt: skip
-def command(*, result: Path, seed: int | None) -> int:
+@limit_options
+def command(*, result: Path, seed: int | None, timeout: float | None, max_memory: Bound | None) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
 
     Prints what was checked, and how. The exit status is 0 when every check passed, 1 when one failed (the first
-    violated claim is printed with a witness), 2 when the file can not be read.
+    violated claim is printed with a witness), 2 when the file can not be read, 3 when a limit was reached before that.
 
     \b
     Example:
         ptmcad classify --slice L2,rho --format json
         ptmcad verify slice-L2-rho.json
     """
-    stored = read_result(result)
-    from ptmcad.verification import verify
+    with limits(timeout, max_memory):
+        stored = read_result(result)
+        from ptmcad.verification import verify
 
-    report = verify(stored, seed=seed)
+        report = verify(stored, seed=seed)
     click.echo(report.table())
     if report.ok:
         return 0

@@ -1,0 +1,58 @@
+"""The limits that every command has: ``--timeout`` and ``--max-memory``.
+
+Guarantee: in a watched process (`ptmcad.supervisor`) they hold whatever code runs; elsewhere the memory limit holds,
+and the time limit where the command itself looks at the clock.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from typing import Any, TypeVar
+
+import click
+
+from ptmcad.handover import Topic, tell, watched
+from ptmcad.memory import Bound, bound_of, bounded, default_bound
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _seconds(_context: click.Context, _parameter: click.Parameter, value: float | None) -> float | None:
+    if value is not None and not 0 < value < 1e9:
+        raise click.BadParameter(f"{value} is not a positive number of seconds")
+    return value
+
+
+def _bound(_context: click.Context, _parameter: click.Parameter, value: str | None) -> Bound | None:
+    return None if value is None else bound_of(value)
+
+
+def limit_options(command: F) -> F:
+    """Add the options ``timeout`` (seconds or None) and ``max_memory`` (a `Bound` or None)."""
+    command = click.option("--max-memory", callback=_bound, metavar="SIZE",
+                           help="Stop before using more memory, such as 500M or 2G (exit status 3).  "
+                                "[default: 9/10 of the machine's]")(command)  # fmt: skip
+    return click.option("--timeout", type=float, callback=_seconds, metavar="S",
+                        help="Stop after S seconds (exit status 3).")(command)  # fmt: skip
+
+
+def tell_deadline(timeout: float | None) -> None:
+    """The time limit starts now."""
+    if timeout is not None:
+        tell(Topic.DEADLINE, repr(time.monotonic() + timeout), f"{timeout:g} s")
+
+
+@contextmanager
+def limits(timeout: float | None, max_memory: Bound | None) -> Iterator[None]:
+    """Set the limits for what is done inside."""
+    tell_deadline(timeout)
+    bound = max_memory or (default_bound() if watched() else None)
+    if bound is not None:
+        tell(Topic.MEMORY, bound.text)
+        # numpy's linear algebra, which nothing here uses, would reserve memory for every processor of the machine
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    with nullcontext() if bound is None else bounded(bound):
+        yield

@@ -1,0 +1,102 @@
+"""What a computing process tells the process that watches it: messages through a pipe, one way.
+
+Guarantee: a message is received whole or not at all, also from a process that is killed while it sends. In a process
+that nobody watches every function here does nothing.
+
+It is imported before everything else of the program, so it imports nothing that takes time.
+"""
+
+import os
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from enum import Enum
+
+_HEAD = 9  # a topic's letter and the length of the body in 8 bytes
+
+
+class Topic(Enum):
+    """What a message is about, and the texts it consists of."""
+
+    TEMPORARY = b"T"  # paths of temporary files that are about to be made
+    RENAMES = (
+        b"R"  # temporary file, target, temporary file, target, ...: all written, about to be renamed in this order
+    )
+    DEADLINE = b"D"  # reading of time.monotonic() at which the time is over, the limit in words
+    MEMORY = b"M"  # the memory limit in words
+    TARGET = b"F"  # path of the result file
+    RESULT = b"P"  # "partial" or "complete", and the result's text as it is by now
+    PROGRESS = b"B"  # the progress bar stands in the terminal's line
+    EXHAUSTED = b"X"  # memory has run out
+
+
+class _Sender:
+    """The process's own end of the pipe, when it is watched."""
+
+    pipe: int | None = None
+
+
+def connect(pipe: int) -> None:
+    """Send what this process has to tell into a pipe from now on."""
+    _Sender.pipe = pipe
+
+
+def disconnect() -> None:
+    """Tell nothing any more."""
+    _Sender.pipe = None
+
+
+def watched() -> bool:
+    """Whether another process watches this one, and will act when it can not."""
+    return _Sender.pipe is not None
+
+
+def tell(topic: Topic, *texts: str) -> None:
+    """Send a message."""
+    if _Sender.pipe is None:
+        return
+    body = "\0".join(texts).encode("utf-8", "surrogateescape")
+    rest = memoryview(topic.value + len(body).to_bytes(_HEAD - 1, "big") + body)
+    try:
+        while rest:
+            rest = rest[os.write(_Sender.pipe, rest) :]
+    except BrokenPipeError:
+        os._exit(1)  # the watching process is gone, and this one has to go with it
+
+
+class Receiver:
+    """Bytes as they come out of the pipe, cut into messages."""
+
+    def __init__(self) -> None:
+        self._bytes = bytearray()
+
+    def feed(self, data: bytes) -> Iterator[tuple[Topic, list[str]]]:
+        """The messages that are complete with these bytes.
+
+        >>> receiver = Receiver()
+        >>> list(receiver.feed(b"M" + bytes(7) + b"\\x04" + b"50")), list(receiver.feed(b"0M" + b"B"))
+        ([], [(<Topic.MEMORY: b'M'>, ['500M'])])
+        """
+        self._bytes += data
+        while len(self._bytes) >= _HEAD:
+            end = _HEAD + int.from_bytes(self._bytes[1:_HEAD], "big")
+            if len(self._bytes) < end:
+                return
+            topic = Topic(bytes(self._bytes[:1]))
+            body = bytes(self._bytes[_HEAD:end]).decode("utf-8", "surrogateescape")
+            del self._bytes[:end]
+            yield topic, body.split("\0")
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """A few steps between which no signal gets in, except one that can not be blocked."""
+    mask: Callable[..., set[int]] | None = getattr(signal, "pthread_sigmask", None)
+    if mask is None:
+        yield
+        return
+    before = mask(signal.SIG_BLOCK, signal.valid_signals())
+    try:
+        yield
+    finally:
+        mask(signal.SIG_SETMASK, before)

@@ -1,0 +1,42 @@
+"""A standard stream whose reader may leave, as in ``ptmcad locate ... | head``.
+
+Guarantee: once the reader of the pipe has gone, what is written is dropped and nothing fails; every other failure,
+such as a full disk, is raised as for any file.
+"""
+
+import io
+import os
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
+
+
+class _Pipe(io.FileIO):
+    """An open file descriptor for writing that knows whether its reader has left."""
+
+    reader_left = False
+
+    def write(self, data: "ReadableBuffer", /) -> int:
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            self.reader_left = True
+            null = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(null, self.fileno(), inheritable=True)
+            os.close(null)
+            return memoryview(data).nbytes
+
+
+def quiet_stream(descriptor: int, like: TextIO) -> TextIO:
+    """A text stream for the descriptor with the encoding and the line buffering of another."""
+    raw = _Pipe(descriptor, "w", closefd=False)
+    return io.TextIOWrapper(
+        io.BufferedWriter(raw), like.encoding, like.errors, line_buffering=bool(like.line_buffering)
+    )
+
+
+def reader_left(stream: TextIO) -> bool:
+    """Whether nobody reads any more what is written to the stream."""
+    raw = getattr(getattr(stream, "buffer", None), "raw", None)
+    return isinstance(raw, _Pipe) and raw.reader_left
