@@ -69,8 +69,8 @@ PARAMETERS: Mapping[str, Parameter] = {
 }
 RECORD_KEYS = ("name", "title", "notes", "mechanism", "parameters", "axes", "count", "reference")
 _SPRINGS = ("k1", "k2", "k3")
-MAX_DEGREE = 16
-"""Of a parameter in the two axes. The boundary curves have up to 24 times that degree; above it, hours."""
+MAX_DEGREE = 32
+"""Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far more."""
 _MAX_NAME = 100
 _MAX_TITLE = 300
 

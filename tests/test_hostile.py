@@ -1,7 +1,7 @@
 """Hostile input at the command line, each case in a process of its own whose memory is limited.
 
 What is asked of each: exit status 2, one message of bounded length without a character that a terminal obeys, no code
-of the input run. The limit of the child's address space turns a blow-up of memory into a failure; a hang would never end.
+of the input run. The limit of the child's address space turns a blow-up of memory into a failure; a hang never ends.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ RECORDS: dict[str, tuple[str | bytes, str]] = {
     "a tower of powers": (value("((rho**9)**9)**9"), "too large"),
     "constant tower": (value("9**9**9**9"), "bits"),
     "a huge exponent": (value("rho**1000000000"), "at most 64"),
-    "a degree that would take hours": (value("rho**40"), "at most 16"),
+    "a degree that would take hours": (value("rho**40"), "at most 32"),
     "many terms": (value("(rho + L2 + 1)**30"), "terms"),
     "import": (value("__import__('os').system('touch pwned')"), "'_' can not be used"),
     "call": (value("os.system('touch pwned')"), "'.' can not be used"),
@@ -246,7 +246,7 @@ def test_points(tmp_path: Path, files: dict[str, str], case: str) -> None:
 
 @pytest.mark.parametrize(
     "at",
-    ["rho=\x1b[31m,L2=1", "\x1b[31m\n", ",".join(f"a{n}=1" for n in range(10_000)), "rho=1,L2=\udcff", "rho=1e9999,L2=1"],
+    ["rho=\x1b[31m,L2=1", "\x1b[31m\n", ",".join(f"a{n}=1" for n in range(10_000)), "rho=1,L2=\udcff", "rho=1e9999"],
     ids=["escape codes", "nothing but", "10^4 names", "not UTF-8", "huge"],
 )  # fmt: skip
 def test_points_as_options(tmp_path: Path, files: dict[str, str], at: str) -> None:
