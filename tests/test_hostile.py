@@ -191,6 +191,8 @@ def test_files_that_are_none(tmp_path: Path, files: dict[str, str], command: lis
     """A pipe has no writer: a plain open() would wait for one for ever."""
     message = refused([part or files[kind] for part in command], tmp_path)
     assert message.startswith(f"error: {files[kind]}")
+    if kind in ("pipe", "null", "zero", "full"):
+        assert "is a device or a pipe" in message
 
 
 def result_texts() -> dict[str, str | bytes]:
