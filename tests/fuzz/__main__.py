@@ -50,7 +50,7 @@ def seeded(kind: str, cases: int, seed: int, folder: Path) -> bool:
     slowest, _, number = tally.slowest
     outcomes = {name.partition(" ")[2]: n for name, n in tally.outcomes.items()}
     print(f"{kind}: {tally.cases} cases from seeds in {time.monotonic() - start:.0f} s, {outcomes}, "
-          f"slowest {slowest:.3f} s (number {number})", flush=True)  # fmt: skip
+          f"slowest {slowest:.3f} s of processor time (number {number})", flush=True)  # fmt: skip
     for finding in tally.findings:
         print(f"FOUND {finding}")
     return not tally.findings
