@@ -6,12 +6,13 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 JOBS ?= 2
 
-.PHONY: help demo test test-slow check bench docs clean distclean
+.PHONY: help demo test test-slow fuzz check bench docs clean distclean
 
 help:
 	@echo "make demo       the map of the paper's fig. 4, as out/fig4.png and out/fig4.svg"
 	@echo "make test       the fast tests"
 	@echo "make test-slow  the thorough tests"
+	@echo "make fuzz       damaged and hostile records, results and points by the ten thousand, guided by coverage"
 	@echo "make check      ruff, its formatter and mypy in strict mode"
 	@echo "make bench      run time and memory of every slice in configs/, into docs/benchmarks/"
 	@echo "make docs       the pictures that the README and docs/ show, into docs/img/"
@@ -29,6 +30,11 @@ $(VENV)/.installed-test: $(VENV)/.installed
 	$(PIP) --editable '.[test]'
 	@touch $@
 
+# atheris has wheels for some systems and versions of Python only; without it the campaign says so and goes on.
+$(VENV)/.installed-fuzz: $(VENV)/.installed-test
+	$(PIP) --only-binary atheris --editable '.[test,fuzz]' || echo "atheris can not be installed here, see above"
+	@touch $@
+
 $(VENV)/.installed-check: $(VENV)/.installed-test
 	$(PIP) --editable '.[test,check]'
 	@touch $@
@@ -41,6 +47,9 @@ test: $(VENV)/.installed-test
 
 test-slow: $(VENV)/.installed-test
 	$(BIN)/python -m pytest --numprocesses $(JOBS) -m slow
+
+fuzz: $(VENV)/.installed-fuzz
+	PYTHONPATH=tests $(BIN)/python -m fuzz --folder out/fuzz $(FUZZ)
 
 check: $(VENV)/.installed-check
 	$(BIN)/python -m ruff check .

@@ -69,6 +69,8 @@ PARAMETERS: Mapping[str, Parameter] = {
 }
 RECORD_KEYS = ("name", "title", "notes", "mechanism", "parameters", "axes", "count", "reference")
 _SPRINGS = ("k1", "k2", "k3")
+MAX_DEGREE = 32
+"""Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far more."""
 _MAX_NAME = 100
 _MAX_TITLE = 300
 
@@ -477,6 +479,8 @@ def _check_value(name: str, expression: Expression, record: _Record, axes: tuple
     """Refuse what the geometry excludes, and a denominator that vanishes in the window."""
     kind = PARAMETERS[name].kind
     place = record.values[name].place if name in record.values else record.place.below(name)
+    if expression.degree > MAX_DEGREE:
+        raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
     if kind is Kind.FREE_LENGTH:
         if expression.numerator:
             raise place.error(_NO_FREE_LENGTHS)

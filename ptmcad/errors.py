@@ -13,13 +13,42 @@
                               operating system enforces: a MemoryError, or an abort that `supervisor` sees)
 
 "Undecided" is not in this tree: it is a value (`ptmcad.regionmap.Status.UNDECIDED`), never an exception.
+
+Guarantee: the text of every exception of the tree is one line of at most `LONGEST` characters that a terminal shows as
+they are, whatever the input that it quotes.
 """
 
 from __future__ import annotations
 
+LONGEST = 1000
+"""Characters of a message."""
+_LONGEST_PLACE = 300
+
+
+def shown(text: str, most: int = LONGEST) -> str:
+    """A text of someone else's as it can be shown: what is not printable is escaped, what is too long is cut out.
+
+    >>> print(shown("a\x1b[31m" + "b" * 100, most=30))
+    a\\x1b[31mbbb ... bbbbbbbbbbbb
+    """
+    if len(text) > 2 * most:  # so that the work is bounded too
+        text = text[:most] + text[-most:]
+        cut = True
+    else:
+        cut = False
+    if not text.isprintable():
+        text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    if len(text) > most or cut:
+        half = (most - 5) // 2
+        text = f"{text[:half]} ... {text[len(text) - half :]}"
+    return text
+
 
 class PtmcadError(Exception):
     """Base of every exception that ptmcad raises on purpose."""
+
+    def __str__(self) -> str:
+        return shown(super().__str__())
 
 
 class ConfigError(PtmcadError):
@@ -42,10 +71,12 @@ class ConfigError(PtmcadError):
     def __str__(self) -> str:
         place = ""
         if self.file is not None:
-            place = self.file if self.line is None else f"{self.file}:{self.line}"
+            file = shown(self.file, _LONGEST_PLACE)
+            place = file if self.line is None else f"{file}:{self.line}"
         if self.key is not None:
-            place = f"{place}: {self.key}" if place else self.key
-        return f"{place}: {self.message}" if place else self.message
+            key = shown(self.key, _LONGEST_PLACE)
+            place = f"{place}: {key}" if place else key
+        return shown(f"{place}: {self.message}" if place else self.message)
 
 
 class ExpressionError(PtmcadError):
@@ -63,7 +94,7 @@ class ExpressionError(PtmcadError):
         super().__init__(message)
 
     def __str__(self) -> str:
-        return self.message if self.position is None else f"{self.message} (at column {self.position + 1})"
+        return shown(self.message if self.position is None else f"{self.message} (at column {self.position + 1})")
 
 
 class PoleError(ExpressionError):

@@ -72,6 +72,11 @@ class Expression:
         """Whether the denominator is 1."""
         return self.denominator == ONE
 
+    @property
+    def degree(self) -> int:
+        """The larger of the total degrees of numerator and denominator."""
+        return max(i + j for i, j, _ in self.numerator + self.denominator)
+
     def constant(self) -> Fraction:
         """The value of a constant expression.
 
@@ -474,7 +479,7 @@ class _Parser:
             raise ExpressionError("division by zero", operator.position)
         spread = (len(left.numerator) + len(left.denominator)) * (len(right.numerator) + len(right.denominator))
         self.spend(spread * (1 + (_bits(left) + _bits(right)) // 512), operator.position)
-        degrees = (_degree(left), _degree(right))
+        degrees = (left.degree, right.degree)
         adds_up = operator.text in "*/" or not (left.is_polynomial and right.is_polynomial)
         if (sum(degrees) if adds_up else max(degrees)) > MAX_DEGREE:
             raise ExpressionError(f"the degree exceeds {MAX_DEGREE}", operator.position)
@@ -495,12 +500,12 @@ class _Parser:
             if abs(n) > MAX_EXPONENT:
                 raise ExpressionError(f"an exponent of a name is at most {MAX_EXPONENT}", operator.position)
             terms = max(len(base.numerator), len(base.denominator))
-            if abs(n) * _degree(base) > MAX_DEGREE or abs(n) * _bits(base) > MAX_BITS:
+            if abs(n) * base.degree > MAX_DEGREE or abs(n) * _bits(base) > MAX_BITS:
                 raise ExpressionError(
                     f"the power is too large (degree over {MAX_DEGREE} or numbers over {MAX_BITS} bits)",
                     operator.position,
                 )
-            if min(comb(terms + abs(n) - 1, abs(n)), comb(abs(n) * _degree(base) + 2, 2)) > MAX_TERMS:
+            if min(comb(terms + abs(n) - 1, abs(n)), comb(abs(n) * base.degree + 2, 2)) > MAX_TERMS:
                 raise ExpressionError(f"the power has more than {MAX_TERMS} terms", operator.position)
             self.spend(MAX_TERMS * terms, operator.position)
         return self.limited(partial(base.__pow__, n), operator.position)
@@ -541,8 +546,3 @@ def _bits(expression: Expression) -> int:
          for _, _, c in expression.numerator + expression.denominator),
         default=0,
     )  # fmt: skip
-
-
-def _degree(expression: Expression) -> int:
-    """The larger of the total degrees of numerator and denominator."""
-    return max(i + j for i, j, _ in expression.numerator + expression.denominator)

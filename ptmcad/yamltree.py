@@ -1,12 +1,13 @@
 """A YAML text as a tree whose every scalar and key knows the file, the line and the key path it stands at.
 
 Guarantee: scalars keep the text that was written (``0.1`` stays ``0.1``, never a float); no tag, anchor, alias or
-second document is accepted, no key occurs twice, and size and depth are bounded, so that reading ends in bounded time
-and memory. Every refusal is a `ConfigError` that names the place.
+second document is accepted, no key occurs twice, and bytes, depth, number of values and length of keys are bounded, so
+that reading ends in a fraction of a second and bounded memory. Every refusal is a `ConfigError` that names the place.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -15,10 +16,15 @@ from typing import Any
 
 import yaml
 
-from ptmcad.errors import ConfigError
+from ptmcad import textfile
+from ptmcad.errors import ConfigError, shown
 
-MAX_BYTES = 1_000_000
+MAX_BYTES = 200_000
 MAX_DEPTH = 20
+MAX_VALUES = 10_000
+MAX_KEY = 100
+"""Longer keys make no sense; every place in a tree holds the path of keys to it."""
+_DIRECTIVE = re.compile(r"^%", re.MULTILINE)
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _NULLS = frozenset({"", "~", "null", "Null", "NULL"})
 _BOOLEANS = frozenset({"true", "false", "yes", "no", "on", "off", "y", "n"})
@@ -84,38 +90,25 @@ def read_file(path: str | Path) -> Tree:
     Raises
     ------
     ConfigError
-        If the file is missing, is a folder, can not be read, is larger than a megabyte, is not UTF-8 text, is not YAML,
-        or uses what the module's docstring excludes.
+        If the file is missing, is no regular file, can not be read, is larger than `MAX_BYTES`, is not UTF-8 text, is
+        not YAML, or uses what the module's docstring excludes.
     """
-    name = str(path)
-    try:
-        with open(path, "rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
-    except IsADirectoryError as error:
-        raise ConfigError("is a folder: name a YAML file in it", file=name) from error
-    except FileNotFoundError as error:
-        raise ConfigError("there is no such file", file=name) from error
-    except (OSError, ValueError) as error:  # ValueError: a null character in the name
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise ConfigError(f"can not be read: {reason}", file=name) from error
-    if len(data) > MAX_BYTES:
-        raise ConfigError(f"is larger than {MAX_BYTES} bytes: this is not a problem record", file=name)
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise ConfigError("is not UTF-8 text: save it as UTF-8", file=name, line=line) from error
-    return read_text(text, name)
+    return read_text(textfile.read_text(path, MAX_BYTES, "a problem record (a YAML file)"), str(path))
 
 
 def read_text(text: str, file: str | None = None) -> Tree:
     """Read a YAML text whose root is a mapping; `file` is named in messages. Raises `ConfigError`."""
     root = Place(file=file)
+    directive = _DIRECTIVE.search(text)
+    if directive is not None:  # the parser's time is quadratic in their number
+        line = text.count("\n", 0, directive.start()) + 1
+        raise Place(file=file, line=line).error("a line that starts with % is not accepted: YAML would take it for a "
+                                                "directive")  # fmt: skip
     try:
-        node = _document(yaml.parse(text, Loader=_LOADER), root)
+        node = _document(_counted(yaml.parse(text, Loader=_LOADER), root), root)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        problem = " ".join(filter(None, (error.context, error.problem)))
+        problem = shown(" ".join(filter(None, (error.context, error.problem))), 300)
         raise ConfigError(f"is not YAML: {problem}", file=file, line=mark.line + 1 if mark else None) from error
     except yaml.YAMLError as error:
         raise ConfigError(
@@ -182,13 +175,24 @@ def _document(events: Iterator[Any], root: Place) -> Node:
     return node
 
 
+def _counted(events: Iterator[Any], root: Place) -> Iterator[Any]:
+    """The events, as long as they are not too many."""
+    values = 0
+    for event in events:
+        values += isinstance(event, yaml.NodeEvent)
+        if values > MAX_VALUES:
+            raise Place(file=root.file, line=_line(event)).error(f"more than {MAX_VALUES} values: this is not a "
+                                                                 "problem record")  # fmt: skip
+        yield event
+
+
 def _node(event: Any, events: Iterator[Any], place: Place, depth: int) -> Node:
     """The node that starts with `event`; the rest of it is taken from `events`."""
     here = Place(place.key, place.file, _line(event))
     if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
         raise here.error("anchors (&) and aliases (*) are not accepted: write the value out, or quote the text")
     if event.tag is not None:
-        raise here.error(f"the tag {event.tag} is not accepted: leave it out")
+        raise here.error(f"the tag {shown(event.tag, 80)} is not accepted: leave it out")
     if depth > MAX_DEPTH:
         raise here.error(f"more than {MAX_DEPTH} levels of nesting")
     if isinstance(event, yaml.ScalarEvent):
@@ -205,6 +209,8 @@ def _node(event: Any, events: Iterator[Any], place: Place, depth: int) -> Node:
         line = _line(event)
         if not isinstance(key, Scalar) or key.is_null:
             raise Place(place.key, place.file, line).error("a key must be a name")
+        if len(key.text) > MAX_KEY:
+            raise Place(place.key, place.file, line).error(f"a key has more than {MAX_KEY} characters")
         at = place.below(key.text, line)
         if key.text == "<<":
             raise at.error("merge keys are not accepted: write the entries out")

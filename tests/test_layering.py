@@ -159,8 +159,10 @@ def test_data_flows_one_way(path: Path) -> None:
     if part(path) not in {"cli", "bench", "render", "__main__"}:
         allowed = {"render"} if part(path) == "regionmap" else set()
         assert not imported_parts(path) & {"cli", "bench", "render"} - allowed
-    if part(path) in {"errors", "expressions"}:
+    if part(path) in {"errors", "expressions", "textfile"}:
         assert imported_parts(path) <= {"errors"}
+    if part(path) == "yamltree":
+        assert imported_parts(path) <= {"errors", "textfile"}
 
 
 def loaded_after(code: str, tmp_path: Path) -> set[str]:

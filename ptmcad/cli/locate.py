@@ -11,11 +11,14 @@ import click
 
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.stored import read_result
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, shown
 from ptmcad.memory import Bound
 from ptmcad.regionmap import Location, RegionMap
 from ptmcad.streams import reader_left
+from ptmcad.textfile import lines_of
 
+LONGEST_ROW = 100_000
+"""Characters of a row of points, which may go over several lines."""
 FIELDS = ("status", "region", "cell", "total", "stable", "index")
 
 
@@ -38,7 +41,9 @@ def point_of(text: str) -> dict[str, str]:
     for part in text.split(","):
         name, equals, value = (piece.strip() for piece in part.partition("="))
         if not (name and equals and value) or name in point:
-            raise ConfigError(f"'{part[:60]}' is not NAME=VALUE: write both axes, as in rho=7/10,L2=3/2", key="--at")
+            raise ConfigError(
+                f"'{shown(part, 60)}' is not NAME=VALUE: write both axes, as in rho=7/10,L2=3/2", key="--at"
+            )
         point[name] = value
     return point
 
@@ -46,28 +51,56 @@ def point_of(text: str) -> dict[str, str]:
 def rows_of(path: Path, result: RegionMap) -> Iterator[dict[str, str]]:
     """The points of a CSV file whose first row names the two axes (other columns are not looked at).
 
+    The file may have any number of rows; one row at a time is held in memory.
+
     Raises
     ------
     ConfigError
-        When the file can not be read, or an axis has no column or no value.
+        When the file can not be read, an axis has no column, two columns or no value, or a row is longer than
+        `LONGEST_ROW`.
     """
     names = result.slice.axis_names
+    lines = _Lines(path)
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.DictReader(file, skipinitialspace=True)
-            columns = [c.strip() for c in reader.fieldnames or ()]
-            if not set(names) <= set(columns):
-                raise ConfigError(f"the first row must name the axes {names[0]} and {names[1]}", file=str(path), line=1)
-            reader.fieldnames = columns
-            for row in reader:
-                point = {name: (row[name] or "").strip() for name in names}
-                if "" in point.values():
-                    raise ConfigError("a value is missing", file=str(path), line=reader.line_num)
-                yield point
-    except OSError as error:
-        raise ConfigError(f"can not be read: {error.strerror or error}", file=str(path)) from error
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise ConfigError(f"is not a CSV file: {error}", file=str(path)) from error
+        reader = csv.DictReader(lines, skipinitialspace=True)
+        columns = [c.strip() for c in reader.fieldnames or ()]
+        for name in names:
+            if columns.count(name) != 1:
+                raise ConfigError(
+                    f"the first row must name the axes {names[0]} and {names[1]}, each once", file=str(path), line=1
+                )
+        reader.fieldnames = columns
+        lines.row = 0
+        for row in reader:
+            lines.row = 0
+            point = {name: (row[name] or "").strip() for name in names}
+            if "" in point.values():
+                raise ConfigError("a value is missing", file=str(path), line=reader.line_num)
+            yield point
+    except csv.Error as error:
+        raise ConfigError(f"is not a CSV file: {error}", file=str(path), line=lines.number) from error
+
+
+class _Lines:
+    """The lines of a CSV file; refuses to go on when those since ``row`` was set to 0 are too long for one row."""
+
+    def __init__(self, path: Path):
+        self.path = path
+        self.lines = lines_of(path, LONGEST_ROW, "a CSV file of points")
+        self.number = 0
+        self.row = 0
+
+    def __iter__(self) -> _Lines:
+        return self
+
+    def __next__(self) -> str:
+        line = next(self.lines)
+        self.number += 1
+        self.row += len(line)
+        if line.strip() and self.row > LONGEST_ROW:
+            raise ConfigError(f"the row that ends here has more than {LONGEST_ROW} characters: is a quotation mark "
+                              "missing?", file=str(self.path), line=self.number)  # fmt: skip
+        return line
 
 
 def _table(result: RegionMap, points: Iterator[dict[str, str]], path: Path) -> None:

@@ -1,6 +1,6 @@
 """Reading a stored result for the commands that ask something of it.
 
-Guarantee: a file that is missing, unreadable or damaged gives one `ConfigError` with the file's name.
+Guarantee: a file that is missing, unreadable, too large or damaged gives one `ConfigError` with the file's name.
 """
 
 from __future__ import annotations
@@ -8,8 +8,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from ptmcad.document import FORMAT
-from ptmcad.errors import ConfigError, PtmcadError
+from ptmcad.errors import ConfigError, PtmcadError, shown
 from ptmcad.regionmap import RegionMap
+from ptmcad.textfile import read_text
+
+MAX_BYTES = 10_000_000
+"""Some hundred times the largest result of a slice in configs/."""
 
 
 def read_result(path: Path) -> RegionMap:
@@ -20,14 +24,9 @@ def read_result(path: Path) -> RegionMap:
     ConfigError
         When there is no such file, or it is not a whole region map.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise ConfigError(f"can not be read: {error.strerror or error}", file=str(path)) from error
-    except UnicodeDecodeError as error:
-        raise ConfigError(f"is not a {FORMAT} file: it is not UTF-8 text", file=str(path)) from error
+    text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
     try:
         return RegionMap.from_json(text)
     except (ValueError, PtmcadError, ZeroDivisionError, RecursionError) as error:
-        reason = " ".join(str(error).split())[:200]
+        reason = shown(" ".join(str(error).split()), 300)
         raise ConfigError(f"is damaged or not a {FORMAT} file: {reason}", file=str(path)) from error

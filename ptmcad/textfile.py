@@ -1,0 +1,101 @@
+"""The text of a file that someone hands to the program.
+
+Guarantee: only regular files are read, and of them no more than a stated number of bytes, so that reading ends in
+bounded time and memory: a device, a named pipe without a writer or a file of a terabyte is refused at once. Nothing is
+executed. Every refusal is a `ConfigError` that names the file.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+
+from ptmcad.errors import ConfigError
+
+
+def read_bytes(path: str | Path, most: int, what: str) -> bytes:
+    """The whole content of a regular file of at most ``most`` bytes.
+
+    Parameters
+    ----------
+    what : what the file should be, such as "a problem record", for messages.
+
+    Raises
+    ------
+    ConfigError
+        If the file is missing, is no regular file, can not be read, or is larger.
+    """
+    descriptor = _open(path, what)
+    try:
+        with open(descriptor, "rb") as stream:
+            data = stream.read(most + 1)
+    except OSError as error:
+        raise _unreadable(path, error) from error
+    if len(data) > most:
+        raise ConfigError(f"is larger than {most} bytes: this is not {what}", file=str(path))
+    return data
+
+
+def read_text(path: str | Path, most: int, what: str) -> str:
+    """The same as UTF-8 text, without a byte order mark; the line of a byte that is not UTF-8 is named."""
+    data = read_bytes(path, most, what)
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise ConfigError("is not UTF-8 text: save it as UTF-8", file=str(path), line=line) from error
+
+
+def lines_of(path: str | Path, longest: int, what: str) -> Iterator[str]:
+    """The lines of a regular UTF-8 file of any size, with their ends (a line feed, or carriage return and line feed).
+
+    Raises
+    ------
+    ConfigError
+        As `read_text` does, and for a line of more than ``longest`` bytes.
+    """
+    descriptor = _open(path, what)
+    number = 0
+    try:
+        with open(descriptor, "rb") as stream:
+            while line := stream.readline(longest + 1):
+                number += 1
+                if len(line) > longest:
+                    raise ConfigError(f"the line has more than {longest} bytes", file=str(path), line=number)
+                yield line.decode("utf-8-sig" if number == 1 else "utf-8")
+    except OSError as error:
+        raise _unreadable(path, error) from error
+    except UnicodeDecodeError as error:
+        raise ConfigError("is not UTF-8 text: save it as UTF-8", file=str(path), line=number) from error
+
+
+def _open(path: str | Path, what: str) -> int:
+    """A descriptor of a regular file, opened without waiting for anyone at the other end."""
+    # a pipe without a writer would hold a plain open() for ever
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+    try:
+        descriptor = os.open(path, flags)
+    except FileNotFoundError as error:
+        raise ConfigError("there is no such file", file=str(path)) from error
+    except IsADirectoryError as error:
+        raise _folder(path, what) from error
+    except (OSError, ValueError) as error:  # ValueError: a null character in the name
+        raise _unreadable(path, error) from error
+    mode = os.fstat(descriptor).st_mode
+    if stat.S_ISREG(mode):
+        return descriptor
+    os.close(descriptor)
+    if stat.S_ISDIR(mode):
+        raise _folder(path, what)
+    raise ConfigError(f"is a device or a pipe: save {what} as a file and name that", file=str(path))
+
+
+def _folder(path: str | Path, what: str) -> ConfigError:
+    return ConfigError(f"is a folder: name {what} in it", file=str(path))
+
+
+def _unreadable(path: str | Path, error: OSError | ValueError) -> ConfigError:
+    reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+    return ConfigError(f"can not be read: {reason}", file=str(path))
