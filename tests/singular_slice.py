@@ -61,12 +61,17 @@ def _record(name: str) -> dict[str, dict[str, object]]:
     return record
 
 
-def _preamble(name: str, order: str = "dp") -> str:
-    """A ring R with the slice's `equilibria`, its H11 and H = det of the Hessian."""
+def parameters(name: str) -> dict[str, str]:
+    """Each parameter as the record has it; an axis stands for itself."""
     values = {**_DEFAULTS, **_record(name)["parameters"], **{axis: axis for axis in axes(name)}}
     for spring in ("k1", "k2", "k3"):
         values.setdefault(spring, values["k"])
-    fixed = "\n".join(f"poly {p} = {values[p]};" for p in _PARAMETERS if p not in axes(name))
+    return {p: str(values[p]) for p in _PARAMETERS}
+
+
+def _preamble(name: str, order: str = "dp") -> str:
+    """A ring R with the slice's `equilibria`, its H11 and H = det of the Hessian."""
+    fixed = "\n".join(f"poly {p} = {value};" for p, value in parameters(name).items() if p not in axes(name))
     return f"ring R = 0, (c1, s1, c2, s2, {', '.join(axes(name))}), {order};\n{fixed}\n{_MECHANISM}"
 
 
