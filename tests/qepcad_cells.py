@@ -104,7 +104,7 @@ def decomposition(output: str, names: Sequence[str] = ("x", "y", "t")) -> Decomp
             found = _ROOT.search(body)
             if found is None:
                 raise ProgramError(f"QEPCAD's cell {index} has no sample: {body[:300]}")
-            terms = integral(monomials(found.group(1), names[:1]))
+            terms = integral(monomials(found.group(1), ("x",)))  # whatever the variable is called
             dense = [terms.get((n,), 0) for n in range(max(e for (e,) in terms) + 1)]
             root = dense, Fraction(found.group(2)), Fraction(found.group(3))
         vanishing = tuple(int(n) for n in _VANISHING.findall(multiplicities.group(1)))
