@@ -75,13 +75,18 @@ class Question:
     w: Terms
     axes: tuple[Axis, Axis]
 
-    def text(self, task: Task, *, swapped: bool = False) -> str:
+    def text(self, task: Task, *, swapped: bool = False, then: Sequence[str] = ("solution T",)) -> str:
         """QEPCAD's standard input.
 
         Parameters
         ----------
         swapped : eliminate the first axis before the second, instead of the second before the first.
+        then : the commands that are given once the decomposition is made.
         """
+        return f"{self.problem(task, swapped=swapped, then=then)}\nquit\n"
+
+    def problem(self, task: Task, *, swapped: bool = False, then: Sequence[str] = ("solution T",)) -> str:
+        """The same without the end of the session, so that other problems may follow."""
         condition = f"{_text(self.sextic)} = 0"
         if task is Task.TWO_STABLE:
             v, w, slope = _text(self.v), _text(self.w), _text(self.slope)
@@ -103,9 +108,7 @@ class Question:
                 "go",
                 "go",
                 "go",
-                "solution T",
-                "quit",
-                "",
+                *then,
             )
         )
 
@@ -172,7 +175,12 @@ def judged(usage: Usage) -> Usage:
 
 def answer(usage: Usage) -> str:
     """The quantifier-free formula in QEPCAD's output, empty when there is none."""
-    found = _ANSWER.search(usage.output)
+    return formula(usage.output)
+
+
+def formula(output: str) -> str:
+    """The quantifier-free formula in a text that QEPCAD wrote, empty when there is none."""
+    found = _ANSWER.search(output)
     return " ".join(found.group(1).split()) if found else ""
 
 

