@@ -39,7 +39,9 @@ def primitive(p: Sequence[int | Fraction]) -> Polynomial:
     """A positive multiple with integer coefficients without common factor, and without leading zeros."""
     scale = 1
     for c in p:
-        scale = scale * Fraction(c).denominator // gcd(scale, Fraction(c).denominator)
+        if isinstance(c, int):
+            continue
+        scale = scale * c.denominator // gcd(scale, c.denominator)
     numbers = [int(c * scale) for c in p]
     while numbers and numbers[-1] == 0:
         numbers.pop()
@@ -117,7 +119,10 @@ def query(p: Polynomial, weight: Polynomial) -> int:
     """Tarski query: the sum over the real roots of the squarefree p of the sign of the weight."""
     if len(p) < 2 or not weight:
         return 0
-    sequence = sturm(p, primitive(times(derivative(p), weight)))
+    small = remainder(weight, p)  # has the weight's signs at the roots
+    if not small:
+        return 0
+    sequence = sturm(p, primitive(times(derivative(p), small)))
     low = [c[-1] * (-1) ** (len(c) - 1) for c in sequence]
     return changes(low) - changes([c[-1] for c in sequence])
 

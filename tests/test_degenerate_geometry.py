@@ -1,9 +1,9 @@
 """Degenerate geometry of the variety, by name, on slices of the mechanism: classified, located and verified.
 
 Without loads and with L1 = rho = 1 there are two stable equilibria where 1 < L2 < 3 and one elsewhere. So
-L2 = 1 + g(x, y)/1000 makes any plane curve g = 0 the variety, with two stable equilibria where g > 0. Loaded slices have
-rational singular points too (see `random_slices.singular`): cusps, and the point where the whole Hessian vanishes, which
-is isolated. The synthetic curves of `test_topology` have the same names.
+L2 = 1 + g(x, y)/1000 makes any plane curve g = 0 the variety, with two stable equilibria where g > 0. Loaded slices
+have rational singular points too (see `random_slices.singular`): cusps, and the point where the whole Hessian vanishes,
+which is isolated. The synthetic curves of `test_topology` have the same names.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ def check_around(result: RegionMap, x: Fraction, y: Fraction, steps: tuple[Fract
     assert found >= 2
 
 
-@pytest.mark.parametrize("swap", [False, True], ids=["x,y", "y,x"])
+@pytest.mark.parametrize("swap", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["x,y", "y,x"])
 @pytest.mark.parametrize("name", CURVES)
 def test_degenerate(name: str, swap: bool) -> None:
     g, (a, b, c, d), stable, pairs, origin = CURVES[name]
@@ -131,8 +131,9 @@ def test_the_synthetic_curves_have_these_names_too() -> None:
 # ------------------------------------------------------------------------------------- singular points of loaded slices
 
 Q = Fraction
+SYMMETRIC = "fig. 4 with F = -60"
 CUSPS = {
-    "fig. 4 with F = -60": {"L1": Q(1), "L2": Q(24, 25), "rho": Q(2, 5), "F3": Q(-60), "F4": Q(-60)},
+    SYMMETRIC: {"L1": Q(1), "L2": Q(24, 25), "rho": Q(2, 5), "F3": Q(-60), "F4": Q(-60)},
     "sines 3/5 and 5/13": paper_cusp((Q(4, 5), Q(3, 5)), (Q(12, 13), Q(5, 13))),
 }
 """Rational cusps of the fold curve with k = 100 and vertical loads."""
@@ -147,7 +148,7 @@ def fixed(values: dict[str, Fraction], *axes: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("axes", [("rho", "L2"), ("L2", "rho"), ("F3", "F4")], ids=",".join)
-@pytest.mark.parametrize("cusp", CUSPS)
+@pytest.mark.parametrize("cusp", [pytest.param(c, marks=[pytest.mark.slow] * (c != SYMMETRIC)) for c in CUSPS])
 def test_a_cusp_of_the_fold_curve(cusp: str, axes: tuple[str, str]) -> None:
     """Two more equilibria, one of them a saddle, in a tongue that ends in the cusp."""
     values = CUSPS[cusp]
@@ -185,7 +186,7 @@ def test_an_isolated_point_where_the_whole_hessian_vanishes(axes: tuple[str, str
 
 @pytest.mark.parametrize("axes", [("rho", "F"), ("F", "rho")], ids=",".join)
 def test_two_curves_touching_rose_and_astroid(axes: tuple[str, str]) -> None:
-    """fig. 3: they touch at 2 rho = -F/k = 1/sqrt(2); the regions inside both and outside both share that point only."""
+    """fig. 3: they touch at 2 rho = -F/k = 1/sqrt(2); the regions in both and in neither share that point only."""
     windows = {"rho": ["3/10", "2/5"], "F": [-80, -60]}
     result = region_map({n: windows[n] for n in axes}, {"L1": 1, "L2": 1, "F3": "F", "F4": "F"}, "index")
     assert sorted(r.index for r in result.regions) == [(1, 2, 1), (1, 2, 1), (1, 3, 2), (2, 3, 1)]  # type: ignore[type-var]

@@ -1,8 +1,8 @@
 """Random slices: classified, verified, and compared with exact counts at a hundred points of each window.
 
 The points lie anywhere in the window, on simple fractions of it, 10^-40 of its size from a wall and from its edge, and
-exactly on the variety where it has rational points. The counts come from `oracle`, which shares no code with the engine;
-where it declines, from signatures of Hermite forms.
+exactly on the variety where it has rational points. The counts come from `oracle`, which shares no code with the
+engine; where it declines, from signatures of Hermite forms.
 """
 
 from __future__ import annotations
