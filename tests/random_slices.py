@@ -50,7 +50,7 @@ def drawn(number: int, attempt: int = 0) -> Draw:
     role = ROLES[number]
     make = {
         "pair": _pair, "link": _link, "paper": _paper, "unloaded": _unloaded, "formula": _formula, "fold": _fold,
-        "cusp": _cusp, "general": _general, "tiny": _tiny,
+        "cusp": _cusp, "general": _general, "tiny": _tiny, "flat": _flat,
     }[role]  # fmt: skip
     draw = make(dice, number)
     if dice.random() < 1 / 4:
@@ -209,6 +209,12 @@ def _formula(dice: random.Random, number: int) -> Draw:
     return Draw(_record(windows, values), "formula")
 
 
+def _flat(dice: random.Random, _number_: int) -> Draw:
+    """Rods that may lie flat with their nodes on one line over the whole window: without loads that is refused."""
+    values = {"rho": dice.choice(["(L1+L2)/2", "(L1+L2)/2", "(L1+L2)/3"]), "F3": dice.choice(["0", "-10", "20"])}
+    return Draw(_record(_windows(dice, "L1", "L2"), values), "flat")
+
+
 def _general(dice: random.Random, _number_: int) -> Draw:
     """Three different springs and four loads: the dearest."""
     axes = dice.choice([("rho", "F3"), ("F3", "F4"), ("rho", "F4"), ("F3x", "F4"), ("k1", "F3")])
@@ -298,9 +304,9 @@ def _tiny(dice: random.Random, _number_: int) -> Draw:
 
 ROLES = (
     ["pair"] * len(PAIRS) + ["link"] * (2 * len(MODEL)) + ["formula"] * (2 * len(FORMULAS)) + ["paper"] * 30
-    + ["unloaded"] * 20 + ["fold"] * 20 + ["cusp"] * 16 + ["tiny"] * 12 + ["general"] * 4
+    + ["unloaded"] * 20 + ["fold"] * 20 + ["cusp"] * 16 + ["tiny"] * 12 + ["general"] * 4 + ["flat"] * 5
 )  # fmt: skip
 NUMBERS = range(len(ROLES))
 
-REFUSED: dict[int, tuple[str, ...]] = {}
+REFUSED: dict[int, tuple[str, ...]] = {220: ("DegenerateSliceError",), 223: ("DegenerateSliceError",)}
 """For a number, the exceptions of the attempts before the one that is classified."""

@@ -14,7 +14,7 @@ from fractions import Fraction
 import oracle
 import pytest
 from flint import fmpz_poly
-from random_slices import LENGTHS, MODEL, NUMBERS, PAIRS, REFUSED, Draw, drawn
+from random_slices import MODEL, NUMBERS, PAIRS, REFUSED, Draw, drawn
 from structure import check_structure
 
 from ptmcad import RegionMap, classify, slice_from_mapping, verify
@@ -166,14 +166,13 @@ def test_there_are_200_slices_and_every_pair_is_among_them() -> None:
     assert len(PAIRS) == len(MODEL) * (len(MODEL) - 1) // 2
     assert {frozenset(pair) for pair in PAIRS} <= {frozenset(d.axes) for d in draws}
     assert {frozenset((name, "F")) for name in MODEL} <= {frozenset(d.axes) for d in draws}
-    assert sum(len(names) for names in REFUSED.values()) <= len(NUMBERS) // 20
+    assert 0 < sum(len(names) for names in REFUSED.values()) <= len(NUMBERS) // 20
     assert sum(bool(d.anchor) for d in draws) >= 30
     fixed = [d.record["parameters"] for d in draws]
     assert sum(len({p.get(k, p.get("k", "100")) for k in ("k1", "k2", "k3")}) > 1 for p in fixed) >= 40
     assert sum(p.get("F3x", "0") != "0" or p.get("F4x", "0") != "0" for p in fixed) >= 30
     assert sum(any(str(p.get(n, "")).strip("0123456789/-.") for n in MODEL) for p in fixed) >= 40
     assert any(low == "0" for d in draws for low, _ in d.record["axes"].values())
-    assert LENGTHS[0] in MODEL
 
 
 def test_a_record_depends_on_its_number_alone() -> None:
