@@ -9,7 +9,7 @@ Where Q is not 0, e r = k3 L1 P / Q, so there is one solution over th2, H11 has 
     N = k3 L1 P^3 Q W - k3 L1 D P^2 Q^2 - (L2/L1) Q^4 D^2,   W = a2 c2 + F4 s2,   D = a1 c2 - F3 s2 - k3 L2.
 
 Roots are counted by Sturm sequences, signs at them by Tarski queries: everything is exact but the signs over P = Q = 0
-(loads that let a rod stand by itself), which are taken with 100 digits and a margin.
+(loads that let a rod stand by itself), which are taken with 400 digits and a margin.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import mpmath
 
 Polynomial = list[int]
 """Coefficients, constant first."""
-DIGITS, MARGIN = 100, 40
+DIGITS, MARGIN = 400, 60
 """Working digits of the signs that are not exact, and how many of them rounding may take."""
 
 
@@ -39,7 +39,9 @@ def primitive(p: Sequence[int | Fraction]) -> Polynomial:
     """A positive multiple with integer coefficients without common factor, and without leading zeros."""
     scale = 1
     for c in p:
-        scale = scale * Fraction(c).denominator // gcd(scale, Fraction(c).denominator)
+        if isinstance(c, int):
+            continue
+        scale = scale * c.denominator // gcd(scale, c.denominator)
     numbers = [int(c * scale) for c in p]
     while numbers and numbers[-1] == 0:
         numbers.pop()
@@ -117,7 +119,10 @@ def query(p: Polynomial, weight: Polynomial) -> int:
     """Tarski query: the sum over the real roots of the squarefree p of the sign of the weight."""
     if len(p) < 2 or not weight:
         return 0
-    sequence = sturm(p, primitive(times(derivative(p), weight)))
+    small = remainder(weight, p)  # has the weight's signs at the roots
+    if not small:
+        return 0
+    sequence = sturm(p, primitive(times(derivative(p), small)))
     low = [c[-1] * (-1) ** (len(c) - 1) for c in sequence]
     return changes(low) - changes([c[-1] for c in sequence])
 

@@ -165,6 +165,12 @@ KNOWN: dict[str, tuple[list[fmpz_mpoly], Window, int]] = {
     "lines that meet at a corner": ([Y - X, Y - 2 * X, 2 * Y - X], ("0", "1", "0", "1"), 4),
     "branches and a loop over one abscissa": ([Y**2 - X**2 * (X + 1), circle(-1, -2, 1)], ("-3", "2", "-4", "3"), 4),
     "a branch that leaves through infinity": ([X * Y**2 - Y + X], WIDE, 2),
+    "window of width 1e-30 around a cusp": ([Y**2 - 10**30 * X**3], ("-5e-31", "5e-31", "-4e-31", "5e-31"), 2),
+    "window of width 1e-30 around a true cusp": ([Y**2 - X**3], ("-5e-31", "5e-31", "-4e-31", "5e-31"), 2),
+    "window of width 1e-30 around a node": ([Y**2 - X**2 * (X + 1)], ("-5e-31", "5e-31", "-4e-31", "5e-31"), 4),
+    "window of width 1e-30 around a smooth point": ([Y - X - X**2], ("-5e-31", "5e-31", "-4e-31", "5e-31"), 2),
+    "triple point of curved branches": ([X, Y - X**2, Y + X**2], SQUARE, 6),
+    "ordinary triple point of one curve": ([(X**2 + Y**2) ** 2 - X**3 + 3 * X * Y**2], SQUARE, 4),
     "nearly tangent circles": ([circle(0, 0, 1), 10**12 * ((X - 2) ** 2 + Y**2 - 1) - 1], WIDE, 4),
     "nearly touching circles": ([circle(0, 0, 1), 10**12 * ((X - 2) ** 2 + Y**2 - 1) + 1], WIDE, 3),
 }  # fmt: skip
