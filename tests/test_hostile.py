@@ -16,6 +16,8 @@ from typing import Any
 
 import pytest
 
+from ptmcad.cli import run
+
 ROOT = Path(__file__).resolve().parents[1]
 AXES = "axes: {rho: [0, 2], L2: [0, 2]}\n"
 MEMORY = 300 << 20
@@ -141,6 +143,7 @@ def test_records(tmp_path: Path, case: str) -> None:
 SLICE = ["classify", "--slice", "L2,rho"]
 OPTIONS: dict[str, tuple[list[str], str]] = {
     "10^3 settings": ([*SLICE, *["--set", "F3=1"] * 1000], "is given twice"),
+    "10^5 settings": ([*SLICE, *["--set", "F3=1"] * 100_000], "200003 arguments"),
     "10^5 digits": ([*SLICE, "--set", "F3=" + "9" * 100_000], "characters, more than"),
     "huge exponent": ([*SLICE, "--set", "F3=rho**1000000000"], "at most 64"),
     "escape codes in a name": ([*SLICE, "--set", "\x1b[31m=1"], "unknown parameter '\\x1b[31m'"),
@@ -163,6 +166,27 @@ OPTIONS: dict[str, tuple[list[str], str]] = {
 def test_options(tmp_path: Path, case: str) -> None:
     arguments, part = OPTIONS[case]
     assert part in refused(arguments, tmp_path)
+
+
+PARSER = {
+    "a long command": ["x" * 100_000],
+    "a command with escape codes": ["\x1b[31m\n"],
+    "a long option": ["classify", "--" + "x" * 100_000],
+    "an option with escape codes": ["classify", "--\x1b[31m\nx"],
+    "a long choice": [*SLICE, "--count", "x" * 100_000],
+    "a long number": [*SLICE, "--jobs", "9" * 100_000],
+    "a long list": [*SLICE, "--format", "x," * 50_000],
+    "a long seed": ["verify", "x", "--seed", "x" * 100_000],
+}
+
+
+@pytest.mark.parametrize("case", PARSER)
+def test_what_the_parser_of_options_refuses(case: str, capfd: pytest.CaptureFixture[str]) -> None:
+    """Its messages have the usage before them."""
+    assert run(PARSER[case]) == 2
+    lines = capfd.readouterr().err.splitlines()
+    assert lines[-1].startswith("Error: ")
+    assert all(line.isprintable() and len(line) < 1100 for line in lines)
 
 
 @pytest.fixture(name="files")

@@ -19,7 +19,7 @@ from typing import NoReturn
 
 import click
 
-from ptmcad.errors import LimitReached, PtmcadError
+from ptmcad.errors import LimitReached, PtmcadError, shown
 from ptmcad.handover import Topic, tell, watched
 from ptmcad.version import __version__
 
@@ -28,6 +28,8 @@ COMMANDS = {
     "locate": "ptmcad.cli.locate",
     "verify": "ptmcad.cli.verify",
 }
+MOST_ARGUMENTS = 10_000
+"""The parser's time is quadratic in their number."""
 
 
 class _LazyGroup(click.Group):
@@ -74,12 +76,16 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
+    given = len(sys.argv) - 1 if arguments is None else len(arguments)
+    if given > MOST_ARGUMENTS:
+        click.echo(f"error: {given} arguments are given, more than {MOST_ARGUMENTS}: write a problem record", err=True)
+        return 2
     try:
         status = group.main(args=arguments, prog_name="ptmcad", standalone_mode=False)
         if sys.stdout is not None:  # None when it was closed by the caller
             sys.stdout.flush()
     except click.ClickException as error:
-        error.show()
+        _show(error)
         return 2
     except click.Abort:
         return 130
@@ -95,10 +101,19 @@ def run(arguments: Sequence[str] | None = None) -> int:
         click.echo(f"error: {error}", err=True)
         return 2
     except OSError as error:  # mostly standard output that is full; files of results raise OutputError
-        click.echo(f"error: {error.strerror or error}{f': {error.filename}' if error.filename else ''}", err=True)
+        place = f": {error.filename}" if error.filename else ""
+        click.echo(shown(f"error: {error.strerror or error}{place}"), err=True)
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - so that the exit does not try again
         return 2
     return status if isinstance(status, int) else 0
+
+
+def _show(error: click.ClickException) -> None:
+    """What click's own ``show`` prints, but with the message as one printable line of bounded length."""
+    context = getattr(error, "ctx", None)
+    if context is not None:
+        click.echo(f"{context.get_usage()}\nTry '{context.command_path} -h' for help.\n", err=True)
+    click.echo(f"Error: {shown(error.format_message())}", err=True)
 
 
 def _terminate(_number: int, _frame: FrameType | None) -> NoReturn:

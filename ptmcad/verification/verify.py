@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from hashlib import sha256
 
+from ptmcad.errors import shown
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
@@ -78,7 +79,7 @@ def verify(result: RegionMap, seed: int | None = None) -> VerifyReport:
             checks.append(Check(name, method, True, check(claims)))
         except Violation as violation:
             failed = True
-            checks.append(Check(name, method, False, str(violation)))
+            checks.append(Check(name, method, False, shown(str(violation))))
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
     return VerifyReport(tuple(checks))
 

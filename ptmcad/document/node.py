@@ -1,0 +1,121 @@
+"""A value of a JSON document together with its place, read as one type or refused.
+
+Guarantee: every reading method either returns a value of its type within the limits below, or raises ValueError with
+the place of the fault, such as ``cells[3].sample``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import Enum
+from fractions import Fraction
+from typing import Any, TypeVar
+
+from ptmcad.numerals import fraction_of
+
+# Limits far beyond any slice's result; they bound the time in which a damaged document is refused.
+MAX_ITEMS = 100_000
+MAX_NUMBER = 10**6
+"""Of cells, regions, equilibria."""
+
+Item = TypeVar("Item")
+Choice = TypeVar("Choice", bound=Enum)
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A value of the document with its place, such as ``cells[3].sample``."""
+
+    value: Any
+    place: str
+
+    def fault(self, problem: str) -> ValueError:
+        return ValueError(f"{self.place or 'the document'} {problem}")
+
+    def record(self, *keys: str) -> dict[str, Node]:
+        """An object with exactly these keys; those that end in ``?`` may be missing."""
+        required = [key for key in keys if not key.endswith("?")]
+        known = {key.rstrip("?") for key in keys}
+        values = self.mapping()
+        for key in required:
+            if key not in values:
+                raise self.fault(f"lacks the key {key!r}")
+        for key in values:
+            if key not in known:
+                raise self.fault(f"has the unknown key {key[:40]!r}")
+        return values
+
+    def mapping(self) -> dict[str, Node]:
+        if not isinstance(self.value, dict):
+            raise self.fault("is not an object")
+        if len(self.value) > MAX_ITEMS:
+            raise self.fault(f"has more than {MAX_ITEMS} keys")
+        start = f"{self.place}." if self.place else ""
+        return {key: Node(value, start + key[:40]) for key, value in self.value.items()}
+
+    def items(self, length: int | None = None) -> Iterator[Node]:
+        if not isinstance(self.value, list):
+            raise self.fault("is not a list")
+        if len(self.value) > MAX_ITEMS:
+            raise self.fault(f"has more than {MAX_ITEMS} entries")
+        if length is not None and len(self.value) != length:
+            raise self.fault(f"has {len(self.value)} entries, not {length}")
+        return (Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.value))
+
+    def each(self, read: Callable[[Node], Item], length: int | None = None) -> tuple[Item, ...]:
+        return tuple(read(item) for item in self.items(length))
+
+    def text(self) -> str:
+        if not isinstance(self.value, str):
+            raise self.fault("is not a text")
+        return self.value
+
+    def line(self, most: int) -> str:
+        """A short text that a terminal shows as it is."""
+        text = self.text()
+        if len(text) > most or not text.isprintable():
+            raise self.fault(f"is not a line of at most {most} printable characters")
+        return text
+
+    def truth(self) -> bool:
+        if not isinstance(self.value, bool):
+            raise self.fault("is not true or false")
+        return self.value
+
+    def natural(self) -> int:
+        if not isinstance(self.value, int) or isinstance(self.value, bool):
+            raise self.fault("is not an integer")
+        if not 0 <= self.value <= MAX_NUMBER:
+            raise self.fault(f"is not between 0 and {MAX_NUMBER}")
+        return self.value
+
+    def number(self) -> float:
+        """For timings only."""
+        if not isinstance(self.value, int | float) or isinstance(self.value, bool):
+            raise self.fault("is not a number")
+        if not 0 <= self.value < 1e9:
+            raise self.fault("is not a number of seconds")
+        return float(self.value)
+
+    def optional(self, read: Callable[[Node], Item]) -> Item | None:
+        return None if self.value is None else read(self)
+
+    def fraction(self) -> Fraction:
+        try:
+            return fraction_of(self.text())
+        except ValueError as error:
+            raise self.fault(f"is wrong: {error}") from error
+
+    def size(self) -> Fraction:
+        """A number that is not negative."""
+        value = self.fraction()
+        if value < 0:
+            raise self.fault("is negative")
+        return value
+
+    def choice(self, kind: type[Choice]) -> Choice:
+        text = self.text()
+        if text not in {member.value for member in kind}:
+            raise self.fault(f"is {text[:40]!r}, not one of {', '.join(str(member.value) for member in kind)}")
+        return kind(text)

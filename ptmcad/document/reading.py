@@ -1,0 +1,257 @@
+"""Reading a region map from JSON.
+
+Guarantee: what is returned has the types and sizes that `RegionMap` asks for; every fault is a ValueError that names
+its place.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from ptmcad.document.node import Node
+from ptmcad.document.writing import FORMAT
+from ptmcad.errors import ExpressionError
+from ptmcad.expressions import NAME, Expression, parse
+from ptmcad.expressions import axis as axis_function
+from ptmcad.plane import PlanePolynomial
+from ptmcad.regionmap import (
+    Adjacency,
+    Cell,
+    Component,
+    CriticalValue,
+    Kind,
+    Merge,
+    MorseIndex,
+    NonAdjacency,
+    PlanStep,
+    Reason,
+    Region,
+    RegionMap,
+    Segment,
+    Solution,
+    Stack,
+    Status,
+    System,
+    Wall,
+)
+from ptmcad.slice import Axis, Count, Point, Slice
+
+# Limits far beyond any slice's result, like those of `ptmcad.document.node`.
+MAX_TEXT = 20_000_000
+MAX_COMPONENTS = 1_000
+MAX_DEGREE = 400
+MAX_NAME = 100
+MAX_TITLE = 300
+
+
+def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        key = next(k for n, (k, _) in enumerate(pairs) if k in (other for other, _ in pairs[:n]))
+        raise ValueError(f"the key {key[:40]!r} occurs twice")
+    return found
+
+
+def _constant(text: str) -> Any:
+    raise ValueError(f"{text} is not a number of JSON")
+
+
+def read(text: str) -> RegionMap:
+    """The map in a JSON document.
+
+    Raises
+    ------
+    ValueError
+        With the place of the first fault.
+    """
+    if len(text) > MAX_TEXT:
+        raise ValueError(f"the document has {len(text)} characters, more than {MAX_TEXT}")
+    try:
+        data = json.loads(text, object_pairs_hook=_distinct, parse_constant=_constant)
+    except RecursionError as error:
+        raise ValueError("the document is nested too deeply") from error
+    node = Node(data, "")
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        found = data.get("format") if isinstance(data, dict) else None
+        raise ValueError(f"its format is {str(found)[:40]!r}, not {FORMAT!r}; make it anew with ptmcad classify")
+    return _decode(node)
+
+
+def _decode(document: Node) -> RegionMap:
+    data = document.record(
+        "format", "status", "slice", "system", "base", "complex_solutions", "undetermined", "regions", "components",
+        "critical_values", "stacks", "cells", "adjacencies", "non_adjacencies", "plan", "versions", "precision",
+        "timings?",
+    )  # fmt: skip
+    slice = _slice(data["slice"])
+    names = slice.axis_names
+
+    def point(node: Node) -> Point:
+        values = node.record(*names)
+        return Point(names, values[names[0]].fraction(), values[names[1]].fraction())
+
+    def component(node: Node) -> Component:
+        c = node.record("kind", "separates", "left_out", "polynomial")
+        polynomial = _polynomial(c["polynomial"], names)
+        return Component(polynomial, c["kind"].choice(Kind), c["left_out"].text(), c["separates"].truth())
+
+    def region(node: Node) -> Region:
+        r = node.record("stable", "total", "index", "area", "sample", "cells")
+        low, high = r["area"].each(Node.size, 2)
+        stable, total = r["stable"].optional(Node.natural), r["total"].optional(Node.natural)
+        cells = r["cells"].each(Node.natural)
+        return Region(stable, total, r["index"].optional(_index), (low, high), cells, point(r["sample"]))
+
+    def cell(node: Node) -> Cell:
+        c = node.record("stack", "level", "sample", "region", "total", "stable", "index", "solutions")
+        return Cell(
+            stack=c["stack"].natural(),
+            level=c["level"].natural(),
+            sample=point(c["sample"]),
+            region=c["region"].natural(),
+            total=c["total"].optional(Node.natural),
+            stable=c["stable"].optional(Node.natural),
+            index=c["index"].optional(_index),
+            solutions=c["solutions"].each(_solution),
+        )
+
+    if (base := data["base"].text()) not in names:
+        raise data["base"].fault(f"is {base[:40]!r}, which is not an axis")
+    if len(tuple(data["components"].items())) > MAX_COMPONENTS:
+        raise data["components"].fault(f"has more than {MAX_COMPONENTS} entries")
+    if (undetermined := data["undetermined"].size()) > 1:
+        raise data["undetermined"].fault("is more than the whole window")
+    return RegionMap(
+        slice=slice,
+        status=data["status"].choice(Status),
+        system=_system(data["system"]),
+        base=names.index(base),
+        complex_solutions=data["complex_solutions"].natural(),
+        components=data["components"].each(component),
+        critical_values=data["critical_values"].each(_critical_value),
+        stacks=data["stacks"].each(_stack),
+        cells=data["cells"].each(cell),
+        adjacencies=data["adjacencies"].each(_adjacency),
+        non_adjacencies=data["non_adjacencies"].each(_non_adjacency),
+        regions=data["regions"].each(region),
+        plan=data["plan"].each(_plan_step),
+        undetermined=undetermined,
+        versions={name: node.text() for name, node in data["versions"].mapping().items()},
+        precision={name: node.natural() for name, node in data["precision"].mapping().items()},
+        timings={n: s.number() for n, s in data["timings"].mapping().items()} if "timings" in data else {},
+    )
+
+
+def _slice(node: Node) -> Slice:
+    head = node.record("name", "title", "mechanism", "axes", "parameters", "text", "count", "reference")
+    axes = [Axis(name, *ends.each(Node.fraction, 2)) for name, ends in head["axes"].mapping().items()]
+    if len(axes) != 2 or not all(NAME.fullmatch(a.name) for a in axes):
+        raise head["axes"].fault("does not hold two named axes")
+    for a in axes:
+        if a.low >= a.high:
+            raise head["axes"].fault(f"has an empty range for {a.name}")
+    name = head["name"].line(MAX_NAME)
+    if not all(c.isalnum() or c in "._-" for c in name):
+        raise head["name"].fault("can not name a file")
+    functions = {axes[0].name: axis_function(0), axes[1].name: axis_function(1)}
+
+    def expression(value: Node) -> Expression:
+        try:
+            return parse(value.text(), functions)
+        except ExpressionError as error:
+            raise value.fault(f"is wrong: {error}") from error
+
+    return Slice(
+        name=name,
+        mechanism=head["mechanism"].line(MAX_NAME),
+        axes=(axes[0], axes[1]),
+        parameters={name: expression(value) for name, value in head["parameters"].mapping().items()},
+        count=head["count"].choice(Count),
+        title=head["title"].line(MAX_TITLE),
+        text={name: value.text() for name, value in head["text"].mapping().items()},
+        reference={name: value.value for name, value in head["reference"].mapping().items()},
+    )
+
+
+def _system(node: Node) -> System:
+    s = node.record("unknowns", "relations", "potential", "gradient", "hessian")
+    return System(
+        unknowns=s["unknowns"].each(Node.text),
+        relations=s["relations"].each(Node.text),
+        potential=s["potential"].text(),
+        gradient=s["gradient"].each(Node.text),
+        hessian=s["hessian"].each(lambda row: row.each(Node.text)),
+    )
+
+
+def _polynomial(node: Node, names: tuple[str, str]) -> PlanePolynomial:
+    try:
+        polynomial = PlanePolynomial.parse(node.text(), names)
+    except ValueError as error:
+        raise node.fault(f"is wrong: {error}") from error
+    if max(polynomial.degrees) > MAX_DEGREE:
+        raise node.fault(f"has a degree over {MAX_DEGREE}")
+    return polynomial
+
+
+def _whole(node: Node) -> int:
+    value = node.fraction()
+    if value.denominator != 1:
+        raise node.fault("is not an integer")
+    return value.numerator
+
+
+def _critical_value(node: Node) -> CriticalValue:
+    v = node.record("polynomial", "low", "high", "origin")
+    return CriticalValue(v["polynomial"].each(_whole), v["low"].fraction(), v["high"].fraction(), v["origin"].text())
+
+
+def _stack(node: Node) -> Stack:
+    s = node.record("left", "right", "sample", "walls", "cells")
+
+    def wall(pair: Node) -> Wall:
+        component, root = pair.each(Node.natural, 2)
+        return Wall(component, root)
+
+    left, right = s["left"].optional(Node.natural), s["right"].optional(Node.natural)
+    return Stack(left, right, s["sample"].fraction(), s["walls"].each(wall), s["cells"].each(Node.natural))
+
+
+def _index(node: Node) -> MorseIndex:
+    minima, saddles, maxima = node.each(Node.natural, 3)
+    return (minima, saddles, maxima)
+
+
+def _solution(node: Node) -> Solution:
+    s = node.record("center", "radius", "signs")
+    return Solution(s["center"].each(Node.fraction), s["radius"].fraction(), s["signs"].text())
+
+
+def _adjacency(node: Node) -> Adjacency:
+    a = node.record("cells", "merge", "component", "segment")
+    first, second = a["cells"].each(Node.natural, 2)
+    component = a["component"].optional(Node.natural)
+    return Adjacency(first, second, component, a["segment"].optional(_triple), a["merge"].choice(Merge))
+
+
+def _non_adjacency(node: Node) -> NonAdjacency:
+    a = node.record("critical_value", "left", "right", "below", "above", "reason")
+    return NonAdjacency(
+        critical_value=a["critical_value"].natural(),
+        left=a["left"].each(Node.natural),
+        right=a["right"].each(Node.natural),
+        below=a["below"].optional(_triple),
+        above=a["above"].optional(_triple),
+        reason=a["reason"].choice(Reason),
+    )
+
+
+def _triple(node: Node) -> Segment:
+    low, high, height = node.each(Node.fraction, 3)
+    return (low, high, height)
+
+
+def _plan_step(node: Node) -> PlanStep:
+    p = node.record("what", "done", "reason")
+    return PlanStep(p["what"].text(), p["done"].truth(), p["reason"].text())
