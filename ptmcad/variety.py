@@ -18,14 +18,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
-from ptmcad.algebra.polynomials import Coefficient, Ratio, irreducible_factors, to_plane
+from ptmcad.algebra.polynomials import PLANE, Coefficient, Ratio, irreducible_factors, to_plane
 from ptmcad.algebra.quotient import (
     QuotientAlgebra,
     determinant,
     multiplication_denominator,
     norm,
+    on_line,
     power_trace_denominators,
     quotient_algebra,
     trace_form,
@@ -91,18 +93,42 @@ def discriminant_variety(
         adopt(factor, Kind.CRITICAL)
     suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in found]
     visible = [f for f in suspects if not nowhere_zero(f, *window)]
+    hidden = [f for f in suspects if f not in visible]
     # the costly test is made only for factors that may have a point in the window
     poles = [power_trace_denominators(algebra, k) for k in range(0, equations.unknowns, 2)] if visible else []
-    for factor in suspects:
-        if factor not in visible:
-            adopt(factor, Kind.INFINITY, "no point in the window, so whether it has poles was not examined")
-        elif any(pole.gcd(factor).total_degree() > 0 for pole in poles):
+    for factor in visible:
+        if any(pole.gcd(factor).total_degree() > 0 for pole in poles):
             adopt(factor, Kind.INFINITY)
+    for factor in _with_poles_on_a_line(algebra, hidden, equations.unknowns):
+        adopt(factor, Kind.INFINITY, "no point in the window")
     order = {Kind.CRITICAL: 0, Kind.INFINITY: 1, Kind.BOUNDARY: 2}
     components = sorted(
         found.values(), key=lambda c: (bool(c.left_out), order[c.kind], len(c.polynomial.terms), c.polynomial.terms)
     )
     return DiscriminantVariety(tuple(components), algebra.dimension)
+
+
+def _with_poles_on_a_line(algebra: QuotientAlgebra, asked: Sequence[Coefficient], unknowns: int) -> list[Coefficient]:
+    """Those of the polynomials asked for on which solutions are seen to have poles, along one line y = a x + b.
+
+    Guarantee: a polynomial that is returned divides the denominator of a power trace. For on the line these
+    denominators consist of the factors of the multiplication matrices' denominators, which are pairwise coprime there;
+    so a common root with one of them is a pole on that one. Not guaranteed is that none is missed; as they have no
+    point in the window, nothing depends on it.
+    """
+    if not asked:
+        return []
+    x = PLANE.gens()[0]
+    every = irreducible_factors(multiplication_denominator(algebra))
+    for slope in range(1, 20):
+        line = slope * x + 1000 + slope
+        traces = [f.compose(x, line) for f in every]
+        coprime = all(p.gcd(q).total_degree() == 0 for p, q in combinations(traces, 2))
+        restricted = on_line(algebra, line)
+        if coprime and restricted is not None:
+            poles = [power_trace_denominators(restricted, k) for k in range(0, unknowns, 2)]
+            return [f for f in asked if any(p.gcd(f.compose(x, line)).total_degree() > 0 for p in poles)]
+    return []
 
 
 def _algebra(equations: SliceSystem) -> QuotientAlgebra:

@@ -15,6 +15,7 @@ from operator import add
 from ptmcad.algebra.groebner import GroebnerBasis, Monomial, shifted
 from ptmcad.algebra.polynomials import (
     ONE,
+    PLANE,
     ZERO,
     Coefficient,
     Ratio,
@@ -159,6 +160,18 @@ def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:
             total = add_ratios(total, ratio(numerators[i], denominator))
         scale = lcm((scale, total[1]))
     return scale
+
+
+def on_line(algebra: QuotientAlgebra, y: Coefficient) -> QuotientAlgebra | None:
+    """The algebra over the line y = y(x), or None when some normal form has a pole all along it."""
+    x = PLANE.gens()[0]
+    table: dict[Monomial, Vector] = {}
+    for monomial, (numerators, denominator) in algebra.table.items():
+        below = denominator.compose(x, y)
+        if below.is_zero():
+            return None
+        table[monomial] = _normalised([c.compose(x, y) for c in numerators], below)
+    return QuotientAlgebra(algebra.basis, table)
 
 
 def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:

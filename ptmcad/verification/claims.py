@@ -68,20 +68,18 @@ class PlaneCurve:
         """The largest k such that only powers of the variable's k-th power occur."""
         return max(1, gcd(*(t[variable] for t in self.terms)))
 
-    def flint(self, k: int = 1, m: int = 1) -> fmpz_mpoly:
-        """The polynomial with u for u^k and v for v^m."""
-        return PLANE.from_dict({(i // k, j // m): c for i, j, c in self.terms})
+    def deflated(self, k: int, m: int) -> list[tuple[int, int, int]]:
+        """The terms with u for u^k and v for v^m."""
+        return [(i // k, j // m, c) for i, j, c in self.terms]
+
+    def flint(self) -> fmpz_mpoly:
+        """The polynomial in FLINT's ring."""
+        return PLANE.from_dict({(i, j): c for i, j, c in self.terms})
 
 
 def _scaled(values: list[fmpq]) -> fmpz_poly:
     scale = lcm(*(int(v.q) for v in values))
     return fmpz_poly([int(v.p) * (scale // int(v.q)) for v in values])
-
-
-def univariate(p: fmpz_mpoly, variable: int) -> fmpz_poly:
-    """A polynomial in which only one of u, v occurs."""
-    row: dict[int, int] = {int(m[variable]): int(c) for m, c in p.to_dict().items()}
-    return fmpz_poly([row.get(i, 0) for i in range(max(row, default=0) + 1)])
 
 
 @dataclass(frozen=True)

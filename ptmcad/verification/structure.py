@@ -3,8 +3,7 @@
 Guarantee: over each stack the curves' roots between the window's edges are constant in number and order (discriminants,
 resultants and edge values have no root there but the stored ones); over its sample they are the stored walls.
 
-Discriminants and resultants are FLINT's own in Z[u, v], roots are counted by Sturm sequences; the decomposition
-computes them by evaluation and interpolation, and isolates by Descartes' rule.
+Roots are counted by Sturm sequences; the decomposition isolates them by Descartes' rule.
 """
 
 from __future__ import annotations
@@ -16,7 +15,8 @@ from math import gcd
 from flint import fmpq, fmpz_poly
 
 from ptmcad.regionmap import CriticalValue
-from ptmcad.verification.claims import Claims, PlaneCurve, polynomial, short, side, univariate
+from ptmcad.verification.claims import Claims, PlaneCurve, polynomial, short, side
+from ptmcad.verification.elimination import discriminant, resultant
 from ptmcad.verification.fibre import rational
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import isolating_intervals, roots_between, roots_within
@@ -31,8 +31,7 @@ def projection_of_one(curve: PlaneCurve, height: tuple[fmpq, fmpq]) -> list[tupl
     name = f"component {curve.number}"
     found = [(curve.along(edge), f"{name}: crosses the window's edge") for edge in height]
     if curve.degrees[1] > m:
-        discriminant = univariate(curve.flint(k, m).discriminant("v"), 0).inflate(k)
-        found.append((discriminant, f"{name}: turning or singular point"))
+        found.append((discriminant(curve.deflated(k, m)).inflate(k), f"{name}: turning or singular point"))
     if m > 1 and height[0] < 0 < height[1]:
         found.append((curve.in_v[0], f"{name}: turning point on the axis"))
     return [(f, origin) for p, origin in found for f in _factors(p)]
@@ -45,8 +44,9 @@ def points_over(curve: PlaneCurve, value: CriticalValue) -> fmpz_poly:
         q = fmpz_poly([-value.low.numerator, value.low.denominator])
     k = gcd(curve.exponent_gcd(0), int(q.deflation()[1]))
     m = curve.exponent_gcd(1)
-    constant = PlaneCurve(-1, tuple((i, 0, int(a)) for i, a in enumerate(q.coeffs()) if a))
-    points = univariate(curve.flint(k, m).resultant(constant.flint(k, 1), "u"), 1).inflate(m)
+    # eliminated is the second variable, so u and v change places
+    constant = [(0, i // k, int(a)) for i, a in enumerate(q.coeffs()) if a]
+    points = resultant([(j, i, c) for i, j, c in curve.deflated(k, m)], constant).inflate(m)
     return points // points.gcd(points.derivative())
 
 
@@ -64,8 +64,8 @@ def _projection(claims: Claims) -> dict[tuple[int, ...], tuple[fmpz_poly, set[st
         for d in claims.curves[i + 1 :]:
             k = gcd(c.exponent_gcd(0), d.exponent_gcd(0))
             m = gcd(c.exponent_gcd(1), d.exponent_gcd(1))
-            resultant = univariate(c.flint(k, m).resultant(d.flint(k, m), "v"), 0)
-            found += [(f, f"components {c.number} and {d.number} meet") for f in _factors(resultant.inflate(k))]
+            common = resultant(c.deflated(k, m), d.deflated(k, m)).inflate(k)
+            found += [(f, f"components {c.number} and {d.number} meet") for f in _factors(common)]
     merged: dict[tuple[int, ...], tuple[fmpz_poly, set[str]]] = {}
     for f, origin in found:
         merged.setdefault(tuple(int(c) for c in f.coeffs()), (f, set()))[1].add(origin)

@@ -14,17 +14,19 @@ from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
+from ptmcad.verification.parameters import check_boundary, check_text
 from ptmcad.verification.report import Check, VerifyReport, Violation
 from ptmcad.verification.solutions import check_solutions
 from ptmcad.verification.structure import check_critical_values, check_stacks
-from ptmcad.verification.variety import check_boundary, check_irreducible, check_left_out, check_norm, check_text
+from ptmcad.verification.variety import check_irreducible, check_norm
+from ptmcad.verification.window import check_left_out
 
 NOT_CHECKED = (
     ("provenance", "title, reference, plan, versions, precision and timings are not claims about the regions"),
 )
 
 _SINCE_VARIETY: tuple[tuple[str, str, Callable[[Claims], str]], ...] = (
-    ("critical values", "FLINT discriminants, Sturm", check_critical_values),
+    ("critical values", "discriminants, resultants, Sturm", check_critical_values),
     ("walls and samples", "Sturm counts between samples", check_stacks),
     ("counts", "signatures of trace forms", check_counts),
     ("solutions", "interval Newton in each box", check_solutions),

@@ -1,0 +1,84 @@
+"""Checks of the parameters: as they were written, and the curves that bound the domain of the slice.
+
+Guarantee: BOUNDARY components are exactly the irreducible factors of the parameters' denominators, of lengths and
+stiffnesses that vary, and of what is common to all coefficients of an equation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import lcm
+
+from ptmcad.errors import ExpressionError
+from ptmcad.expressions import axis, names_in, parse
+from ptmcad.plane import PlanePolynomial
+from ptmcad.regionmap import Kind
+from ptmcad.verification.claims import PLANE, Claims
+from ptmcad.verification.model import equation_factors
+from ptmcad.verification.report import Violation
+from ptmcad.verification.variety import factors
+
+
+def check_text(claims: Claims) -> str:
+    """Each parameter as the user wrote it, where it is kept, is the one that was computed with."""
+    slice = claims.result.slice
+    known = {slice.axis_names[0]: axis(0), slice.axis_names[1]: axis(1)}
+    waiting = dict(slice.text)
+    while waiting:
+        # one whose names are all known by now, so that nothing is explained by itself
+        name = next((n for n, text in waiting.items() if _names(n, text) <= known.keys()), None)
+        if name is None:
+            raise Violation(f"the texts kept for {', '.join(sorted(waiting))[:80]} name what is not explained")
+        text = waiting.pop(name)
+        if name not in slice.parameters:
+            raise Violation(f"the text {text[:40]!r} is kept for {name[:40]!r}, which is no parameter")
+        try:
+            written = parse(text, known)
+        except ExpressionError as error:
+            raise Violation(f"the text kept for {name}, {text[:40]!r}, is no expression: {error}") from error
+        if (written - slice.parameters[name]).numerator:
+            true = slice.parameters[name].to_text(slice.axis_names)
+            raise Violation(f"{name} was written as {text[:60]!r}, but is {true[:60]}")
+        known.setdefault(name, written)
+    return f"{len(slice.text)} parameters"
+
+
+def _names(name: str, text: str) -> set[str]:
+    try:
+        return set(names_in(text))
+    except ExpressionError as error:
+        raise Violation(f"the text kept for {name[:40]!r}, {text[:40]!r}, is no expression: {error}") from error
+
+
+def check_boundary(claims: Claims) -> str:
+    """The BOUNDARY components are those that the slice's expressions ask for."""
+    names = claims.result.slice.axis_names
+    needed: dict[PlanePolynomial, str] = {}
+    for name, e in claims.result.slice.parameters.items():
+        parts = [e.denominator]
+        if name in ("L1", "L2", "k1", "k2", "k3", "rho"):
+            parts.append(e.numerator)
+        for terms in parts:
+            for factor in _expression_factors(terms):
+                needed[factor] = f"it bounds the domain of {name}"
+    for k, common in enumerate(equation_factors(claims)):
+        for factor in factors(common) if not common.is_constant() else []:
+            needed.setdefault(factor, f"equation {k} vanishes on it")
+    stored = {c.polynomial: c for c in claims.result.components}
+    for factor, why in needed.items():
+        if factor not in stored:
+            raise Violation(f"{factor.text(names)} = 0 is not stored, but {why}")
+        if stored[factor].kind is not Kind.BOUNDARY:
+            raise Violation(f"{factor.text(names)} = 0 is stored as {stored[factor].kind.value}, but {why}")
+    for n, c in enumerate(claims.result.components):
+        if c.kind is Kind.BOUNDARY and c.polynomial not in needed:
+            raise Violation(f"component {n} is stored as boundary, but bounds nothing: {c.polynomial.text(names)[:60]}")
+    return f"{len(needed)} factors of parameters and equations"
+
+
+def _expression_factors(terms: Sequence[tuple[int, int, Fraction]]) -> list[PlanePolynomial]:
+    if not any(i or j for i, j, _ in terms):
+        return []
+    scale = lcm(*(c.denominator for _, _, c in terms))
+    return factors(PLANE.from_dict({(i, j): int(c * scale) for i, j, c in terms}))
