@@ -61,7 +61,7 @@ def shortest_text(value: Fraction) -> str:
     scaled = value.numerator * (10**digits // value.denominator)
     if abs(scaled) == 1 and digits > 6:
         return f"{scaled}e-{digits}"
-    text = str(abs(scaled)).zfill(digits + 1)
+    text = integer_text(abs(scaled)).zfill(digits + 1)
     return f"{'-' if scaled < 0 else ''}{text[:-digits]}.{text[-digits:]}"
 
 

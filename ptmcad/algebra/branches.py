@@ -1,6 +1,7 @@
 """Branches of a plane curve: proved enclosures of their integrals.
 
 Guarantee: an enclosure that is returned contains the integral of the branch that was asked for; None means not proved.
+`avoids` answers True only with proof.
 
 On a panel [m - r, m + r] a branch v = y(u) of p(u, v) = 0 is approximated by a polynomial z(h), u = m + r h, from the
 branch's Taylor series. Let q = s p with a polynomial s(h) close to 1/p_v(u, z). Suppose |q(u, z)| <= e and
@@ -22,7 +23,9 @@ from ptmcad.algebra.window import Interval
 ENOUGH = 24
 """Bits of the curve's derivative at the panel's middle that have to be right for the rest to make sense."""
 BETWEEN = 40
-"""Bits by which rounding has to be smaller than the distance to the next branch."""
+"""Bits by which rounding has to be smaller than the distance to the next branch at the panel's middle."""
+ALONG = 10
+"""The same along the panel."""
 
 
 class PrecisionTooLow(ArithmeticError):
@@ -63,6 +66,9 @@ def branch_integral(
     if not 8 * last < first and not last < arb((fibre[1] - fibre[0]) / 2**20):
         return None  # the series does not converge on this panel; trying on would only take time
     residual, slope = _along(local, series)
+    # the series solves the equation to its order, so but for rounding the residual starts there
+    if len(local) > 2 and not _norm(residual.truncate(order + 1)) * _norm(local[2]) * 2**ALONG < steepness * steepness:
+        raise PrecisionTooLow
     scale = _inverse(slope, order)
     error = _norm(scale * residual).upper()
     least = (1 - _norm(scale * slope - 1)).lower()
@@ -83,6 +89,16 @@ def branch_integral(
         if k % 2 == 0:
             mean += c / (k + 1)
     return (mean + tube * arb(0, 1)) * arb(2 * radius)
+
+
+def avoids(p: fmpz_poly, low: fmpq, high: fmpq) -> bool:
+    """Whether p is proved to have no zero in [low, high]: its value in the middle outweighs the rest of its Taylor sum.
+
+    False may mean undecided.
+    """
+    radius = arb((high - low) / 2)
+    value, *rest = arb_poly(p)(arb_poly([arb((low + high) / 2), radius])).coeffs() or [arb(0)]
+    return bool(sum((abs(c) for c in rest), arb(0)) < abs(value))
 
 
 def _local_coefficients(in_v: Sequence[fmpz_poly], middle: fmpq, radius: fmpq, origin: fmpq) -> list[arb_poly]:

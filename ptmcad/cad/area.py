@@ -16,9 +16,9 @@ from itertools import pairwise
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.branches import PrecisionTooLow, branch_integral
+from ptmcad.algebra.branches import PrecisionTooLow, avoids, branch_integral
 from ptmcad.algebra.polynomials import to_fraction
-from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine, simplest_between
+from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.cad.curves import Curve
 from ptmcad.cad.stacks import StackData
@@ -286,7 +286,7 @@ def _horizontals(
             # of small height, because the test's cost grows with it
             inner, outer = sorted((end + direction * margin * fmpq(3, 4), end + direction * margin))
             candidate = simplest_between(inner, outer)
-            if not has_root_between(curve.trace(candidate), low, high):
+            if avoids(curve.trace(candidate), low, high):
                 bound = candidate
                 break
             margin = margin * 2

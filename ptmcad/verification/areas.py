@@ -136,8 +136,9 @@ def _by_series(branch: _Branch, middle: fmpq, half: fmpq, height: arb, effort: _
     parabola = arb_poly([center, *first[1:]])
     d = _shifted(rows, parabola)
     steepness = abs(d[1][0])
-    blur = sum((c.rad() * arb(half) ** i for i, c in enumerate(d[0].coeffs())), arb(0))
-    if len(d) > 2 and not blur * _size(d[2], arb(half)) * 2**40 < steepness * steepness:
+    # the parabola follows the branch to second order, so but for rounding the first three coefficients are zero
+    blur = _size(d[0].truncate(3), arb(half)) + sum((c.rad() * half**i for i, c in enumerate(d[0].coeffs())), arb(0))
+    if len(d) > 2 and not blur * _size(d[2], arb(half)) * 2**20 < steepness * steepness:
         raise _PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
     for factor in (4, 2):
         radius = arb(half * factor)
