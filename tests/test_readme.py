@@ -33,7 +33,7 @@ PROGRAM_LINES = [line for line in shell_lines() if not line.startswith("make ")]
 
 def test_the_parts_are_there() -> None:
     assert MAKE_LINES == ["make demo", "make test"]
-    assert len(PROGRAM_LINES) == 2
+    assert [shlex.split(line)[1] for line in PROGRAM_LINES] == ["classify", "classify", "verify", "locate"]
     assert len(blocks("yaml")) == 1
     assert len(blocks("python")) == 1
 
@@ -50,18 +50,24 @@ def test_make_command(line: str) -> None:
     assert expected[line] in dry.stdout
 
 
-@pytest.mark.parametrize("line", PROGRAM_LINES)
-def test_program_command(line: str, tmp_path: Path) -> None:
-    """Each command ends well and writes its files, in a folder that holds nothing but the problem records."""
+SAYS = {"classify": "regions ", "verify": "ok ", "locate": "stable  2\n"}
+
+
+def test_program_commands_in_their_order(tmp_path: Path) -> None:
+    """Each command ends well and says what it should, in a folder that holds nothing but the problem records at first."""
     shutil.copytree(ROOT / "configs", tmp_path / "configs")
-    program, *arguments = shlex.split(line)
-    assert program == ".venv/bin/ptmcad"
     installed = Path(sys.executable).with_name("ptmcad")
-    done = subprocess.run([str(installed), *arguments], cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert done.stderr == ""
-    written = {path.suffix for path in (tmp_path / "out").iterdir()}
-    assert written >= ({".json", ".svg"} if "svg" in line else {".json"})
+    for line in PROGRAM_LINES:
+        program, command, *arguments = shlex.split(line)
+        assert program == ".venv/bin/ptmcad"
+        done = subprocess.run(
+            [str(installed), command, *arguments], cwd=tmp_path, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+        assert done.stderr == ""
+        assert SAYS[command] in done.stdout
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert written == {"fig4.json", "fig4.svg", "slice-L2-rho.json", "slice-L2-rho.png", "slice-L2-rho.svg"}
 
 
 def test_python_block(monkeypatch: pytest.MonkeyPatch) -> None:
