@@ -54,7 +54,7 @@ SAYS = {"classify": "regions ", "verify": "ok ", "locate": "stable  2\n"}
 
 
 def test_program_commands_in_their_order(tmp_path: Path) -> None:
-    """Each command ends well and says what it should, in a folder that holds nothing but the problem records at first."""
+    """Each command ends well and says what it should, in a folder that has only the problem records at first."""
     shutil.copytree(ROOT / "configs", tmp_path / "configs")
     installed = Path(sys.executable).with_name("ptmcad")
     for line in PROGRAM_LINES:
