@@ -66,7 +66,7 @@ def test_false_alterations_are_rejected(
 NOTHING_TO_ALTER: set[tuple[str, str]] = set()
 
 
-NO_CLAIMS = {"title", "name", "reference", "plan", "versions", "precision", "timings"}
+NO_CLAIMS = {"title", "name", "reference", "versions", "precision", "timings"}
 """What is no statement about the regions."""
 MAY_STAY_TRUE = {"low", "high", "segment", "below", "above", "center", "radius", "area", "sample", "reason"}
 """Numbers that can be altered a little without becoming false; `mutations` alters them so that they do."""

@@ -15,15 +15,14 @@ from ptmcad.verification.counts import check_counts
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
+from ptmcad.verification.plan import check_plan
 from ptmcad.verification.report import Check, VerifyReport, Violation
 from ptmcad.verification.solutions import check_solutions
 from ptmcad.verification.structure import check_critical_values, check_stacks
 from ptmcad.verification.variety import check_irreducible, check_norm
 from ptmcad.verification.window import check_left_out
 
-NOT_CHECKED = (
-    ("provenance", "title, reference, plan, versions, precision and timings are not claims about the regions"),
-)
+NOT_CHECKED = (("provenance", "title, reference, versions, precision and timings are not claims about the regions"),)
 
 _SINCE_VARIETY: tuple[tuple[str, str, Callable[[Claims], str]], ...] = (
     ("critical values", "discriminants, resultants, Sturm", check_critical_values),
@@ -66,6 +65,7 @@ def verify(result: RegionMap, seed: int | None = None) -> VerifyReport:
         ("variety complete", "norm of det H at random points", partial(check_norm, seed=drawn)),
         ("boundary components", "factors of the parameters", check_boundary),
         ("left out", "Sturm counts, resultants", check_left_out),
+        ("plan", "built once more", check_plan),
         *_SINCE_VARIETY,
     )
     missing = set()
