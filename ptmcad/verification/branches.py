@@ -1,0 +1,241 @@
+"""Branches of curves over panels: enclosures of their integrals.
+
+On a panel of half width h around u0 the branch is
+v0 + a s + b s^2 + t(s), s = u - u0, with a and b near its first two Taylor coefficients. If for some R > h and r
+
+    sum of |d_ij| R^i r^j over all (i, j) other than (0, 1)  <  |d_01| r,
+    p(u0 + s, v0 + a s + b s^2 + t) = sum of d_ij s^i t^j,
+
+then by Rouche's theorem p has for every complex |s| <= R exactly one root |t| < r; so t is analytic there, its
+coefficients are at most r / R^n (Cauchy), and what lies beyond the term of order N contributes at most
+2 h r (h/R)^N / ((N+1) (1 - (h/R)^2)) to the integral. (Without a and b, two branches that run close together along a
+slope would need panels as short as they are close.) Where no R does, as at turning points, the panel is halved or
+the branch is shut in between two heights at which the curve does not meet the panel.
+
+Guarantee: what is returned contains the integral of the branch that was asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, arb_poly, arb_series, ctx, fmpq
+
+from ptmcad.verification.claims import PlaneCurve
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A wall: the curve, the number of its root, and the curve's coefficients, in Z[u] and in Z[v], for balls."""
+
+    curve: PlaneCurve
+    root: int
+    value: list[arb_poly]
+    columns: list[arb_poly]
+
+    @classmethod
+    def of(cls, curve: PlaneCurve, root: int) -> Branch:
+        return cls(curve, root, [arb_poly(c) for c in curve.in_v], [arb_poly(c) for c in curve.in_u])
+
+    def height(self, u: fmpq, low: fmpq, high: fmpq) -> arb | None:
+        """The branch over u; None when the balls do not tell which root it is."""
+        inside = []
+        # positive roots of the deflated polynomial have roots of their own
+        squares = self.curve.exponent_gcd(1) % 2 == 0 and low >= 0
+        p = self.curve.over(u)
+        roots: Any = (p.deflate(2) if squares else p).complex_roots()  # pairs; FLINT's stub says otherwise
+        for root, _ in roots:
+            if root.imag != 0 or (squares and root.real <= 0):
+                continue
+            real = root.real.sqrt() if squares else root.real
+            if real > low and real < high:
+                inside.append(real)
+            elif not (real < low or real > high):
+                return None
+        inside.sort(key=lambda ball: ball.mid())
+        return inside[self.root] if self.root < len(inside) else None
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What one attempt spends.
+
+    Attributes
+    ----------
+    share : error that a panel may have.
+    shut : panels narrower than this are shut in between heights.
+    narrowest : panels narrower than this are not halved at this precision.
+    heights : the window's edges.
+    """
+
+    share: arb
+    shut: fmpq
+    narrowest: fmpq
+    heights: tuple[fmpq, fmpq]
+
+
+class PrecisionTooLow(Exception):
+    """Rounding alone keeps a panel from being enclosed."""
+
+
+def integral_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort) -> arb:
+    """The integral of the branch over a panel, from the window's lower edge: the best enclosure at hand.
+
+    Raises
+    ------
+    PrecisionTooLow
+    """
+    low, high = effort.heights
+    integral = None
+    middle, half = (left + right) / 2, (right - left) / 2
+    height = branch.height(middle, low, high)
+    if height is not None:
+        integral = _by_series(branch, middle, half, height, effort)
+        if integral is not None:
+            integral -= low * (2 * half)
+        elif 2 * half < effort.shut:
+            bottom, top = _shut_in(branch, middle, half, height, effort)
+            integral = arb(bottom - low).union(arb(top - low)) * (2 * half)
+    if integral is None:
+        integral = arb(0).union(arb(2 * half * (high - low)))
+    return integral
+
+
+def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> arb | None:
+    """The integral of the branch over a panel, by its power series; None when no disk of convergence is proved.
+
+    Raises
+    ------
+    PrecisionTooLow
+    """
+    center = height.mid()
+    rows = [c(arb_poly([middle, 1])) for c in branch.value]
+    near = _shifted([row.truncate(3) for row in rows], arb_poly([center]))
+    if near[1][0].contains(0):
+        raise PrecisionTooLow  # the root is simple
+    start = arb_series([height - center], prec=3)
+    first = [c.mid() for c in _series(near, start, 3)]
+    parabola = arb_poly([center, *first[1:]])
+    d = _shifted(rows, parabola)
+    steepness = abs(d[1][0])
+    # the parabola follows the branch to second order, so but for rounding the first three coefficients are zero
+    blur = _size(d[0].truncate(3), arb(half)) + sum((c.rad() * half**i for i, c in enumerate(d[0].coeffs())), arb(0))
+    if len(d) > 2 and not blur * _size(d[2], arb(half)) * 2**20 < steepness * steepness:
+        raise PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
+    for factor in (4, 2):
+        radius = arb(half * factor)
+        reach = _reach([_size(row, radius) for row in d], steepness)
+        if reach is not None:
+            break
+    else:
+        return None
+    # order until the tail is negligible
+    ratio, order, tail = fmpq(1, factor), 4, arb(0)
+    while True:
+        tail = 2 * arb(half) * reach * arb(ratio) ** order / ((order + 1) * (1 - arb(ratio) ** 2))
+        if tail < effort.share or order >= ctx.prec:
+            break
+        order += 4
+    total, power = arb(0), arb(half)
+    for k, c in enumerate(_series(d, start, order)):
+        if k % 2 == 0:
+            total += (c + parabola[k]) * power * fmpq(2, k + 1)
+        power = power * half
+    return total + arb(0).union(2 * tail) - tail
+
+
+def _shifted(rows: Sequence[arb_poly], by: arb_poly) -> list[arb_poly]:
+    """Coefficients of the powers of t in p(s, by(s) + t), given those of the powers of v in p(s, v)."""
+    shifted = list(rows)
+    for start in range(len(shifted) - 1):
+        for j in range(len(shifted) - 2, start - 1, -1):
+            shifted[j] = shifted[j] + shifted[j + 1] * by
+    return shifted
+
+
+def _size(row: arb_poly, radius: arb) -> arb:
+    """A bound for the polynomial on the disk of a radius."""
+    return arb_poly([abs(c) for c in row.coeffs()])(radius)
+
+
+def _reach(sizes: list[arb], steepness: arb) -> arb | None:
+    """An r for which Rouche's condition holds, given the sums over i of |d_ij| R^i for each j; None when none is found.
+
+    ``sizes[1]`` contains |d_01| itself, which belongs on the other side.
+    """
+    others = [sizes[0], sizes[1] - steepness, *sizes[2:]]
+    first = (sizes[0] / steepness).mid()
+    for multiple in (fmpq(5, 4), fmpq(2), fmpq(4)):
+        reach = (first * multiple).mid() if first > 0 else arb(1) / 2**64
+        if arb_poly(others)(reach) < steepness * reach:
+            return reach
+    return None
+
+
+def _series(d: Sequence[arb_poly], start: arb_series, order: int) -> list[arb]:
+    """Enclosures of the first coefficients of t(s), whose constant one ``start`` encloses, by Newton's method.
+
+    Raises
+    ------
+    PrecisionTooLow
+    """
+    cap = ctx.cap
+    t, length = start, 1
+    try:
+        while length < order:
+            length = min(2 * length, order)
+            ctx.cap = length
+            known = t.coeffs()[:length]
+            t = arb_series(known + [arb(0)] * (length - len(known)), prec=length)
+            value, slope = arb_series([arb(0)], prec=length), arb_series([arb(0)], prec=length)
+            for row in reversed(d):
+                slope = slope * t + value
+                value = value * t + arb_series(row.coeffs()[:length], prec=length)
+            if slope.coeffs() == [] or slope.coeffs()[0].contains(0):
+                raise PrecisionTooLow
+            t = t - value / slope
+        found = t.coeffs()
+    finally:
+        ctx.cap = cap
+    return found + [arb(0)] * (order - len(found))
+
+
+def _shut_in(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[fmpq, fmpq]:
+    """Heights below and above the branch at which the curve does not meet the panel."""
+    low, high = effort.heights
+    mantissa, exponent = (int(n) for n in height.mid().man_exp())
+    center = fmpq(mantissa) * (fmpq(2) ** exponent)
+    start = (high - low) * min(fmpq(1, 16), half / effort.shut / 2**8)
+    bounds = []
+    for edge, direction in ((low, -1), (high, 1)):
+        margin, bound = start, edge
+        while margin < direction * (edge - center):
+            candidate = _simple(center + direction * margin, margin / 8)
+            # the height over the middle tells on which side of the candidate the branch is
+            clear = arb(candidate) < height if direction < 0 else arb(candidate) > height
+            if clear and _misses(branch, middle, half, candidate):
+                bound = candidate
+                break
+            margin = margin * 2
+        bounds.append(bound)
+    return bounds[0], bounds[1]
+
+
+def _misses(branch: Branch, middle: fmpq, half: fmpq, v: fmpq) -> bool:
+    """Whether the curve is proved not to meet the panel at a height."""
+    along = arb_poly([row(v) for row in branch.columns])(arb_poly([middle, 1])).coeffs()
+    total, power = arb(0), arb(half)
+    for c in along[1:]:
+        total += abs(c) * power
+        power = power * half
+    return bool(along) and total < abs(along[0])
+
+
+def _simple(value: fmpq, error: fmpq) -> fmpq:
+    """A dyadic number near a value."""
+    scale = 1
+    while fmpq(1, scale) > error:
+        scale *= 2
+    return fmpq((value * scale).floor(), scale)
