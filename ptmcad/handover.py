@@ -28,6 +28,7 @@ class Topic(Enum):
     RESULT = b"P"  # "partial" or "complete", and the result's text as it is by now
     PROGRESS = b"B"  # the progress bar stands in the terminal's line
     EXHAUSTED = b"X"  # memory has run out
+    DONE = b"E"  # the program has come to its end and exits with its status
 
 
 class _Sender:

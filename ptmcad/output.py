@@ -15,11 +15,13 @@ import os
 import re
 import stat
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ptmcad.errors import OutputError
+from ptmcad.errors import ConfigError, OutputError
 from ptmcad.handover import Topic, tell, undisturbed
+from ptmcad.textfile import read_text
 
 if sys.platform != "win32":
     import fcntl
@@ -28,6 +30,8 @@ Writer = Callable[[Path], None]
 
 _TEMPORARY = re.compile(r"\.(?P<stem>.*)\.[0-9a-f]{8}\.tmp(?P<suffix>\.[a-z]+)?", re.DOTALL)
 _PROBE = "probe"
+MOST_BYTES = 10_000_000
+"""Of an older result that is looked at."""
 
 
 def text_writer(text: str) -> Writer:
@@ -122,7 +126,7 @@ def _put_into_place(temporaries: Mapping[Path, Path]) -> None:
     if aside:
         tell(Topic.TEMPORARY, *map(str, aside.values()))
     current = voucher
-    with undisturbed():
+    with undisturbed(), _one_at_a_time(voucher.parent):
         try:
             for current, place in aside.items():
                 current.replace(place)
@@ -143,6 +147,21 @@ def _put_into_place(temporaries: Mapping[Path, Path]) -> None:
         finally:
             for place in aside.values():
                 place.unlink(missing_ok=True)
+
+
+@contextmanager
+def _one_at_a_time(folder: Path) -> Iterator[None]:
+    """Keep other processes of this program from renaming files in the folder, where the file system has locks."""
+    if sys.platform == "win32":
+        yield
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):  # a file system without locks
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def save_stopped(target: Path, text: str) -> Path:
@@ -168,11 +187,11 @@ def where_saved(target: Path, place: Path) -> str:
 
 def _replaceable(target: Path) -> bool:
     """Whether there is no such file, or only a partial result."""
-    try:
-        stored = json.loads(target.read_text(encoding="utf-8"))
-    except FileNotFoundError:
+    if not os.path.lexists(target):
         return True
-    except (OSError, ValueError, RecursionError):  # not a result: not ours to replace unasked
+    try:
+        stored = json.loads(read_text(target, MOST_BYTES, "a result"))
+    except (ConfigError, ValueError, RecursionError):  # not a result: not ours to replace unasked
         return False
     return isinstance(stored, dict) and stored.get("status") == "partial"
 

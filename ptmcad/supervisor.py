@@ -22,7 +22,7 @@ from collections.abc import Callable, Sequence
 from types import FrameType
 from typing import NoReturn
 
-from ptmcad.handover import Receiver, Topic, connect, disconnect
+from ptmcad.handover import Receiver, Topic, connect, disconnect, tell
 from ptmcad.streams import quiet_stream
 
 if sys.platform != "win32":
@@ -34,8 +34,8 @@ GRACE = 0.3
 LATE = 0.25
 """Seconds by which the child may overrun its time limit: it looks at the clock itself, and does so first."""
 
-OUT_OF_MEMORY = ("llocate ", "bad_alloc", "overflow in mpz")
-"""What libraries print before they abort because they could not allocate: FLINT and GMP, C++, and GMP's size limit."""
+OUT_OF_MEMORY = ("llocate ", "llocation still failed", "bad_alloc", "overflow in mpz")
+"""What FLINT, GMP, OpenBLAS and C++ print at their end when they could not allocate, and GMP at its size limit."""
 
 _CHUNK = 1 << 16
 _CLEAR_LINE = b"\r\x1b[K"
@@ -78,6 +78,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             stream.flush()
+    tell(Topic.DONE)
     os._exit(status)
 
 
@@ -157,12 +158,14 @@ class _Watch:
 
     def _end(self, ended: int) -> int:
         """Leave nothing behind, say what there is to say, and return the exit status."""
-        if ended < 0 or self.caught or self.out_of_time:
+        # a library may call exit() when memory runs out: then the child has not said that it was done
+        deserted = ended >= 0 and Topic.DONE not in self.told and ended <= 128
+        if ended < 0 or deserted or self.caught or self.out_of_time:
             self._tidy()
         if self.caught:
             return 128 + self.caught[0]
         text = self.text.decode(errors="replace")
-        aborted = ended == -signal.SIGABRT and any(sign in text for sign in OUT_OF_MEMORY)
+        aborted = (ended == -signal.SIGABRT or deserted) and any(sign in text for sign in OUT_OF_MEMORY)
         if self.out_of_time and (ended < 0 or ended > 128):
             return self._stopped(f"the time limit of {self.told[Topic.DEADLINE][1]} was reached")
         if aborted or Topic.EXHAUSTED in self.told:
@@ -170,6 +173,9 @@ class _Watch:
         if ended == -signal.SIGKILL:
             return self._stopped("the computation was killed from outside, most likely because memory ran out")
         _say(text)
+        if deserted:
+            _say(f"error: the computation ended by itself with status {ended}; this is a bug, please report it\n")
+            return ended or 1
         if ended >= 0:
             return ended
         if -ended not in self.heeded:

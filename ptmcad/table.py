@@ -39,6 +39,13 @@ def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
     return f"{decimal(low, up=False, digits=2)} to {decimal(high, up=True, digits=2)}"
 
 
+def _short(value: Fraction) -> str:
+    """A number, not negative, in two digits, of any size."""
+    return (
+        "0.0e+00" if value == 0 else f"{float(value):.1e}" if abs(magnitude(value)) < 300 else f"1e{magnitude(value)}"
+    )
+
+
 def table(result: RegionMap) -> str:
     """Regions, counts, areas, boundary curves with degrees, time and error."""
     names = result.slice.axis_names
@@ -54,7 +61,7 @@ def table(result: RegionMap) -> str:
         for (kind, degrees, terms), n in alike.items()
     )
     widths = [(r.area[1] - r.area[0]) / r.area[0] for r in result.regions if r.area[0]]
-    error = f"{float(max(widths)):.1e}" if widths and len(widths) == len(result.regions) else "unknown"
+    error = _short(max(widths)) if widths and len(widths) == len(result.regions) else "unknown"
     seconds = result.timings.get("total")
     time = "not recorded" if seconds is None else f"{seconds:.2f} s"
     undetermined = "0" if result.undetermined == 0 else f"{float(result.undetermined):.2g}"

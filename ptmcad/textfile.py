@@ -7,6 +7,7 @@ executed. Every refusal is a `ConfigError` that names the file.
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from collections.abc import Iterator
@@ -30,7 +31,9 @@ def read_bytes(path: str | Path, most: int, what: str) -> bytes:
     descriptor = _open(path, what)
     try:
         with open(descriptor, "rb") as stream:
-            data = stream.read(most + 1)
+            data: bytes | None = stream.read(most + 1)
+            if data is None:  # a file that would keep its reader waiting, such as a log of the kernel
+                raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
     except OSError as error:
         raise _unreadable(path, error) from error
     if len(data) > most:

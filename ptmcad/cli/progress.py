@@ -21,7 +21,7 @@ class ProgressBar:
     """A context manager; call it with (stage, done, total)."""
 
     def __init__(self) -> None:
-        self.watched = sys.stderr.isatty()
+        self.watched = sys.stderr is not None and sys.stderr.isatty()  # None when the caller has closed it
         self.start = self.last = time.monotonic()
         self.shown = False
 

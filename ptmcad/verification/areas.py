@@ -22,7 +22,9 @@ from ptmcad.verification.claims import Claims, bracket, fraction
 from ptmcad.verification.fibre import rational
 from ptmcad.verification.report import Violation
 
-ATTEMPTS = 6
+NARROWEST = 10**60
+"""Bounds that are relatively narrower than the inverse of this are not even tried."""
+ATTEMPTS = 5
 """Times that precision is raised, and strips are narrowed, before bounds count as not confirmed."""
 
 
@@ -55,6 +57,9 @@ def check_areas(claims: Claims) -> str:
             raise Violation(f"the only region's area is the window's, {approximate_text(window)}, not "
                             f"{_between(result.regions[0])}")  # fmt: skip
         return "1 region, the window"
+    for n, region in enumerate(result.regions):
+        if region.area[1] - region.area[0] < region.area[1] / NARROWEST:
+            raise Violation(f"region {n}: that its area is {_between(region)} can not be confirmed: too narrow")
     narrowest = min(region.area[1] - region.area[0] for region in result.regions)
     scale = (narrowest or window / 10**18) / window
     bits = 96 + 2 * _doublings(scale)

@@ -1,15 +1,15 @@
 """Branches of curves over panels: enclosures of their integrals.
 
-On a panel of half width h around u0 the branch is
-v0 + a s + b s^2 + t(s), s = u - u0, with a and b near its first two Taylor coefficients. If for some R > h and r
+On a panel of half width h around u0 the branch is z(s) + t(s), s = u - u0, with a polynomial z that has nearly its
+first Taylor coefficients. If for some R > h and r
 
     sum of |d_ij| R^i r^j over all (i, j) other than (0, 1)  <  |d_01| r,
-    p(u0 + s, v0 + a s + b s^2 + t) = sum of d_ij s^i t^j,
+    p(u0 + s, z(s) + t) = sum of d_ij s^i t^j,
 
 then by Rouche's theorem p has for every complex |s| <= R exactly one root |t| < r; so t is analytic there, its
 coefficients are at most r / R^n (Cauchy), and what lies beyond the term of order N contributes at most
-2 h r (h/R)^N / ((N+1) (1 - (h/R)^2)) to the integral. (Without a and b, two branches that run close together along a
-slope would need panels as short as they are close.) Where no R does, as at turning points, the panel is halved or
+2 h r (h/R)^N / ((N+1) (1 - (h/R)^2)) to the integral. (Without z, two branches that run close together along a slope
+or a bend would need panels as short as they are close.) Where no R does, as at turning points, the panel is halved or
 the branch is shut in between two heights at which the curve does not meet the panel.
 
 Guarantee: what is returned contains the integral of the branch that was asked for.
@@ -21,7 +21,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from flint import arb, arb_poly, arb_series, ctx, fmpq
+from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
 
 from ptmcad.verification.claims import PlaneCurve
 
@@ -41,21 +41,48 @@ class Branch:
 
     def height(self, u: fmpq, low: fmpq, high: fmpq) -> arb | None:
         """The branch over u; None when the balls do not tell which root it is."""
+        for bits in sorted({64, ctx.prec}):  # the roots are isolated roughly first, because that is cheaper
+            height = self._height(u, low, high, bits)
+            if height is not None and height.rel_accuracy_bits() > ctx.prec // 2:
+                break
+        return height
+
+    def _height(self, u: fmpq, low: fmpq, high: fmpq, bits: int) -> arb | None:
         inside = []
         # positive roots of the deflated polynomial have roots of their own
         squares = self.curve.exponent_gcd(1) % 2 == 0 and low >= 0
         p = self.curve.over(u)
-        roots: Any = (p.deflate(2) if squares else p).complex_roots()  # pairs; FLINT's stub says otherwise
+        if squares:
+            p = p.deflate(2)
+        with ctx.workprec(bits):
+            roots: Any = p.complex_roots()  # pairs; FLINT's stub says otherwise
         for root, _ in roots:
             if root.imag != 0 or (squares and root.real <= 0):
                 continue
             real = root.real.sqrt() if squares else root.real
             if real > low and real < high:
-                inside.append(real)
+                inside.append(root.real)
             elif not (real < low or real > high):
                 return None
         inside.sort(key=lambda ball: ball.mid())
-        return inside[self.root] if self.root < len(inside) else None
+        if self.root >= len(inside):
+            return None
+        height = _refined(p, inside[self.root])
+        return height.sqrt() if squares else height
+
+
+def _refined(p: fmpz_poly, root: arb) -> arb:
+    """A ball for the only root of p in a given one, narrowed by interval Newton steps as far as precision allows."""
+    value, slope = arb_poly(p), arb_poly(p.derivative())
+    while True:
+        middle = root.mid()
+        steepness = slope(root)
+        if steepness.contains(0):
+            return root
+        closer = (middle - value(middle) / steepness).intersection(root)
+        if not closer.rad() * 4 < root.rad():
+            return closer
+        root = closer
 
 
 @dataclass(frozen=True)
@@ -110,18 +137,30 @@ def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Ef
     ------
     PrecisionTooLow
     """
-    center = height.mid()
     rows = [c(arb_poly([middle, 1])) for c in branch.value]
-    near = _shifted([row.truncate(3) for row in rows], arb_poly([center]))
+    for degree in _DEGREES:
+        integral = _along(rows, half, height, degree, effort)
+        if integral is not None:
+            return integral
+    return None
+
+
+_DEGREES = (2, 10)
+"""Of the polynomials that the branch is compared with; the closer the next branch, the better it has to be."""
+
+
+def _along(rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: Effort) -> arb | None:
+    center, length = height.mid(), degree + 1
+    near = _shifted([row.truncate(length) for row in rows], arb_poly([center]))
     if near[1][0].contains(0):
         raise PrecisionTooLow  # the root is simple
-    start = arb_series([height - center], prec=3)
-    first = [c.mid() for c in _series(near, start, 3)]
-    parabola = arb_poly([center, *first[1:]])
-    d = _shifted(rows, parabola)
+    start = arb_series([height - center], prec=length)
+    polynomial = arb_poly([center, *(c.mid() for c in _series(near, start, length)[1:])])
+    d = _shifted(rows, polynomial)
     steepness = abs(d[1][0])
-    # the parabola follows the branch to second order, so but for rounding the first three coefficients are zero
-    blur = _size(d[0].truncate(3), arb(half)) + sum((c.rad() * half**i for i, c in enumerate(d[0].coeffs())), arb(0))
+    # the polynomial follows the branch to its degree, so but for rounding the first coefficients are zero
+    rounded = sum((c.rad() * half**i for i, c in enumerate(d[0].coeffs())), arb(0))
+    blur = _size(d[0].truncate(length), arb(half)) + rounded
     if len(d) > 2 and not blur * _size(d[2], arb(half)) * 2**20 < steepness * steepness:
         raise PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
     for factor in (4, 2):
@@ -139,10 +178,10 @@ def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Ef
             break
         order += 4
     total, power = arb(0), arb(half)
-    for k, c in enumerate(_series(d, start, order)):
-        if k % 2 == 0:
-            total += (c + parabola[k]) * power * fmpq(2, k + 1)
-        power = power * half
+    series = _series(d, start, order)
+    for k in range(0, max(order, length), 2):
+        total += ((series[k] if k < order else 0) + polynomial[k]) * power * fmpq(2, k + 1)
+        power = power * half * half
     return total + arb(0).union(2 * tail) - tail
 
 
@@ -166,9 +205,9 @@ def _reach(sizes: list[arb], steepness: arb) -> arb | None:
     ``sizes[1]`` contains |d_01| itself, which belongs on the other side.
     """
     others = [sizes[0], sizes[1] - steepness, *sizes[2:]]
-    first = (sizes[0] / steepness).mid()
+    first = (sizes[0] / steepness).upper()
     for multiple in (fmpq(5, 4), fmpq(2), fmpq(4)):
-        reach = (first * multiple).mid() if first > 0 else arb(1) / 2**64
+        reach = (first * multiple).upper() if first > 0 else arb(1) / 2**64
         if arb_poly(others)(reach) < steepness * reach:
             return reach
     return None

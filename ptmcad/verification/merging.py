@@ -32,6 +32,8 @@ def check_shape(claims: Claims) -> str:
     if not r.stacks:
         if r.status is Status.EXACT or r.critical_values or r.cells or r.adjacencies or r.non_adjacencies or r.regions:
             raise Violation("there are no stacks")
+        if any(c.separates for c in r.components):
+            raise Violation("a component is said to separate regions, but there are none")
         return "no stacks yet"
     if len(r.critical_values) != len(r.stacks) - 1:
         raise Violation(f"{len(r.critical_values)} critical values do not part {len(r.stacks)} stacks")

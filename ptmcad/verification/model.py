@@ -21,7 +21,8 @@ UNKNOWNS = ("cos_th1", "sin_th1", "cos_th2", "sin_th2")
 
 _RING: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get((*UNKNOWNS, *PARAMETERS), Ordering.lex)
 _NAMES = (*UNKNOWNS, *PARAMETERS)
-_MONOMIAL = re.compile(r"[0-9]+(?:/[0-9]+)?|[A-Za-z_0-9]+(?:\^[0-9]{1,2})?", re.ASCII)
+_FACTOR = r"(?:[0-9]{1,40}(?:/[1-9][0-9]{0,39})?|[A-Za-z][A-Za-z_0-9]{0,40}(?:\^[0-9]{1,2})?)"
+_SUM = re.compile(rf"-?{_FACTOR}(?:\*{_FACTOR})*(?: [+-] {_FACTOR}(?:\*{_FACTOR})*)*", re.ASCII)
 
 
 def _variable(name: str) -> fmpq_mpoly:
@@ -67,19 +68,17 @@ def _by_angle(p: fmpq_mpoly, angle: int) -> fmpq_mpoly:
 def _parsed(text: str, what: str) -> fmpq_mpoly:
     """A sum of monomials such as ``-1/2*L1^2*k3 + rho*cos_th1``."""
     total = _RING.constant(0)
-    terms = re.findall(r"([+-]?)\s*([^\s+-]+)", text)
-    if len(text) > 100_000 or "".join(sign + body for sign, body in terms) != re.sub(r"\s", "", text):
-        raise Violation(f"the {what} is not a polynomial: {text[:60]}")
-    for sign, body in terms:
+    if len(text) > 100_000 or _SUM.fullmatch(text) is None:
+        raise Violation(f"the {what} is not a sum of monomials: {text[:60]}")
+    for sign, body in re.findall(r"(^-?|[+-]) ?([^ ]+)", text):
         term = _RING.constant(-1 if sign == "-" else 1)
         for factor in body.split("*"):
-            if _MONOMIAL.fullmatch(factor) is None:
-                raise Violation(f"the {what} is not a polynomial: {factor[:40]!r}")
             name, _, exponent = factor.partition("^")
             if name in _NAMES:
                 term *= _variable(name) ** int(exponent or 1)
             elif name[0].isdigit() and not exponent:
-                value = fraction_of(name)
+                if (value := fraction_of(name)) == 0:
+                    raise Violation(f"the {what} has a zero coefficient")
                 term *= fmpq(value.numerator, value.denominator)
             else:
                 raise Violation(f"the {what} names {name[:40]!r}, which is neither a parameter nor an unknown")

@@ -14,6 +14,7 @@ from ptmcad.errors import ExpressionError
 from ptmcad.expressions import axis, names_in, parse
 from ptmcad.plane import PlanePolynomial
 from ptmcad.regionmap import Kind
+from ptmcad.slice import Slice
 from ptmcad.verification.claims import PLANE, Claims
 from ptmcad.verification.model import equation_factors
 from ptmcad.verification.report import Violation
@@ -21,27 +22,35 @@ from ptmcad.verification.variety import factors
 
 
 def check_text(claims: Claims) -> str:
-    """Each parameter as the user wrote it, where it is kept, is the one that was computed with."""
+    """Each parameter as the user wrote it is the one that was computed with, and an axis stands for itself."""
     slice = claims.result.slice
+    if set(slice.text) != set(slice.parameters):
+        raise Violation("a parameter lacks the text that it was written as, or a text its parameter")
+    for index, name in enumerate(slice.axis_names):
+        if name in slice.parameters and (slice.parameters[name] - axis(index)).numerator:
+            raise Violation(f"{name} is an axis, but the parameter {name} is {_shown(slice, name)}")
+    if "k" in slice.text and not any("k" in _names(n, slice.text[n]) for n in slice.text if n != "k"):
+        raise Violation("the parameter k is stored, but nothing depends on it")
     known = {slice.axis_names[0]: axis(0), slice.axis_names[1]: axis(1)}
     waiting = dict(slice.text)
     while waiting:
         # one whose names are all known by now, so that nothing is explained by itself
-        name = next((n for n, text in waiting.items() if _names(n, text) <= known.keys()), None)
-        if name is None:
+        ready = next((n for n, text in waiting.items() if _names(n, text) <= known.keys()), None)
+        if ready is None:
             raise Violation(f"the texts kept for {', '.join(sorted(waiting))[:80]} name what is not explained")
-        text = waiting.pop(name)
-        if name not in slice.parameters:
-            raise Violation(f"the text {text[:40]!r} is kept for {name[:40]!r}, which is no parameter")
+        name, text = ready, waiting.pop(ready)
         try:
             written = parse(text, known)
         except ExpressionError as error:
             raise Violation(f"the text kept for {name}, {text[:40]!r}, is no expression: {error}") from error
         if (written - slice.parameters[name]).numerator:
-            true = slice.parameters[name].to_text(slice.axis_names)
-            raise Violation(f"{name} was written as {text[:60]!r}, but is {true[:60]}")
+            raise Violation(f"{name} was written as {text[:60]!r}, but is {_shown(slice, name)}")
         known.setdefault(name, written)
     return f"{len(slice.text)} parameters"
+
+
+def _shown(slice: Slice, name: str) -> str:
+    return slice.parameters[name].to_text(slice.axis_names)[:60]
 
 
 def _names(name: str, text: str) -> set[str]:

@@ -76,7 +76,11 @@ def check_critical_values(claims: Claims) -> str:
     """Isolation, order, and completeness of the critical values."""
     values = claims.result.critical_values
     previous = claims.base[0]
+    factors = _projection(claims)
     for n, value in enumerate(values):
+        if value.polynomial not in factors:
+            raise Violation(f"critical value {n}: its polynomial is no irreducible factor of a discriminant, resultant "
+                            "or edge value")  # fmt: skip
         low, high = rational(value.low), rational(value.high)
         p = polynomial(value)
         if p.degree() < 1 or not previous < low <= high < claims.base[1]:
@@ -86,7 +90,6 @@ def check_critical_values(claims: Claims) -> str:
             raise Violation(f"critical value {n}: its polynomial has {roots} roots in [{value.low}, {value.high}]")
         previous = high
     origins: list[set[str]] = [set() for _ in values]
-    factors = _projection(claims)
     for coefficients, (f, whence) in factors.items():
         matching = [n for n, value in enumerate(values) if value.polynomial == coefficients]
         for n in matching:
@@ -96,9 +99,6 @@ def check_critical_values(claims: Claims) -> str:
             raise Violation(f"a polynomial of the projection of degree {f.degree()} has {roots} roots in the window, "
                             f"but {len(matching)} of them are stored; not stored: {', '.join(where)}")  # fmt: skip
     for n, (value, true) in enumerate(zip(values, origins, strict=True)):
-        if not true:
-            raise Violation(f"critical value {n}: its polynomial is no irreducible factor of a discriminant, resultant "
-                            "or edge value")  # fmt: skip
         if value.origin not in true:
             raise Violation(
                 f"the origin of critical value {n} is not {value.origin[:80]!r}, but {', '.join(sorted(true))}"

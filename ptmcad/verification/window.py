@@ -1,12 +1,13 @@
 """Checks of the components that are left out: they have no point in the open window.
 
-Guarantee: exact. Bounds on boxes prove most of them; what they do not settle is settled by Sturm counts over a point in
-each interval that the curve's discriminant and edge values leave, and by balls around what may be isolated points.
+Guarantee: exact. Signs of coefficients on boxes prove most of them; what they do not settle is settled by Sturm counts
+over a point in each interval that the curve's discriminant and edge values leave, and by balls around what may be
+isolated points.
 """
 
 from __future__ import annotations
 
-from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
+from flint import arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
 
 from ptmcad.regionmap import CriticalValue
 from ptmcad.verification.claims import Claims, PlaneCurve, ball, fraction, short
@@ -65,29 +66,45 @@ def _point_in_window(curve: PlaneCurve, claims: Claims) -> str | None:
 
 
 def _nowhere_zero(curve: PlaneCurve, claims: Claims) -> bool:
-    """Whether the curve is proved, by bounds on boxes, to have no point in the closed window."""
-    rows = [arb_poly(c) for c in curve.in_v]
+    """Whether the curve is proved to have no point in the open window; False may mean undecided.
+
+    With u = (a + b x)/(1 + x), v = (c + d y)/(1 + y) an open box becomes the quadrant x, y > 0, on which a polynomial
+    whose coefficients have one sign has no zero. A box that is not settled is cut in four; Sturm settles the cuts.
+    """
     waiting, done = [(*claims.base, *claims.height)], 0
+    rows = [fmpq_poly(row) for row in curve.in_v]
     while waiting:
-        if done > BOXES:
-            return False
         done += 1
         a, b, c, d = waiting.pop()
-        half_u, half_v = (b - a) / 2, (d - c) / 2
-        local = [row(arb_poly([a + half_u, half_u])) for row in rows]
-        columns = range(max(len(row) for row in local))
-        center, spread = arb(0), arb(0)
-        for i in columns:
-            column = arb_poly([row[i] for row in local])(arb_poly([c + half_v, half_v]))
-            for j, value in enumerate(column.coeffs()):
-                if i == j == 0:
-                    center = value
-                else:
-                    spread += abs(value)
-        if not abs(center) > spread:
-            waiting += [(a, a + half_u, c, c + half_v), (a + half_u, b, c, c + half_v),
-                        (a, a + half_u, c + half_v, d), (a + half_u, b, c + half_v, d)]  # fmt: skip
+        if _one_sign(rows, curve.degrees[0], (a, b), (c, d)):
+            continue
+        u, v = (a + b) / 2, (c + d) / 2
+        if done > BOXES or roots_between(curve.over(u), c, d) or roots_between(curve.along(v), a, b):
+            return False
+        waiting += [(a, u, c, v), (u, b, c, v), (a, u, v, d), (u, b, v, d)]
     return True
+
+
+def _one_sign(rows: list[fmpq_poly], degree: int, base: tuple[fmpq, fmpq], height: tuple[fmpq, fmpq]) -> bool:
+    lines = [_on_half_line(row, degree, base) for row in rows]
+    signs = set()
+    for i in range(degree + 1):
+        column = fmpq_poly([line[i] for line in lines])
+        signs |= {1 if c > 0 else -1 for c in _on_half_line(column, len(rows) - 1, height).coeffs() if c != 0}
+        if len(signs) > 1:
+            return False
+    return True
+
+
+def _on_half_line(p: fmpq_poly, degree: int, interval: tuple[fmpq, fmpq]) -> fmpq_poly:
+    """(1 + x)^degree p((low + high x)/(1 + x)): its values for x > 0 are those of p in the interval, times a power."""
+    low, high = interval
+    on_unit = p(fmpq_poly([low, high - low]))  # p(low + (high - low) z), z = x/(1 + x)
+    reversed_ = fmpq_poly(
+        [on_unit[degree - i] for i in range(degree + 1)]
+    )  # (1 + x)^degree q(x/(1+x)) = x^degree r(1 + 1/x)
+    shifted = reversed_(fmpq_poly([1, 1]))
+    return fmpq_poly([shifted[degree - i] for i in range(degree + 1)])
 
 
 def _excluded(curve: PlaneCurve, place: CriticalValue, at: CriticalValue) -> bool:
