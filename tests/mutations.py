@@ -11,8 +11,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 
+from ptmcad.expressions import constant
 from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import Cell, Component, Kind, Merge, NonAdjacency, Reason, RegionMap, Solution
+from ptmcad.regionmap import Cell, Component, Kind, Merge, NonAdjacency, Reason, RegionMap, Solution, Status
 
 
 def put(items: tuple, k: int, **changes: object) -> tuple:  # type: ignore[type-arg]
@@ -509,6 +510,62 @@ def area_too_narrow(r: RegionMap, rng: random.Random) -> RegionMap:
     return replace(r, regions=put(r.regions, n, area=area))
 
 
+def axes_exchanged(r: RegionMap, rng: random.Random) -> RegionMap:
+    """The axes' names are exchanged and the parameters make up for it; or an axis stands for twice itself."""
+    x, y = r.slice.axes
+    first, second = r.slice.axis_names
+    parameters = dict(r.slice.parameters)
+    if rng.random() < 0.5 and {first, second} <= set(parameters):
+        parameters[first], parameters[second] = parameters[second], parameters[first]
+        text = {**r.slice.text, first: second, second: first}
+        return replace(
+            r,
+            slice=replace(
+                r.slice, axes=(replace(x, name=second), replace(y, name=first)), parameters=parameters, text=text
+            ),
+        )
+    name = rng.choice([n for n in (first, second) if n in parameters])
+    parameters[name] = 2 * parameters[name]
+    return replace(r, slice=replace(r.slice, parameters=parameters, text={**r.slice.text, name: f"2*{name}"}))
+
+
+def text_dropped(r: RegionMap, rng: random.Random) -> RegionMap:
+    name = rng.choice(sorted(r.slice.text))
+    return replace(r, slice=replace(r.slice, text={n: t for n, t in r.slice.text.items() if n != name}))
+
+
+def unused_stiffness(r: RegionMap, rng: random.Random) -> RegionMap:
+    """A k that nothing depends on."""
+    parameters = {**r.slice.parameters, "k": constant(rng.randint(1, 99))}
+    text = {n: (t if t != "k" else "100") for n, t in r.slice.text.items()}
+    text["k"] = parameters["k"].to_text()
+    return replace(r, slice=replace(r.slice, parameters=parameters, text=text))
+
+
+def sum_without_signs(r: RegionMap, rng: random.Random) -> RegionMap:
+    which = rng.choice(["potential", "gradient"])
+    if which == "potential":
+        return replace(r, system=replace(r.system, potential=r.system.potential.replace(" + ", " ")))
+    return replace(r, system=replace(r.system, gradient=tuple(g.replace(" + ", " ") for g in r.system.gradient)))
+
+
+def number_that_is_none(r: RegionMap, rng: random.Random) -> RegionMap:
+    head = rng.choice(["1/0*", "1e*", "1L*", "0*", "^2*", "*"])
+    return replace(r, system=replace(r.system, potential=head + r.system.potential))
+
+
+def smooth_line_at_infinity(r: RegionMap, rng: random.Random) -> RegionMap:
+    """A line outside of the window whose values are small and have small factors more often than not."""
+    x, y = r.slice.axes
+    far = int(max(x.high, y.high)) + rng.randint(1, 10**4)
+    line = PlanePolynomial.of([rng.choice([(1, 0, 1), (0, 1, 1)]), (0, 0, -far)])
+    return replace(r, components=(*r.components, Component(line, Kind.INFINITY, "no point in the window")))
+
+
+def partial_with_false_areas(r: RegionMap, rng: random.Random) -> RegionMap:
+    return replace(area_shifted(r, rng), status=Status.PARTIAL)
+
+
 ALL: tuple[Mutation, ...] = (
     count, morse_index, swapped_index, sample_of_another_cell, sample_beyond_a_wall, dropped_component,
     changed_component, component_left_out, critical_kind, separates, moved_critical_value, invented_critical_value,
@@ -518,5 +575,7 @@ ALL: tuple[Mutation, ...] = (
     box_blown_up, box_dropped, box_twice, box_invented, solutions_of_another_cell, sign, signs_exchanged, potential,
     equation, hessian, relation, unknowns, parameter_text, non_adjacency_dropped, non_adjacency_twice,
     non_adjacency_invented, non_adjacency_reason, non_adjacency_cells, non_adjacency_segment, origin,
-    component_invented, any_kind, left_out_reason, component_repeated, area_shifted, area_too_narrow,
+    component_invented, any_kind, left_out_reason, component_repeated, area_shifted, area_too_narrow, axes_exchanged,
+    text_dropped, unused_stiffness, sum_without_signs, number_that_is_none, smooth_line_at_infinity,
+    partial_with_false_areas,
 )  # fmt: skip

@@ -304,3 +304,10 @@ def test_the_engine_is_reached(tmp_path: Path, capfd: pytest.CaptureFixture[str]
     assert run(["classify", "--slice", "L2,rho", "--out", str(tmp_path), "--format", "json", "--no-timings"]) == 0
     assert names(tmp_path) == ["slice-L2-rho.json"]
     assert capfd.readouterr().out.strip()
+
+
+def test_pictures_of_a_window_narrower_than_any_float(tmp_path: Path) -> None:
+    """1e-400 is no floating-point number."""
+    options = ["classify", "--slice", "L2,rho", "--range", "rho=1/2:1/2+1e-400", "--out", str(tmp_path)]
+    assert run([*options, "--format", "json,png"]) == 0
+    assert {path.suffix for path in tmp_path.iterdir()} == {".json", ".png"}

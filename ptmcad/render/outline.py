@@ -172,9 +172,9 @@ def outline(result: RegionMap, view: View | None = None) -> Outline:
     lines = []
     for k, abscissa in enumerate(roots):
         component = _vertical_component(result, k)
-        at = float((abscissa.middle - low) / (high - low))
+        at = (abscissa.middle - low) / (high - low)
         if component is not None and 0 <= at <= 1:
-            lines.append((at, k, component))
+            lines.append((float(at), k, component))
     return Outline(result, view, base == 1, tuple(stacks), tuple(lines))
 
 

@@ -24,7 +24,9 @@ from ptmcad.verification.report import Violation
 
 NARROWEST = 10**60
 """Bounds that are relatively narrower than the inverse of this are not even tried."""
-ATTEMPTS = 5
+CROWD = 100
+"""Panels for each stack beyond which polynomials of higher degree are worth their cost."""
+ATTEMPTS = 7
 """Times that precision is raised, and strips are narrowed, before bounds count as not confirmed."""
 
 
@@ -66,17 +68,22 @@ def check_areas(claims: Claims) -> str:
     for ends in (claims.base, claims.height):
         bits += _doublings(fraction((ends[1] - ends[0]) / max(abs(ends[0]), abs(ends[1]))))
     strip = rational(scale) / (16 * len(result.stacks))
-    unconfirmed: str | None = "the precision did not suffice to confirm the areas"
+    unconfirmed = "the precision did not suffice to confirm the areas"
+    degrees: tuple[int, ...] = (2,)
     for _ in range(ATTEMPTS):
         with ctx.workprec(bits):
             try:
-                unconfirmed = _attempt(claims, strip, bits)
+                open_region = _attempt(claims, strip, bits, degrees)
             except PrecisionTooLow:
                 bits = 2 * bits
                 continue
-        if unconfirmed is None:
+        if open_region is None:
             return f"{len(result.regions)} enclosures within the stored bounds, {bits} bits"
-        bits, strip = 2 * bits, strip / 2**16
+        unconfirmed = open_region
+        if degrees == (2,):
+            degrees = (2, 10)
+        else:
+            bits, strip = 2 * bits, strip / 2**16
     raise Violation(unconfirmed)
 
 
@@ -85,7 +92,7 @@ def _doublings(scale: Fraction) -> int:
     return max(0, scale.denominator.bit_length() - scale.numerator.bit_length())
 
 
-def _attempt(claims: Claims, strip: fmpq, bits: int) -> str | None:
+def _attempt(claims: Claims, strip: fmpq, bits: int, degrees: tuple[int, ...]) -> str | None:
     """None when every enclosure is within its bounds; else which one could not be made narrow enough."""
     result = claims.result
     (start, stop), (low, high) = claims.base, claims.height
@@ -96,7 +103,7 @@ def _attempt(claims: Claims, strip: fmpq, bits: int) -> str | None:
     lost = sum((b - a for a, b in brackets), fmpq(0)) * (high - low)
     bounds = [(arb(rational(r.area[0])), arb(rational(r.area[1]))) for r in result.regions]
     share = min((b - a).mid() for a, b in bounds) / (64 * max(1, sum(len(s.walls) for s in result.stacks)))
-    effort = Effort(share, width / 2**8, width / 2 ** (bits // 3), (low, high))
+    effort = Effort(share, width / 2**8, width / 2 ** (bits // 3), (low, high), degrees)
     whole = [arb(0) for _ in result.regions]
     panels: list[_Panel] = []
     for s, stack in enumerate(result.stacks):
@@ -124,7 +131,8 @@ def _attempt(claims: Claims, strip: fmpq, bits: int) -> str | None:
                 open_regions.add(n)
         if not open_regions:
             return None
-        halved = _halved(panels, open_regions, bounds, effort)
+        crowded = len(degrees) == 1 and len(panels) > CROWD * len(result.stacks)
+        halved = None if crowded else _halved(panels, open_regions, bounds, effort)
         if halved is None:
             n = min(open_regions)
             return (f"region {n}: its area is in {areas[n].str(20)}; that it is {_between(result.regions[n])} "

@@ -95,12 +95,14 @@ class Effort:
     shut : panels narrower than this are shut in between heights.
     narrowest : panels narrower than this are not halved at this precision.
     heights : the window's edges.
+    degrees : of the polynomials that a branch is compared with; the closer the next branch, the better it has to be.
     """
 
     share: arb
     shut: fmpq
     narrowest: fmpq
     heights: tuple[fmpq, fmpq]
+    degrees: tuple[int, ...]
 
 
 class PrecisionTooLow(Exception):
@@ -138,15 +140,11 @@ def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Ef
     PrecisionTooLow
     """
     rows = [c(arb_poly([middle, 1])) for c in branch.value]
-    for degree in _DEGREES:
+    for degree in effort.degrees:
         integral = _along(rows, half, height, degree, effort)
         if integral is not None:
             return integral
     return None
-
-
-_DEGREES = (2, 10)
-"""Of the polynomials that the branch is compared with; the closer the next branch, the better it has to be."""
 
 
 def _along(rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: Effort) -> arb | None:
