@@ -23,6 +23,7 @@ from math import comb, gcd, lcm
 from operator import add, mul, sub, truediv
 
 from ptmcad.errors import ExpressionError, PoleError
+from ptmcad.numerals import text_of
 
 Term = tuple[int, int, Fraction]
 _Polynomial = dict[tuple[int, int], Fraction]
@@ -103,7 +104,9 @@ class Expression:
         """
         below = _value(self.denominator, x, y)
         if below == 0:
-            raise PoleError(f"division by zero: the denominator of {self} vanishes at x = {x}, y = {y}")
+            raise PoleError(
+                f"division by zero: the denominator of {self} vanishes at x = {text_of(x)}, y = {text_of(y)}"
+            )
         return _value(self.numerator, x, y) / below
 
     def to_text(self, names: tuple[str, str] = ("x", "y")) -> str:

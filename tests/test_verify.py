@@ -68,8 +68,8 @@ NOTHING_TO_ALTER: set[tuple[str, str]] = set()
 
 NO_CLAIMS = {"title", "name", "reference", "versions", "precision", "timings"}
 """What is no statement about the regions."""
-MAY_STAY_TRUE = {"low", "high", "segment", "below", "above", "center", "radius", "area", "sample", "reason"}
-"""Numbers that can be altered a little without becoming false; `mutations` alters them so that they do."""
+MAY_STAY_TRUE = {"low", "high", "segment", "below", "above", "center", "radius", "area", "sample", "reason", "text"}
+"""What can be altered a little without becoming false (k2 written as k1 instead of k); `mutations` makes it false."""
 
 
 def leaves(data: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:

@@ -13,7 +13,7 @@ from math import gcd, lcm
 from flint import Ordering, arb, fmpq, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from ptmcad.errors import PoleError
-from ptmcad.numerals import approximate_text
+from ptmcad.numerals import approximate_text, text_of
 from ptmcad.plane import PlanePolynomial
 from ptmcad.regionmap import CriticalValue, RegionMap
 from ptmcad.verification.fibre import Fibre, NotFinite, fibre, rational
@@ -140,7 +140,9 @@ class Claims:
             return fibre(self.parameters_at(x, y))
         except NotFinite:
             names = self.result.slice.axis_names
-            raise Violation(f"there are infinitely many solutions at {names[0]}={x}, {names[1]}={y}") from None
+            raise Violation(
+                f"there are infinitely many solutions at {names[0]}={text_of(x)}, {names[1]}={text_of(y)}"
+            ) from None
 
     def level(self, u: fmpq, v: fmpq) -> int:
         """How many roots of the curves over u lie below v."""

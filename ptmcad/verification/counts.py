@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from ptmcad.numerals import text_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.fibre import LENGTHS_AND_STIFFNESSES
 from ptmcad.verification.report import Violation
@@ -17,7 +18,7 @@ from ptmcad.verification.report import Violation
 def check_counts(claims: Claims) -> str:
     """Total, stable and Morse index of every cell; Euler sum; lengths and stiffnesses positive."""
     for n, cell in enumerate(claims.result.cells):
-        where = ", ".join(f"{name}={cell.sample[name]}" for name in cell.sample.names)
+        where = ", ".join(f"{name}={text_of(cell.sample[name])}" for name in cell.sample.names)
         if (name := _not_positive(claims.parameters_at(*cell.sample))) is not None:
             raise Violation(f"{name} is not positive at {where} in cell {n}")
         index = claims.fibre_at(*cell.sample).morse_index()

@@ -14,6 +14,7 @@ from math import gcd
 
 from flint import fmpq, fmpz_poly
 
+from ptmcad.numerals import text_of
 from ptmcad.regionmap import CriticalValue
 from ptmcad.verification.claims import Claims, PlaneCurve, polynomial, short, side
 from ptmcad.verification.elimination import discriminant, resultant
@@ -82,12 +83,13 @@ def check_critical_values(claims: Claims) -> str:
             raise Violation(f"critical value {n}: its polynomial is no irreducible factor of a discriminant, resultant "
                             "or edge value")  # fmt: skip
         low, high = rational(value.low), rational(value.high)
+        where = f"[{text_of(value.low)}, {text_of(value.high)}]"
         p = polynomial(value)
         if p.degree() < 1 or not previous < low <= high < claims.base[1]:
-            raise Violation(f"critical value {n} in [{value.low}, {value.high}] is not above the one before it and in "
+            raise Violation(f"critical value {n} in {where} is not above the one before it and in "
                             "the window")  # fmt: skip
         if (roots := roots_within(p, low, high)) != 1:
-            raise Violation(f"critical value {n}: its polynomial has {roots} roots in [{value.low}, {value.high}]")
+            raise Violation(f"critical value {n}: its polynomial has {roots} roots in {where}")
         previous = high
     origins: list[set[str]] = [set() for _ in values]
     for coefficients, (f, whence) in factors.items():
@@ -130,7 +132,7 @@ def check_stacks(claims: Claims) -> str:
     for s, stack in enumerate(result.stacks):
         u = rational(stack.sample)
         if not inside_stack(claims, u, s):
-            raise Violation(f"the sample {stack.sample} of stack {s} is not between its ends")
+            raise Violation(f"the sample {text_of(stack.sample)} of stack {s} is not between its ends")
         heights = [rational(result.cells[n].sample[1 - result.base]) for n in stack.cells]
         levels = [claims.height[0], *heights, claims.height[1]]
         if any(a >= b for a, b in pairwise(levels)):
@@ -148,8 +150,8 @@ def check_stacks(claims: Claims) -> str:
             # below the first and above the last sample nothing may lie; between two samples exactly one wall
             expected = {} if gap in (0, len(heights)) else {stack.walls[gap - 1].component: 1}
             if here != expected:
-                raise Violation(f"over {stack.sample} (stack {s}) between the heights {low} and {high} there are roots "
-                                f"of components {here}, not {expected} (component: number)")  # fmt: skip
+                raise Violation(f"over {text_of(stack.sample)} (stack {s}) between the heights {low} and {high} there are "
+                                f"roots of components {here}, not {expected} (component: number)")  # fmt: skip
             if expected:
                 wall = stack.walls[gap - 1]
                 if wall.root != found[wall.component]:

@@ -21,6 +21,7 @@ from math import gcd, lcm
 
 from flint import fmpz_poly
 
+from ptmcad.numerals import text_of
 from ptmcad.plane import PlanePolynomial
 from ptmcad.regionmap import Kind
 from ptmcad.verification.claims import Claims, PlaneCurve
@@ -182,4 +183,4 @@ def _foreign_poles(claims: Claims, x: Fraction, y: Fraction, f: Fibre) -> int:
 
 def _at(claims: Claims, x: Fraction, y: Fraction) -> str:
     names = claims.result.slice.axis_names
-    return f"{names[0]}={x}, {names[1]}={y}"
+    return f"{names[0]}={text_of(x)}, {names[1]}={text_of(y)}"
