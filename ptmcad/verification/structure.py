@@ -83,13 +83,13 @@ def check_critical_values(claims: Claims) -> str:
             raise Violation(f"critical value {n}: its polynomial is no irreducible factor of a discriminant, resultant "
                             "or edge value")  # fmt: skip
         low, high = rational(value.low), rational(value.high)
-        where = f"[{text_of(value.low)}, {text_of(value.high)}]"
+        interval = f"[{text_of(value.low)}, {text_of(value.high)}]"
         p = polynomial(value)
         if p.degree() < 1 or not previous < low <= high < claims.base[1]:
-            raise Violation(f"critical value {n} in {where} is not above the one before it and in "
+            raise Violation(f"critical value {n} in {interval} is not above the one before it and in "
                             "the window")  # fmt: skip
         if (roots := roots_within(p, low, high)) != 1:
-            raise Violation(f"critical value {n}: its polynomial has {roots} roots in {where}")
+            raise Violation(f"critical value {n}: its polynomial has {roots} roots in {interval}")
         previous = high
     origins: list[set[str]] = [set() for _ in values]
     for coefficients, (f, whence) in factors.items():
@@ -150,7 +150,7 @@ def check_stacks(claims: Claims) -> str:
             # below the first and above the last sample nothing may lie; between two samples exactly one wall
             expected = {} if gap in (0, len(heights)) else {stack.walls[gap - 1].component: 1}
             if here != expected:
-                raise Violation(f"over {text_of(stack.sample)} (stack {s}) between the heights {low} and {high} there are "
+                raise Violation(f"over {text_of(stack.sample)} (stack {s}) between heights {low} and {high} there are "
                                 f"roots of components {here}, not {expected} (component: number)")  # fmt: skip
             if expected:
                 wall = stack.walls[gap - 1]
