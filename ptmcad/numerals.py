@@ -95,9 +95,17 @@ def fraction_of(text: str) -> Fraction:
 
 
 def magnitude(value: Fraction) -> int:
-    """The e with 10^e <= value < 10^(e+1), for a positive value."""
-    # 2^10 is just above 10^3; numbers may be too long to be written out
-    e = (value.numerator.bit_length() - value.denominator.bit_length()) * 3 // 10
+    """The e with 10^e <= value < 10^(e+1).
+
+    Raises
+    ------
+    ValueError
+        Unless the value is positive.
+    """
+    if value <= 0:
+        raise ValueError("only positive numbers have a magnitude")
+    # log10(2) to twelve digits: at most a few steps remain, of which each is dear for numbers of many digits
+    e = (value.numerator.bit_length() - value.denominator.bit_length()) * 301_029_995_664 // 10**12
     while value >= Fraction(10) ** (e + 1):
         e += 1
     while value < Fraction(10) ** e:

@@ -61,7 +61,8 @@ def table(result: RegionMap) -> str:
         for (kind, degrees, terms), n in alike.items()
     )
     widths = [(r.area[1] - r.area[0]) / r.area[0] for r in result.regions if r.area[0]]
-    error = _short(max(widths)) if widths and len(widths) == len(result.regions) else "unknown"
+    known = widths and len(widths) == len(result.regions) and min(widths) >= 0  # a damaged file may say anything
+    error = _short(max(widths)) if known else "unknown"
     seconds = result.timings.get("total")
     time = "not recorded" if seconds is None else f"{seconds:.2f} s"
     undetermined = "0" if result.undetermined == 0 else f"{float(result.undetermined):.2g}"

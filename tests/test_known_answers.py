@@ -13,6 +13,7 @@ from conftest import CONFIGS, shipped
 from flint import fmpq
 from structure import check_structure, key
 
+import ptmcad
 from ptmcad import Count, RegionMap, load
 from ptmcad.algebra.polynomials import from_fraction, from_plane, to_fraction
 from ptmcad.algebra.real_roots import disjoint, isolate, refine, squarefree_part
@@ -208,6 +209,38 @@ def test_unloaded_regions_touch_only_at_the_edge() -> None:
     assert len(one) == 3
     links = {frozenset((result.cells[a.first].region, result.cells[a.second].region)) for a in result.adjacencies}
     assert not any(len(link) == 2 and link <= one for link in links)
+
+
+@pytest.mark.parametrize("far", ["1e6", "1e14", "1e300"])
+def test_unloaded_areas_in_a_window_of_any_height(far: str) -> None:
+    """REFERENCE: between the three lines; the regions of area 1/4 and 9/4 are lost in the window's rounding error."""
+    axes = {"L2": [0, 4], "rho": [0, far]}
+    record = {"name": "far", "mechanism": "ptm", "parameters": {"L1": 1, "k": 100}, "axes": axes}
+    result = ptmcad.classify(ptmcad.slice_from_mapping(record))
+    whole = 4 * Fraction(far)
+    known = [Fraction(1, 4), Fraction(7, 2), whole - 6, Fraction(9, 4)]
+    assert [r.stable for r in result.regions] == [1, 2, 1, 1]
+    for region, area in zip(result.regions, known, strict=True):
+        assert region.area[0] <= area <= region.area[1] <= area * Fraction(10001, 10000)
+    assert ptmcad.verify(result).ok
+
+
+@pytest.mark.parametrize(
+    "far", ["1e20", pytest.param("1e100", marks=pytest.mark.slow), pytest.param("1e300", marks=pytest.mark.slow)]
+)
+def test_loaded_areas_in_a_window_of_any_width(far: str) -> None:
+    """REFERENCE, fig. 4: the region of two stable equilibria has area .74635, and none of it is beyond rho = 2."""
+    record = {
+        "name": "far", "mechanism": "ptm", "parameters": {"L1": 1, "k": 100, "F3": -10, "F4": -10},
+        "axes": {"rho": [0, far], "L2": [0, 2]},
+    }  # fmt: skip
+    (one,), (two,) = (
+        [r for r in ptmcad.classify(ptmcad.slice_from_mapping(record)).regions if r.stable == n] for n in (1, 2)
+    )
+    assert Fraction("0.7463") < two.area[0] <= two.area[1] < Fraction("0.7465")
+    assert (
+        one.area[0] <= 2 * Fraction(far) - Fraction("0.7464") and 2 * Fraction(far) - Fraction("0.7463") <= one.area[1]
+    )
 
 
 @pytest.mark.parametrize("numerator", range(1, 40, 3))

@@ -7,7 +7,9 @@ On a panel [m - r, m + r] a branch v = y(u) of p(u, v) = 0 is approximated by a 
 branch's Taylor series. Let q = s p with a polynomial s(h) close to 1/p_v(u, z). Suppose |q(u, z)| <= e and
 q_v(u, z) >= b > 0 on the panel, and |q_vv| <= K in the tube |v - z| <= t, with t >= 2 e / b and K t <= b / 2. Then q_v
 has no zero in the tube and q changes sign across it (mean value theorem), so the tube contains exactly one root of p
-for each u (s has no zero, as s p_v >= b / 2). If the isolated root at u = m lies in it, this root is the branch.
+for each u (s has no zero, as s p_v >= b / 2). If the isolated root at u = m lies in it, this root is the branch. It
+also lies within 2 e / b of z, since q changes sign there already, so t may be wide enough to find the root without
+blurring the integral.
 """
 
 from __future__ import annotations
@@ -75,8 +77,8 @@ def branch_integral(
     if not least > 0:
         return None
     start = abs(series[0]) + arb(root.high - root.low)
-    tube = (2 * error / least).upper()
-    tube = tube if tube > start.upper() else start.upper()
+    near = (2 * error / least).upper()
+    tube = near if near > start.upper() else start.upper()
     size, reach = _norm(scale), _norm(series) + tube
     if not 2 * size * _derivative_bound(local, 2, reach) * tube < least:
         # a finer bound: the second derivative along z itself, and the third in the tube
@@ -88,7 +90,7 @@ def branch_integral(
     for k, c in enumerate(series.coeffs()):
         if k % 2 == 0:
             mean += c / (k + 1)
-    return (mean + tube * arb(0, 1)) * arb(2 * radius)
+    return (mean + near * arb(0, 1)) * arb(2 * radius)
 
 
 def avoids(p: fmpz_poly, low: fmpq, high: fmpq) -> bool:

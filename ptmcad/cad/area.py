@@ -281,14 +281,33 @@ def _horizontals(
     near = refine(at_middle, start / 4)
     bounds = []
     for edge, end, direction in ((fibre[0], near.low, -1), (fibre[1], near.high, 1)):
-        margin, bound = start, edge
-        while margin < direction * (edge - end):
+
+        def horizontal(k: int, end: fmpq = end, direction: int = direction) -> fmpq | None:
+            """A horizontal about 2^k start from the branch, unless the curve may meet it."""
             # of small height, because the test's cost grows with it
-            inner, outer = sorted((end + direction * margin * fmpq(3, 4), end + direction * margin))
+            inner, outer = sorted(end + direction * start * 2**k * part for part in (fmpq(3, 4), fmpq(1)))
             candidate = simplest_between(inner, outer)
-            if avoids(curve.trace(candidate), low, high):
-                bound = candidate
-                break
-            margin = margin * 2
-        bounds.append(bound)
+            return candidate if avoids(curve.trace(candidate), low, high) else None
+
+        found = _nearest(horizontal, direction * (edge - end) / start)
+        bounds.append(edge if found is None else found)
     return bounds[0], bounds[1]
+
+
+def _nearest(horizontal: Callable[[int], fmpq | None], room: fmpq) -> fmpq | None:
+    """The first horizontal found free at distance 2^k < room; k grows by leaps, then the leap is bisected."""
+    most = max(0, int(room.ceil()) - 1).bit_length() - 1
+    failed, k = -1, 0
+    found = None
+    while k <= most and found is None:
+        found = horizontal(k)
+        if found is None:
+            failed, k = k, (2 * k if k > 8 else k + 1)
+    while found is not None and k - failed > 1:
+        between = (failed + k) // 2
+        nearer = horizontal(between)
+        if nearer is None:
+            failed = between
+        else:
+            found, k = nearer, between
+    return found
