@@ -1,0 +1,87 @@
+"""Equilibria of the mechanism at one rational point, with everything that a designer asks of a pose.
+
+Guarantee: all real equilibria are there; every number is exact or an `Enclosure`; what is zero is known to be zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from ptmcad.enclosure import Enclosure
+from ptmcad.regionmap import Status
+
+Vector = tuple[Enclosure, Enclosure]
+
+
+@dataclass(frozen=True, slots=True)
+class Spring:
+    """A spring in a pose: nodes ``start`` and ``end``; ``length``; ``force`` = stiffness * length, its tension."""
+
+    name: str
+    start: str
+    end: str
+    stiffness: Fraction
+    length: Enclosure
+    force: Enclosure
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """One equilibrium.
+
+    Attributes
+    ----------
+    angles : th1, th2 in radians, in (-pi, pi].
+    cosines_sines : cos th1, sin th1, cos th2, sin th2.
+    nodes : A1, A2, A3, A4 to their coordinates, in the unit of the lengths.
+    energy : of springs and loads, in force times length.
+    eigenvalues : of the Hessian by the angles, the smaller first.
+    multiplicity : of the solution in its fibre; 1 exactly when the Hessian is nonsingular.
+    index : number of negative eigenvalues when the Hessian is nonsingular, else None.
+    stable : whether the Hessian is positive definite; None when it is singular.
+    flat : whether all four nodes lie on one line with A1A2 (both sines are exactly zero).
+    """
+
+    angles: tuple[Enclosure, Enclosure]
+    cosines_sines: tuple[Enclosure, Enclosure, Enclosure, Enclosure]
+    nodes: Mapping[str, Vector]
+    springs: tuple[Spring, ...]
+    energy: Enclosure
+    eigenvalues: tuple[Enclosure, Enclosure]
+    multiplicity: int
+    index: int | None
+    stable: bool | None
+    flat: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Poses:
+    """All equilibria at one point.
+
+    Attributes
+    ----------
+    parameters : every parameter of the mechanism to its value.
+    equilibria : stable ones first, then by energy.
+    status : EXACT; ON_VARIETY when an equilibrium is degenerate; UNDECIDED with no equilibria when there are infinitely
+        many, as ``remark`` then says.
+    bits : the precision that was needed.
+    """
+
+    mechanism: str
+    parameters: Mapping[str, Fraction]
+    equilibria: tuple[Pose, ...]
+    status: Status
+    bits: int
+    remark: str = ""
+
+    @property
+    def stable(self) -> int:
+        """The number of stable equilibria."""
+        return sum(p.stable is True for p in self.equilibria)
+
+
+def solve(digits: int = 12, **parameters: object) -> Poses:
+    """All equilibria at a rational point, each number known to ``digits`` digits."""
+    raise NotImplementedError
