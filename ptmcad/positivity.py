@@ -16,6 +16,7 @@ from fractions import Fraction
 from math import comb
 
 from ptmcad.expressions import Expression, Term
+from ptmcad.numerals import approximate_text
 from ptmcad.slice import Axis
 
 MAX_BOXES = 64
@@ -47,7 +48,10 @@ def find_nonpositive(expression: Expression, axes: tuple[Axis, Axis]) -> str | N
     (point, value), _ = _extremes(numerator, axes)
     if point is None or value > 0:
         return None
-    return f"{expression.evaluate(*point)} at {_named(point, axes)}"
+    # a value of a high power at a point of many digits may be longer than Python writes out
+    value, longest = expression.evaluate(*point), 10**40
+    short = abs(value.numerator) < longest and value.denominator < longest
+    return f"{value if short else 'about ' + approximate_text(value)} at {_named(point, axes)}"
 
 
 _Seen = tuple[tuple[Fraction, Fraction] | None, Fraction]

@@ -510,6 +510,21 @@ def area_too_narrow(r: RegionMap, rng: random.Random) -> RegionMap:
     return replace(r, regions=put(r.regions, n, area=area))
 
 
+def area_beyond_the_window(r: RegionMap, rng: random.Random) -> RegionMap:
+    """An upper bound that says nothing, because nothing in the window is as large."""
+    x, y = r.slice.axes
+    n = rng.randrange(len(r.regions))
+    window = (x.high - x.low) * (y.high - y.low)
+    return replace(r, regions=put(r.regions, n, area=(r.regions[n].area[0], window * rng.choice([2, 10**9]))))
+
+
+def plan_cost(r: RegionMap, rng: random.Random) -> RegionMap:
+    """Costs that are no numbers."""
+    n = next(k for k, step in enumerate(r.plan) if "predicted" in step.reason or "the first axis" in step.reason)
+    reason = f"predicted cost {rng.choice(['+++', '1e', '..', 'e+5'])} against 1e+3"
+    return replace(r, plan=put(r.plan, n, reason=reason))
+
+
 def axes_exchanged(r: RegionMap, rng: random.Random) -> RegionMap:
     """The axes' names are exchanged and the parameters make up for it; or an axis stands for twice itself."""
     x, y = r.slice.axes
@@ -575,7 +590,7 @@ ALL: tuple[Mutation, ...] = (
     box_blown_up, box_dropped, box_twice, box_invented, solutions_of_another_cell, sign, signs_exchanged, potential,
     equation, hessian, relation, unknowns, parameter_text, non_adjacency_dropped, non_adjacency_twice,
     non_adjacency_invented, non_adjacency_reason, non_adjacency_cells, non_adjacency_segment, origin,
-    component_invented, any_kind, left_out_reason, component_repeated, area_shifted, area_too_narrow, axes_exchanged,
-    text_dropped, unused_stiffness, sum_without_signs, number_that_is_none, smooth_line_at_infinity,
-    partial_with_false_areas,
+    component_invented, any_kind, left_out_reason, component_repeated, area_shifted, area_too_narrow,
+    area_beyond_the_window, plan_cost, axes_exchanged, text_dropped, unused_stiffness, sum_without_signs,
+    number_that_is_none, smooth_line_at_infinity, partial_with_false_areas,
 )  # fmt: skip

@@ -108,6 +108,21 @@ def test_huge_coefficients() -> None:
     assert refine(roots[1], fmpq(1)).low <= 10**100 <= refine(roots[1], fmpq(1)).high
 
 
+@pytest.mark.parametrize("reach", [10**9, 10**400, 10**5000], ids=("1e9", "1e400", "1e5000"))
+@pytest.mark.parametrize("unit", [Fraction(1), Fraction(10**30), Fraction(1, 10**30)], ids=str)
+def test_roots_in_intervals_of_any_length(reach: int, unit: Fraction) -> None:
+    """Cut off by a bound for the roots, of which none may be lost, whichever part of them the interval holds."""
+    known = [Fraction(k) * unit for k in (-7, -2, 0, 1, 5)]
+    p = prod((fmpz_poly([-r.numerator, r.denominator]) for r in known), start=fmpz_poly([1]))
+    ends = ((-reach, reach), (-reach, 0), (0, reach), (unit * 6, reach), (unit * 3, reach), (-reach, unit * -8))
+    for low, high in ((Fraction(a), Fraction(b)) for a, b in ends if a < b):
+        found = isolate(p, fmpq(low.numerator, low.denominator), fmpq(high.numerator, high.denominator))
+        inside = [r for r in known if low < r < high]
+        assert len(found) == len(inside)
+        for root, value in zip(found, inside, strict=True):
+            assert Fraction(int(root.low.p), int(root.low.q)) <= value <= Fraction(int(root.high.p), int(root.high.q))
+
+
 def test_irrational_roots_bracket_their_squares() -> None:
     for n in (2, 3, 5, 10**40 + 1):
         (root,) = isolate(fmpz_poly([-n, 0, 1]), fmpq(0), fmpq(n))

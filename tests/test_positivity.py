@@ -53,3 +53,11 @@ def test_lengths(text: str, found: bool) -> None:
 )  # fmt: skip
 def test_poles(text: str, found: bool) -> None:
     assert (find_pole(parse(text, NAMES), AXES) is not None) == found
+
+
+def test_a_value_too_long_to_be_written_out_is_named() -> None:
+    """A 17th power at a point of 400 digits has 6800 of them, more than Python converts."""
+    axes = (Axis("rho", Fraction(1), 1 + Fraction(1, 10**400)), Axis("F", Fraction(1), Fraction(4)))
+    found = find_nonpositive(parse("0 - rho^17", NAMES), axes)
+    assert found is not None
+    assert found.startswith("about -1 at rho = ")

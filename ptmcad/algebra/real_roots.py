@@ -95,6 +95,12 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
     """
     if p.degree() < 1:
         return ()
+    beyond = _root_bound(p)
+    if high - low > 16 * beyond:
+        # bisection of an interval much longer than needed would take a level for each bit
+        low, high = max(low, -beyond), min(high, beyond)
+        if low >= high:
+            return ()
     width = high - low
     found: list[tuple[fmpq, fmpq]] = []
     start = _on_unit_interval(p, low, high)
@@ -121,6 +127,13 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
         stack.append((half, 2 * number, level + 1))
         stack.append((other, 2 * number + 1, level + 1))
     return tuple(_tidy(p, left, right) for left, right in sorted(found))
+
+
+def _root_bound(p: fmpz_poly) -> fmpq:
+    """A power of two above the moduli of all complex roots: 2 max |a_{n-i} / a_n|^(1/i), rounded up (Fujiwara)."""
+    leading, *lower = (int(c).bit_length() for c in reversed(p.coeffs()))
+    bits = max((-((leading - 1 - b) // i) for i, b in enumerate(lower, 1) if b), default=0)
+    return fmpq(2) ** (1 + bits)
 
 
 def _tidy(p: fmpz_poly, low: fmpq, high: fmpq) -> RealRoot:

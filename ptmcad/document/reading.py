@@ -196,7 +196,7 @@ def _polynomial(node: Node, names: tuple[str, str]) -> PlanePolynomial:
 
 
 def _whole(node: Node) -> int:
-    value = node.fraction()
+    value = node.coefficient()
     if value.denominator != 1:
         raise node.fault("is not an integer")
     return value.numerator

@@ -52,7 +52,8 @@ def check_areas(claims: Claims) -> str:
     (start, stop), (low, high) = claims.base, claims.height
     window = fraction((stop - start) * (high - low))
     for n, region in enumerate(result.regions):
-        if not (0 <= region.area[0] <= region.area[1] and region.area[0] <= window):
+        # bounds are written as decimals, rounded outwards
+        if not (0 <= region.area[0] <= region.area[1] <= window * (1 + Fraction(1, 10**15))):
             raise Violation(f"region {n}: no area in the window is {_between(region)}")
     if len(result.regions) == 1:
         if not result.regions[0].area[0] <= window <= result.regions[0].area[1]:

@@ -247,16 +247,21 @@ def _shut_in(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effo
     start = (high - low) * min(fmpq(1, 16), half / effort.shut / 2**8)
     bounds = []
     for edge, direction in ((low, -1), (high, 1)):
-        margin, bound = start, edge
-        while margin < direction * (edge - center):
+        best, tried, leap = edge, 0, 1
+        # doublings of the margin; longer and longer leaps, as nobody knows the branch's extent in a large window,
+        # and shorter ones back when a height was found
+        while leap and start * 2**tried < direction * (edge - center):
+            margin = start * 2**tried
             candidate = _simple(center + direction * margin, margin / 8)
             # the height over the middle tells on which side of the candidate the branch is
             clear = arb(candidate) < height if direction < 0 else arb(candidate) > height
             if clear and _misses(branch, middle, half, candidate):
-                bound = candidate
-                break
-            margin = margin * 2
-        bounds.append(bound)
+                best, leap = candidate, leap // 2
+                tried -= leap
+            else:
+                leap = leap // 2 if best != edge else leap + (leap if tried > 8 else 0)
+                tried += leap
+        bounds.append(best)
     return bounds[0], bounds[1]
 
 
@@ -272,7 +277,5 @@ def _misses(branch: Branch, middle: fmpq, half: fmpq, v: fmpq) -> bool:
 
 def _simple(value: fmpq, error: fmpq) -> fmpq:
     """A dyadic number near a value."""
-    scale = 1
-    while fmpq(1, scale) > error:
-        scale *= 2
+    scale = 1 << max(0, int(1 / error).bit_length())
     return fmpq((value * scale).floor(), scale)

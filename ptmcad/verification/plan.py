@@ -12,8 +12,9 @@ from ptmcad.regionmap import Component, PlanStep
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
 
+_COST = r"[0-9]+(?:\.[0-9]+)?(?:e\+[0-9]+)?"
 _CHOICE = re.compile(
-    r"predicted cost [0-9.e+]+ against [0-9.e+]+"
+    rf"predicted cost {_COST} against {_COST}"
     r"|both orders are predicted to cost the same"
     r"|the first axis, as asked for",
     re.ASCII,

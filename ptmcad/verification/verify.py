@@ -22,7 +22,7 @@ from ptmcad.verification.structure import check_critical_values, check_stacks
 from ptmcad.verification.variety import check_irreducible, check_norm
 from ptmcad.verification.window import check_left_out
 
-NOT_CHECKED = (("provenance", "title, reference, versions, precision and timings are not claims about the regions"),)
+NOT_CHECKED = (("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),)
 
 _SINCE_VARIETY: tuple[tuple[str, str, Callable[[Claims], str]], ...] = (
     ("critical values", "discriminants, resultants, Sturm", check_critical_values),
