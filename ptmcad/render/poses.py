@@ -25,7 +25,7 @@ from ptmcad.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_
 from ptmcad.render.printing import settings
 from ptmcad.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Frame, arrow_lengths, frame_of, sketch
 
-MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.55, 0.22
+MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
 """In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of the title."""
 _DIGITS = 6
 _LONGEST = 14
@@ -130,12 +130,17 @@ def printed_number(text: str) -> str:
 def value_text(value: Fraction) -> str:
     """A parameter's value, exactly where that is short, else rounded and after the sign for it."""
     text = shortest_text(value)
-    if len(text) <= _LONGEST and not (len(text) > 7 and abs(value) >= 10**7):
-        return f"= {printed_number(text)}"
+    if len(text) <= _LONGEST and abs(value) < 10**7:
+        return f"=\N{NO-BREAK SPACE}{printed_number(text)}"
     known = Enclosure(value, value)
     rounded = known.text(7)
     exact = Fraction(rounded) == value
-    return f"{'=' if exact else '≈'} {printed_number(rounded)}"
+    return f"{'=' if exact else '≈'}\N{NO-BREAK SPACE}{printed_number(rounded)}"
+
+
+def assigned(name: str, value: Fraction) -> str:
+    """A parameter and its value, which no line break parts."""
+    return f"{symbol(name)}\N{NO-BREAK SPACE}{value_text(value)}"
 
 
 def values(poses: Poses) -> list[str]:
@@ -146,8 +151,8 @@ def values(poses: Poses) -> list[str]:
         shown = {n: v for n, v in shown.items() if n not in ("k1", "k2", "k3", "k")} | {"k": springs.pop()}
     loads = {name: value for name, value in shown.items() if name.startswith("F")}
     rest = {name: value for name, value in shown.items() if name not in loads}
-    texts = [f"{symbol(name)} {value_text(value)}" for name, value in rest.items()]
-    texts += [f"{symbol(name)} {value_text(value)}" for name, value in loads.items() if value]
+    texts = [assigned(name, value) for name, value in rest.items()]
+    texts += [assigned(name, value) for name, value in loads.items() if value]
     return texts if any(loads.values()) else [*texts, "no load"]
 
 
@@ -206,7 +211,7 @@ def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
     yield Entry(("fixed support, at A₁",), symbol_mark("support"))
     yield Entry(("slider on the base, at A₂",), symbol_mark("slider"))
     if arrows:
-        loads = [f"{symbol(name)} {value_text(poses.parameters[name])}" for name in arrows]
+        loads = [assigned(name, poses.parameters[name]) for name in arrows]
         shortened = any(abs(length) == SHORTEST_ARROW < LONGEST_ARROW for length in arrows.values())
         lines = ["load; length by force" + (", except" if shortened else "")]
         lines += ["that short ones are lengthened"] if shortened else []

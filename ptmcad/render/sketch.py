@@ -1,13 +1,13 @@
 """The sketch of a pose: bars, zigzag springs, supports, load arrows and labels as lines on paper, in points.
 
-Guarantee: nodes are where the pose has them, at one scale and place for all poses; a spring has the same number of
+Guarantee: nodes are where the pose has them, at one scale for all poses; a spring has the same number of
 turns at any length. A spring that would lie on a bar or on another spring, or is too short for its turns, is drawn
 aside and led back to its nodes. Labels keep clear of all that is drawn (`ptmcad.render.clearance`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import hypot
@@ -35,19 +35,23 @@ LABEL_HALF_HEIGHT, LABEL_SIZE = 5.6, 9.0
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Where coordinates are on paper: the middle of what is shown, points to the unit of length, sides in points."""
+    """What all panels have in common: points to the unit of length, and their sides in points."""
 
-    middle: tuple[Fraction, Fraction]
     scale: Fraction
     height: float
     width: float = WIDTH
 
-    def at(self, x: Fraction, y: Fraction) -> Position:
-        """The place of a point."""
-        return (
-            self.width / 2 + float((x - self.middle[0]) * self.scale),
-            self.height / 2 + float((y - self.middle[1]) * self.scale),
-        )
+    def nodes(self, pose: Pose) -> dict[str, Position]:
+        """The places of a pose's nodes, the pose in the middle of its panel."""
+        exact = _centers(pose)
+        (left, right), (bottom, top) = _sides(exact.values())
+        return {
+            name: (
+                self.width / 2 + float((x - (left + right) / 2) * self.scale),
+                self.height / 2 + float((y - (bottom + top) / 2) * self.scale),
+            )
+            for name, (x, y) in exact.items()
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,12 +82,21 @@ class Sketch:
 
 def frame_of(shown: Sequence[Pose], width: float = WIDTH, most_height: float = MOST_HEIGHT) -> Frame:
     """The frame that shows all these poses at one scale, as large as the width and the height allow."""
-    points = [tuple(c.low / 2 + c.high / 2 for c in vector) for pose in shown for vector in pose.nodes.values()]
-    (left, right), (bottom, top) = ((min(c), max(c)) for c in zip(*points, strict=True))
+    sides = [[high - low for low, high in _sides(_centers(pose).values())] for pose in shown]
+    wide, tall = (max(side[k] for side in sides) for k in (0, 1))
     room = (Fraction(width - 2 * MARGIN), Fraction(most_height - 2 * MARGIN))
-    scale = min(r / side for r, side in zip(room, (right - left, top - bottom), strict=True) if side)
-    height = max(LEAST_HEIGHT, float((top - bottom) * scale) + 2 * MARGIN)
-    return Frame(((left + right) / 2, (bottom + top) / 2), scale, height, width)
+    scale = min(r / side for r, side in zip(room, (wide, tall), strict=True) if side)
+    return Frame(scale, max(LEAST_HEIGHT, float(tall * scale) + 2 * MARGIN), width)
+
+
+def _centers(pose: Pose) -> dict[str, tuple[Fraction, Fraction]]:
+    return {name: (x.center, y.center) for name, (x, y) in pose.nodes.items()}
+
+
+def _sides(points: Iterable[tuple[Fraction, Fraction]]) -> tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]:
+    """The least and the largest x, and the same for y."""
+    xs, ys = zip(*points, strict=True)
+    return (min(xs), max(xs)), (min(ys), max(ys))
 
 
 def arrow_lengths(poses: Poses) -> dict[str, float]:
@@ -99,9 +112,7 @@ def arrow_lengths(poses: Poses) -> dict[str, float]:
 
 def sketch(pose: Pose, frame: Frame, arrows: Mapping[str, float]) -> Sketch:
     """A pose in a frame, with arrows of these lengths."""
-    nodes = {
-        name: frame.at(x.low / 2 + x.high / 2, y.low / 2 + y.high / 2) for name, (x, y) in pose.nodes.items()
-    }
+    nodes = frame.nodes(pose)
     bars = tuple((nodes[a], nodes[b]) for a, b in BARS)
     drawn = [Stroke(a, b, width / 2) for (a, b), width in zip(bars, BAR_WIDTHS, strict=True)]
     springs = []
