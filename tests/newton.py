@@ -1,7 +1,8 @@
-"""Equilibria found without ptmcad: a scan in floating point, then Newton's method with mpmath, from the coordinates of the nodes.
+"""Equilibria found without ptmcad: a scan in floating point, then Newton's method with mpmath.
 
-For fixed th2, dU/dth1 = 0 is linear and homogeneous in (cos th1, sin th1), which leaves two opposite th1; along both, the
-sign changes of dU/dth2 are looked for on a grid of th2. `Found` then has every quantity of a pose to about 100 digits.
+Everything is derived from the coordinates of the nodes by the chain rule. For fixed th2, dU/dth1 = 0 is linear and
+homogeneous in (cos th1, sin th1), which leaves two opposite th1; along both, the sign changes of dU/dth2 are looked for
+on a grid of th2. `Found` then has every quantity of a pose to about 100 digits.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import mpmath
 from mpmath import mpf
 
 DIGITS = 110
-GRID = 1200
+GRID = 400
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def gradient_and_hessian(p: Mapping[str, mpf], th1: mpf, th2: mpf, lib: object) 
     return gradient, hessian
 
 
-def starts(parameters: Mapping[str, Fraction]) -> list[tuple[float, float]]:
+def starts(parameters: Mapping[str, Fraction], grid: int) -> list[tuple[float, float]]:
     """Approximate equilibria, in floating point."""
     p = {name: float(value) for name, value in parameters.items()}
     found = []
@@ -66,12 +67,13 @@ def starts(parameters: Mapping[str, Fraction]) -> list[tuple[float, float]]:
         def slope(th2: float) -> float:
             return gradient_and_hessian(p, *pose(th2), math)[0][1]  # type: ignore[arg-type]
 
-        ends = [2 * math.pi * (k + 0.123) / GRID for k in range(GRID + 1)]
+        ends = [2 * math.pi * (k + 0.123) / grid for k in range(grid + 1)]
         values = [slope(th2) for th2 in ends]
-        for low, high, a, b in zip(ends, ends[1:], values, values[1:], strict=False):
+        for left, right, a, b in zip(ends, ends[1:], values, values[1:], strict=False):
             if (a < 0) == (b < 0):
                 continue
-            for _ in range(50):
+            low, high = left, right
+            for _ in range(40):
                 middle = (low + high) / 2
                 low, high = (middle, high) if (slope(middle) < 0) == (a < 0) else (low, middle)
             found.append(pose((low + high) / 2))
@@ -117,6 +119,6 @@ def _principal(angle: mpf) -> mpf:
     return angle - turn * mpmath.ceil((angle - mpmath.pi) / turn - mpf(10) ** (40 - DIGITS))
 
 
-def equilibria(parameters: Mapping[str, Fraction]) -> list[Found]:
-    """Every equilibrium that the scan finds."""
-    return [improved(parameters, start) for start in starts(parameters)]
+def equilibria(parameters: Mapping[str, Fraction], grid: int = GRID) -> list[Found]:
+    """Every equilibrium that a scan with so many steps finds."""
+    return [improved(parameters, start) for start in starts(parameters, grid)]
