@@ -30,6 +30,7 @@ __all__ = [
     "RECORD_KEYS",
     "Kind",
     "Parameter",
+    "file_name",
     "load",
     "point_from_mapping",
     "point_from_options",
@@ -280,6 +281,17 @@ def _text(node: Node, limit: int) -> str:
     if len(node.text) > limit:
         raise node.place.error(f"the text is longer than {limit} characters")
     return node.text
+
+
+def file_name(name: str, option: str) -> str:
+    """A name for files that an option gives.
+
+    Raises
+    ------
+    ConfigError
+        When it is not safe as the start of a file's name.
+    """
+    return _file_name(Scalar(name, Place(option)))
 
 
 def _file_name(node: Node) -> str:

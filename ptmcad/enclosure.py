@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ptmcad.numerals import magnitude
+from ptmcad.numerals import integer_text, magnitude, text_of
 
 DIGITS = 10
 """Significant digits of a text unless another number is asked for."""
@@ -85,6 +85,24 @@ class Enclosure:
         return ("-" if value < 0 else "") + _decimal(mantissa, exponent, digits, exact)
 
 
+def exact_text(value: Fraction) -> str:
+    """An exact number as a decimal where it is one, else as a fraction.
+
+    >>> exact_text(Fraction(-3, 2)), exact_text(Fraction(10) ** 30), exact_text(Fraction(1, 3))
+    ('-1.5', '1e30', '1/3')
+    """
+    rest, places = value.denominator, 0
+    for prime in (2, 5):
+        power = 0
+        while rest % prime == 0:
+            rest, power = rest // prime, power + 1
+        places = max(places, power)
+    if rest != 1:
+        return text_of(value)
+    digits = integer_text(abs(value.numerator) * 10**places // value.denominator).rstrip("0")
+    return Enclosure(value, value).text(max(1, len(digits)))
+
+
 def _rounded(value: Fraction, digits: int) -> tuple[int, int]:
     """The pair (m, e) of which m 10^e is the positive value rounded to nearest, m having so many digits."""
     exponent = magnitude(value) + 1 - digits
@@ -94,7 +112,7 @@ def _rounded(value: Fraction, digits: int) -> tuple[int, int]:
 
 def _decimal(mantissa: int, exponent: int, digits: int, shorten: bool) -> str:
     """m 10^e as text, m having so many digits; zeros at the end of the decimals are dropped when asked for."""
-    written = str(mantissa)
+    written = integer_text(mantissa)
     point = digits + exponent  # where the point comes, counted from the first digit
     suffix = ""
     if -_PLAIN < point <= 0:

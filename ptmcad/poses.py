@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ptmcad.config import point_from_mapping
 from ptmcad.enclosure import Enclosure
 from ptmcad.errors import ConfigError, shown
 from ptmcad.regionmap import Status
@@ -88,6 +87,34 @@ class Poses:
         """The number of stable equilibria."""
         return sum(p.stable is True for p in self.equilibria)
 
+    def __str__(self) -> str:
+        return self.table()
+
+    def table(self, digits: int | None = None) -> str:
+        """Everything about each equilibrium as text for a terminal, with fewer digits when asked for."""
+        from ptmcad.posetable import table
+
+        return table(self, digits)
+
+    def to_json(self) -> str:
+        """The poses as JSON text (docs/poses.schema.json)."""
+        from ptmcad.document.poses import write_poses
+
+        return write_poses(self)
+
+    @classmethod
+    def from_json(cls, text: str) -> Poses:
+        """The poses that `to_json` wrote.
+
+        Raises
+        ------
+        ValueError
+            When the text is not such a document; the message names the place.
+        """
+        from ptmcad.document.poses import read_poses
+
+        return read_poses(text)
+
 
 DIGITS = 12
 MOST_DIGITS = 1000
@@ -113,6 +140,7 @@ def solve(digits: int = DIGITS, **parameters: object) -> Poses:
     """
     if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
         raise ConfigError(f"{shown(repr(digits), 60)} is not a number of digits from 1 to {MOST_DIGITS}", key="digits")
+    from ptmcad.config import point_from_mapping
     from ptmcad.solving import poses_at
 
     return poses_at(point_from_mapping(parameters), digits)
