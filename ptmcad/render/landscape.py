@@ -35,7 +35,7 @@ from ptmcad.render.printing import settings
 
 SIDE, LEFT, BOTTOM, BAR, KEY, MARGIN = 4.6, 0.85, 0.65, 1.25, 2.2, 0.15
 """In inches: the square's side, the space at its left and below, the colour bar, the legend, the rim."""
-_GRID = 181
+_GRID = 145
 _EVEN, _LEAST = 16, 4
 """Intervals of contours in all, and at least between two neighbouring critical energies."""
 _COLOURS = ("#16324f", "#3d6b8c", "#7fa6b5", "#c3d2c5", "#f3edd3")
