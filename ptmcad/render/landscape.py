@@ -35,7 +35,8 @@ from ptmcad.render.printing import settings
 
 SIDE, LEFT, BOTTOM, BAR, KEY, MARGIN = 4.6, 0.85, 0.65, 1.25, 2.2, 0.15
 """In inches: the square's side, the space at its left and below, the colour bar, the legend, the rim."""
-_GRID = 145
+_GRID, _FINE = 145, 433
+"""Points along a side for all contours, and for those through saddles, which are narrow crosses near a fold."""
 _EVEN, _LEAST = 16, 4
 """Intervals of contours in all, and at least between two neighbouring critical energies."""
 _COLOURS = ("#16324f", "#3d6b8c", "#7fa6b5", "#c3d2c5", "#f3edd3")
@@ -99,9 +100,7 @@ def draw_landscape(poses: Poses) -> Figure:
     if not shown:
         return empty(poses)
     energy = energy_of(poses.parameters)
-    degrees = np.linspace(-180.0, 180.0, _GRID)
-    radians = np.radians(degrees)
-    heights = energy(radians[None, :], radians[:, None])
+    degrees, heights = _sampled(energy, _GRID)
     critical = sorted({energy.scaled(pose.energy.center) for pose in shown})
     levels = contour_levels(critical, float(heights.min()), float(heights.max()))
     title = heading(poses, 90)
@@ -120,7 +119,8 @@ def draw_landscape(poses: Poses) -> Figure:
             degrees, degrees, heights, levels=levels[1:-1], colors="white", linewidths=0.35, linestyles="solid"
         )
         through = sorted({energy.scaled(p.energy.center) for p in shown if p.index in (1, None)})
-        axes.contour(degrees, degrees, heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
+        finer, fine_heights = _sampled(energy, _FINE)
+        axes.contour(finer, finer, fine_heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
         _dress(axes)
         _mark(axes, shown)
         scale = _energy_scale(energy, levels)
@@ -129,6 +129,13 @@ def draw_landscape(poses: Poses) -> Figure:
         left = LEFT + SIDE + BAR + 0.1
         draw_legend(figure, tuple(_legend(shown)), left, BOTTOM + SIDE)
     return figure
+
+
+def _sampled(energy: Energy, number: int) -> tuple[Floats, Floats]:
+    """Angles in degrees along a side, and the energy over the square, shape (number, number), th1 along rows."""
+    degrees = np.linspace(-180.0, 180.0, number)
+    radians = np.radians(degrees)
+    return degrees, energy(radians[None, :], radians[:, None])
 
 
 def contour_levels(critical: Sequence[float], low: float, high: float) -> list[float]:
