@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 import matplotlib
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
@@ -115,7 +115,21 @@ def test_nodes_are_where_the_angles_put_them(name: str) -> None:
 
 @CASES
 def test_labels_are_clear_of_all_strokes_and_of_each_other(name: str) -> None:
-    found = poses(name)
+    labels_are_clear(poses(name))
+
+
+@settings(max_examples=12, deadline=None)
+@example(["7/10", "12", "-1/50", "35", "-29/10", "0"])  # three nodes within a few points
+@given(st.tuples(*[st.fractions(0, 30, max_denominator=100)] * 2, *[st.fractions(-60, 60, max_denominator=9)] * 4))
+def test_labels_of_any_mechanism_are_clear(values: Sequence[Fraction | str]) -> None:
+    rho, l2, *loads = values
+    given_loads = dict(zip(("F3", "F4", "F3x", "F4x"), loads, strict=True))
+    labels_are_clear(solve(rho=rho, L2=l2 or 1, **given_loads))
+
+
+def labels_are_clear(found: Poses) -> None:
+    if not found.equilibria:
+        return
     frame, arrows = frame_of(found.equilibria), arrow_lengths(found)
     for pose in found.equilibria:
         seen = sketch(pose, frame, arrows)
@@ -144,6 +158,7 @@ def test_a_spring_has_all_its_turns_at_any_length(name: str) -> None:
             assert len(line) == 2 * TURNS + 4
             xs, ys = np.diff(np.array(line[1:-1]), axis=0).T
             assert np.hypot(xs, ys)[1:-1].min() > 1.5, "a turn's edge is longer than its line is wide"
+            assert np.hypot(xs.sum(), ys.sum()) > 1.4 * 2 * TURNS, "and so is the way from turn to turn"
 
 
 def test_springs_on_bars_are_drawn_aside() -> None:
