@@ -16,7 +16,6 @@ from ptmcad.errors import ConfigError
 from ptmcad.memory import Bound
 from ptmcad.output import Writer, check_writable, text_writer, write_files
 from ptmcad.poses import MOST_DIGITS, Poses
-from ptmcad.regionmap import Status
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,8 +40,6 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
 
     Raises
     ------
-    ConfigError
-        When a picture is asked for and there are infinitely many equilibria.
     OutputError
         When a file can not be written.
     """
@@ -51,8 +48,6 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
         if file.endswith(".json"):
             writers[file] = text_writer(poses.to_json())
             continue
-        if poses.status is Status.UNDECIDED:
-            raise ConfigError(f"{poses.remark} at this point, so there is no picture of them: ask for table or json")
         from ptmcad.render.landscape import draw_landscape  # brings matplotlib
         from ptmcad.render.poses import draw_poses
 
