@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
@@ -16,11 +17,6 @@ from ptmcad.errors import ConfigError
 from ptmcad.memory import Bound
 from ptmcad.output import Writer, check_writable, text_writer, write_files
 from ptmcad.poses import MOST_DIGITS, Poses
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from matplotlib.figure import Figure
 
 FORMATS = ("table", "json", "png", "svg", "pdf")
 DIGITS = 10
@@ -56,7 +52,7 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
     write_files(folder, writers)
 
 
-def _write_picture(draw: Callable[[Poses], Figure], poses: Poses, path: Path) -> None:
+def _write_picture(draw: Callable[[Poses], Any], poses: Poses, path: Path) -> None:
     from ptmcad.render.printing import save as save_figure
 
     save_figure(draw(poses), path)
