@@ -256,6 +256,14 @@ def test_levels_separate_critical_energies(critical: list[float]) -> None:
         assert min(abs(value - level) for level in levels) <= 2e-9
 
 
+def test_equilibria_on_the_same_place_stay_visible() -> None:
+    """At 1e-20 from the fold of fig. 2: two stable ones and a saddle, drawn over each other with falling sizes."""
+    figure = draw_landscape(solve(rho=Fraction(5, 4) - Fraction(1, 10**20), L2="3/2"))
+    found = {a.get_gid(): a for a in figure.findobj() if str(a.get_gid()).startswith("equilibrium-")}
+    sizes = [found[f"equilibrium-{k}"].get_markersize() for k in (1, 2, 3)]
+    assert sizes[0] > sizes[1] + 3 > sizes[2] + 6
+
+
 def test_the_edges_of_the_torus_are_one() -> None:
     assert copies(180.0) == copies(-179.9) == (180.0, -180.0)
     assert copies(0.0) == (0.0,)

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from math import hypot
 from typing import Any
 
 import numpy as np
@@ -47,6 +48,9 @@ _MARKERS = {
     "maximum": ("^", 9.0, "#d35c37"),
     "degenerate": ("*", 13.0, "#e9a7c4"),
 }
+
+_RING = 5.0
+"""Points by which a marker is larger for each other one on its place."""
 
 Floats = NDArray[np.float64]
 
@@ -164,23 +168,26 @@ def _dress(axes: Any) -> None:
 
 def _mark(axes: Any, shown: Sequence[Pose]) -> None:
     """A marker for each equilibrium, again at the opposite edge, and its number once."""
-    places = []
+    points = SIDE * 72 / 360
+    boxes: list[Box] = []
     for number, pose in enumerate(shown, 1):
-        name = _kind(pose)
-        marker, size, face = _MARKERS[name]
+        marker, size, face = _MARKERS[_kind(pose)]
+        own = first_copy(pose)
+        # what is drawn later on the same place would hide it: it stands out around that
+        size += _RING * sum(
+            hypot(*(a - b for a, b in zip(own, first_copy(p), strict=True))) < 5 for p in shown[number:]
+        )
         for x in copies(float(pose.degrees[0])):
             for y in copies(float(pose.degrees[1])):
                 axes.add_artist(
                     Line2D(
                         (x,), (y,), marker=marker, markersize=size, markerfacecolor=face, markeredgecolor=INK,
                         markeredgewidth=1.0, linestyle="none", clip_on=False, zorder=6,
-                        gid=f"equilibrium-{number}" if (x, y) == first_copy(pose) else None,
+                        gid=f"equilibrium-{number}" if (x, y) == own else None,
                     )
                 )  # fmt: skip
-                places.append((x, y))
-    points = SIDE * 72 / 360
-    on_paper = [((x + 180) * points, (y + 180) * points) for x, y in places]
-    boxes: list[Box] = [(x - 6, y - 6, x + 6, y + 6) for x, y in on_paper]
+                u, v, half = (x + 180) * points, (y + 180) * points, size / 2 + 1
+                boxes.append((u - half, v - half, u + half, v + half))
     side = SIDE * 72
     labels = []
     for number, pose in enumerate(shown, 1):
