@@ -19,7 +19,7 @@ from ptmcad.render import regionmap
 from ptmcad.render.legend import INK, Entry, draw_legend, height
 from ptmcad.render.mechanism import spring_mark, symbol_mark
 from ptmcad.render.outline import View
-from ptmcad.render.poses import BELOW, HEAD, assigned, describe, in_order, panel, scale_bar
+from ptmcad.render.poses import BELOW, HEAD, assigned, describe, in_order, panel, scale_bar, value_text
 from ptmcad.render.printing import settings
 from ptmcad.render.sketch import arrow_lengths, frame_of
 from ptmcad.slice import Slice
@@ -62,14 +62,14 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     key = height(entries) + 0.35
     with settings():
         # what the parts mean stands below the map's legend, unless that is long or insets are there
-        figure = regionmap._figure(result, False, _DPI, wide + _GAP + _RIM, panels)
+        figure = regionmap.figure_of(result, False, _DPI, wide + _GAP + _RIM, panels)
         lowest = min(text.get_position()[1] for text in figure.texts)
         chart: Any = figure.axes[0]
         width, tall = (float(side) for side in figure.get_size_inches())
         bottom = chart.get_position().y0 * tall
         left, place = width - wide - _RIM, (regionmap.LEFT + regionmap.SIDE + regionmap.GAP, bottom + key)
         if len(figure.axes) > 1 or lowest - 0.3 < bottom + key:
-            figure = regionmap._figure(result, False, _DPI, wide + _GAP + _RIM, panels + key)
+            figure = regionmap.figure_of(result, False, _DPI, wide + _GAP + _RIM, panels + key)
             chart = figure.axes[0]
             tall = float(figure.get_size_inches()[1])
             place = (left, chart.get_position().y1 * tall - panels)
@@ -129,10 +129,12 @@ def point_of(slice: Slice, poses: Poses) -> tuple[Fraction, Fraction]:
         name, factor = scaled[0]
         value = poses.parameters[name] / factor
         if not axis.low <= value <= axis.high:
-            raise ValueError(f"{axis.name} = {value} is not in the window of {slice.name}")
+            raise ValueError(f"{axis.name} {value_text(value)} is not in the window of {slice.name}")
         found.append(value)
     x, y = found
     for name, value in poses.parameters.items():
         if name in slice.parameters and slice.parameters[name].evaluate(x, y) != value:
-            raise ValueError(f"the poses have {name} = {value}, which {slice.name} does not have at that point")
+            raise ValueError(
+                f"the poses have {name} {value_text(value)}, which {slice.name} does not have at that point"
+            )
     return x, y
