@@ -41,10 +41,10 @@ def refined(number: AlgebraicNumber, width: Fraction) -> AlgebraicNumber:
 def compare(a: AlgebraicNumber, b: AlgebraicNumber | Fraction) -> int:
     """The sign of a - b."""
     if isinstance(b, AlgebraicNumber):
-        if a.polynomial == b.polynomial:
-            # one isolating interval for both, or disjoint ones, after a finite number of bisections
-            if max(a.low, b.low) <= min(a.high, b.high) and _one_root(a, min(a.low, b.low), max(a.high, b.high)):
-                return 0
+        # isolating intervals of one polynomial that overlap hold the same root if their union holds only one
+        overlap = a.polynomial == b.polynomial and a.low <= b.high and b.low <= a.high
+        if overlap and _one_root(a, min(a.low, b.low), max(a.high, b.high)):
+            return 0
         while a.low <= b.high and b.low <= a.high:
             a, b = refined(a, (a.high - a.low) / 2 or Fraction(1)), refined(b, (b.high - b.low) / 2 or Fraction(1))
         return 1 if a.low > b.high else -1

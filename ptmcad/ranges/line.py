@@ -5,9 +5,9 @@ equilibria are nondegenerate, their number and indices are constant, and they we
 are real algebraic numbers. Neighbours with equal counts are joined, and the critical value between them is kept among
 the changes.
 
-The line's own discriminant variety is computed, in one parameter: its components are the irreducible factors of the norm of
-det H over Q(x). So nothing depends on how a basis over the plane specialises, and that the ends are those of the
-map's walls is a test of both.
+The line's own discriminant variety is computed, in one parameter: its components are the irreducible factors of the
+norm of det H over Q(x). So nothing depends on how a basis over the plane specialises, and that the ends are those of
+the map's walls is a test of both.
 """
 
 from __future__ import annotations
@@ -105,7 +105,8 @@ class CountInterval:
 
     @property
     def stable(self) -> int:
-        return self.index[0]
+        minima, _, _ = self.index
+        return minima
 
     @property
     def width(self) -> Enclosure:
@@ -122,7 +123,7 @@ class CountIntervals:
     name : of the slice.
     along : the axis with its window.
     at : what was fixed on the line.
-    parameters : every parameter of the mechanism as an expression in ``along`` (the first axis; the second is not used).
+    parameters : every parameter of the mechanism as an expression in ``along`` (its first axis; no second one occurs).
     intervals : from the window's lower edge to its upper one.
     changes : all critical values in the window in increasing order, those where no count changes among them.
     """
@@ -139,18 +140,6 @@ class CountIntervals:
     def operation(self) -> tuple[CountInterval, ...]:
         """The paper's operation range: the intervals with two stable equilibria."""
         return tuple(i for i in self.intervals if i.stable == 2)
-
-    def to_json(self) -> str:
-        """The answer as JSON text, see docs/range.schema.json."""
-        from ptmcad.document.ranges import write_ranges
-
-        return write_ranges(self)
-
-    def table(self) -> str:
-        """The answer for a terminal."""
-        from ptmcad.rangetable import table
-
-        return table(self)
 
 
 def lower(end: End) -> Fraction:
@@ -208,7 +197,8 @@ def _restricted(expression: Expression, varying: int, value: Fraction) -> Expres
     def on_line(terms: tuple[tuple[int, int, Fraction], ...]) -> Expression:
         total = constant(0)
         for term in terms:
-            total = total + axis(0) ** term[varying] * (term[2] * value ** term[1 - varying])
+            powers, c = term[:2], term[2]
+            total = total + axis(0) ** powers[varying] * (c * value ** powers[1 - varying])
         return total
 
     return on_line(expression.numerator) / on_line(expression.denominator)
