@@ -84,3 +84,8 @@ def in_order(
 def as_interval(number: AlgebraicNumber) -> tuple[fmpq, fmpq]:
     """The isolating interval's ends."""
     return from_fraction(number.low), from_fraction(number.high)
+
+
+def fibre_roots(p: UnivariatePolynomial, low: fmpq, high: fmpq) -> tuple[AlgebraicNumber, ...]:
+    """The different roots, in the open interval and in no order, of a polynomial that is not zero."""
+    return tuple(algebraic_number(r) for factor, _ in p.factor()[1] for r in isolate(factor, low, high))
