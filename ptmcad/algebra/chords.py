@@ -1,7 +1,7 @@
 """Branches of a plane curve near a point and over a short interval: on which side of a line, and how steep.
 
-Guarantee: answers of `side_of_chord` are proved; enclosures of slopes contain them for every abscissa of the panel; None
-means not proved.
+Guarantee: answers of `side_of_chord` are proved; enclosures of slopes contain them for every abscissa of the panel;
+None means not proved.
 
 A chord starts at a point (u0, v0) of the curve p = 0, u0 rational, v0 algebraic: v = v0 + s (u - u0). The coefficients
 of p(u0 + t, v0 + s t) by powers of t are polynomials in v0; which of them vanish is decided by its minimal polynomial.
@@ -39,16 +39,16 @@ def side_of_chord(in_v: Sequence[fmpz_poly], start: fmpq, origin: RealRoot, slop
     along = v + t * slope
     u = t + start
     total = _TWO.constant(0)
-    for c in reversed(in_v):
+    for row_in_u in reversed(in_v):
         value = _TWO.constant(0)
-        for d in reversed(c.coeffs()):
+        for d in reversed(row_in_u.coeffs()):
             value = value * u + fmpq(d)
         total = total * along + value
     rows: dict[int, dict[int, fmpq]] = {}
     for (i, k), c in total.terms():
         rows.setdefault(int(k), {})[int(i)] = c
     minimal = fmpq_poly(origin.polynomial.coeffs())
-    coefficients = []
+    coefficients: list[arb] = []
     with ctx.workprec(_BITS):
         root = refine(origin, fmpq(1, 2**_BITS))
         ball = arb(root.low).union(arb(root.high))

@@ -1,7 +1,7 @@
 """Strips: where, over an open interval of the other axis, one operation range lies between two branches.
 
-Guarantee: over the strip's whole base interval the two ends are the branches (or the window's edges) that are named, and
-there are two stable equilibria between them but for points of the variety where no count changes.
+Guarantee: over the strip's whole base interval the two ends are the branches (or the window's edges) that are named,
+and there are two stable equilibria between them but for points of the variety where no count changes.
 """
 
 from __future__ import annotations

@@ -1,16 +1,17 @@
 """The operation range's width against the other axis of a slice, and the proof of where it is largest.
 
-Guarantee: `Maximum.width` encloses the supremum of the width over the window, and `Maximum.at` where it is approached; at
-every value of the other axis outside it the width is smaller. What is proved beyond that `Maximum.place` says.
+Guarantee: `Maximum.width` encloses the supremum of the width over all values of the other axis in the window that are
+not critical, and `Maximum.at` where it is approached: at all values outside of it the width is smaller. What is proved
+beyond that `Maximum.place` says.
 
 Each strip (see `strips`) is cut into closed pieces, and each piece is settled in one of these ways.
 
 * Below: levels that no curve crosses bound the range from both sides, and lie closer than a width that occurs.
 * Monotone: the derivative of the width, enclosed over the piece, has one sign; the largest width is at an end of it.
 * Concave: the second derivative is negative, the first one changes its sign: one maximum, enclosed by bisection.
-* Chord: at a rational end y0 of the strip the limits a, b of the range are algebraic numbers. If for some s the lower end
-  stays above a + s (y - y0), and the upper one below b + s (y - y0), the width stays under b - a. This also settles
-  cusps, where derivatives are infinite.
+* Chord: at a rational end y0 of the strip the limits a, b of the range are algebraic numbers. If for some s the lower
+  end stays above a + s (y - y0), and the upper one below b + s (y - y0), the width stays under b - a. This also
+  settles cusps, where derivatives are infinite.
 
 A piece that becomes too small remains, with the bounds that it has: then the place is only enclosed.
 """
@@ -188,21 +189,21 @@ class _Search:
         for side, (at, end) in enumerate(((left, strip.left), (right, strip.right))):
             if at[0] != at[1]:
                 continue
-            limits = [limit(b, strip, at[0], _FINE) for b in (strip.low, strip.high)]
-            if limits[0] is None or limits[1] is None:
+            lowest, highest = (limit(b, strip, at[0], _FINE) for b in (strip.low, strip.high))
+            if lowest is None or highest is None:
                 continue
-            (a_low, a_high), (b_low, b_high) = (_bounds(e) for e in limits)
+            (a_low, a_high), (b_low, b_high) = _bounds(lowest), _bounds(highest)
             self.known = max(self.known, b_low - a_high)
             if b_high - a_low < self.known:
                 continue
             direction = 1 if side == 0 else -1
-            length = chord_length(strip, at[0], direction, (limits[0], limits[1]))
+            length = chord_length(strip, at[0], direction, (lowest, highest))
             if length is None:
                 continue
             place = Place.EDGE if end.root is None else Place.CRITICAL
             width = (b_low - a_high, b_high - a_low)
             critical = None if end.root is None else algebraic_number(end.root)
-            self.candidates.append(_Candidate(place, at, width, critical, (limits[0], limits[1])))
+            self.candidates.append(_Candidate(place, at, width, critical, (lowest, highest)))
             if side == 0:
                 low = at[0] + length
             else:
@@ -344,7 +345,7 @@ def limit(branch: Branch, strip: Strip, end: fmpq, width: fmpq) -> End | None:
 
 
 def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End]) -> fmpq | None:
-    """A length within which the range keeps between two parallel chords from its limits at an end; None if not proved."""
+    """A length within which the range keeps between parallel chords from its limits at an end; None if not proved."""
     length = abs(strip.sample - end)
     for _ in range(40):
         u = end + direction * length
