@@ -105,8 +105,7 @@ class CountInterval:
 
     @property
     def stable(self) -> int:
-        minima, _, _ = self.index
-        return minima
+        return self.minima
 
     @property
     def width(self) -> Enclosure:

@@ -1,11 +1,11 @@
 """Paths of stable poses along a line: how far each one can be followed, and where it snaps to.
 
-Guarantee: the pose at every step of a path is the same branch (`tracking`). A branch that is said to end at a critical value
-is not continued beyond it: all equilibria on the far side but those named were reached from other equilibria.
+Guarantee: the pose at every step of a path is the same branch (`tracking`). A branch that is said to end at a critical
+value is not continued beyond it: all equilibria on the far side but those named were reached from other equilibria.
 
-Where a stable pose vanishes and one stable pose is left, the mechanism's energy descends to that one from the place where the
-first one was, for every descent but those that end exactly on a saddle; by theorem 1 (docs/method.md) there
-are never more than two stable poses, so one is left.
+Where a stable pose vanishes one stable pose is left, as there are never more than two (theorem 1 of docs/method.md).
+From the place where the first one was, the energy descends to the one that is left: every descent ends at an
+equilibrium, and all but those that run exactly into a saddle end at a minimum.
 """
 
 from __future__ import annotations
@@ -20,18 +20,20 @@ from flint import arb, ctx
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.counting import equilibria
 from ptmcad.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.errors import ConfigError
 from ptmcad.models import system_of
 from ptmcad.models.ptm import PARAMETERS
-from ptmcad.poses import Pose, Poses
+from ptmcad.models.system import polynomial_at
+from ptmcad.poses import Pose
 from ptmcad.ranges.line import Line, critical_values, line_of
-from ptmcad.ranges.tracking import BITS, Box, Family, Pair, Reached, at_value, bridge, follow
+from ptmcad.ranges.tracking import BITS, Family, Pair, Reached, at_value, bridge, follow
 from ptmcad.slice import Axis, Slice
 from ptmcad.solving import poses_at
 
 DIGITS = 12
-_NEAREST = Fraction(1, 10**9)
+_NEAREST = Fraction(1, 10**6)
 """How near to a critical value a branch is followed, against the window's width."""
 
 
@@ -63,8 +65,9 @@ class PathEnd:
     meeting : of the equilibria on the path's side, the Morse indices (numbers of negative eigenvalues) of those that
         meet there, the path's own included.
     leaving : the same for those into which they go on beyond.
-    before : the pose close to ``at``; None at the window's edge.
-    target : the stable pose beyond, to which the mechanism goes; None at the window's edge.
+    energy : of the pose at ``last``.
+    target : the stable pose beyond, to which the mechanism goes, close to ``at``; None at the window's edge.
+    target_energy : its energy.
     """
 
     fate: Fate
@@ -72,8 +75,9 @@ class PathEnd:
     last: PathPoint
     meeting: tuple[int, ...] = ()
     leaving: tuple[int, ...] = ()
-    before: Pose | None = None
-    target: Pose | None = None
+    energy: Enclosure | None = None
+    target: PathPoint | None = None
+    target_energy: Enclosure | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +136,7 @@ def pose_paths(
     numbers = tuple(n for n, _ in critical_values(line))
     if any(n.compare(start) == 0 for n in numbers):
         raise ConfigError(f"{along} = {start} is a critical value: start beside it", key="--path")
-    poses = _poses(line, start)
+    poses = poses_at(_parameters(line, start), DIGITS)
     stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable]
     if number is not None and number - 1 not in stable:
         raise ConfigError(
@@ -149,9 +153,8 @@ def pose_paths(
     )
 
 
-def _poses(line: Line, value: Fraction) -> Poses:
-    parameters = {n: e.evaluate(value, Fraction(0)) for n, e in line.parameters.items() if n in PARAMETERS}
-    return poses_at(parameters, DIGITS)
+def _parameters(line: Line, value: Fraction) -> dict[str, Fraction]:
+    return {n: e.evaluate(value, Fraction(0)) for n, e in line.parameters.items() if n in PARAMETERS}
 
 
 def _path(
@@ -165,7 +168,7 @@ def _path(
     right = _one_way(family, line, [n for n in numbers if n.compare(start) > 0], origin, 1)
     reached = [*reversed(left[0]), origin, *right[0]]
     with ctx.workprec(BITS):
-        sines = [(r.over.tight[0].sin(), r.over.tight[1].sin()) for r in reached]
+        sines = [(a.sin(), b.sin()) for a, b in (r.over.hull() for r in reached)]
         upright = all(a > 0 and b > 0 for a, b in sines)
         reverse = all(a < 0 and b < 0 for a, b in sines)
     return PosePath(number, start, tuple(_point(r) for r in reached), left[1], right[1], upright, reverse)
@@ -221,51 +224,66 @@ def _beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
 
 def _meeting(family: Family, line: Line, number: AlgebraicNumber, current: Reached, after: Fraction) -> PathEnd:
     """Which equilibria meet at a critical value that the path does not pass."""
-    before, beyond = _poses(line, current.value).equilibria, list(_poses(line, after).equilibria)
-    ours, meeting = None, []
-    for pose in before:
-        box = at_value(family, current.value, _guess(pose))
-        if box is None:
-            return PathEnd(Fate.UNDECIDED, number, _point(current))
-        own = _same(box, current.box)
-        across = None if own else bridge(family, Reached(current.value, box, box), after)
+    stopped = PathEnd(Fate.UNDECIDED, number, _point(current))
+    before, beyond = _equilibria(family, line, current.value), _equilibria(family, line, after)
+    if before is None or beyond is None:
+        return stopped
+    stable = [place for place, negative in beyond if negative == 0]
+    meeting, own = [], False
+    for place, negative in before:
+        ours = _close(place.angles, current.angles)
+        across = None if ours else bridge(family, place, after)
         if across is None:
-            meeting.append(pose)
-            ours = pose if own else ours
+            meeting.append(negative)
+            own = own or ours
         else:
-            images = [p for p in beyond if _at_pose(across.box, p)]
+            images = [k for k, (image, _) in enumerate(beyond) if _close(across.angles, image.angles)]
             if len(images) != 1:
-                return PathEnd(Fate.UNDECIDED, number, _point(current))
-            beyond.remove(images[0])
-    if ours is None:
-        return PathEnd(Fate.UNDECIDED, number, _point(current))
-    stable_beyond = [p for p in _poses(line, after).equilibria if p.stable]
-    if any(p.stable for p in beyond):
-        fate = Fate.MERGE
-    elif len(stable_beyond) == 1:
-        fate = Fate.SNAP
-    else:
-        fate = Fate.UNDECIDED
+                return stopped
+            del beyond[images[0]]
+    leaving = [negative for _, negative in beyond]
+    if not own or len(stable) != 1:
+        return stopped
     return PathEnd(
-        fate,
+        Fate.MERGE if 0 in leaving else Fate.SNAP,
         number,
         _point(current),
-        tuple(p.index for p in meeting if p.index is not None),
-        tuple(p.index for p in beyond if p.index is not None),
-        ours,
-        stable_beyond[0] if len(stable_beyond) == 1 else None,
+        tuple(sorted(meeting)),
+        tuple(sorted(leaving)),
+        _energy(family, line, current),
+        _point(stable[0]),
+        _energy(family, line, stable[0]),
     )
 
 
-def _same(first: Box, second: Box) -> bool:
-    """Whether two boxes at one value of the parameter hold the same equilibrium, whole turns apart."""
-    return _close(first.tight, second.tight)
+def _equilibria(family: Family, line: Line, value: Fraction) -> list[tuple[Reached, int]] | None:
+    """All equilibria at a value that is not critical, with their Morse indices; None when one was not enclosed."""
+    values = _parameters(line, value)
+    found = []
+    for solution in equilibria(family.system, {n: from_fraction(v) for n, v in values.items()}).solutions:
+        with ctx.workprec(BITS):
+            c1, s1, c2, s2 = (arb(x) for x in solution.center)
+            guess = (arb.atan2(s1, c1), arb.atan2(s2, c2))
+        place = at_value(family, value, guess)
+        if place is None:
+            return None
+        found.append((Reached(value, place, place), solution.negative))
+    return found
 
 
-def _at_pose(box: Box, pose: Pose) -> bool:
+def _energy(family: Family, line: Line, reached: Reached) -> Enclosure:
+    """The potential at a place."""
+    values = {n: from_fraction(v) for n, v in _parameters(line, reached.value).items()}
     with ctx.workprec(BITS):
-        angles = tuple(arb(from_fraction(a.low)).union(arb(from_fraction(a.high))) for a in pose.angles)
-        return _close(box.tight, (angles[0], angles[1]))
+        unknowns = [f(a) for a in reached.angles for f in (arb.cos, arb.sin)]
+        total = arb(0)
+        for monomial, coefficient in polynomial_at(family.system, family.system.potential, values).items():
+            term = arb(coefficient)
+            for value, e in zip(unknowns, monomial, strict=True):
+                for _ in range(e):
+                    term = term * value
+            total += term
+        return Enclosure(_rational(total.lower()), _rational(total.upper()))
 
 
 def _close(first: Pair, second: Pair) -> bool:
@@ -275,7 +293,7 @@ def _close(first: Pair, second: Pair) -> bool:
 
 
 def _point(reached: Reached) -> PathPoint:
-    first, second = (Enclosure(_rational(a.lower()), _rational(a.upper())) for a in reached.box.tight)
+    first, second = (Enclosure(_rational(a.lower()), _rational(a.upper())) for a in reached.angles)
     return PathPoint(reached.value, (first, second))
 
 
