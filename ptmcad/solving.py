@@ -95,7 +95,7 @@ def _rank(state: State, values: Sequence[RealRoot]) -> int:
     while True:
         with ctx.workprec(bits):
             ball = state.energy.ball(state.energy.field.generator())
-        met = [k for k, root in enumerate(values) if not (ball < root.low or ball > root.high)]
+            met = [k for k, root in enumerate(values) if not (ball < root.low or ball > root.high)]
         if len(met) == 1:
             return met[0]
         if not met:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from math import isqrt
+from math import gcd, isqrt
 
 from flint import arb, ctx, fmpq
 
@@ -24,7 +24,7 @@ from ptmcad.models.ptm import SPRINGS
 from ptmcad.models.system import RationalPolynomial
 from ptmcad.poses import Pose, Spring, Vector
 
-_ORDERS = range(1, 43)
+_ORDERS = range(3, 43)
 """Orders of roots of unity: a field of degree d has cosines of those with totient at most 2d, and d is at most 6."""
 
 
@@ -149,10 +149,13 @@ def _degrees(angle: _Number, cosine: Element) -> _Number:
     """The angle in degrees; it is exact when it is rational, that is when cos + i sin is a root of unity."""
     if angle.exact is not None:
         return angle
+    if cosine.rational == -1:
+        return _Number(Fraction(180), arb(180))
     turns = angle.ball / (2 * arb.pi())
     for order in _ORDERS:
         number = (turns * order).unique_fmpz()
-        if number is not None and _chebyshev(order, cosine).rational == 1:
+        # other fractions are in lowest terms with a smaller order, and 0 and 1/2 are where the sine is zero
+        if number is not None and gcd(int(number), order) == 1 and _chebyshev(order, cosine).rational == 1:
             return _Number(Fraction(360 * int(number), order), turns * 360)
     return _Number(None, turns * 360)
 

@@ -131,8 +131,8 @@ def _tolerance(_context: click.Context, _parameter: click.Parameter, value: str 
 @click.option("--count", type=click.Choice([c.value for c in Count]), help="What tells two regions apart.")
 @click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
-@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="json,png,svg", show_default=True,
-              metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
+@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="json,png,svg",
+              show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Number of processes.")
 @limit_options
