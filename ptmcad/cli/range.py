@@ -1,17 +1,22 @@
-"""``ptmcad range``: intervals of constant count along one axis, and the operation range."""
+"""``ptmcad range``: intervals of constant count along one axis, the operation range, and where stable poses snap."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
+from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.locate import point_of
 from ptmcad.config import PARAMETERS, load, slice_from_options
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.expressions import rational
 from ptmcad.memory import Bound
 from ptmcad.output import Writer, check_writable, text_writer, write_files
 from ptmcad.slice import Slice
@@ -67,12 +72,74 @@ def _axes(config: Path | None, axes: str | None) -> tuple[str, ...]:
     return () if config is None else load(config).axis_names
 
 
-def _formats(_context: click.Context, _parameter: click.Parameter, value: str) -> tuple[str, ...]:
-    formats = tuple(dict.fromkeys(part.strip().lower() for part in value.split(",") if part.strip()))
-    unknown = [part for part in formats if part not in FORMATS]
-    if unknown:
-        raise click.BadParameter(f"{', '.join(unknown)} is not among {', '.join(FORMATS)}")
-    return formats
+def _formats(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...]:
+    return () if value is None else formats_of(context, parameter, value, known=FORMATS)
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What is asked for beside the slice.
+
+    Attributes
+    ----------
+    at : the value of the slice's other axis, empty when only ``over`` is asked for.
+    over : whether to tabulate the widths over the other axis, in so many rows.
+    start, pose : of the paths; ``start`` None for none.
+    """
+
+    along: str
+    at: Mapping[str, str]
+    over: bool
+    rows: int
+    start: Fraction | None
+    pose: int | None
+    digits: int
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What was found, for the terminal, the JSON and the pictures."""
+
+    text: str
+    parts: Mapping[str, Any]
+    pictures: Mapping[str, Callable[[Path], None]]
+
+
+def answer(slice: Slice, request: Request) -> Answer:
+    """Compute all that is asked for.
+
+    Raises
+    ------
+    PtmcadError
+        Of any kind.
+    """
+    from ptmcad import ranges
+    from ptmcad.ranges import document, table
+
+    texts, parts = [slice.heading], {}
+    pictures: dict[str, Callable[[Path], None]] = {}
+    if request.at:
+        found = ranges.intervals(slice, request.along, request.at)
+        texts.append(table.table(found, request.digits))
+        parts["line"] = document.line_data(found, request.digits)
+        pictures[""] = partial(_draw, "draw_range", slice, found)
+    if request.over:
+        widths = ranges.operation_widths(slice, request.along, request.rows)
+        texts.append(table.width_table(widths, request.digits))
+        parts["over"] = document.over_data(widths, request.digits)
+        pictures["-over"] = partial(_draw, "draw_widths", slice, widths)
+    if request.start is not None:
+        paths = ranges.pose_paths(slice, request.along, request.at, request.start, request.pose)
+        texts.append(table.path_table(paths, min(request.digits, 10)))
+        parts["path"] = document.path_data(paths)
+        pictures["-path"] = partial(_draw, "draw_paths", slice, paths)
+    return Answer("\n\n".join(texts), parts, pictures)
+
+
+def _draw(how: str, slice: Slice, found: object, path: Path) -> None:
+    from ptmcad.render import ranges  # brings matplotlib
+
+    getattr(ranges, how)(slice, found, path)
 
 
 @click.command("range")
@@ -85,8 +152,13 @@ def _formats(_context: click.Context, _parameter: click.Parameter, value: str) -
 @click.option("--digits", type=click.IntRange(1, 1000), default=10, show_default=True, help="Digits of decimals.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-range]")
-@click.option("--format", "formats", callback=_formats, default="", metavar="LIST",
+@click.option("--format", "formats", callback=_formats, metavar="LIST",
               help=f"Files to write, of {', '.join(FORMATS)}.  [default: none]")  # fmt: skip
+@click.option("--over", metavar="NAME", help="The axis over which to tabulate the operation range's width.")
+@click.option("--rows", type=click.IntRange(1, 1000), default=41, show_default=True, help="Rows of that table.")
+@click.option("--path", "start", metavar="VALUE", help="Follow stable poses from this value until they snap.")
+@click.option("--pose", type=click.IntRange(min=1), metavar="N",
+              help="Which pose, as ptmcad solve numbers them.  [default: every stable one]")  # fmt: skip
 @limit_options
 def command(
     *,
@@ -100,44 +172,61 @@ def command(
     out: Path,
     name: str | None,
     formats: tuple[str, ...],
+    over: str | None,
+    rows: int,
+    start: str | None,
+    pose: int | None,
     timeout: float | None,
     max_memory: Bound | None,
 ) -> None:
     """Find the intervals of constant count along one axis; the operation range is where two equilibria are stable.
 
     Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. All digits of the
-    table are right.
+    tables are right. With --over the widest operation range is found and proved; with --path stable poses are followed
+    until they vanish, and the pose to which the mechanism snaps is told.
 
     \b
     Examples:
         ptmcad range --along rho --at L2=3/2
-        ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --format json,svg
+        ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --path 7/10 --format json,svg
+        ptmcad range --along rho --over L2 --range L2=0:2 --at F3=-10,F4=-10
     """
-    slice, at_other = slice_and_line(config, axes, along, {} if at is None else point_of(at), None, sets, ranges)
+    values = {} if at is None else point_of(at)
+    slice, other = slice_and_line(config, axes, along, values, over, sets, ranges)
+    request = Request(along, other, over is not None, rows, _start(start, other), pose, digits)
+    if pose is not None and start is None:
+        raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
     stem = name or f"{slice.name}-range"
     with limits(timeout, max_memory):
-        if formats:
-            check_writable(out, tuple(f"{stem}.{suffix}" for suffix in formats))
-        from ptmcad.ranges import intervals
-        from ptmcad.ranges.document import document, line_data
-        from ptmcad.ranges.table import table
+        pictures = [suffix for suffix in formats if suffix != "json"]
+        names = [f"{stem}{part}.{suffix}" for part in _parts(request) for suffix in pictures]
+        names += [f"{stem}.json"] * ("json" in formats)
+        if names:
+            check_writable(out, tuple(names))
+        found = answer(slice, request)
+        click.echo(found.text)
+        if names:
+            writers: dict[str, Writer] = {
+                f"{stem}{part}.{suffix}": draw for part, draw in found.pictures.items() for suffix in pictures
+            }
+            if "json" in formats:
+                from ptmcad.ranges.document import document
 
-        found = intervals(slice, along, at_other)
-        click.echo(slice.heading)
-        click.echo(table(found, digits))
-        if formats:
-            text = document(slice.name, slice.mechanism, {"line": line_data(found, digits)})
-            write_files(out, _writers(stem, formats, found, text))
+                writers[f"{stem}.json"] = text_writer(document(slice.name, slice.mechanism, dict(found.parts)))
+            write_files(out, writers)
 
 
-def _writers(stem: str, formats: tuple[str, ...], found: Any, text: str) -> dict[str, Writer]:
-    """The pictures' writers and, last, the JSON's."""
-    writers: dict[str, Writer] = {}
-    for suffix in formats:
-        if suffix != "json":
-            from ptmcad.render.ranges import draw_range
+def _parts(request: Request) -> list[str]:
+    """What is added to the pictures' names."""
+    return [""] * bool(request.at) + ["-over"] * request.over + ["-path"] * (request.start is not None)
 
-            writers[f"{stem}.{suffix}"] = partial(draw_range, found)
-    if "json" in formats:
-        writers[f"{stem}.json"] = text_writer(text)
-    return writers
+
+def _start(text: str | None, other: Mapping[str, str]) -> Fraction | None:
+    if text is None:
+        return None
+    if not other:
+        raise ConfigError("needs the value of the other axis too, as in --at L2=3/2", key="--path")
+    try:
+        return rational(text)
+    except ExpressionError as error:
+        raise ConfigError(str(error), key="--path") from error

@@ -11,7 +11,7 @@ from typing import Any
 
 from ptmcad.numerals import text_of
 from ptmcad.ranges.line import CountInterval, CountIntervals
-from ptmcad.ranges.numbers import end_data, enclosure_data, number_data, settled, width_text
+from ptmcad.ranges.numbers import enclosure_data, end_data, number_data, settled, width_text
 from ptmcad.ranges.path import PathEnd, PathPoint, PosePaths
 from ptmcad.ranges.width import OperationWidths
 from ptmcad.slice import Axis

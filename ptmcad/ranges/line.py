@@ -78,7 +78,7 @@ class Change:
         """The event in words, read in the direction of growing values."""
         event = self.event
         if event in (Event.UNCHANGED, Event.STABILITY):
-            return event.value
+            return str(event.value)
         grows = sum(self.after) > sum(self.before)
         return f"{event.value} {'appear' if grows else 'meet and vanish'}"
 
@@ -105,7 +105,7 @@ class CountInterval:
 
     @property
     def stable(self) -> int:
-        return self.minima
+        return self.index[0]
 
     @property
     def width(self) -> Enclosure:

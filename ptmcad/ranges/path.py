@@ -33,7 +33,7 @@ from ptmcad.slice import Axis, Slice
 from ptmcad.solving import poses_at
 
 DIGITS = 12
-_NEAREST = Fraction(1, 10**6)
+_NEAREST = Fraction(1, 10**5)
 """How near to a critical value a branch is followed, against the window's width."""
 
 

@@ -99,7 +99,10 @@ def maximum_text(found: Maximum, over: str, digits: int) -> str:
     else:
         low, high = (Enclosure(v, v).text(digits) for v in (found.at.low, found.at.high))
         at = f"{over} from {low} to {high}"
-    return f"width {settled(found.width, digits) or 'enclosed'} at {at}: {found.place.value}"
+    near = ""
+    if found.critical is not None and found.critical.exact is None:
+        near = f", which holds one critical value, a root of a polynomial of degree {found.critical.degree}"
+    return f"width {settled(found.width, digits) or 'enclosed'} at {at}: {found.place.value}{near}"
 
 
 def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
@@ -109,7 +112,9 @@ def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
     for path in found.paths:
         side = "y3 > 0 and y4 > 0" if path.upright else "y3 < 0 and y4 < 0" if path.reverse else "y3, y4 of mixed sign"
         place = next(p for p in path.points if p.value == path.start)
-        lines.append(f"pose {path.number} at {name} = {shortest_text(path.start)}: {_angles(place, digits)}; {side} on the path")
+        lines.append(
+            f"pose {path.number} at {name} = {shortest_text(path.start)}: {_angles(place, digits)}; {side} on the path"
+        )
         lines += [f"  {direction}: {_end(e, name, digits)}" for direction, e in (("down", path.low), ("up", path.high))]
     return "\n".join(lines) if lines else f"no stable pose at {name} = {shortest_text(found.start)}"
 
@@ -152,12 +157,11 @@ def _angles(point: PathPoint, digits: int) -> str:
 
 
 def degrees(angle: Enclosure, digits: int) -> str:
-    """An angle in degrees."""
+    """An angle in degrees; a whole number that it is nearer to than its enclosure can tell is shown as such."""
     with ctx.workprec(200):
         ball = arb(from_fraction(angle.low)).union(arb(from_fraction(angle.high))) * 180 / arb.pi()
-        for fewer in range(digits, 0, -1):
-            if (found := enclosed(ball, fewer)) is not None:
-                return found.text(fewer)
-    return "0"
-
-
+        if (found := enclosed(ball, digits)) is not None:
+            return found.text(digits)
+        whole = ball.mid().unique_fmpz() if ball.mid().is_exact() else None
+        nearest = int((ball.mid() + arb("0.5")).floor().mid().fmpz() if whole is None else whole)
+        return str(nearest) if (ball - nearest).contains(0) else ball.mid().str(3, radius=False)
