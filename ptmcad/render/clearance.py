@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import atan2, cos, hypot, pi, sin
 
 Position = tuple[float, float]
@@ -54,7 +55,7 @@ class Placed:
 
 def polyline(points: Sequence[Position], half: float) -> Iterator[Stroke]:
     """The strokes of a line through the points."""
-    for start, end in zip(points, points[1:], strict=False):
+    for start, end in pairwise(points):
         yield Stroke(start, end, half)
 
 

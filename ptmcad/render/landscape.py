@@ -1,8 +1,8 @@
 """The picture of the energy over the torus of the two angles, as contours, with all equilibria marked by their kind.
 
-Guarantee: every equilibrium is marked, at both edges where an angle is 180 degrees; a contour passes through every
-saddle (or degenerate equilibrium), however small the differences of energy are, because the constant part of the energy is taken out exactly
-before anything is rounded. Numbers of equilibria are those of `ptmcad.render.poses.draw_poses`.
+Guarantee: every equilibrium is marked, at both edges where an angle is 180 degrees, with its number in the picture of
+`ptmcad.render.poses.draw_poses`. Contours pass through saddles and degenerate equilibria, also where the energy is
+large and its differences are small, because its constant part is taken out exactly before anything is rounded.
 
 Not guaranteed: anything that only the picture tells. It is drawn in floating point from the exact poses.
 """
@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -115,7 +116,9 @@ def draw_landscape(poses: Poses) -> Figure:
         norm = BoundaryNorm(levels, colours.N)
         clipped = np.clip(heights, levels[0], levels[-1])
         filled = axes.contourf(degrees, degrees, clipped, levels=levels, cmap=colours, norm=norm)
-        axes.contour(degrees, degrees, heights, levels=levels[1:-1], colors="white", linewidths=0.35, alpha=0.8)
+        axes.contour(
+            degrees, degrees, heights, levels=levels[1:-1], colors="white", linewidths=0.35, linestyles="solid"
+        )
         through = sorted({energy.scaled(p.energy.center) for p in shown if p.index in (1, None)})
         axes.contour(degrees, degrees, heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
         _dress(axes)
@@ -129,14 +132,14 @@ def draw_landscape(poses: Poses) -> Figure:
 
 
 def contour_levels(critical: Sequence[float], low: float, high: float) -> list[float]:
-    """Increasing levels from the least to the largest energy, with all critical ones and at least some between any two."""
+    """Increasing levels from the least to the largest energy, all critical ones and some between any two."""
     marks = [low]
     for value in [*critical, high]:
         # energies nearer than what floats tell apart are one
         if value - marks[-1] > 1e-9 * (high - low):
             marks.append(value)
     levels = [marks[0]]
-    for first, last in zip(marks, marks[1:], strict=False):
+    for first, last in pairwise(marks):
         steps = max(_LEAST, round(_EVEN * (last - first) / (high - low)))
         levels += [first + (last - first) * k / steps for k in range(1, steps)] + [last]
     return levels
@@ -228,6 +231,7 @@ def _colour_bar(
         if scale.low <= t <= scale.high
     ]  # fmt: skip
     bar.yaxis.set_ticks([position(t) for t in ticks], [f"{t:.6g}".replace("-", "−") for t in ticks])
+    bar.minorticks_off()
     bar.tick_params(labelsize=9, direction="out", length=3.5)
     bar.set_ylabel(f"{scale.name('U')} (force · length)", fontsize=10)
     for value in through:
