@@ -122,24 +122,31 @@ def answer(slice: Slice, request: Request) -> Answer:
         found = ranges.intervals(slice, request.along, request.at)
         texts.append(table.table(found, request.digits))
         parts["line"] = document.line_data(found, request.digits)
-        pictures[""] = partial(_draw, "draw_range", slice, found)
+        pictures[""] = partial(_picture, "line", slice, found)
     if request.over:
         widths = ranges.operation_widths(slice, request.along, request.rows)
         texts.append(table.width_table(widths, request.digits))
         parts["over"] = document.over_data(widths, request.digits)
-        pictures["-over"] = partial(_draw, "draw_widths", slice, widths)
+        pictures["-over"] = partial(_picture, "over", slice, widths)
     if request.start is not None:
         paths = ranges.pose_paths(slice, request.along, request.at, request.start, request.pose)
         texts.append(table.path_table(paths, min(request.digits, 10)))
         parts["path"] = document.path_data(paths)
-        pictures["-path"] = partial(_draw, "draw_paths", slice, paths)
+        pictures["-path"] = partial(_picture, "path", slice, paths)
     return Answer("\n\n".join(texts), parts, pictures)
 
 
-def _draw(how: str, slice: Slice, found: object, path: Path) -> None:
-    from ptmcad.render import ranges  # brings matplotlib
+def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
+    from ptmcad.render import ranges as pictures  # brings matplotlib
+    from ptmcad.render.printing import save
 
-    getattr(ranges, how)(slice, found, path)
+    if kind == "line":
+        figure = pictures.draw_range(slice, found)
+    elif kind == "over":
+        figure = pictures.draw_widths(slice, found)
+    else:
+        figure = pictures.draw_paths(slice, found)
+    save(figure, path)
 
 
 @click.command("range")

@@ -293,7 +293,8 @@ def _close(first: Pair, second: Pair) -> bool:
 
 
 def _point(reached: Reached) -> PathPoint:
-    first, second = (Enclosure(_rational(a.lower()), _rational(a.upper())) for a in reached.angles)
+    with ctx.workprec(BITS):
+        first, second = (Enclosure(_rational(a.lower()), _rational(a.upper())) for a in reached.angles)
     return PathPoint(reached.value, (first, second))
 
 

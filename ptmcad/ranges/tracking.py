@@ -139,11 +139,13 @@ class Tube:
 
     def at(self, value: Fraction) -> Pair:
         """An enclosure of the angles at one value."""
-        return self._moved(arb(from_fraction(value - self._middle)), self.tight)
+        with ctx.workprec(BITS):
+            return self._moved(arb(from_fraction(value - self._middle)), self.tight)
 
     def hull(self) -> Pair:
         """An enclosure of the angles at all values."""
-        return self._moved(arb(from_fraction((self.high - self.low) / 2)) * arb(0, 1), self.tight)
+        with ctx.workprec(BITS):
+            return self._moved(arb(from_fraction((self.high - self.low) / 2)) * arb(0, 1), self.tight)
 
     def holds(self, other: Tube, value: Fraction) -> bool:
         """Whether the other tube's equilibrium at a value lies where this one's is the only one."""
@@ -156,9 +158,8 @@ class Tube:
         return (self.low + self.high) / 2
 
     def _moved(self, offset: arb, box: Pair) -> Pair:
-        with ctx.workprec(BITS):
-            first, second = (c + v * offset + w for c, v, w in zip(self.center, self.velocity, box, strict=True))
-            return first, second
+        first, second = (c + v * offset + w for c, v, w in zip(self.center, self.velocity, box, strict=True))
+        return first, second
 
 
 def enclose(family: Family, low: Fraction, high: Fraction, guess: Pair) -> Tube | None:
