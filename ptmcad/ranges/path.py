@@ -36,6 +36,9 @@ DIGITS = 12
 _NEAREST = Fraction(1, 10**5)
 """How near to a critical value a branch is followed, against the window's width."""
 
+_STEPS = 64
+"""The longest step is this part of the window, so that a polyline through the points looks smooth."""
+
 
 class Fate(Enum):
     """What happens to a stable pose at the end of its path."""
@@ -195,7 +198,7 @@ def _one_way(
         crossed, after = None, far
         while crossed is None and gap > window * _NEAREST:
             after = _beside(far, side, gap)
-            steps, done = follow(family, current, _beside(near, -side, gap))
+            steps, done = follow(family, current, _beside(near, -side, gap), window / _STEPS)
             reached += steps
             current = steps[-1] if steps else current
             if not done:
@@ -206,7 +209,7 @@ def _one_way(
             return reached, _meeting(family, line, number, current, after)
         reached.append(crossed)
         current = crossed
-    steps, done = follow(family, current, _beside(edge, -side, window / 10**6))
+    steps, done = follow(family, current, _beside(edge, -side, window / 10**6), window / _STEPS)
     reached += steps
     return reached, PathEnd(Fate.WINDOW if done else Fate.UNDECIDED, edge, _point(steps[-1] if steps else current))
 

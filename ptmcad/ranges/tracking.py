@@ -258,15 +258,15 @@ def at_value(family: Family, value: Fraction, guess: Pair) -> Tube | None:
     return enclose(family, value, value, guess)
 
 
-def follow(family: Family, start: Reached, end: Fraction) -> tuple[list[Reached], bool]:
-    """Follow a branch from one value of the parameter to another.
+def follow(family: Family, start: Reached, end: Fraction, longest: Fraction) -> tuple[list[Reached], bool]:
+    """Follow a branch from one value of the parameter to another, in steps no longer than ``longest``.
 
     Returns
     -------
     What was reached, step by step without the start, and whether the end was.
     """
     found: list[Reached] = []
-    current, step = start, (end - start.value) / 8
+    current, step = start, max(-longest, min(longest, (end - start.value) / 8))
     least = abs(end - start.value) * _LEAST
     while current.value != end:
         if abs(step) >= abs(end - current.value):
@@ -274,7 +274,7 @@ def follow(family: Family, start: Reached, end: Fraction) -> tuple[list[Reached]
         reached = bridge(family, current, current.value + step)
         if reached is not None:
             found.append(reached)
-            current, step = reached, step * 3 / 2
+            current, step = reached, max(-longest, min(longest, step * 3 / 2))
         else:
             step = step / 2
             if abs(step) < least:

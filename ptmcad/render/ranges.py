@@ -111,7 +111,7 @@ def _labels(
 
 
 def spread(places: Sequence[float], half: float) -> list[float]:
-    """Centres near the given places in [0, 1], in their order and at least ``2 half`` apart where there is room for it."""
+    """Centres near the given places in [0, 1], in their order and at least ``2 half`` apart where there is room."""
     if not places:
         return []
     step = min(2 * half, 1 / len(places))
@@ -141,12 +141,13 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
         over, along = found.over, found.along
         scale, fibre = scale_of(over.low, over.high), scale_of(along.low, along.high)
         unit_width = WIDE * 72 / (len(found.rows) + 1)
+        face = fill_of_index((2, 3, 1)).face
         points = []
         for row in found.rows:
             x = _scaled(row.value, over)
             for i in row.operation:
                 low, high = (_scaled_end(e, along) for e in (i.low, i.high))
-                upper.plot([x, x], [low, high], color=fill_of_index((2, 3, 1)).face, linewidth=max(1.0, 0.7 * unit_width),
+                upper.plot([x, x], [low, high], color=face, linewidth=max(1.0, 0.7 * unit_width),
                            solid_capstyle="butt")  # fmt: skip
                 upper.plot([x, x], [low, high], "_", color=INK, markersize=max(2.0, 0.7 * unit_width))
                 points.append((x, float(i.width)))
