@@ -41,6 +41,8 @@ ROWS = 41
 _FINE = fmpq(1, 2**120)
 _SMALLEST = fmpq(1, 2**50)
 """Length of a piece, against the strip's, that is not cut any more."""
+_CUT = fmpq(61, 128)
+"""Where pieces are cut: not in the middle, where a maximum may be for reasons of symmetry."""
 _MOST_PIECES = 20_000
 
 
@@ -243,7 +245,7 @@ class _Search:
                     _Candidate(Place.ENCLOSED, (piece.low, piece.high), (self.known, -negative), critical)
                 )
                 continue
-            middle = (piece.low + piece.high) / 2
+            middle = piece.low + (piece.high - piece.low) * _CUT
             self.width_at(piece.strip, middle)
             if not piece.open_left and not piece.open_right and self.smooth(piece):
                 continue
@@ -270,8 +272,9 @@ class _Search:
             return False
         steepest = first.abs_upper()
         while high - low > piece.smallest / 2**20:
-            middle = (low + high) / 2
-            at = _sign_at(piece.strip, middle, (high - low) / 2**20)
+            cuts = (low + (high - low) * part for part in (_CUT, fmpq(1, 3)))  # one of them is not the zero itself
+            found = ((u, _sign_at(piece.strip, u, (high - low) / 2**20)) for u in cuts)
+            middle, at = next(((u, sign) for u, sign in found if sign is not None), (low, None))
             if at is None:
                 break
             low, high = (middle, high) if at > 0 else (low, middle)
