@@ -41,8 +41,6 @@ ROWS = 41
 _FINE = fmpq(1, 2**120)
 _SMALLEST = fmpq(1, 2**50)
 """Length of a piece, against the strip's, that is not cut any more."""
-_CUT = fmpq(61, 128)
-"""Where pieces are cut: not in the middle, where a maximum may be for reasons of symmetry."""
 _MOST_PIECES = 20_000
 
 
@@ -245,7 +243,7 @@ class _Search:
                     _Candidate(Place.ENCLOSED, (piece.low, piece.high), (self.known, -negative), critical)
                 )
                 continue
-            middle = piece.low + (piece.high - piece.low) * _CUT
+            middle = _cut(piece.low, piece.high)
             self.width_at(piece.strip, middle)
             if not piece.open_left and not piece.open_right and self.smooth(piece):
                 continue
@@ -272,7 +270,7 @@ class _Search:
             return False
         steepest = first.abs_upper()
         while high - low > piece.smallest / 2**20:
-            cuts = (low + (high - low) * part for part in (_CUT, fmpq(1, 3)))  # one of them is not the zero itself
+            cuts = (_cut(low, high), low + (high - low) / 3)  # one of them is not the zero itself
             found = ((u, _sign_at(piece.strip, u, (high - low) / 2**20)) for u in cuts)
             middle, at = next(((u, sign) for u, sign in found if sign is not None), (low, None))
             if at is None:
@@ -312,6 +310,13 @@ class _Search:
 
 def _touches(first: _Candidate, second: _Candidate) -> bool:
     return bool(first.at[0] <= second.at[1] and second.at[0] <= first.at[1])
+
+
+def _cut(low: fmpq, high: fmpq) -> fmpq:
+    """A point near the middle: a short number, and yet not one at which a maximum is likely to be."""
+    width = high - low
+    unit = fmpq(2) ** (int(width.p).bit_length() - int(width.q).bit_length() - 7)
+    return unit * (int(((low + width * fmpq(61, 128)) / unit).floor()) | 1)
 
 
 def _bounds(end: End) -> Interval:
