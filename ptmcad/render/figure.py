@@ -19,13 +19,13 @@ from ptmcad.render import regionmap
 from ptmcad.render.legend import INK, Entry, draw_legend, height
 from ptmcad.render.mechanism import spring_mark, symbol_mark
 from ptmcad.render.outline import View
-from ptmcad.render.poses import BELOW, HEAD, assigned, describe, in_order, panel, scale_bar
+from ptmcad.render.poses import BELOW, HEAD, assigned, describe, in_order, panel, scale_bar, value_text
 from ptmcad.render.printing import settings
 from ptmcad.render.sketch import arrow_lengths, frame_of
 from ptmcad.slice import Slice
 
 _GAP, _RIM, _LINE = 0.2, 0.15, 0.2
-_MOST_HEIGHT = 128.0
+_MOST_HEIGHT = 134.0
 """Of a panel, in points: two of them and the legend stand beside the map."""
 _DPI = 150
 
@@ -56,17 +56,26 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     head = textwrap.wrap(f"{'Stable poses' if shown else 'No stable pose'} at " + ", ".join(values), 34)
     frame = frame_of(shown, most_height=_MOST_HEIGHT) if shown else None
     wide = 200.0 / 72
-    tall = _LINE * len(head) + 0.1 + height(entries) + 0.45
+    panels = _LINE * len(head) + 0.1
     if frame is not None:
-        tall += len(shown) * (HEAD + frame.height / 72 + BELOW + 0.06)
+        panels += len(shown) * (HEAD + frame.height / 72 + BELOW + 0.06)
+    key = height(entries) + 0.35
     with settings():
-        figure = regionmap._figure(result, False, _DPI, wide + _GAP + _RIM, tall)
-        width, _ = figure.get_size_inches()
+        # what the parts mean stands below the map's legend, unless that is long or insets are there
+        figure = regionmap.figure_of(result, False, _DPI, wide + _GAP + _RIM, panels)
+        lowest = min(text.get_position()[1] for text in figure.texts)
         chart: Any = figure.axes[0]
-        top = chart.get_position().y1 * figure.get_size_inches()[1]
+        width, tall = (float(side) for side in figure.get_size_inches())
+        bottom = chart.get_position().y0 * tall
+        left, place = width - wide - _RIM, (regionmap.LEFT + regionmap.SIDE + regionmap.GAP, bottom + key)
+        if len(figure.axes) > 1 or lowest - 0.3 < bottom + key:
+            figure = regionmap.figure_of(result, False, _DPI, wide + _GAP + _RIM, panels + key)
+            chart = figure.axes[0]
+            tall = float(figure.get_size_inches()[1])
+            place = (left, chart.get_position().y1 * tall - panels)
+        top = chart.get_position().y1 * tall
         figure.set_label(f"{result.slice.heading}\n{regionmap.description(result)} Beside it: {describe(poses)}")
         _mark(chart, result, (x, y))
-        left = float(width) - wide - _RIM
         figure.add_artist(
             Line2D((left + 0.04,), (top - _LINE / 2,), transform=figure.dpi_scale_trans, gid="point-in-head", **_POINT)
         )
@@ -81,9 +90,8 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
                 top -= HEAD + frame.height / 72
                 panel(figure, pose, number, frame, arrows, (left, top))
                 top -= BELOW + 0.06
-        draw_legend(figure, entries, left, top - 0.06)
-        if frame is not None:
-            scale_bar(figure, frame, left, top - 0.06 - height(entries) - 0.1)
+            scale_bar(figure, frame, place[0], place[1] - height(entries) - 0.16)
+        draw_legend(figure, entries, *place)
     return figure
 
 
@@ -121,10 +129,12 @@ def point_of(slice: Slice, poses: Poses) -> tuple[Fraction, Fraction]:
         name, factor = scaled[0]
         value = poses.parameters[name] / factor
         if not axis.low <= value <= axis.high:
-            raise ValueError(f"{axis.name} = {value} is not in the window of {slice.name}")
+            raise ValueError(f"{axis.name} {value_text(value)} is not in the window of {slice.name}")
         found.append(value)
     x, y = found
     for name, value in poses.parameters.items():
         if name in slice.parameters and slice.parameters[name].evaluate(x, y) != value:
-            raise ValueError(f"the poses have {name} = {value}, which {slice.name} does not have at that point")
+            raise ValueError(
+                f"the poses have {name} {value_text(value)}, which {slice.name} does not have at that point"
+            )
     return x, y

@@ -58,11 +58,11 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
     """
     suffix = suffix_of(path)
     with settings():
-        data = printed(_figure(result, samples, dpi), suffix, dpi, " ".join(_title(result)), description(result))
+        data = printed(figure_of(result, samples, dpi), suffix, dpi, " ".join(_title(result)), description(result))
     path.write_bytes(data)
 
 
-def _figure(result: RegionMap, samples: bool, dpi: int, beside: float = 0.0, tallest: float = 0.0) -> Figure:
+def figure_of(result: RegionMap, samples: bool, dpi: int, beside: float = 0.0, tallest: float = 0.0) -> Figure:
     """The picture, with so many inches left free at its right and at least so tall there."""
     whole = outline(result)
     thin = thin_regions(whole, round(SIDE * min(dpi, RESOLVED)))
