@@ -30,6 +30,7 @@ EXACT = (
     "pipeline",
     "assembly",
     "locate",
+    "ranges",
     "verification",
 )
 FLINT_POLYNOMIALS = ("poly", "mpoly", "mpoly_ctx", "mpoly_vec", "series")
