@@ -47,7 +47,7 @@ _MOST_PIECES = 20_000
 class Place(Enum):
     """What is proved about the place of the largest width."""
 
-    CRITICAL = "at a critical value of the other axis, and nowhere else near it"
+    CRITICAL = "a critical value of the other axis, and at no other place"
     SMOOTH = "where the derivative vanishes, once in the enclosure"
     EDGE = "approached at the edge of the window, not attained in it"
     PLATEAU = "on a whole interval, where the width is constant"
