@@ -15,9 +15,10 @@ if TYPE_CHECKING:
     from typing import Any
 
     from ptmcad.config import load, slice_from_mapping, slice_from_options
-    from ptmcad.pipeline import classify
+    from ptmcad.pipeline import classify, slice_variety
     from ptmcad.regionmap import RegionMap
     from ptmcad.slice import Count, Point, Slice
+    from ptmcad.slicevariety import SliceVariety
     from ptmcad.verification import VerifyReport, verify
 
 _HOMES = {
@@ -25,10 +26,12 @@ _HOMES = {
     "slice_from_mapping": "config",
     "slice_from_options": "config",
     "classify": "pipeline",
+    "slice_variety": "pipeline",
     "RegionMap": "regionmap",
     "Count": "slice",
     "Point": "slice",
     "Slice": "slice",
+    "SliceVariety": "slicevariety",
     "VerifyReport": "verification",
     "verify": "verification",
 }
@@ -38,12 +41,14 @@ __all__ = [
     "Point",
     "RegionMap",
     "Slice",
+    "SliceVariety",
     "VerifyReport",
     "__version__",
     "classify",
     "load",
     "slice_from_mapping",
     "slice_from_options",
+    "slice_variety",
     "verify",
 ]
 
