@@ -17,6 +17,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "sphinx_click",
+    "docstrings",
     "generated_pages",
 ]
 exclude_patterns = ["extensions"]
@@ -31,6 +32,7 @@ html_show_sphinx = False
 myst_enable_extensions = ["deflist"]
 myst_heading_anchors = 3
 
+smartquotes = False  # it would make one dash of the two before an option
 default_role = "py:obj"
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"

@@ -33,9 +33,7 @@ def entry(path: Path, folder: Path) -> str:
     """One record: picture, command, table and record."""
     result = ptmcad.classify(ptmcad.load(path))
     picture = folder / f"{path.stem}.svg"
-    newer = picture.exists() and picture.stat().st_mtime > path.stat().st_mtime
-    if not newer:
-        draw(result, picture)
+    draw(result, picture)
     table = replace(result, timings={}).table().replace("time      not recorded; ", "          ")
     source = str(result.slice.reference.get("source", ""))
     return "\n".join(
@@ -64,5 +62,5 @@ def entry(path: Path, folder: Path) -> str:
 
 
 def _without_reference(record: str) -> str:
-    lines = record.split("\nreference:")[0].splitlines()
+    lines = record.split("\nreference:", maxsplit=1)[0].splitlines()
     return "\n".join(line for line in lines if not line.startswith("#"))

@@ -24,7 +24,9 @@ def make_pages(app: Sphinx) -> None:
     folder = Path(app.srcdir) / "generated"
     folder.mkdir(exist_ok=True)
     for name, (title, path) in schemas().items():
-        write(folder / f"{name}.md", schema_tables.page(title, path.name, json.loads(path.read_text(encoding="utf-8"))))
+        text = path.read_text(encoding="utf-8")
+        write(folder / path.name, text)  # so that the page can link to it
+        write(folder / f"{name}.md", schema_tables.page(title, path.name, json.loads(text)))
     write(folder / "changelog.md", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))
     write(folder / "gallery.md", gallery.page(ROOT / "configs", folder))
 

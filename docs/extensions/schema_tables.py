@@ -11,9 +11,36 @@ from typing import Any
 
 Schema = Mapping[str, Any]
 _KNOWN = frozenset(
-    "$schema $id title description type properties additionalProperties required items $ref $defs enum const default "
-    "pattern maxLength minLength minimum maximum exclusiveMinimum minItems maxItems minProperties maxProperties "
-    "propertyNames anyOf oneOf prefixItems".split()  # noqa: SIM905 - sixty lines otherwise
+    [
+        "$schema",
+        "$id",
+        "title",
+        "description",
+        "type",
+        "properties",
+        "additionalProperties",
+        "required",
+        "items",
+        "$ref",
+        "$defs",
+        "enum",
+        "const",
+        "default",
+        "pattern",
+        "maxLength",
+        "minLength",
+        "minimum",
+        "maximum",
+        "exclusiveMinimum",
+        "minItems",
+        "maxItems",
+        "minProperties",
+        "maxProperties",
+        "propertyNames",
+        "anyOf",
+        "oneOf",
+        "prefixItems",
+    ]
 )
 
 
@@ -25,7 +52,7 @@ def page(title: str, file: str, schema: Schema) -> str:
     ValueError
         For a keyword that the tables could not show.
     """
-    lines = [f"# {title}", "", str(schema.get("description", "")), "", f"The schema itself is `{file}`.", ""]
+    lines = [f"# {title}", "", str(schema.get("description", "")), "", f"The schema itself: [{file}]({file}).", ""]
     lines += _object("", "The whole", schema)
     for name, definition in schema.get("$defs", {}).items():
         lines += [f"## {name}", "", *_definition(definition)]
@@ -51,11 +78,11 @@ def _object(path: str, heading: str, schema: Schema) -> Iterator[str]:
 
 def _inner(schema: Schema, path: str) -> Iterator[str]:
     for key, value in schema.get("properties", {}).items():
-        inside = f"{path}.{key}" if path else key
-        while value.get("type") == "array" and isinstance(value.get("items"), Mapping):
-            value, inside = value["items"], f"{inside}[]"
-        if "properties" in value:
-            yield from _object(inside, f"`{inside}`", value)
+        place, part = f"{path}.{key}" if path else key, value
+        while part.get("type") == "array" and isinstance(part.get("items"), Mapping):
+            place, part = f"{place}[]", part["items"]
+        if "properties" in part:
+            yield from _object(place, f"`{place}`", part)
 
 
 def _table(schema: Schema) -> Iterator[str]:

@@ -17,9 +17,9 @@ _LATEX_WIDTH = 70
 
 
 def fixed_parameters(variety: SliceVariety) -> str:
-    """What the slice fixes, such as ``L1 = 1, k = 100``: loads that are zero and parameters that are axes are not named.
+    """What the slice fixes, such as ``L1 = 1, k = 100``: one line in which a long expression is cut.
 
-    One line; a long expression is cut.
+    Loads that are zero and parameters that are axes are not named.
     """
     names = variety.slice.axis_names
     values = {name: value.to_text(names) for name, value in variety.slice.parameters.items()}
