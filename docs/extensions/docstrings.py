@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 
+from docutils import nodes
 from sphinx.application import Sphinx
 
 _SECTIONS = ("Parameters", "Attributes")
@@ -27,7 +28,15 @@ def rewrite(_app: Sphinx, _what: str, _name: str, _object: object, _options: obj
     lines[:] = result
 
 
+def use_dashes(_app: Sphinx, doctree: nodes.document) -> None:
+    """Between a name and its meaning Sphinx puts two hyphens and trusts the typographer, who would spoil options."""
+    for text in list(doctree.findall(nodes.Text)):
+        if str(text) == " -- ":
+            text.parent.replace(text, nodes.Text(" \u2013 "))
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """What Sphinx calls."""
     app.connect("autodoc-process-docstring", rewrite, priority=BEFORE_NAPOLEON)
+    app.connect("doctree-read", use_dashes)
     return {"parallel_read_safe": True}

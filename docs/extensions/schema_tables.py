@@ -117,12 +117,12 @@ def _type(schema: Schema) -> str:
         if keyword in schema:
             return " or ".join(_type(part) for part in schema[keyword])
     kinds = schema.get("type", "any")
-    text = " or ".join(kinds) if isinstance(kinds, list) else str(kinds)
+    text = (" or ".join(kinds) if isinstance(kinds, list) else str(kinds)) + _bounds(schema)
     if "array" in kinds:
         text += _items(schema)
     if "object" in kinds and isinstance(schema.get("additionalProperties"), Mapping) and "properties" not in schema:
-        text += f" of {_type(schema['additionalProperties'])}"
-    return text + _bounds(schema)
+        text += f", each value {_type(schema['additionalProperties'])}"
+    return text
 
 
 def _items(schema: Schema) -> str:
