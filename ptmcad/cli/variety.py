@@ -44,8 +44,8 @@ def command(
     \b
     Examples:
         ptmcad variety --slice L2,rho
-        ptmcad variety configs/fig4.yaml --format maple --out fig4.mpl
-        ptmcad variety --slice rho,L2 --set F3=-10 --set F4=-10 --format qepcad | qepcad
+        ptmcad variety --slice L2,rho --format maple --out unloaded.mpl
+        ptmcad variety --slice rho,L2 --set F3=-10 --set F4=-10 --format qepcad
     """
     slice = slice_from_options(config, axes, sets, ranges)
     if out is not None:
