@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from typing import Any
 
     from ptmcad.config import load, slice_from_mapping, slice_from_options
+    from ptmcad.enclosure import AlgebraicNumber, Enclosure
     from ptmcad.pipeline import classify, slice_variety
+    from ptmcad.poses import Pose, Poses, solve
     from ptmcad.regionmap import RegionMap
     from ptmcad.slice import Count, Point, Slice
     from ptmcad.slicevariety import SliceVariety
@@ -25,8 +27,13 @@ _HOMES = {
     "load": "config",
     "slice_from_mapping": "config",
     "slice_from_options": "config",
+    "AlgebraicNumber": "enclosure",
+    "Enclosure": "enclosure",
     "classify": "pipeline",
     "slice_variety": "pipeline",
+    "Pose": "poses",
+    "Poses": "poses",
+    "solve": "poses",
     "RegionMap": "regionmap",
     "Count": "slice",
     "Point": "slice",
@@ -37,8 +44,12 @@ _HOMES = {
 }
 
 __all__ = [
+    "AlgebraicNumber",
     "Count",
+    "Enclosure",
     "Point",
+    "Pose",
+    "Poses",
     "RegionMap",
     "Slice",
     "SliceVariety",
@@ -49,6 +60,7 @@ __all__ = [
     "slice_from_mapping",
     "slice_from_options",
     "slice_variety",
+    "solve",
     "verify",
 ]
 
