@@ -16,11 +16,12 @@ if TYPE_CHECKING:
 
     from ptmcad.config import load, slice_from_mapping, slice_from_options
     from ptmcad.enclosure import AlgebraicNumber, Enclosure
-    from ptmcad.pipeline import classify
+    from ptmcad.pipeline import classify, slice_variety
     from ptmcad.poses import Pose, Poses, solve
     from ptmcad.ranges import intervals, operation_widths, pose_paths
     from ptmcad.regionmap import RegionMap
     from ptmcad.slice import Count, Point, Slice
+    from ptmcad.slicevariety import SliceVariety
     from ptmcad.verification import VerifyReport, verify
 
 _HOMES = {
@@ -30,6 +31,7 @@ _HOMES = {
     "AlgebraicNumber": "enclosure",
     "Enclosure": "enclosure",
     "classify": "pipeline",
+    "slice_variety": "pipeline",
     "Pose": "poses",
     "Poses": "poses",
     "solve": "poses",
@@ -40,6 +42,7 @@ _HOMES = {
     "Count": "slice",
     "Point": "slice",
     "Slice": "slice",
+    "SliceVariety": "slicevariety",
     "VerifyReport": "verification",
     "verify": "verification",
 }
@@ -53,6 +56,7 @@ __all__ = [
     "Poses",
     "RegionMap",
     "Slice",
+    "SliceVariety",
     "VerifyReport",
     "__version__",
     "classify",
@@ -62,6 +66,7 @@ __all__ = [
     "pose_paths",
     "slice_from_mapping",
     "slice_from_options",
+    "slice_variety",
     "solve",
     "verify",
 ]

@@ -28,6 +28,7 @@ COMMANDS = {
     "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",
     "range": "ptmcad.cli.range",
+    "variety": "ptmcad.cli.variety",
     "verify": "ptmcad.cli.verify",
 }
 MOST_ARGUMENTS = 10_000
