@@ -1,62 +1,67 @@
-"""Where the branches of a plane curve have a given slope: what proves that a branch is monotone, or steeper than a line.
+"""Where the branches of a plane curve have a given direction: what proves that a branch is monotone, or steeper than a line.
 
-Guarantee: exact. Between two consecutive abscissae of `slope_abscissae` no branch has the slope; at one of them
-`may_have_slope` answers False only with proof, by a ball that does not contain zero.
+Guarantee: exact. No point of the curve off the real roots of `tangent_resultant` has the direction; at one of them `may_be_tangent` answers False only with proof, by balls that do not contain zero.
 """
 
 from __future__ import annotations
 
-from flint import arb, ctx, fmpq, fmpz_mpoly
+from flint import arb, ctx, fmpq, fmpz_mpoly, fmpz_poly
 
 from ptmcad.algebra.polynomials import Coefficient, coefficients_in
-from ptmcad.algebra.real_roots import RealRoot, isolate, refine, squarefree_part
+from ptmcad.algebra.real_roots import RealRoot, refine, squarefree_part
 from ptmcad.algebra.resultants import resultant
 
+Direction = tuple[int, int]
+"""(dx, dy), not both zero: (1, 0) is horizontal, where the curve folds over the y-axis."""
 BITS = 400
 """Working precision of the balls."""
 NARROW = fmpq(1, 2**200)
 """Length to which isolating intervals are shortened before balls are formed from them."""
+SHORTEST = fmpq(1, 2**40)
+"""Pieces of a segment that are shorter are not cut again."""
 
 
-def tangency(p: Coefficient, slope: fmpq) -> fmpz_mpoly:
-    """The polynomial p_y + slope p_x: on the curve p = 0 it vanishes where dx/dy = slope, and at singular points."""
-    return p.derivative(1) * int(slope.q) + p.derivative(0) * int(slope.p)
+def tangency(p: Coefficient, direction: Direction) -> fmpz_mpoly:
+    """The polynomial dx p_x + dy p_y: on p = 0 it vanishes where the tangent has the direction, and at singular points."""
+    return p.derivative(0) * direction[0] + p.derivative(1) * direction[1]
 
 
-def slope_abscissae(p: Coefficient, slope: fmpq, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
-    """The y in (low, high) over which p = 0 may have a (complex) point with dx/dy = slope or a singular one.
+def tangent_resultant(p: Coefficient, direction: Direction) -> fmpz_poly:
+    """The squarefree polynomial in y that vanishes where p = 0 has a (complex) point with that tangent, or a singular one.
 
     Raises
     ------
     ArithmeticError
-        When there are infinitely many: the curve contains a line of that slope, or a multiple component.
+        When there are infinitely many: the curve contains a line of that direction, or a multiple component.
     """
-    eliminated = resultant(coefficients_in(p, 0), coefficients_in(tangency(p, slope), 0))
+    eliminated = resultant(coefficients_in(p, 0), coefficients_in(tangency(p, direction), 0))
     if not eliminated:
-        raise ArithmeticError("the curve contains a line of the slope, or a multiple component")
-    return isolate(squarefree_part(eliminated), low, high)
+        raise ArithmeticError("the curve contains a line of the direction, or a multiple component")
+    return squarefree_part(eliminated)
 
 
-def may_have_slope(p: Coefficient, slope: fmpq, y: RealRoot, low: fmpq, high: fmpq) -> bool:
-    """Whether p = 0 may have a point with dx/dy = slope at the ordinate y and an abscissa in [low, high].
+def may_be_tangent(p: Coefficient, direction: Direction, y: RealRoot, low: fmpq, high: fmpq) -> bool:
+    """Whether p = 0 may have a point with a tangent in the direction at the height y and an abscissa in [low, high].
 
     False only with proof: the segment is covered by balls on each of which p, or its tangency polynomial, has no zero.
     """
     with ctx.workprec(BITS):
         short = refine(y, NARROW)
-        over = arb(short.low).union(arb(short.high))
+        height = arb(short.low).union(arb(short.high))
+        both = [[_value(c, height) for c in coefficients_in(q, 0)] for q in (p, tangency(p, direction))]
         pieces = [(low, high)]
-        tangent = tangency(p, slope)
-        rows, others = coefficients_in(p, 0), coefficients_in(tangent, 0)
-        first, second = ([c(over) for c in cs] for cs in (rows, others))
         while pieces:
             a, b = pieces.pop()
             x = arb(a).union(arb(b))
-            if all(_horner(c, x).contains(0) for c in (first, second)):
-                if b - a < fmpq(1, 2**40):
+            if all(_horner(coefficients, x).contains(0) for coefficients in both):
+                if b - a < SHORTEST:
                     return True
                 pieces += [(a, (a + b) / 2), ((a + b) / 2, b)]
     return False
+
+
+def _value(p: fmpz_poly, at: arb) -> arb:
+    return _horner([arb(c) for c in p.coeffs()], at)
 
 
 def _horner(coefficients: list[arb], x: arb) -> arb:
