@@ -477,6 +477,8 @@ CLAIMS = (
     Claim("3.3-others", "3.3", "symbolic calculations did not succeed",
           "No general result on stability in the other cases.",
           unchecked("a report of what was tried; theorem 1 of docs/method.md is a general result")),
+    Claim("4.2-unequal", "4.2", "the two solutions th1 != th2 are always unstable",
+          "Solutions with distinct angles are unstable.", always_negative),
     Claim("4.2-symmetric", "4.2", "a symmetric pattern is obtained for 0 <= F4 <= 10",
           "The map for F4 > 0 is the mirror image.", symmetric_pattern),
     Claim("4.2-region", "4.2", "there exists a region with two stable solutions",

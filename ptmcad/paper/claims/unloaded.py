@@ -312,6 +312,8 @@ CLAIMS = (
           "The unloaded mechanism is always a parallelogram.", always_parallelogram),
     Claim("3.3-three-flat", "3.3", "three solutions of the four flat ones are always unstable",
           "Three of the flat equilibria are never stable.", three_flat_unstable),
+    Claim("4.1-three-flat", "4.1", "three of the four flat solutions were unstable",
+          "Three of the flat equilibria are never stable.", three_flat_unstable),
     Claim("4.1-non-flat", "4.1", "no general information regarding the two non-flat solutions",
           "The stability of the non-flat equilibria has no general answer.", non_flat_stable),
     Claim("4.1-regions", "4.1", "a region in the parameter plane where the PTM has two stable solutions",
@@ -325,6 +327,6 @@ CLAIMS = (
           "The two-solution range has width L1 for L2 > 1 and shrinks linearly for L2 < 1.", widths),
     Claim("4.1-fig2", "4.1", "stable solutions for rho = 1, L2 = 3/2", "Two stable poses at the point of fig. 2.",
           fig2_right),
-    Claim("3.1-geometric", "4.1", "easily verified with geometric arguments", "The lines follow from geometry.",
+    Claim("4.1-geometric", "4.1", "easily verified with geometric arguments", "The lines follow from geometry.",
           unchecked("an argument that the paper does not give; 4.1-boundaries-flat proves the result")),
 )  # fmt: skip
