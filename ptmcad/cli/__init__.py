@@ -27,6 +27,7 @@ COMMANDS = {
     "classify": "ptmcad.cli.classify",
     "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",
+    "paper": "ptmcad.cli.paper",
     "verify": "ptmcad.cli.verify",
 }
 MOST_ARGUMENTS = 10_000
