@@ -31,6 +31,7 @@ EXACT = (
     "assembly",
     "locate",
     "verification",
+    "paper",
 )
 FLINT_POLYNOMIALS = ("poly", "mpoly", "mpoly_ctx", "mpoly_vec", "series")
 
@@ -159,7 +160,7 @@ def test_the_fork_comes_before_everything_large(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", MODULES, ids=relative)
 def test_data_flows_one_way(path: Path) -> None:
     """What computes knows nothing of how results are shown, asked for or timed."""
-    if part(path) not in {"cli", "bench", "render", "__main__"}:
+    if part(path) not in {"cli", "bench", "render", "paper", "__main__"}:
         allowed = {"render"} if part(path) == "regionmap" else set()
         assert not imported_parts(path) & {"cli", "bench", "render"} - allowed
     if part(path) in {"errors", "expressions", "textfile"}:

@@ -1,6 +1,7 @@
-"""Where the branches of a plane curve have a given direction: what proves that a branch is monotone, or steeper than a line.
+"""Where the branches of a plane curve have a given direction: the proof that one is monotone, or steeper than a line.
 
-Guarantee: exact. No point of the curve off the real roots of `tangent_resultant` has the direction; at one of them `may_be_tangent` answers False only with proof, by balls that do not contain zero.
+Guarantee: exact. No point of the curve off the real roots of `tangent_resultant` has the direction; at one of
+them `may_be_tangent` answers False only with proof, by balls that do not contain zero.
 """
 
 from __future__ import annotations
@@ -22,12 +23,12 @@ SHORTEST = fmpq(1, 2**40)
 
 
 def tangency(p: Coefficient, direction: Direction) -> fmpz_mpoly:
-    """The polynomial dx p_x + dy p_y: on p = 0 it vanishes where the tangent has the direction, and at singular points."""
+    """The polynomial dx p_x + dy p_y: on p = 0 it vanishes where that is tangent, and at singular points."""
     return p.derivative(0) * direction[0] + p.derivative(1) * direction[1]
 
 
 def tangent_resultant(p: Coefficient, direction: Direction) -> fmpz_poly:
-    """The squarefree polynomial in y that vanishes where p = 0 has a (complex) point with that tangent, or a singular one.
+    """The squarefree polynomial in y that vanishes where p = 0 has such a (complex) point or a singular one.
 
     Raises
     ------

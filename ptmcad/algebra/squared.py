@@ -78,7 +78,7 @@ def eliminate(first: Coefficient, second: Coefficient) -> Elimination:
     left, right = (tuple(int(d) for d in p.degrees()) for p in (first, second))
     eliminated = resultant(coefficients_in(first, 0), coefficients_in(second, 0))
     rest, circle, factor = eliminated, 0, fmpz_poly([1, 0, 1])
-    while (division := divmod(rest, factor))[1] == 0:
+    while not (division := divmod(rest, factor))[1]:
         rest, circle = division[0], circle + 1
     parts = squarefree_factors(rest)
     whole = math.prod((p for p, _ in parts), start=fmpz_poly([1]))

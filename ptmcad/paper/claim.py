@@ -1,7 +1,7 @@
 """Claims of the paper and what computation says of them: frozen data, with the rule that turns evidence into a verdict.
 
-Guarantee: a verdict is reached only through `judge`, `unchecked` or `undecided`; a printed statement that fails is called
-corrected only when the right one was shown to hold, and refuted only with a witness.
+Guarantee: a verdict is reached only through `judge`, `unchecked` or `undecided`; a printed statement that fails is
+called corrected only when the right one was shown to hold, and refuted only with a witness.
 """
 
 from __future__ import annotations

@@ -40,6 +40,7 @@ from ptmcad.paper.symbolic import (
     t1,
     t2,
 )
+from ptmcad.plane import PlanePolynomial
 
 _THETA1, _THETA2 = sp.symbols("theta_1 theta_2", real=True)
 _REDUCED = {F3: k * sp.Symbol("f3"), F4: k * sp.Symbol("f4"), F3x: k * sp.Symbol("f3x"), F4x: k * sp.Symbol("f4x")}
@@ -118,7 +119,7 @@ def equations() -> tuple[Equation, ...]:
     return tuple(found)
 
 
-def _rose_first() -> list[object]:
+def _rose_first() -> list[PlanePolynomial]:
     """The two curves of fig. 3: the one through the origin first."""
     return sorted((c.polynomial for c in curves("fig3")), key=lambda p: any(i == j == 0 for i, j, _ in p.terms))
 
@@ -128,7 +129,8 @@ def as_markdown() -> str:
     lines = [
         "# The paper's equations, corrected",
         "",
-        "Derived from the potential of the model. Here f3 = F3/k (the paper's F3'), f4 = F4/k, f3x = F3x/k, f4x = F4x/k;",
+        "Derived from the potential of the model. Here f3 = F3/k (the paper's F3'), f4 = F4/k, f3x = F3x/k, f4x "
+        "= F4x/k;",
         "t1 and t2 are the tangents of the half angles; L1 stands for the common rod length L in (10) to (13).",
     ]
     for e in equations():

@@ -117,7 +117,7 @@ class _Tangents:
     heights: Mapping[Direction, UnivariatePolynomial]
 
     def never(self, direction: Direction, low: Fraction, high: Fraction, within: Sequence[Fraction]) -> bool:
-        """Whether for L2 in the open interval no point of the curve with rho ``within`` has a tangent in the direction."""
+        """Whether for L2 in the open interval no point with rho ``within`` has a tangent in the direction."""
         found = isolate(self.heights[direction], from_fraction(low), from_fraction(high))
         left, right = (from_fraction(r) for r in within)
         return not any(may_be_tangent(self.curve, direction, y, left, right) for y in found)

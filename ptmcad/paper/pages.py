@@ -42,6 +42,7 @@ article h3 { font-size: 1rem; margin: 0 0 .3rem; } article p { margin: .3rem 0; 
 ul { margin: .3rem 0; padding-left: 1.3rem; } li, p { overflow-wrap: anywhere; }
 figure { margin: 1rem 0; } img { max-width: 100%; height: auto; background: #fff; display: block; margin: .4rem 0; }
 pre { overflow-x: auto; background: var(--soft); padding: .6rem; font-size: .85rem; }
+div.wide { overflow-x: auto; }
 table { border-collapse: collapse; } td, th { border: 1px solid var(--line); padding: .2rem .6rem; text-align: left; }
 a { color: inherit; }
 """
@@ -152,22 +153,21 @@ def index_html(judged: Sequence[Judged], figures: Sequence[Illustration], equati
         '<a href="#figures">Figures</a>; <a href="#equations">equations</a> '
         '(<a href="equations.md">text</a>, <a href="equations.tex">LaTeX</a>).</p>',
         "<h2>What is not as printed</h2>",
-        "<table><thead><tr><th>Section</th><th>Claim</th><th>Verdict</th><th>Right, or where it fails</th></tr></thead>"
-        "<tbody>",
+        '<div class="wide"><table><thead>',
+        "<tr><th>Section</th><th>Claim</th><th>Verdict</th><th>Right, or where it fails</th></tr></thead><tbody>",
     ]
     for claim, outcome in judged:
         if outcome.verdict in (Verdict.CORRECTED, Verdict.REFUTED, Verdict.UNDECIDED):
             text = outcome.right or outcome.witness or outcome.reason
             link = f'<a href="claims.html#{escape(claim.name)}">{escape(claim.statement)}</a>'
-            body.append(
-                f"<tr><td>{escape(claim.section)}</td><td>{link}</td><td>{_verdict(outcome)}</td><td>{escape(text)}</td></tr>"
-            )
-    body += ["</tbody></table>", '<h2 id="figures">Figures</h2>']
+            cells = (escape(claim.section), link, _verdict(outcome), escape(text))
+            body.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
+    body += ["</tbody></table></div>", '<h2 id="figures">Figures</h2>']
     for f in figures:
         at = ", ".join(f"{name} = {value}" for name, value in f.at.items())
         body += [
             f'<figure id="{escape(f.figure)}">',
-            f"<figcaption><b>{escape(f.figure)}.</b> {escape(f.title)} (<a href=\"{f.figure}.svg\">SVG</a>, "
+            f'<figcaption><b>{escape(f.figure)}.</b> {escape(f.title)} (<a href="{f.figure}.svg">SVG</a>, '
             f'<a href="{f.figure}-poses.svg">poses as SVG</a>, <a href="{f.figure}.json">result</a>)</figcaption>',
             _image(f.map, f"Region map: {f.title}"),
             f"<p>Poses at {escape(at)} ({escape(f.source)}):</p>",

@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.output import Writer, check_writable, text_writer, write_files
 from ptmcad.paper.claim import Claim, Outcome, Verdict
@@ -77,8 +77,8 @@ def poses_of(figure: str) -> Poses:
     from ptmcad.poses import solve
 
     _, at = POINTS[figure]
-    values = parameters_at(figure, at)
-    return solve(**{name: value for name, value in values.items() if name != "k"})
+    values: dict[str, Any] = {n: v for n, v in parameters_at(figure, at).items() if n != "k"}
+    return solve(**values)
 
 
 def reproduce(folder: Path, progress: Progress | None = None) -> Reproduction:

@@ -33,7 +33,10 @@ from ptmcad.pipeline import classify
 from ptmcad.regionmap import Component, MorseIndex, RegionMap, Solution
 from ptmcad.slice import Slice
 
-_RECORDS = {
+Exact = str | int | Fraction
+"""An exact number: text such as 3/2 stands for one."""
+
+_RECORDS: Mapping[str, tuple[str, Mapping[str, str | int], Mapping[str, list[int]]]] = {
     "fig2": ("Unloaded mechanism, L1 = 1", {}, {"L2": [0, 4], "rho": [0, 4]}),
     "fig3": (
         "Symmetric mechanism, L1 = L2 = 1, F3 = F4 = F, k = 100",
@@ -98,7 +101,7 @@ def curves(figure: str) -> tuple[Component, ...]:
     return tuple(c for c in region_map(figure).components if not c.left_out)
 
 
-def parameters_at(figure: str, at: Mapping[str, object]) -> dict[str, Fraction]:
+def parameters_at(figure: str, at: Mapping[str, Exact]) -> dict[str, Fraction]:
     """Every parameter of the mechanism at a point of a figure, which need not lie in its window."""
     wanted = slice_of(figure)
     x, y = (from_fraction(rational(at[name])) for name in wanted.axis_names)
@@ -129,7 +132,7 @@ class Counted:
         return tuple(s for s in self.solutions if s.signs == "++")
 
 
-def equilibria_at(**given: object) -> Counted:
+def equilibria_at(**given: Exact) -> Counted:
     """All equilibria at rational parameters; those not given are L1 = L2 = rho = 1, k = 100 and no load.
 
     Raises
@@ -138,7 +141,7 @@ def equilibria_at(**given: object) -> Counted:
         When an equilibrium is singular there.
     """
     system = system_of("ptm")
-    defaults = {"L1": 1, "L2": 1, "rho": 1, "k": 100, "F3": 0, "F4": 0, "F3x": 0, "F4x": 0}
+    defaults: dict[str, Exact] = {"L1": 1, "L2": 1, "rho": 1, "k": 100, "F3": 0, "F4": 0, "F3x": 0, "F4x": 0}
     values = {name: rational(value) for name, value in (defaults | given).items()}
     stiffness = values.pop("k")
     values = {"k1": stiffness, "k2": stiffness, "k3": stiffness} | values
@@ -180,7 +183,7 @@ def _bounds(end: Fraction | RealRoot) -> tuple[Fraction, Fraction]:
     return to_fraction(end.low), to_fraction(end.high)
 
 
-def ranges(figure: str, along: str, fixed: object, high: object | None = None) -> tuple[Range, ...]:
+def ranges(figure: str, along: str, fixed: Exact, high: Exact | None = None) -> tuple[Range, ...]:
     """The intervals of constant stable count along one axis of a figure, the other axis being fixed.
 
     Parameters
@@ -200,9 +203,7 @@ def ranges(figure: str, along: str, fixed: object, high: object | None = None) -
     end = axis.high if high is None else rational(high)
     span = (from_fraction(axis.low), from_fraction(end))
     # all components: what has no point in the window may have one on a line outside it
-    traces = [
-        univariate(coefficients_in(from_plane(c.polynomial), number), from_fraction(at)) for c in map_.components
-    ]
+    traces = [univariate(coefficients_in(from_plane(c.polynomial), number), from_fraction(at)) for c in map_.components]
     common = traces[0]
     for p in traces[1:]:
         common = common * p
@@ -221,7 +222,7 @@ def ranges(figure: str, along: str, fixed: object, high: object | None = None) -
     return tuple(found)
 
 
-def operation_range(figure: str, along: str, fixed: object, high: object | None = None) -> Range | None:
+def operation_range(figure: str, along: str, fixed: Exact, high: Exact | None = None) -> Range | None:
     """The only interval with two stable equilibria along a line; None when there is none.
 
     Raises

@@ -103,7 +103,7 @@ def equal(left: Expr, right: Expr) -> bool:
 
 @lru_cache(maxsize=1)
 def half_angle_equations() -> tuple[Expr, Expr]:
-    """The equilibrium equations in half angles, divided by L1 k and L2 k: the right (5) and (6), horizontal forces too."""
+    """The equilibrium equations in half angles, divided by L1 k and L2 k: the right (5), (6) with F3x, F4x."""
     first, second = gradient()
     return sp.expand(cleared(first) / (L1 * k)), sp.expand(cleared(second) / (L2 * k))
 

@@ -161,7 +161,8 @@ def linear_back_solve() -> Outcome:
     return judge(
         generic and not fails,
         (
-            "the combination of (5) and (6) without t1^2 is a t1 + b with a not identically zero, so t1 follows from t2",
+            "the combination of (5) and (6) without t1^2 is a t1 + b with a not identically zero, so t1 follows "
+            "from t2",
             "where a and b both vanish it says nothing: without loads this is so at t2 = 0, "
             f"over which there are {flat} equilibria (th1 = 0 and th1 = pi)",
         ),
@@ -202,7 +203,8 @@ def large_minors() -> Outcome:
     above = sp.numer(sp.together(half_angles(determinant().subs(VERTICAL))))
     return unchecked(
         "how long is large is no question of mathematics",
-        f"as trigonometric polynomials H(1,1) has {terms} terms: L1 (2 k rho cos th1 + F3 sin th1 - k L2 cos(th1 + th2)) "
+        f"as trigonometric polynomials H(1,1) has {terms} terms: L1 (2 k rho cos th1 + F3 sin th1 - k L2 "
+        "cos(th1 + th2)) "
         f"({'checked' if short else 'NOT the case'}), det H has {whole}",
         f"in half angles the numerator of det H has {len(sp.Poly(above, t1, t2).terms())} terms in t1, t2",
     )()

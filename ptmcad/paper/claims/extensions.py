@@ -51,7 +51,7 @@ def same_nature() -> Outcome:
     resultant, _, _ = quadratic_elimination(first, second, t1)
     quotient, remainder = sp.div(sp.Poly(resultant, t2), sp.Poly(1 + t2**2, t2))
     degree = quotient.degree() if remainder.is_zero else -1
-    points = {
+    points: dict[str, dict[str, str | int]] = {
         "rho = 7/10, L2 = 3/2, F3x = 5, F4x = -7": {"rho": "7/10", "L2": "3/2", "F3x": 5, "F4x": -7},
         "rho = 3/4, L2 = 1, F3x = F4x = 20": {"rho": "3/4", "L2": 1, "F3x": 20, "F4x": 20},
         "rho = 2, L2 = 1, F3x = -30, F4x = 10": {"rho": 2, "L2": 1, "F3x": -30, "F4x": 10},
@@ -61,7 +61,8 @@ def same_nature() -> Outcome:
     return judge(
         degree == 6 and allowed,
         (
-            f"with horizontal forces the eliminated polynomial still has degree {degree}, so theorem 1 of docs/method.md "
+            f"with horizontal forces the eliminated polynomial still has degree {degree}, so theorem 1 of "
+            "docs/method.md "
             "holds: 4 equilibria with 1 stable, or 6 with 1 or 2",
             "(total, stable) at " + "; ".join(f"{n}: ({f.total}, {f.stable})" for n, f in found.items()),
         ),
@@ -90,7 +91,8 @@ def squared_degree() -> Outcome:
     return judge(
         found.total_degrees == (28, 28),
         (
-            f"each derivative contains two of the three roots; at {_WHERE} the two squared equations have total degrees "
+            f"each derivative contains two of the three roots; at {_WHERE} the two squared equations have total "
+            "degrees "
             f"{found.total_degrees} in (t1, t2), and degrees {found.bidegrees} in t1 and t2",
         ),
         {"total degrees": found.total_degrees, "in t1, t2": (*found.bidegrees[0], *found.bidegrees[1])},
@@ -108,7 +110,8 @@ def eliminated_degree() -> Outcome:
         (
             f"at {_WHERE}, exactly: degree {found.degree} = (1 + t2^2)^{found.circle} times degree {left}, which has "
             "squarefree factors (degree, multiplicity) " + ", ".join(map(str, found.factors)),
-            f"the printed numbers do not fit each other: (1 + t2^2)^56 has degree 112, and 328 - 112 = {328 - 112}, not 272",
+            f"the printed numbers do not fit each other: (1 + t2^2)^56 has degree 112, and 328 - 112 = "
+            f"{328 - 112}, not 272",
         ),
         {"degree": found.degree, "exponent": found.circle, "left": left, "factors": tuple(map(str, found.factors))},
         corrected=(found.degree, found.circle, left) == (400, 48, 304) and simple.get(1) == 256 and whole == left,
@@ -135,9 +138,11 @@ def at_most_six() -> Outcome:
     return judge(
         len(twelve) <= 6,  # more than six boxes prove the contrary; fewer would prove nothing, and a witness is given
         (
-            f"at least {len(twelve)} equilibria, {sum(e.stable for e in twelve)} of them stable, at {text(TWELVE)}: each in "
+            f"at least {len(twelve)} equilibria, {sum(e.stable for e in twelve)} of them stable, at "
+            f"{text(TWELVE)}: each in "
             "a box of width 2e-9 that Krawczyk's test shows to contain exactly one",
-            f"at least {len(many)}, {sum(e.stable for e in many)} stable, at {text(TWENTY_SIX)}; {len(few)} at {_WHERE}",
+            f"at least {len(many)}, {sum(e.stable for e in many)} stable, at {text(TWENTY_SIX)}; {len(few)} at "
+            f"{_WHERE}",
         ),
         {
             "at least": len(twelve),

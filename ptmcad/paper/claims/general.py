@@ -6,11 +6,12 @@ Guarantee: verdicts follow from the exact region maps of figs. 4 and 5 and from 
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 
 import sympy as sp
 
 from ptmcad.paper import printed
-from ptmcad.paper.claim import Claim, Outcome, judge, unchecked, undecided
+from ptmcad.paper.claim import Claim, Fact, Outcome, judge, unchecked, undecided
 from ptmcad.paper.claims.symmetric import no_level_rod_is_stable, signs_of_heights
 from ptmcad.paper.operation_range import widest
 from ptmcad.paper.slices import curves, equilibria_at, operation_range, ranges, region_map
@@ -33,7 +34,7 @@ def parameters() -> Outcome:
     lengths = {s: scale * s for s in (L1, L2, rho)}
     forces = {s: scale * s for s in (F3, F4, k)}
     with_loads = {**lengths, F3: scale * F3, F4: scale * F4}
-    facts: dict[str, bool | int | str | tuple[int, ...] | tuple[str, ...]] = {
+    facts: dict[str, Fact] = {
         "parameters": len(used),
         "lengths alone": degree(lengths) is not None,
         "lengths and F/k": degree(with_loads) is not None,
@@ -43,9 +44,11 @@ def parameters() -> Outcome:
     return judge(
         degree(lengths) is not None,
         (
-            f"the equations contain {len(used)} parameters: three lengths, k, and two forces; so there are three physical "
+            f"the equations contain {len(used)} parameters: three lengths, k, and two forces; so there are "
+            "three physical "
             "ones, not two",
-            "scaling the lengths alone changes the equations; scaling the lengths and F3/k, F4/k, which are lengths too, "
+            "scaling the lengths alone changes the equations; scaling the lengths and F3/k, F4/k, which are "
+            "lengths too, "
             f"does not; nor does scaling F3, F4 and k: {independent} independent parameters",
         ),
         facts,
@@ -63,7 +66,10 @@ def merging() -> Outcome:
             kept &= same or link.merge is not Merge.PROVEN
     return judge(
         kept,
-        ("in the five maps, cells that only the decomposition parts have the same numbers of minima, saddles and maxima",),
+        (
+            "in the five maps, cells that only the decomposition parts have the same numbers of minima, saddles "
+            "and maxima",
+        ),
         {"constant": kept},
     )
 
@@ -75,7 +81,8 @@ def one_curve() -> Outcome:
     return judge(
         len(found) == 3 and all(d == (12, 12) for d, _ in found),
         (
-            f"the variety in the window: {len(found)} irreducible curve of degree {degrees[0]} in rho and {degrees[1]} in "
+            f"the variety in the window: {len(found)} irreducible curve of degree {degrees[0]} in rho and "
+            f"{degrees[1]} in "
             f"L2, with {terms} terms; only even powers of rho occur: {in_square}",
         ),
         {"curves": len(found), "degrees": degrees, "terms": terms, "even in rho": in_square},
@@ -109,8 +116,10 @@ def range_is_two_region() -> Outcome:
     return judge(
         never_level and patterns == {1: {((-1, -1),)}, 2: {((-1, -1), (1, 1))}},
         (
-            "y3 and y4 of a stable equilibrium are never zero under two downward forces, so their signs are constant in a "
-            f"cell: {sorted(patterns[1])} in those with one stable equilibrium, {sorted(patterns[2])} in those with two",
+            "y3 and y4 of a stable equilibrium are never zero under two downward forces, so their signs are "
+            "constant in a "
+            f"cell: {sorted(patterns[1])} in those with one stable equilibrium, {sorted(patterns[2])} in those "
+            "with two",
         ),
         {"y3, y4 not zero": never_level, "patterns": tuple(str(sorted(patterns[n])) for n in (1, 2))},
     )
@@ -123,7 +132,10 @@ def widest_at_one() -> Outcome:
         "width at L2 = " + ", ".join(f"{x}: {w}" for x, w in at.items()),
         "proved for 0 < L2 <= 2: " + "; ".join(step for step, shown in found.steps.items() if shown),
     )
-    facts = {"steps": tuple(f"{step}: {shown}" for step, shown in found.steps.items()), "width at 1": at["1"]}
+    facts: dict[str, Fact] = {
+        "steps": tuple(f"{step}: {shown}" for step, shown in found.steps.items()),
+        "width at 1": at["1"],
+    }
     one = found.widths[Fraction(1)]
     larger = [x for x, (low, _) in found.widths.items() if low > one[1]]
     if not found.proved and not larger:
@@ -147,7 +159,8 @@ def same_range() -> Outcome:
     return judge(
         bool(ratio.is_number) and close,
         (
-            f"fig. 4's polynomial at L2 = 1 is {ratio} times (15)^3 (16) at F4 = -10, so the ends are roots of the same "
+            f"fig. 4's polynomial at L2 = 1 is {ratio} times (15)^3 (16) at F4 = -10, so the ends are roots of "
+            "the same "
             f"factors; the range is {float(left.bounds()[0]):.12f} to {float(left.bounds()[3]):.12f}",
         ),
         {"proportional": bool(ratio.is_number), "equal ends": close},
@@ -168,7 +181,7 @@ def slow_and_fast() -> Outcome:
     )
     near = {x: fall(x) for x in ("99/100", "101/100")}
     later = [x for x in sorted(found.widths) if x >= Fraction(3, 2)]
-    falls = all(found.widths[a][0] > found.widths[b][1] for a, b in zip(later, later[1:], strict=False))
+    falls = all(found.widths[a][0] > found.widths[b][1] for a, b in pairwise(later))
     return judge(
         decreasing and falls and up[0] > 0 and down[0] > 5 * up[1],
         (
@@ -210,7 +223,8 @@ def which_fig5() -> Outcome:
         (f"at F4 = -20 the two-solution range is {shown[0]} with the text's values, {shown[1]} with the caption's",),
         {"same curve": same, "ranges at F4 = -20": shown},
         corrected=not same,
-        right="two different slices: the text has F3 = -10, L2 = 3/2, the caption F3 = -30, L2 = 1; both are computed here",
+        right="two different slices: the text has F3 = -10, L2 = 3/2, the caption F3 = -30, L2 = 1; both are "
+        "computed here",
     )
 
 
@@ -223,7 +237,11 @@ def degrees_fig5() -> Outcome:
     return judge(
         all(d == (24, 12) and even for d, even, _ in found),
         (f"one irreducible curve in each of the two slices; (degrees in rho and F4, even in rho, terms): {found}",),
-        {"curves": len(found), "degrees": tuple(x for d, _, _ in found for x in d), "terms": tuple(n for _, _, n in found)},
+        {
+            "curves": len(found),
+            "degrees": tuple(x for d, _, _ in found for x in d),
+            "terms": tuple(n for _, _, n in found),
+        },
     )
 
 

@@ -34,10 +34,10 @@ def possible_counts(most: int) -> set[tuple[int, int]]:
 def when_infinite() -> tuple[bool, bool]:
     """Whether the eliminated polynomial vanishes identically without loads at rho = 0, and nowhere else.
 
-    Its coefficients are q0, ..., q6, for k = 1. The sum of four of them shows the second: q6 - q0 is a positive multiple
-    of L2 rho F4^2, so rho = 0 or F4 = 0. If F4 = 0, then q3 is a multiple of F3 rho^2, so F3 = 0 or rho = 0, and with no
-    loads q2 and q4 are multiples of rho^2 times L1^2 - (L2 +- 2 rho)^2, which are both zero for rho = 0 only. If rho = 0,
-    then q1 or q5 gives F3 F4 = 0, and q0 then F3 = F4 = 0.
+    Its coefficients are q0, ..., q6, for k = 1. The second follows step by step: q6 - q0 is a positive multiple of
+    L2 rho F4^2, so rho = 0 or F4 = 0. If F4 = 0, then q3 is a multiple of F3 rho^2, so F3 = 0 or rho = 0, and without
+    loads q2 and q4 are multiples of rho^2 times L1^2 - (L2 +- 2 rho)^2, which are both zero for rho = 0 only. If
+    rho = 0, then q5 gives F3 F4 = 0, and q0 then F3 = F4 = 0.
     """
     q = sextic()[::-1]
     at_base = all(sp.expand(c.subs({rho: 0, F3: 0, F4: 0})) == 0 for c in q)
@@ -61,7 +61,8 @@ def up_to_six() -> Outcome:
     return judge(
         bound == 6 and attained == 6,
         (
-            f"the eliminated polynomial has degree {bound} with all parameters symbolic; {attained} real equilibria occur in "
+            f"the eliminated polynomial has degree {bound} with all parameters symbolic; {attained} real "
+            "equilibria occur in "
             "the figures",
         ),
         {"bound": bound, "attained": attained},
@@ -76,7 +77,8 @@ def always_up_to_six() -> Outcome:
         generic.verdict is Verdict.CONFIRMED and not at_base,
         (
             *generic.evidence,
-            "without loads and with rho = 0 it vanishes identically: both derivatives are -k L1 L2 sin(th1 + th2), so every "
+            "without loads and with rho = 0 it vanishes identically: both derivatives are -k L1 L2 sin(th1 + "
+            "th2), so every "
             "pose with th1 + th2 = 0 or pi is an equilibrium",
             f"this is the only exception (from the coefficients, one after the other): {only_there}",
         ),
@@ -100,7 +102,8 @@ def one_or_two_stable() -> Outcome:
     return judge(
         stable == {1, 2} and seen <= allowed,
         (
-            "on the torus minima - saddles + maxima = 0 with at least one minimum, one maximum and two saddles; with at "
+            "on the torus minima - saddles + maxima = 0 with at least one minimum, one maximum and two saddles; "
+            "with at "
             f"most six critical points (total, stable) is one of {sorted(allowed)}",
             f"seen in the cells of the five maps and at {POINTS} random points: {sorted(seen)}",
         ),
@@ -114,12 +117,15 @@ def constant_width() -> Outcome:
         (two,) = (r for r in ranges("fig2", "rho", length2) if r.stable == 2)
         widths[length2] = two.width()
     values = [w[0] for w in widths.values()]
-    close = all(abs(v - w) < Fraction(1, 10**9) for v, w in zip(values, (Fraction(1, 2), 1, 1), strict=True))
+    close = all(
+        abs(v - w) < Fraction(1, 10**9) for v, w in zip(values, (Fraction(1, 2), Fraction(1), Fraction(1)), strict=True)
+    )
     mirrored = bool(stable_by_region().facts["two: mirror images"])
     return judge(
         all(abs(v - values[0]) < Fraction(1, 10**9) for v in values),
         (
-            "width of the two-solution range: " + ", ".join(f"{float(v):.9g} at L2 = {x}" for x, v in zip(widths, values,
+            "width of the two-solution range: "
+            "" + ", ".join(f"{float(v):.9g} at L2 = {x}" for x, v in zip(widths, values,
                                                                                                      strict=True)),
             f"the two stable solutions are mirror images of each other: {mirrored}",
         ),

@@ -1,6 +1,6 @@
 """The claims of sections 3.2, 3.3 and 4.2: equal rods and equal forces.
 
-Guarantee: verdicts follow from identities in L1, rho, k, F4, and from exact counts and root isolation on fig. 3's slice.
+Guarantee: verdicts follow from identities in L1, rho, k, F4, from exact counts and from isolated roots on fig. 3.
 """
 
 from __future__ import annotations
@@ -109,9 +109,7 @@ def equation_12() -> Outcome:
     degree = sp.Poly(printed.EQUATION_12, t2).degree()
     return judge(
         bool(holds) and degree == 2,
-        (
-            f"what remains after 1 + t2^2 is cleared is {ratio} times (12), of degree {degree} in t2; L stands for L1",
-        ),
+        (f"what remains after 1 + t2^2 is cleared is {ratio} times (12), of degree {degree} in t2; L stands for L1",),
         {"ratio": str(ratio), "degree": degree},
     )
 
@@ -195,7 +193,8 @@ def always_negative() -> Outcome:
     return judge(
         is_square and only_equal,
         (
-            "det H is minus a square, and the square is zero only where t1 = t2, where the pair meets the solutions with "
+            "det H is minus a square, and the square is zero only where t1 = t2, where the pair meets the "
+            "solutions with "
             "equal angles; so for th1 != th2 it is negative: saddles",
         ),
         {"minus a square": is_square, "zero only for t1 = t2": only_equal},
@@ -300,7 +299,8 @@ def reverse_configuration() -> Outcome:
         (
             "at a stable equilibrium under two forces of one sign y3 and y4 are never zero: y3 = 0 forces "
             "k L2 sin th2 = -F3, hence H(2,2) = -k L2^2 F4/F3 < 0; so their signs are constant in each cell",
-            f"in the cells with one stable equilibrium the signs of (y3, y4) are {sorted(patterns[1])}, in those with two "
+            f"in the cells with one stable equilibrium the signs of (y3, y4) are {sorted(patterns[1])}, in "
+            "those with two "
             f"{sorted(patterns[2])}",
             "at F4 = 0, on the window's edge, the stable pose is flat and y3 = y4 = 0",
         ),
@@ -358,7 +358,8 @@ def decreasing_range() -> Outcome:
         (
             "widths at F4 = " + ", ".join(f"{f}: {float(w[0]):.9f}" for f, w in zip(forces, found, strict=True)),
             f"in between: along the rose d(2 rho)/d(|F4|/k) = {rose_t} > -1 for 0 < T < 1, along the astroid "
-            f"{astroid_t} < -1, T being the tangent of each curve's parameter; so the width falls until both ends meet at "
+            f"{astroid_t} < -1, T being the tangent of each curve's parameter; so the width falls until both "
+            "ends meet at "
             "2 rho = |F4|/k = 1/sqrt 2",
         ),
         {

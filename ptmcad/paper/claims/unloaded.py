@@ -84,7 +84,8 @@ def singular_flat() -> Outcome:
         singular,
         (
             "det H at the flat equilibria: " + "; ".join(f"{n}: {d}" for n, d in found.items()),
-            "with a vertical force no flat configuration is an equilibrium exactly, but where det H is not zero there is "
+            "with a vertical force no flat configuration is an equilibrium exactly, but where det H is not zero "
+            "there is "
             "one nearby: the stiffness against the force is finite and positive at the stable flat one",
         ),
         {
@@ -107,13 +108,16 @@ def two_more() -> Outcome:
     at = {L1: 1, L2: sp.Rational(3, 2), rho: sp.Rational(1, 2)}
     cosine = COS1.subs(at)
     other = {c1: -c1, s1: -s1}
-    acute_fails = not all(sp.expand(on_triangle(g.subs(UNLOADED).subs(other, simultaneous=True))) == 0 for g in gradient())
+    acute_fails = not all(
+        sp.expand(on_triangle(g.subs(UNLOADED).subs(other, simultaneous=True))) == 0 for g in gradient()
+    )
     return judge(
         bool(cosine >= 0),  # whatever Q and R1 are, which the paper does not say, cos(arctan) is positive
         (
             f"the triangle with sides L1, L2 and 2 rho solves (7) and (8) for all lengths: {triangle}",
             f"equilibria in all: {present} at L2 = 3/2, rho = 1; {absent} at rho = 2, where there is no such triangle",
-            f"at L2 = 3/2, rho = 1/2 the angle th1 is obtuse, cos th1 = {cosine}; arctan gives th1 - pi, no equilibrium",
+            f"at L2 = 3/2, rho = 1/2 the angle th1 is obtuse, cos th1 = {cosine}; arctan gives th1 - pi, no "
+            "equilibrium",
         ),
         {
             "triangle": triangle,
@@ -123,7 +127,8 @@ def two_more() -> Outcome:
             "arctan fails": acute_fails,
         },
         corrected=triangle and present == 6 and absent == 4 and cosine < 0 and acute_fails,
-        right="cos th1 = (4 rho^2 + L1^2 - L2^2)/(4 rho L1), cos th2 = (4 rho^2 + L2^2 - L1^2)/(4 rho L2), sines of equal "
+        right="cos th1 = (4 rho^2 + L1^2 - L2^2)/(4 rho L1), cos th2 = (4 rho^2 + L2^2 - L1^2)/(4 rho L2), "
+        "sines of equal "
         "sign, L1 sin th1 = L2 sin th2; real for |L1 - L2| < 2 rho < L1 + L2; with arctan of two arguments",
         witness="L1 = 1, L2 = 3/2, rho = 1/2",
     )
@@ -148,7 +153,8 @@ def always_parallelogram() -> Outcome:
         all(sp.expand(x - rho) == 0 for x in flat),
         (
             "x3 - x4 is rho at the non-flat equilibria, but at the flat ones " + ", ".join(map(str, flat)),
-            "where there is one stable equilibrium it is a flat one, so outside the two-solution range the mechanism is "
+            "where there is one stable equilibrium it is a flat one, so outside the two-solution range the "
+            "mechanism is "
             "in no parallelogram",
         ),
         {"x3 - x4 flat": tuple(map(str, flat)), "only stable one is flat at L2 = 1, rho = 2": is_flat},
