@@ -91,14 +91,13 @@ def exact_text(value: Fraction) -> str:
     >>> exact_text(Fraction(-3, 2)), exact_text(Fraction(10) ** 30), exact_text(Fraction(1, 3))
     ('-1.5', '1e30', '1/3')
     """
-    rest, places = value.denominator, 0
-    for prime in (2, 5):
-        power = 0
-        while rest % prime == 0:
-            rest, power = rest // prime, power + 1
-        places = max(places, power)
-    if rest != 1:
+    twos = (value.denominator & -value.denominator).bit_length() - 1
+    rest = value.denominator >> twos
+    fives = rest.bit_length() * 43067655807 // 10**11  # divided by the logarithm of 5 to base 2, so off by one at most
+    fives = next((k for k in range(max(0, fives - 1), fives + 2) if 5**k == rest), -1)
+    if fives < 0:
         return text_of(value)
+    places = max(twos, fives)
     digits = integer_text(abs(value.numerator) * 10**places // value.denominator).rstrip("0")
     return Enclosure(value, value).text(max(1, len(digits)))
 

@@ -14,7 +14,7 @@ from itertools import pairwise
 from flint import ctx, fmpq
 
 from ptmcad.algebra.fibre import Fibre
-from ptmcad.algebra.points import points, real_values
+from ptmcad.algebra.points import RealPoint, points, real_values
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.counting import DegeneratePoint, point_system
 from ptmcad.models.ptm import ptm_nodes, ptm_system
@@ -53,7 +53,7 @@ def poses_at(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     }
     hessian = (point.hessian[0][0], point.hessian[0][1], point.hessian[1][1])
     model = Model(parameters, coordinates, polynomial_at(system, system.potential, values), hessian)
-    states = [state_at(model, real) for real in found.real]
+    states = _states(model, found.real)
     results = [pose_of(model, state, digits) for state in states]
     poses = [pose for pose, _ in results]
     degenerate = any(pose.multiplicity > 1 for pose in poses)
@@ -71,6 +71,17 @@ def poses_at(parameters: Mapping[str, Fraction], digits: int) -> Poses:
         max(bits for _, bits in results),
         COMPLEX_DOUBLE if not degenerate and found.distinct < found.total else "",
     )
+
+
+def _states(model: Model, found: Sequence[RealPoint]) -> list[State]:
+    """The equilibria at real points; those at roots of one polynomial share the work."""
+    first: dict[int, State] = {}
+    states = []
+    for point in found:
+        known = first.get(id(point.field.modulus))
+        states.append(state_at(model, point) if known is None else known.conjugate(point))
+        first.setdefault(id(point.field.modulus), states[-1])
+    return states
 
 
 def _check_euler_sum(poses: Sequence[Pose]) -> None:

@@ -64,6 +64,20 @@ class State:
     determinant: Element
     spread: Element
 
+    def conjugate(self, point: RealPoint) -> State:
+        """The equilibrium at another root of the same polynomial: the same residues."""
+        field = point.field
+        return State(
+            point,
+            point.unknowns,
+            {name: (x.conjugate(field), y.conjugate(field)) for name, (x, y) in self.nodes.items()},
+            tuple(square.conjugate(field) for square in self.squares),
+            self.energy.conjugate(field),
+            self.trace.conjugate(field),
+            self.determinant.conjugate(field),
+            self.spread.conjugate(field),
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class _Number:

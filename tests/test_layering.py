@@ -169,6 +169,19 @@ def test_data_flows_one_way(path: Path) -> None:
         assert imported_parts(path) <= {"errors", "textfile"}
 
 
+def test_reading_poses_loads_nothing_of_the_engine(tmp_path: Path) -> None:
+    """Enclosures, poses, their document and table are free of any engine."""
+    code = "import ptmcad, ptmcad.document.poses, ptmcad.posetable; ptmcad.Poses, ptmcad.Enclosure"
+    assert not loaded_after(code, tmp_path) & {"flint", "yaml", "numpy", "matplotlib", "sympy"}
+
+
+def test_solving_needs_no_picture_or_symbolic_library(tmp_path: Path) -> None:
+    code = "import ptmcad; ptmcad.solve(rho='7/10', F3=-10).to_json()"
+    loaded = loaded_after(code, tmp_path)
+    assert "flint" in loaded
+    assert not loaded & {"matplotlib", "sympy", "numpy"}
+
+
 def loaded_after(code: str, tmp_path: Path) -> set[str]:
     """Top-level modules loaded by a fresh interpreter that has run the code."""
     report = "import json, sys; print('\\n' + json.dumps(sorted({name.partition('.')[0] for name in sys.modules})))"

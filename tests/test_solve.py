@@ -1,4 +1,4 @@
-"""`ptmcad.solve` against independent methods, known answers, symmetries, degenerate points by construction, extremes."""
+"""`ptmcad.solve` against independent methods, known answers, symmetries, degenerate points, extreme values."""
 
 from __future__ import annotations
 
@@ -88,6 +88,8 @@ def check_against_newton(seed: int, number: int, digits: int = 12) -> None:
         parameters = parameters_of(generator)
         poses = solve(digits=digits, **parameters)
         found = equilibria(parameters)
+        if len(found) != len(poses.equilibria):  # two that are close together may lie between two points of the grid
+            found = equilibria(parameters, grid=20_000)
         assert poses.status is Status.EXACT
         assert len(poses.equilibria) == len(found), parameters
         assert len(found) in (4, 6)
@@ -305,6 +307,7 @@ def test_points_of_a_fibre_with_complex_and_fat_points() -> None:
 
 # ------------------------------------------------------------------------------------------- symmetries (theorem 5)
 
+MIRROR = (Fraction(1), Fraction(-1), Fraction(1), Fraction(-1))
 nonzero = st.fractions(min_value=Fraction(1, 9), max_value=9, max_denominator=9)
 forces = st.fractions(min_value=-200, max_value=200, max_denominator=9)
 mechanisms = st.fixed_dictionaries(
@@ -351,7 +354,7 @@ def test_vertical_loads_turned_round_mirror_the_poses(parameters: dict[str, Frac
     assert len(mirrored.equilibria) == len(poses.equilibria)
     for a in mirrored.equilibria:
         assert sum(
-            all(close(x, y, Fraction(f)) for x, y, f in zip(a.cosines_sines, b.cosines_sines, (1, -1, 1, -1), strict=True))
+            all(close(x, y, f) for x, y, f in zip(a.cosines_sines, b.cosines_sines, MIRROR, strict=True))
             and close(a.energy, b.energy)
             and a.index == b.index
             for b in poses.equilibria
@@ -391,7 +394,7 @@ EXTREME = [
 
 @pytest.mark.parametrize("given_values", EXTREME, ids=str)
 def test_extreme_values_agree_with_the_oracle_and_newton(given_values: dict[str, object]) -> None:
-    """Counts by Sturm sequences; digits by Newton's method from the poses themselves (poses that are not zeros move)."""
+    """Counts by Sturm sequences; digits by Newton's method from the poses themselves, which moves what is no zero."""
     parameters = point_from_mapping(given_values)
     poses = solve(**given_values)  # type: ignore[arg-type]
     assert signature(poses) == count(parameters)

@@ -54,6 +54,10 @@ class Element:
         value = fmpq(self.residue[0])
         return Fraction(int(value.p), int(value.q))
 
+    def conjugate(self, field: RealField) -> Element:
+        """The same residue at another root of the modulus."""
+        return Element(field, self.residue)
+
     def ball(self, generator: arb) -> arb:
         """An enclosure, from one of the field's root."""
         return arb_poly(self.residue)(generator)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
@@ -16,12 +17,6 @@ from ptmcad.errors import ConfigError
 from ptmcad.memory import Bound
 from ptmcad.output import Writer, check_writable, text_writer, write_files
 from ptmcad.poses import MOST_DIGITS, Poses
-from ptmcad.regionmap import Status
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from matplotlib.figure import Figure
 
 FORMATS = ("table", "json", "png", "svg", "pdf")
 DIGITS = 10
@@ -41,8 +36,6 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
 
     Raises
     ------
-    ConfigError
-        When a picture is asked for and there are infinitely many equilibria.
     OutputError
         When a file can not be written.
     """
@@ -51,8 +44,6 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
         if file.endswith(".json"):
             writers[file] = text_writer(poses.to_json())
             continue
-        if poses.status is Status.UNDECIDED:
-            raise ConfigError(f"{poses.remark} at this point, so there is no picture of them: ask for table or json")
         from ptmcad.render.landscape import draw_landscape  # brings matplotlib
         from ptmcad.render.poses import draw_poses
 
@@ -61,7 +52,7 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
     write_files(folder, writers)
 
 
-def _write_picture(draw: Callable[[Poses], Figure], poses: Poses, path: Path) -> None:
+def _write_picture(draw: Callable[[Poses], Any], poses: Poses, path: Path) -> None:
     from ptmcad.render.printing import save as save_figure
 
     save_figure(draw(poses), path)
