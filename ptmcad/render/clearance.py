@@ -1,13 +1,15 @@
 """Places for labels clear of drawn strokes and of each other.
 
 Guarantee: the same for the same drawing. A label covers a stroke, a box or another label only where none of the
-`TRIED` places within the bounds is free; then it stands where it covers the fewest.
+`TRIED` places within the bounds is free; then it stands where it covers the fewest. A line that
+leads to a label crosses boxes only where it must.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import atan2, cos, hypot, pi, sin
 
 Position = tuple[float, float]
@@ -54,7 +56,7 @@ class Placed:
 
 def polyline(points: Sequence[Position], half: float) -> Iterator[Stroke]:
     """The strokes of a line through the points."""
-    for start, end in zip(points, points[1:], strict=False):
+    for start, end in pairwise(points):
         yield Stroke(start, end, half)
 
 
@@ -78,7 +80,7 @@ def place(labels: Iterable[Label], strokes: Iterable[Stroke], boxes: Iterable[Bo
 
 
 def _best(label: Label, strokes: Sequence[Stroke], boxes: Sequence[Box], bounds: Box) -> Placed:
-    fewest, best = len(strokes) + len(boxes) + 1, Placed(label, label.at, None)
+    fewest, best = (len(strokes) + len(boxes) + 1, 0), Placed(label, label.at, None)
     start = atan2(label.towards[1], label.towards[0])
     for distance in _DISTANCES:
         for k in range(_DIRECTIONS):
@@ -90,12 +92,13 @@ def _best(label: Label, strokes: Sequence[Stroke], boxes: Sequence[Box], bounds:
                 continue
             leader = _edge(label.at, box) if distance > 11 else None
             covered = sum(crosses(stroke, box) for stroke in strokes) + sum(overlap(box, other) for other in boxes)
+            passed = 0
             if leader is not None:
                 line = Stroke(label.at, leader, 0.5)
-                covered += sum(crosses(line, other) for other in boxes if not _holds(other, label.at))
-            if covered < fewest:
-                fewest, best = covered, Placed(label, center, leader)
-                if covered == 0:
+                passed = sum(crosses(line, other) for other in boxes if not _holds(other, label.at))
+            if (covered, passed) < fewest:
+                fewest, best = (covered, passed), Placed(label, center, leader)
+                if covered + passed == 0:
                     return best
     return best
 

@@ -1,8 +1,8 @@
 """The picture of the energy over the torus of the two angles, as contours, with all equilibria marked by their kind.
 
-Guarantee: every equilibrium is marked, at both edges where an angle is 180 degrees; a contour passes through every
-saddle (or degenerate equilibrium), however small the differences of energy are, because the constant part of the energy is taken out exactly
-before anything is rounded. Numbers of equilibria are those of `ptmcad.render.poses.draw_poses`.
+Guarantee: every equilibrium is marked, at both edges where an angle is 180 degrees, with its number in the picture of
+`ptmcad.render.poses.draw_poses`. Contours pass through saddles and degenerate equilibria, also where the energy is
+large and its differences are small, because its constant part is taken out exactly before anything is rounded.
 
 Not guaranteed: anything that only the picture tells. It is drawn in floating point from the exact poses.
 """
@@ -12,6 +12,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
+from math import hypot
 from typing import Any
 
 import numpy as np
@@ -34,7 +36,8 @@ from ptmcad.render.printing import settings
 
 SIDE, LEFT, BOTTOM, BAR, KEY, MARGIN = 4.6, 0.85, 0.65, 1.25, 2.2, 0.15
 """In inches: the square's side, the space at its left and below, the colour bar, the legend, the rim."""
-_GRID = 181
+_GRID, _FINE = 145, 433
+"""Points along a side for all contours, and for those through saddles, which are narrow crosses near a fold."""
 _EVEN, _LEAST = 16, 4
 """Intervals of contours in all, and at least between two neighbouring critical energies."""
 _COLOURS = ("#16324f", "#3d6b8c", "#7fa6b5", "#c3d2c5", "#f3edd3")
@@ -45,6 +48,9 @@ _MARKERS = {
     "maximum": ("^", 9.0, "#d35c37"),
     "degenerate": ("*", 13.0, "#e9a7c4"),
 }
+
+_RING = 5.0
+"""Points by which a marker is larger for each other one on its place."""
 
 Floats = NDArray[np.float64]
 
@@ -98,9 +104,7 @@ def draw_landscape(poses: Poses) -> Figure:
     if not shown:
         return empty(poses)
     energy = energy_of(poses.parameters)
-    degrees = np.linspace(-180.0, 180.0, _GRID)
-    radians = np.radians(degrees)
-    heights = energy(radians[None, :], radians[:, None])
+    degrees, heights = _sampled(energy, _GRID)
     critical = sorted({energy.scaled(pose.energy.center) for pose in shown})
     levels = contour_levels(critical, float(heights.min()), float(heights.max()))
     title = heading(poses, 90)
@@ -115,9 +119,12 @@ def draw_landscape(poses: Poses) -> Figure:
         norm = BoundaryNorm(levels, colours.N)
         clipped = np.clip(heights, levels[0], levels[-1])
         filled = axes.contourf(degrees, degrees, clipped, levels=levels, cmap=colours, norm=norm)
-        axes.contour(degrees, degrees, heights, levels=levels[1:-1], colors="white", linewidths=0.35, alpha=0.8)
+        axes.contour(
+            degrees, degrees, heights, levels=levels[1:-1], colors="white", linewidths=0.35, linestyles="solid"
+        )
         through = sorted({energy.scaled(p.energy.center) for p in shown if p.index in (1, None)})
-        axes.contour(degrees, degrees, heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
+        finer, fine_heights = _sampled(energy, _FINE)
+        axes.contour(finer, finer, fine_heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
         _dress(axes)
         _mark(axes, shown)
         scale = _energy_scale(energy, levels)
@@ -128,15 +135,22 @@ def draw_landscape(poses: Poses) -> Figure:
     return figure
 
 
+def _sampled(energy: Energy, number: int) -> tuple[Floats, Floats]:
+    """Angles in degrees along a side, and the energy over the square, shape (number, number), th1 along rows."""
+    degrees = np.linspace(-180.0, 180.0, number)
+    radians = np.radians(degrees)
+    return degrees, energy(radians[None, :], radians[:, None])
+
+
 def contour_levels(critical: Sequence[float], low: float, high: float) -> list[float]:
-    """Increasing levels from the least to the largest energy, with all critical ones and at least some between any two."""
+    """Increasing levels from the least to the largest energy, all critical ones and some between any two."""
     marks = [low]
     for value in [*critical, high]:
         # energies nearer than what floats tell apart are one
         if value - marks[-1] > 1e-9 * (high - low):
             marks.append(value)
     levels = [marks[0]]
-    for first, last in zip(marks, marks[1:], strict=False):
+    for first, last in pairwise(marks):
         steps = max(_LEAST, round(_EVEN * (last - first) / (high - low)))
         levels += [first + (last - first) * k / steps for k in range(1, steps)] + [last]
     return levels
@@ -154,23 +168,26 @@ def _dress(axes: Any) -> None:
 
 def _mark(axes: Any, shown: Sequence[Pose]) -> None:
     """A marker for each equilibrium, again at the opposite edge, and its number once."""
-    places = []
+    points = SIDE * 72 / 360
+    boxes: list[Box] = []
     for number, pose in enumerate(shown, 1):
-        name = _kind(pose)
-        marker, size, face = _MARKERS[name]
+        marker, size, face = _MARKERS[_kind(pose)]
+        own = first_copy(pose)
+        # what is drawn later on the same place would hide it: it stands out around that
+        size += _RING * sum(
+            hypot(*(a - b for a, b in zip(own, first_copy(p), strict=True))) < 5 for p in shown[number:]
+        )
         for x in copies(float(pose.degrees[0])):
             for y in copies(float(pose.degrees[1])):
                 axes.add_artist(
                     Line2D(
                         (x,), (y,), marker=marker, markersize=size, markerfacecolor=face, markeredgecolor=INK,
                         markeredgewidth=1.0, linestyle="none", clip_on=False, zorder=6,
-                        gid=f"equilibrium-{number}" if (x, y) == first_copy(pose) else None,
+                        gid=f"equilibrium-{number}" if (x, y) == own else None,
                     )
                 )  # fmt: skip
-                places.append((x, y))
-    points = SIDE * 72 / 360
-    on_paper = [((x + 180) * points, (y + 180) * points) for x, y in places]
-    boxes: list[Box] = [(x - 6, y - 6, x + 6, y + 6) for x, y in on_paper]
+                u, v, half = (x + 180) * points, (y + 180) * points, size / 2 + 1
+                boxes.append((u - half, v - half, u + half, v + half))
     side = SIDE * 72
     labels = []
     for number, pose in enumerate(shown, 1):
@@ -228,6 +245,7 @@ def _colour_bar(
         if scale.low <= t <= scale.high
     ]  # fmt: skip
     bar.yaxis.set_ticks([position(t) for t in ticks], [f"{t:.6g}".replace("-", "−") for t in ticks])
+    bar.minorticks_off()
     bar.tick_params(labelsize=9, direction="out", length=3.5)
     bar.set_ylabel(f"{scale.name('U')} (force · length)", fontsize=10)
     for value in through:

@@ -90,9 +90,7 @@ def panel(
     width, tall = figure.get_size_inches()
     strong = pose.stable is True
     style = STRONG if strong else PALE
-    axes = figure.add_axes(
-        (corner[0] / width, corner[1] / tall, frame.width / 72 / width, frame.height / 72 / tall)
-    )
+    axes = figure.add_axes((corner[0] / width, corner[1] / tall, frame.width / 72 / width, frame.height / 72 / tall))
     axes.set_gid(f"pose-{number}")
     axes.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
     for spine in axes.spines.values():

@@ -58,11 +58,12 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
     """
     suffix = suffix_of(path)
     with settings():
-        data = printed(_figure(result, samples, dpi), suffix, dpi, " ".join(_title(result)), _description(result))
+        data = printed(figure_of(result, samples, dpi), suffix, dpi, " ".join(_title(result)), description(result))
     path.write_bytes(data)
 
 
-def _figure(result: RegionMap, samples: bool, dpi: int) -> Figure:
+def figure_of(result: RegionMap, samples: bool, dpi: int, beside: float = 0.0, tallest: float = 0.0) -> Figure:
+    """The picture, with so many inches left free at its right and at least so tall there."""
     whole = outline(result)
     thin = thin_regions(whole, round(SIDE * min(dpi, RESOLVED)))
     views = zooms(whole, thin)
@@ -76,10 +77,10 @@ def _figure(result: RegionMap, samples: bool, dpi: int) -> Figure:
     title = _title(result)
 
     below = height(legend) + 0.1
-    tall = max(SIDE + BOTTOM, below + 0.1, BLOCK)
+    tall = max(SIDE + BOTTOM, below + 0.1, BLOCK, tallest)
     places = _places(len(views), below, tall)
     columns = 1 + max((column for column, _ in places), default=0)
-    size = (LEFT + SIDE + GAP + columns * COLUMN + MARGIN, tall + TITLE_LINE * len(title) + 2 * MARGIN)
+    size = (LEFT + SIDE + GAP + columns * COLUMN + MARGIN + beside, tall + TITLE_LINE * len(title) + 2 * MARGIN)
     top = tall
 
     figure = Figure(figsize=size, dpi=dpi, facecolor="white")
@@ -197,7 +198,7 @@ def _mark(axes: Any, whole: Outline, thin: Sequence[Sliver], names: Sequence[str
         )  # fmt: skip
 
 
-def _description(result: RegionMap) -> str:
+def description(result: RegionMap) -> str:
     """What the picture shows, in words."""
     count = result.slice.count
     window = " and ".join(f"{a.name} from {a.low} to {a.high}" for a in result.slice.axes)

@@ -123,9 +123,7 @@ def sketch(pose: Pose, frame: Frame, arrows: Mapping[str, float]) -> Sketch:
     placed_arrows = tuple(_arrows(nodes, arrows))
     strokes = [*drawn, Stroke(nodes["A1"], nodes["A2"], 1.0)]
     strokes += [Stroke(arrow.start, arrow.end, 3.0) for arrow in placed_arrows]
-    labels = place(
-        _labels(nodes), strokes, _symbols(nodes), (2.0, 2.0, frame.width - 2.0, frame.height - 2.0)
-    )
+    labels = place(_labels(nodes), strokes, _symbols(nodes), (2.0, 2.0, frame.width - 2.0, frame.height - 2.0))
     return Sketch(nodes, bars, tuple(springs), placed_arrows, tuple(labels))
 
 
