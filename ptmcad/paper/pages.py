@@ -169,8 +169,8 @@ def index_html(judged: Sequence[Judged], figures: Sequence[Illustration], equati
             f'<figure id="{escape(f.figure)}">',
             f'<figcaption><b>{escape(f.figure)}.</b> {escape(f.title)} (<a href="{f.figure}.svg">SVG</a>, '
             f'<a href="{f.figure}-poses.svg">poses as SVG</a>, <a href="{f.figure}.json">result</a>)</figcaption>',
-            _image(f.map, f"Region map: {f.title}"),
-            f"<p>Poses at {escape(at)} ({escape(f.source)}):</p>",
+            _image(f.map, f"Region map and stable poses: {f.title}"),
+            f"<p>All equilibria at {escape(at)} ({escape(f.source)}):</p>",
             _image(f.poses, f"All equilibria at {at}"),
             f"<pre>{escape(f.table)}</pre>",
             "</figure>",

@@ -1,6 +1,6 @@
-"""The figures of the paper as files' contents: the region map, and all poses at the figure's point.
+"""The figures of the paper as files' contents: the region map beside the stable poses, and all poses at that point.
 
-Guarantee: the pictures are those that `ptmcad classify` and `ptmcad solve` draw of the same results.
+Guarantee: the pictures are drawn from the exact map and poses that are given, by the functions that draw any others.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 
 from ptmcad.poses import Poses
 from ptmcad.regionmap import RegionMap
-from ptmcad.render import draw
+from ptmcad.render.figure import draw_figure
 from ptmcad.render.poses import draw_poses
 from ptmcad.render.printing import save
 
@@ -22,7 +22,7 @@ def picture_bytes(figure: str, result: RegionMap, poses: Poses, suffixes: Sequen
     with TemporaryDirectory() as folder:
         for suffix in suffixes:
             path = Path(folder) / f"{figure}.{suffix}"
-            draw(result, path)
+            save(draw_figure(result, poses), path)
             found[path.name] = path.read_bytes()
             path = Path(folder) / f"{figure}-poses.{suffix}"
             save(draw_poses(poses), path)
