@@ -46,7 +46,7 @@ _THETA1, _THETA2 = sp.symbols("theta_1 theta_2", real=True)
 _REDUCED = {F3: k * sp.Symbol("f3"), F4: k * sp.Symbol("f4"), F3x: k * sp.Symbol("f3x"), F4x: k * sp.Symbol("f4x")}
 _LATEX_NAMES = {
     L1: "L_1", L2: "L_2", rho: r"\rho", t1: "t_1", t2: "t_2", F3: "F_3", F4: "F_4",
-    **{sp.Symbol(n): t for n, t in (("f3", "F_3'"), ("f4", "F_4'"), ("f3x", "F_{3x}'"), ("f4x", "F_{4x}'"))},
+    **{sp.Symbol(n): t for n, t in (("f3", "f_3"), ("f4", "f_4"), ("f3x", "f_{3x}"), ("f4x", "f_{4x}"))},
 }  # fmt: skip
 
 
@@ -146,6 +146,8 @@ def as_latex() -> str:
         r"\usepackage{amsmath,breqn}",
         r"\begin{document}",
         r"\section*{The equations of the planar tensegrity mechanism, corrected}",
+        r"Here $f_3 = F_3/k$, $f_4 = F_4/k$, $f_{3x} = F_{3x}/k$, $f_{4x} = F_{4x}/k$; in (10) to (13) $L_1$ is the",
+        r"length of both rods.\par",
     ]
     for e in equations():
         lines += [

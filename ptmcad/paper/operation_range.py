@@ -70,7 +70,7 @@ def widest() -> Widest:
     if len(components) != 1:
         raise ArithmeticError(f"the variety of {FIGURE} has {len(components)} curves")
     p = from_plane(components[0].polynomial)
-    never = _Tangents(p, {d: tangent_resultant(p, d) for d in (FOLD, UPRIGHT, HALF)}).never
+    never = Tangents(p, {d: tangent_resultant(p, d) for d in (FOLD, UPRIGHT, HALF)}).never
     near = [ONE - Fraction(1, 100), ONE, ONE + Fraction(1, 100), ONE + Fraction(1, 50)]
     later = [MIDDLE + n * STEP for n in range(int((END - MIDDLE) / STEP) + 1)]
     grid = [Fraction(1, 2), Fraction(3, 4), Fraction(9, 10), *near, Fraction(11, 10), *later]
@@ -110,7 +110,7 @@ def _ends(length2: Fraction) -> Ends:
 
 
 @dataclass(frozen=True, slots=True)
-class _Tangents:
+class Tangents:
     """The heights at which the curve may have a tangent in a direction, for every direction that the proof needs."""
 
     curve: Coefficient

@@ -45,6 +45,10 @@ pre { overflow-x: auto; background: var(--soft); padding: .6rem; font-size: .85r
 div.wide { overflow-x: auto; }
 table { border-collapse: collapse; } td, th { border: 1px solid var(--line); padding: .2rem .6rem; text-align: left; }
 a { color: inherit; }
+@media (max-width: 45rem) {
+  table, tbody, tr, td { display: block; } thead { display: none; } td { border: 0; }
+  tr { border: 1px solid var(--line); border-radius: 6px; margin: .6rem 0; padding: .3rem 0; }
+}
 """
 
 
@@ -154,13 +158,13 @@ def index_html(judged: Sequence[Judged], figures: Sequence[Illustration], equati
         '(<a href="equations.md">text</a>, <a href="equations.tex">LaTeX</a>).</p>',
         "<h2>What is not as printed</h2>",
         '<div class="wide"><table><thead>',
-        "<tr><th>Section</th><th>Claim</th><th>Verdict</th><th>Right, or where it fails</th></tr></thead><tbody>",
+        "<tr><th>Place</th><th>Claim</th><th>Verdict</th><th>Right, or where it fails</th></tr></thead><tbody>",
     ]
     for claim, outcome in judged:
         if outcome.verdict in (Verdict.CORRECTED, Verdict.REFUTED, Verdict.UNDECIDED):
             text = outcome.right or outcome.witness or outcome.reason
             link = f'<a href="claims.html#{escape(claim.name)}">{escape(claim.statement)}</a>'
-            cells = (escape(claim.section), link, _verdict(outcome), escape(text))
+            cells = (_title(claim.section), link, _verdict(outcome), escape(text))
             body.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
     body += ["</tbody></table></div>", '<h2 id="figures">Figures</h2>']
     for f in figures:
