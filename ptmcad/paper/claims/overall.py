@@ -26,7 +26,7 @@ def possible_counts(most: int) -> set[tuple[int, int]]:
     return {
         (minima + saddles + maxima, minima)
         for minima, saddles, maxima in product(range(most + 1), repeat=3)
-        if minima - saddles + maxima == 0 and minima >= 1 and maxima >= 1 and saddles >= 2
+        if minima - saddles + maxima == 0 and minima >= 1 and maxima >= 1
         and minima + saddles + maxima <= most
     }  # fmt: skip
 
