@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ptmcad.enclosure import AlgebraicNumber, Enclosure
     from ptmcad.pipeline import classify
     from ptmcad.poses import Pose, Poses, solve
+    from ptmcad.ranges import intervals, operation_widths, pose_paths
     from ptmcad.regionmap import RegionMap
     from ptmcad.slice import Count, Point, Slice
     from ptmcad.verification import VerifyReport, verify
@@ -32,6 +33,9 @@ _HOMES = {
     "Pose": "poses",
     "Poses": "poses",
     "solve": "poses",
+    "intervals": "ranges",
+    "operation_widths": "ranges",
+    "pose_paths": "ranges",
     "RegionMap": "regionmap",
     "Count": "slice",
     "Point": "slice",
@@ -52,7 +56,10 @@ __all__ = [
     "VerifyReport",
     "__version__",
     "classify",
+    "intervals",
     "load",
+    "operation_widths",
+    "pose_paths",
     "slice_from_mapping",
     "slice_from_options",
     "solve",

@@ -139,7 +139,9 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
     window = tuple((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
     clock.report("variety", 0, 1)
     try:
-        variety = discriminant_variety(system, parameters, (window[0], window[1]), _limits(system, parameters), keep)
+        variety = discriminant_variety(
+            system, parameters, (window[0], window[1]), domain_limits(system, parameters), keep
+        )
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
         at = (simplest_between(*window[0]), simplest_between(*window[1]))
         raise type(error)(f"{error}; {_witness(slice, system, parameters, at)}") from error
@@ -182,7 +184,7 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
     counts = []
     for k, at in enumerate(points):
         clock.report("counts", k, len(points))
-        counts.append(_count(slice, system, parameters, at))
+        counts.append(count_at(_where(slice, at), system, parameters, at))
     clock.stage("counts")
 
     crossings = []
@@ -205,7 +207,7 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
     )
 
 
-def _limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coefficient]:
+def domain_limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coefficient]:
     """What bounds the slice's domain: lengths and stiffnesses that vary, and the parameters' denominators."""
     names = (*system.positive, *system.nonnegative)
     limits = [*(parameters[name][0] for name in names), *(below for _, below in parameters.values())]
@@ -241,10 +243,25 @@ def _choose_base(
     return base, curves, list(_vertical_lines(components, base).values()), costs
 
 
-def _count(slice: Slice, system: ParametricSystem, parameters: dict[str, Ratio], at: tuple[fmpq, fmpq]) -> Equilibria:
-    """The equilibria at a sample point, after a check that the geometry exists there."""
+def _where(slice: Slice, at: tuple[fmpq, fmpq]) -> str:
+    return ", ".join(f"{name} = {value}" for name, value in zip(slice.axis_names, at, strict=True))
+
+
+def count_at(where: str, system: ParametricSystem, parameters: dict[str, Ratio], at: tuple[fmpq, fmpq]) -> Equilibria:
+    """The equilibria at a sample point, after a check that the geometry exists there.
+
+    Parameters
+    ----------
+    where : the point in words, for messages.
+
+    Raises
+    ------
+    GeometryError
+        When a length or stiffness is not positive there.
+    DegenerateSliceError
+        When some equilibrium is singular there.
+    """
     values = point_values(parameters, at)
-    where = ", ".join(f"{name} = {value}" for name, value in zip(slice.axis_names, at, strict=True))
     for name in (*system.positive, *system.nonnegative):
         if values[name] < 0 or (values[name] == 0 and name in system.positive):
             raise GeometryError(
@@ -266,7 +283,7 @@ def point_values(parameters: dict[str, Ratio], at: tuple[fmpq, fmpq]) -> dict[st
 
 def _witness(slice: Slice, system: ParametricSystem, parameters: dict[str, Ratio], at: tuple[fmpq, fmpq]) -> str:
     """What is wrong at one point of a slice that is degenerate everywhere."""
-    where = ", ".join(f"{name} = {value}" for name, value in zip(slice.axis_names, at, strict=True))
+    where = _where(slice, at)
     if any(evaluate(below, *at) == 0 for _, below in parameters.values()):
         return f"at {where} a parameter has a zero denominator"
     different, multiplicity = solutions_at(system, point_values(parameters, at))

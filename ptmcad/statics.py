@@ -24,6 +24,8 @@ from ptmcad.models.ptm import SPRINGS
 from ptmcad.models.system import RationalPolynomial
 from ptmcad.poses import Pose, Spring, Vector
 
+MOST_BITS = 2**22
+"""Parameters of a thousand digits need a hundredth of them: a number that is still open is rational unnoticed."""
 _ORDERS = range(3, 43)
 """Orders of roots of unity: a field of degree d has cosines of those with totient at most 2d, and d is at most 6."""
 
@@ -116,7 +118,13 @@ def state_at(model: Model, point: RealPoint) -> State:
 
 
 def pose_of(model: Model, state: State, digits: int) -> tuple[Pose, int]:
-    """The pose with all numbers settled to so many digits, and the bits that this took."""
+    """The pose with all numbers settled to so many digits, and the bits that this took.
+
+    Raises
+    ------
+    ArithmeticError
+        When `MOST_BITS` do not settle a number, which would be a fault of this program.
+    """
     rational = _rational_eigenvalue(state)
     bits = 64 + 4 * digits
     while True:
@@ -126,6 +134,10 @@ def pose_of(model: Model, state: State, digits: int) -> tuple[Pose, int]:
         if len(numbers) == len(settled):
             return _assembled(model, state, iter(numbers)), bits
         bits *= 2
+        if bits > MOST_BITS:
+            raise ArithmeticError(
+                f"{len(settled) - len(numbers)} numbers of a pose are not settled by {bits // 2} bits"
+            )
 
 
 def _numbers(model: Model, state: State, rational: Fraction | None) -> Iterator[_Number]:

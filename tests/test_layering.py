@@ -30,6 +30,7 @@ EXACT = (
     "pipeline",
     "assembly",
     "locate",
+    "ranges",
     "verification",
     "paper",
 )

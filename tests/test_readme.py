@@ -34,7 +34,7 @@ PROGRAM_LINES = [line for line in shell_lines() if not line.startswith("make ")]
 def test_the_parts_are_there() -> None:
     assert MAKE_LINES == ["make demo", "make test"]
     commands = " ".join(shlex.split(line)[1] for line in PROGRAM_LINES)
-    assert commands == "classify classify verify locate solve solve"
+    assert commands == "classify classify verify locate range solve solve"
     assert len(blocks("yaml")) == 1
     assert len(blocks("python")) == 1
 
@@ -55,6 +55,7 @@ SAYS = {
     "classify": "regions ",
     "verify": "ok ",
     "locate": "stable  2\n",
+    "range": "operation range: 0.4981306959 to 1.041432630",
     "solve": "6 equilibria: 2 stable, 3 saddles, 1 maximum",
 }
 

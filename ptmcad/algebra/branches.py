@@ -57,7 +57,7 @@ def branch_integral(
     """
     root = refine(at_middle, (fibre[1] - fibre[0]) / 2 ** (ctx.prec // 3))
     origin = root.low
-    local = _local_coefficients(in_v, middle, radius, origin)
+    local = local_coefficients(in_v, middle, radius, origin)
     if local[1][0].rel_accuracy_bits() < ENOUGH:
         raise PrecisionTooLow  # the root is simple, so the derivative is not zero
     steepness = abs(local[1][0])
@@ -98,12 +98,17 @@ def avoids(p: fmpz_poly, low: fmpq, high: fmpq) -> bool:
 
     False may mean undecided.
     """
+    return avoids_zero(arb_poly(p), low, high)
+
+
+def avoids_zero(p: arb_poly, low: fmpq, high: fmpq) -> bool:
+    """The same for a polynomial whose coefficients are known in balls."""
     radius = arb((high - low) / 2)
-    value, *rest = arb_poly(p)(arb_poly([arb((low + high) / 2), radius])).coeffs() or [arb(0)]
+    value, *rest = p(arb_poly([arb((low + high) / 2), radius])).coeffs() or [arb(0)]
     return bool(sum((abs(c) for c in rest), arb(0)) < abs(value))
 
 
-def _local_coefficients(in_v: Sequence[fmpz_poly], middle: fmpq, radius: fmpq, origin: fmpq) -> list[arb_poly]:
+def local_coefficients(in_v: Sequence[fmpz_poly], middle: fmpq, radius: fmpq, origin: fmpq) -> list[arb_poly]:
     """Coefficients b_i(h) of p(middle + radius h, origin + w) = sum_i b_i(h) w^i."""
     line = arb_poly([arb(middle), arb(radius)])
     rows = [arb_poly(c)(line) for c in in_v]

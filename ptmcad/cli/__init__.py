@@ -28,6 +28,7 @@ COMMANDS = {
     "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",
     "paper": "ptmcad.cli.paper",
+    "range": "ptmcad.cli.range",
     "verify": "ptmcad.cli.verify",
 }
 MOST_ARGUMENTS = 10_000

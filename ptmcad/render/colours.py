@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ptmcad.regionmap import Region
+from ptmcad.regionmap import MorseIndex, Region
 from ptmcad.slice import Count
 
 ONE_MAXIMUM = ("#f7f6f2", "#c7e4f6", "#eda43f", "#ca8d7a", "#45917d", "#8a5e8b", "#385880")
@@ -45,9 +45,12 @@ def fill_of(region: Region, count: Count) -> Fill:
             return UNKNOWN
         half, odd = divmod(region.total, 2)
         return NONE if region.total == 0 else _of(TWO_MAXIMA if odd else ONE_MAXIMUM, half if odd else half - 1, 0)
-    if region.index is None:
-        return UNKNOWN
-    minima, _, maxima = region.index
+    return UNKNOWN if region.index is None else fill_of_index(region.index)
+
+
+def fill_of_index(index: MorseIndex) -> Fill:
+    """The fill for numbers of minima, saddles and maxima."""
+    minima, _, maxima = index
     return _of(ONE_MAXIMUM if maxima <= 1 else TWO_MAXIMA, minima, (1, 0, 0)[maxima] if maxima < 3 else maxima - 2)
 
 

@@ -1,0 +1,239 @@
+"""``ptmcad range``: intervals of constant count along one axis, the operation range, and where stable poses snap."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ptmcad.cli.formats import formats_of
+from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.locate import point_of
+from ptmcad.config import PARAMETERS, load, slice_from_options
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.expressions import rational
+from ptmcad.memory import Bound
+from ptmcad.output import Writer, check_writable, text_writer, write_files
+from ptmcad.slice import Slice
+
+FORMATS = ("json", "png", "svg", "pdf")
+
+
+def slice_and_line(
+    config: Path | None,
+    axes: str | None,
+    along: str,
+    at: dict[str, str],
+    over: str | None,
+    sets: tuple[str, ...],
+    ranges: tuple[str, ...],
+) -> tuple[Slice, dict[str, str]]:
+    """The slice that holds the line, and the value of its other axis.
+
+    Every name of ``at`` but that of the other axis fixes a parameter. The other axis is ``over``, or the record's when
+    ``along`` is an axis of it, or else the first one of ``at``.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong with the record or the options.
+    """
+    given = _axes(config, axes)
+    if over is not None:
+        other = over
+    elif along in given:
+        other = given[1 - given.index(along)]
+    else:
+        other = next((n for n in given if n in at), next(iter(at), ""))
+    if not other:
+        raise ConfigError(f"give the values at which {along} varies, as in L2=3/2", key="--at")
+    if along == other:
+        raise ConfigError(f"{along} varies along the line: it has no fixed value", key="--at")
+    if over is None and other not in at:
+        raise ConfigError(f"the other axis, {other}, has no value: add {other}=VALUE", key="--at")
+    fixed = tuple(f"{name}={value}" for name, value in at.items() if name != other)
+    for name in at:
+        if name != other and name not in PARAMETERS:
+            raise ConfigError(f"'{name}' is neither an axis nor a parameter", key="--at")
+    asked = None if {along, other} == set(given) else f"{along},{other}"
+    slice = slice_from_options(config, axes if asked is None else asked, (*sets, *fixed), ranges)
+    return slice, {other: at[other]} if other in at else {}
+
+
+def _axes(config: Path | None, axes: str | None) -> tuple[str, ...]:
+    """The axes' names before the options of the line are looked at."""
+    if axes is not None:
+        return tuple(name.strip() for name in axes.split(","))
+    return () if config is None else load(config).axis_names
+
+
+def _formats(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...]:
+    return () if value is None else formats_of(context, parameter, value, known=FORMATS)
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What is asked for beside the slice.
+
+    Attributes
+    ----------
+    at : the value of the slice's other axis, empty when only ``over`` is asked for.
+    over : whether to tabulate the widths over the other axis, in so many rows.
+    start, pose : of the paths; ``start`` None for none.
+    """
+
+    along: str
+    at: Mapping[str, str]
+    over: bool
+    rows: int
+    start: Fraction | None
+    pose: int | None
+    digits: int
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What was found, for the terminal, the JSON and the pictures."""
+
+    text: str
+    parts: Mapping[str, Any]
+    pictures: Mapping[str, Callable[[Path], None]]
+
+
+def answer(slice: Slice, request: Request) -> Answer:
+    """Compute all that is asked for.
+
+    Raises
+    ------
+    PtmcadError
+        Of any kind.
+    """
+    from ptmcad import ranges
+    from ptmcad.ranges import document, table
+
+    texts, parts = [slice.heading], {}
+    pictures: dict[str, Callable[[Path], None]] = {}
+    if request.at:
+        found = ranges.intervals(slice, request.along, request.at)
+        texts.append(table.table(found, request.digits))
+        parts["line"] = document.line_data(found, request.digits)
+        pictures[""] = partial(_picture, "line", slice, found)
+    if request.over:
+        widths = ranges.operation_widths(slice, request.along, request.rows)
+        texts.append(table.width_table(widths, request.digits))
+        parts["over"] = document.over_data(widths, request.digits)
+        pictures["-over"] = partial(_picture, "over", slice, widths)
+    if request.start is not None:
+        paths = ranges.pose_paths(slice, request.along, request.at, request.start, request.pose)
+        texts.append(table.path_table(paths, min(request.digits, 10)))
+        parts["path"] = document.path_data(paths)
+        pictures["-path"] = partial(_picture, "path", slice, paths)
+    return Answer("\n\n".join(texts), parts, pictures)
+
+
+def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
+    from ptmcad.render import ranges as pictures  # brings matplotlib
+    from ptmcad.render.printing import save
+
+    if kind == "line":
+        figure = pictures.draw_range(slice, found)
+    elif kind == "over":
+        figure = pictures.draw_widths(slice, found)
+    else:
+        figure = pictures.draw_paths(slice, found)
+    save(figure, path)
+
+
+@click.command("range")
+@click.argument("config", required=False, type=click.Path(path_type=Path))
+@click.option("--along", required=True, metavar="NAME", help="The parameter or axis that varies.")
+@click.option("--at", "at", metavar="NAME=VALUE,...", help="What is fixed: the slice's other axis, any parameters.")
+@click.option("--slice", "axes", metavar="X,Y", help="The slice's two axes, where a name is no parameter.")
+@click.option("--set", "sets", multiple=True, metavar="NAME=VALUE", help="Fix a parameter: a number or an expression.")
+@click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", help="The range of an axis.")
+@click.option("--digits", type=click.IntRange(1, 1000), default=10, show_default=True, help="Digits of decimals.")
+@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-range]")
+@click.option("--format", "formats", callback=_formats, metavar="LIST",
+              help=f"Files to write, of {', '.join(FORMATS)}.  [default: none]")  # fmt: skip
+@click.option("--over", metavar="NAME", help="The axis over which to tabulate the operation range's width.")
+@click.option("--rows", type=click.IntRange(1, 1000), default=41, show_default=True, help="Rows of that table.")
+@click.option("--path", "start", metavar="VALUE", help="Follow stable poses from this value until they snap.")
+@click.option("--pose", type=click.IntRange(min=1), metavar="N",
+              help="Which pose, as ptmcad solve numbers them.  [default: every stable one]")  # fmt: skip
+@limit_options
+def command(
+    *,
+    config: Path | None,
+    along: str,
+    at: str | None,
+    axes: str | None,
+    sets: tuple[str, ...],
+    ranges: tuple[str, ...],
+    digits: int,
+    out: Path,
+    name: str | None,
+    formats: tuple[str, ...],
+    over: str | None,
+    rows: int,
+    start: str | None,
+    pose: int | None,
+    timeout: float | None,
+    max_memory: Bound | None,
+) -> None:
+    """Find the intervals of constant count along one axis; the operation range is where two equilibria are stable.
+
+    Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. All digits of the
+    tables are right. With --over the widest operation range is found and proved; with --path stable poses are followed
+    until they vanish, and the pose to which the mechanism snaps is told.
+
+    \b
+    Examples:
+        ptmcad range --along rho --at L2=3/2
+        ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --path 7/10 --format json,svg
+        ptmcad range --along rho --over L2 --range L2=0:2 --at F3=-10,F4=-10
+    """
+    values = {} if at is None else point_of(at)
+    slice, other = slice_and_line(config, axes, along, values, over, sets, ranges)
+    request = Request(along, other, over is not None, rows, _start(start, other), pose, digits)
+    if pose is not None and start is None:
+        raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
+    stem = name or f"{slice.name}-range"
+    with limits(timeout, max_memory):
+        pictures = [suffix for suffix in formats if suffix != "json"]
+        names = [f"{stem}{part}.{suffix}" for part in _parts(request) for suffix in pictures]
+        names += [f"{stem}.json"] * ("json" in formats)
+        if names:
+            check_writable(out, tuple(names))
+        found = answer(slice, request)
+        click.echo(found.text)
+        if names:
+            writers: dict[str, Writer] = {
+                f"{stem}{part}.{suffix}": draw for part, draw in found.pictures.items() for suffix in pictures
+            }
+            if "json" in formats:
+                from ptmcad.ranges.document import document
+
+                writers[f"{stem}.json"] = text_writer(document(slice.name, slice.mechanism, dict(found.parts)))
+            write_files(out, writers)
+
+
+def _parts(request: Request) -> list[str]:
+    """What is added to the pictures' names."""
+    return [""] * bool(request.at) + ["-over"] * request.over + ["-path"] * (request.start is not None)
+
+
+def _start(text: str | None, other: Mapping[str, str]) -> Fraction | None:
+    if text is None:
+        return None
+    if not other:
+        raise ConfigError("needs the value of the other axis too, as in --at L2=3/2", key="--path")
+    try:
+        return rational(text)
+    except ExpressionError as error:
+        raise ConfigError(str(error), key="--path") from error
