@@ -505,3 +505,31 @@ def test_errata_page_lists_what_is_not_as_printed() -> None:
     """docs/errata.md names exactly the claims that are corrected or refuted."""
     page = (Path(__file__).parents[1] / "docs" / "errata.md").read_text(encoding="utf-8")
     assert set(re.findall(r"`([a-z0-9.]+-[a-z0-9-]+)`", page)) == {*CORRECTED, *REFUTED}
+
+
+def test_widest_range_by_another_proof() -> None:
+    """4.3-widest: `ptmcad range --over` proves it by chords and derivatives of the ends, on pieces of the axis."""
+    from ptmcad.ranges.width import operation_widths
+
+    (maximum,) = operation_widths(slice_of("fig4"), "rho", rows=1).maxima
+    low, high = general.widest().widths[Fraction(1)]
+    assert maximum.at.exact == 1
+    assert maximum.width.low <= high and low <= maximum.width.high
+
+
+@pytest.mark.parametrize(("figure", "at"), [
+    ("fig2", {"L2": "3/2"}), ("fig3", {"F": -10}), ("fig4", {"L2": "3/2"}), ("fig5-text", {"F4": -20}),
+    ("fig5-caption", {"F4": -20}),
+], ids=FIGURES)  # fmt: skip
+def test_ranges_by_another_way(figure: str, at: dict[str, Any]) -> None:
+    """The operation range by `ptmcad range`, which computes the variety of the line and not of the plane."""
+    from ptmcad.paper.slices import operation_range
+    from ptmcad.ranges.line import intervals, lower, upper
+
+    ((_, fixed),) = at.items()
+    (found,) = intervals(slice_of(figure), "rho", at).operation
+    ours = operation_range(figure, "rho", fixed)
+    assert ours is not None
+    a, b, c, d = ours.bounds()
+    assert lower(found.low) <= b and a <= upper(found.low)
+    assert lower(found.high) <= d and c <= upper(found.high)
