@@ -23,7 +23,17 @@ from test_model_paper import free_length_equilibria
 from ptmcad.algebra.squared import real_root_number, squared_equations
 from ptmcad.paper import printed
 from ptmcad.paper.claim import Outcome, Verdict, judge
-from ptmcad.paper.claims import SECTIONS, all_claims, basics, extensions, general, symmetric, unloaded
+from ptmcad.paper.claims import (
+    SECTIONS,
+    all_claims,
+    basics,
+    extensions,
+    general,
+    symmetric,
+    symmetric_map,
+    unloaded,
+    unloaded_map,
+)
 from ptmcad.paper.free_lengths import FreeLengthDesign, proved_equilibrium
 from ptmcad.paper.slices import FIGURES, region_map, slice_of
 from ptmcad.regionmap import Merge
@@ -429,8 +439,8 @@ def _wrong(expression: Any) -> Any:
     ("EQUATION_10", symmetric.equation_10, Verdict.UNDECIDED),
     ("EQUATION_11", symmetric.equation_11, Verdict.UNDECIDED),
     ("EQUATION_12", symmetric.equation_12, Verdict.UNDECIDED),
-    ("BOUNDARY_15", symmetric.rose_and_astroid, Verdict.UNDECIDED),
-    ("BOUNDARY_16", symmetric.rose_and_astroid, Verdict.UNDECIDED),
+    ("BOUNDARY_15", symmetric_map.rose_and_astroid, Verdict.UNDECIDED),
+    ("BOUNDARY_16", symmetric_map.rose_and_astroid, Verdict.UNDECIDED),
     ("DETERMINANT_13", symmetric.equation_13, Verdict.UNDECIDED),
 ])  # fmt: skip
 def test_a_wrong_equation_is_not_confirmed(
@@ -459,8 +469,8 @@ def test_a_right_determinant_would_be_confirmed(monkeypatch: pytest.MonkeyPatch)
 
 def test_a_third_line_that_is_none_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(printed, "UNLOADED_LINES", (*printed.UNLOADED_LINES[:2], _wrong(printed.UNLOADED_LINES[2])))
-    assert unloaded.three_lines().verdict is Verdict.UNDECIDED
-    assert unloaded.lines_are_flat().verdict is Verdict.UNDECIDED
+    assert unloaded_map.three_lines().verdict is Verdict.UNDECIDED
+    assert unloaded_map.lines_are_flat().verdict is Verdict.UNDECIDED
 
 
 def test_six_equilibria_would_not_refute(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ import sympy as sp
 
 from ptmcad.paper import printed
 from ptmcad.paper.claim import Claim, Fact, Outcome, judge, unchecked, undecided
-from ptmcad.paper.claims.symmetric import no_level_rod_is_stable, signs_of_heights
+from ptmcad.paper.heights import no_level_rod_is_stable, signs_of_heights
 from ptmcad.paper.operation_range import widest
 from ptmcad.paper.slices import curves, equilibria_at, operation_range, ranges, region_map
 from ptmcad.paper.symbolic import F3, F4, L1, L2, VERTICAL, gradient, k, rho

@@ -13,7 +13,8 @@ from random import Random
 import sympy as sp
 
 from ptmcad.paper.claim import Claim, Outcome, Verdict, judge, unchecked
-from ptmcad.paper.claims.unloaded import always_parallelogram, singular_flat, stable_by_region
+from ptmcad.paper.claims.unloaded import always_parallelogram, singular_flat
+from ptmcad.paper.claims.unloaded_map import stable_by_region
 from ptmcad.paper.printed import SIN_SUM
 from ptmcad.paper.slices import FIGURES, equilibria_at, ranges, region_map
 from ptmcad.paper.symbolic import F3, F4, L1, L2, UNLOADED, gradient, k, rho, sextic
