@@ -474,9 +474,15 @@ def test_a_third_line_that_is_none_is_noticed(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_six_equilibria_would_not_refute(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With a witness that has six equilibria only, the claim on free lengths stands."""
+    """A witness with six equilibria decides nothing: a lower bound can not confirm the claim either."""
     monkeypatch.setattr(extensions, "TWELVE", ("0.7", "1", "1.5", "0.2", "-0.1", "-0.1"))
-    assert extensions.at_most_six().verdict is Verdict.CONFIRMED
+    assert extensions.at_most_six().verdict is Verdict.UNDECIDED
+
+
+def test_a_failed_derivation_confirms_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """4.1-non-flat: were the closed form wrong, the paper's "no general information" would not become true by it."""
+    monkeypatch.setattr(unloaded_map, "on_triangle", lambda expression: _wrong(unloaded.on_triangle(expression)))
+    assert unloaded_map.non_flat_stable().verdict is Verdict.UNDECIDED
 
 
 @pytest.mark.parametrize("step", range(16))

@@ -43,6 +43,7 @@ ul { margin: .3rem 0; padding-left: 1.3rem; } li, p { overflow-wrap: anywhere; }
 figure { margin: 1rem 0; } img { max-width: 100%; height: auto; background: #fff; display: block; margin: .4rem 0; }
 pre { overflow-x: auto; background: var(--soft); padding: .6rem; font-size: .85rem; }
 div.wide { overflow-x: auto; }
+.equation { white-space: pre-wrap; overflow-wrap: anywhere; }
 table { border-collapse: collapse; } td, th { border: 1px solid var(--line); padding: .2rem .6rem; text-align: left; }
 a { color: inherit; }
 @media (max-width: 45rem) {
@@ -179,7 +180,11 @@ def index_html(judged: Sequence[Judged], figures: Sequence[Illustration], equati
             f"<pre>{escape(f.table)}</pre>",
             "</figure>",
         ]
-    body.append('<h2 id="equations">Equations</h2>')
+    body += [
+        '<h2 id="equations">Equations</h2>',
+        "<p>Derived from the model's potential. f3 = F3/k, f4 = F4/k, f3x = F3x/k, f4x = F4x/k; t1, t2 are the tangents "
+        "of the half angles; in (10) to (13) L1 is the length of both rods.</p>",
+    ]
     for e in equations:
-        body += [f"<p>{escape(e.number)}: {escape(e.what)}</p>", f"<pre>{escape(e.text)}</pre>"]
+        body += [f"<p>{escape(e.number)}: {escape(e.what)}</p>", f'<pre class="equation">{escape(e.text)}</pre>']
     return _page("The paper, reproduced", body)

@@ -75,7 +75,7 @@ def always_up_to_six() -> Outcome:
     circle = all(sp.expand(g.subs(UNLOADED).subs(rho, 0) + k * L1 * L2 * SIN_SUM) == 0 for g in gradient())
     generic = up_to_six()
     return judge(
-        generic.verdict is Verdict.CONFIRMED and not at_base,
+        generic.verdict is Verdict.CONFIRMED and only_there and not at_base,
         (
             *generic.evidence,
             "without loads and with rho = 0 it vanishes identically: both derivatives are -k L1 L2 sin(th1 + "
