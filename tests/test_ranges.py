@@ -272,3 +272,15 @@ def test_the_table_names_what_happens() -> None:
     assert "0.2149411958    0.8034910267    6      2" in text
     assert "a saddle and a maximum meet and vanish" in text
     assert "operation range: 0.2149411958 to 0.8034910267, width 0.5885498309" in text
+
+
+def test_a_tangent_joins_the_intervals_and_stays_listed() -> None:
+    """L2 = 3/2 + s^2 touches the wall 2 rho = L2 + 1 at s = 0, rho = 5/4, from one side."""
+    slice = ptmcad.slice_from_mapping(
+        {"axes": {"s": ["-1/2", "1/2"], "rho": ["1", "2"]}, "parameters": {"L2": "3/2+s^2"}}
+    )
+    found = intervals(slice, "s", {"rho": "5/4"})
+    (change,) = found.changes
+    assert change.event is Event.UNCHANGED and change.at.exact == 0 and change.text == "tangent: counts unchanged"
+    (only,) = found.intervals
+    assert only.low == Fraction(-1, 2) and only.high == Fraction(1, 2) and only.stable == 2
