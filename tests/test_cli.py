@@ -278,6 +278,7 @@ def test_help_examples_about_a_result_run(
     monkeypatch.chdir(tmp_path)
     Path("slice-L2-rho.json").write_text(shipped("fig2").to_json(), encoding="utf-8")
     Path("points.csv").write_text("rho,L2\n7/10,3/2\n", encoding="utf-8")
+    Path("configs").symlink_to(Path(__file__).resolve().parents[1] / "configs")
     assert run(example.split()) == 0
 
 

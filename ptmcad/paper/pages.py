@@ -182,7 +182,7 @@ def index_html(judged: Sequence[Judged], figures: Sequence[Illustration], equati
         ]
     body += [
         '<h2 id="equations">Equations</h2>',
-        "<p>Derived from the model's potential. f3 = F3/k, f4 = F4/k, f3x = F3x/k, f4x = F4x/k; t1, t2 are the tangents "
+        "<p>Derived from the model's potential. f3 = F3/k, f4 = F4/k, f3x = F3x/k, f4x = F4x/k; t1, t2 are tangents "
         "of the half angles; in (10) to (13) L1 is the length of both rods.</p>",
     ]
     for e in equations:
