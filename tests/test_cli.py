@@ -270,7 +270,7 @@ def help_examples() -> list[str]:
     return examples
 
 
-@pytest.mark.parametrize("example", [e for e in help_examples() if not e.startswith("classify")])
+@pytest.mark.parametrize("example", [e for e in help_examples() if not e.startswith(("classify", "paper"))])
 def test_help_examples_about_a_result_run(
     shipped: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, example: str
 ) -> None:

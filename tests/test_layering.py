@@ -32,6 +32,7 @@ EXACT = (
     "locate",
     "ranges",
     "verification",
+    "paper",
 )
 FLINT_POLYNOMIALS = ("poly", "mpoly", "mpoly_ctx", "mpoly_vec", "series")
 
@@ -160,7 +161,7 @@ def test_the_fork_comes_before_everything_large(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", MODULES, ids=relative)
 def test_data_flows_one_way(path: Path) -> None:
     """What computes knows nothing of how results are shown, asked for or timed."""
-    if part(path) not in {"cli", "bench", "render", "__main__"}:
+    if part(path) not in {"cli", "bench", "render", "paper", "__main__"}:
         allowed = {"regionmap": {"render"}, "slicevariety": {"export"}, "export": {"export"}}.get(part(path), set())
         assert not imported_parts(path) & {"cli", "bench", "render", "export"} - allowed
     if part(path) in {"errors", "expressions", "textfile"}:

@@ -27,6 +27,7 @@ COMMANDS = {
     "classify": "ptmcad.cli.classify",
     "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",
+    "paper": "ptmcad.cli.paper",
     "range": "ptmcad.cli.range",
     "variety": "ptmcad.cli.variety",
     "verify": "ptmcad.cli.verify",

@@ -1,0 +1,40 @@
+"""``ptmcad paper``: the whole paper of Wenger and Chablat computed anew, with a verdict on every claim."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from ptmcad.cli.limits import limit_options, limits, tell_deadline
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.memory import Bound
+from ptmcad.output import check_writable
+
+
+@click.command("paper")
+@click.option("--out", type=click.Path(path_type=Path), default=Path("paper"), show_default=True,
+              help="Folder for the files.")  # fmt: skip
+@limit_options
+def command(*, out: Path, timeout: float | None, max_memory: Bound | None) -> int:
+    """Reproduce the paper: equations, figures 2 to 5, and every claim confirmed, corrected or refuted.
+
+    Writes index.html, claims.html, claims.md, claims.json, equations.md, equations.tex, and for every figure the region
+    map and the poses at its point (PNG, SVG) and the result (JSON). Prints what is not as printed. The exit status is 1
+    when a claim stayed undecided.
+
+    \b
+    Example:
+        ptmcad paper --out paper
+    """
+    with limits(timeout, max_memory):
+        check_writable(out)  # before the libraries are loaded, which takes a second
+        from ptmcad.paper.claim import Verdict
+        from ptmcad.paper.reproduce import reproduce
+
+        tell_deadline(timeout)  # anew: the time that the import took is not the computation's
+        with ProgressBar() as progress:
+            found = reproduce(out, progress)
+        click.echo(found.table())
+        click.echo(f"written to {out}: begin with {out / 'index.html'}")
+    return 1 if found.number(Verdict.UNDECIDED) else 0
