@@ -26,6 +26,7 @@ from ptmcad.version import __version__
 COMMANDS = {
     "classify": "ptmcad.cli.classify",
     "locate": "ptmcad.cli.locate",
+    "report": "ptmcad.cli.report",
     "verify": "ptmcad.cli.verify",
 }
 MOST_ARGUMENTS = 10_000
