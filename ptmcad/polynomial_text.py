@@ -1,7 +1,7 @@
 """A polynomial in the two axes as text for other programs.
 
-Guarantee: the text is the polynomial exactly, with integer coefficients, and has the value zero on its curve. A name that
-means something else to the program (``I``, ``D``, ``lambda``) is written so that it does not.
+Guarantee: the text is the polynomial exactly, with integer coefficients. A name that means something else to the
+program (``I``, ``D``, ``lambda``) is written so that it does not.
 """
 
 from __future__ import annotations
@@ -14,95 +14,17 @@ from ptmcad.plane import PlanePolynomial
 
 STYLES = ("text", "sympy", "maple", "mathematica", "latex")
 
-_MAPLE = frozenset(
-    [
-        "and",
-        "assuming",
-        "break",
-        "by",
-        "catch",
-        "description",
-        "do",
-        "done",
-        "elif",
-        "else",
-        "end",
-        "error",
-        "evalf",
-        "export",
-        "fi",
-        "finally",
-        "for",
-        "from",
-        "global",
-        "if",
-        "implies",
-        "in",
-        "intersect",
-        "I",
-        "D",
-        "O",
-        "Pi",
-        "gamma",
-        "Gamma",
-        "Beta",
-        "Zeta",
-        "Catalan",
-        "infinity",
-        "local",
-        "minus",
-        "mod",
-        "module",
-        "next",
-        "not",
-        "od",
-        "option",
-        "options",
-        "or",
-        "proc",
-        "quit",
-        "read",
-        "return",
-        "save",
-        "stop",
-        "subset",
-        "then",
-        "to",
-        "true",
-        "false",
-        "FAIL",
-        "try",
-        "union",
-        "use",
-        "while",
-        "xor",
-        "Digits",
-    ]
-)
-_MATHEMATICA = frozenset(
-    [
-        "C",
-        "D",
-        "E",
-        "I",
-        "K",
-        "N",
-        "O",
-        "Pi",
-        "Degree",
-        "Infinity",
-        "Catalan",
-        "Gamma",
-        "Beta",
-        "Zeta",
-        "True",
-        "False",
-        "Null",
-        "All",
-        "None",
-    ]
-)
-_GREEK = frozenset(["alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega"])  # fmt: skip
+_WORDS = {
+    "maple": """and assuming break by catch description do done elif else end error evalf export fi finally for from
+        global if implies in intersect local minus mod module next not od option options or proc quit read return save
+        stop subset then to true false FAIL try union use while xor I D O Pi gamma Gamma Beta Zeta Catalan infinity
+        Digits""",
+    "mathematica": "C D E I K N O Pi Degree Infinity Catalan Gamma Beta Zeta True False Null All None",
+    "latex": """alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi
+        chi psi omega""",
+}
+_KNOWN = {style: frozenset(words.split()) for style, words in _WORDS.items()}
+"""Words that mean something to the program: constants and keywords; for LaTeX, the names of Greek letters."""
 
 
 def polynomial_text(p: PlanePolynomial, names: tuple[str, str], style: str) -> str:
@@ -144,17 +66,18 @@ def _symbol(name: str, style: str) -> str:
         case "sympy":
             return f"{name}_" if keyword.iskeyword(name) or keyword.issoftkeyword(name) else name
         case "maple":
-            return f"{name}_" if name in _MAPLE else name
+            return f"{name}_" if name in _KNOWN[style] else name
         case "mathematica":
             name = name.replace("_", "$")
-            return f"{name}$" if name in _MATHEMATICA else name
+            return f"{name}$" if name in _KNOWN[style] else name
         case "latex":
             match = re.fullmatch(r"([A-Za-z]+?)_?(\d+[a-z]*)?", name)
             if match is None:
                 return rf"\mathrm{{{name.replace('_', chr(92) + '_')}}}"
             letters, below = match[1], f"_{{{match[2]}}}" if match[2] else ""
-            word = f"\\{letters}" if letters in _GREEK else letters if len(letters) == 1 else rf"\mathrm{{{letters}}}"
-            return word + below
+            if letters in _KNOWN[style]:
+                return f"\\{letters}{below}"
+            return (letters if len(letters) == 1 else rf"\mathrm{{{letters}}}") + below
     return name
 
 

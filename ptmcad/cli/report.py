@@ -27,7 +27,8 @@ def _file_name(_context: click.Context, _parameter: click.Parameter, value: str 
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the page.  [default: that of RESULT]")
 @click.option("--name", callback=_file_name, metavar="NAME", help="Name of the page.  [default: the slice's name]")
 @click.option("--bench", type=click.Path(path_type=Path), metavar="FILE",
-              help="A curve of error against time to show.  [default: NAME.error-time.json beside RESULT, if there]")  # fmt: skip
+              help="A measurement of error against time to show.  "
+                   "[default: NAME.error-time.json beside RESULT, if there is one]")  # fmt: skip
 @click.option("--no-timings", is_flag=True, help="Leave run times out, so that the page is the same every time.")
 @limit_options
 def command(

@@ -98,7 +98,7 @@ function fillPanel(number, cell) {
   head.append(title, button);
   const given = [...cell.sample.map(([name, text]) => `${name} = ${text}`),
     ...cell.parameters.filter(([name]) => !cell.sample.some(([axis]) => axis === name))
-      .map(([name, exact, decimal]) => `${name} = ${exact}${decimal ? ` ${decimal}` : ""}`)];
+      .map(([name, text]) => `${name} = ${text}`)];
   panel.replaceChildren(head, html("p", "hint", `At the sample: ${given.join(", ")}.`));
   cells.redraw = null;
   if (!cell.equilibria.length) {

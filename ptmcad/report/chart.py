@@ -22,6 +22,11 @@ from ptmcad.render.outline import Outline
 from ptmcad.render.slivers import thin_regions, zooms
 from ptmcad.table import count_text
 
+Mark = tuple[str, tuple[float, float]]
+"""A letter and its place in the view, as fractions of the sides."""
+Label = tuple[int, float, float]
+"""A region and the place of its count."""
+
 SIDE, LEFT, BOTTOM, RIM = 600, 110, 100, 24
 """In the picture's own units: the window's side, the room for the axes' numbers and names, the rim."""
 SHOWN = 300
@@ -97,12 +102,7 @@ def _pattern(hatch: str) -> str:
     )
 
 
-def _picture(
-    seen: Outline,
-    name: str,
-    marks: Sequence[tuple[str, tuple[float, float]]],
-    labels: Sequence[tuple[int, float, float]],
-) -> str:
+def _picture(seen: Outline, name: str, marks: Sequence[Mark], labels: Sequence[Label]) -> str:
     result = seen.result
     count = result.slice.count
     parts = [
@@ -242,7 +242,7 @@ def _fixed(value: Fraction, decimals: int) -> str:
     return f"−{text}" if value < 0 else text
 
 
-def _region_labels(seen: Outline) -> list[tuple[int, float, float]]:
+def _region_labels(seen: Outline) -> list[Label]:
     """For each region that is thick enough for its count to be written into it, a point in the thick of it."""
     pixels, least = 60, 3
     image = np.pad(seen.raster(pixels, pixels), 1, constant_values=-1)

@@ -1,14 +1,14 @@
 """The equilibria at a cell's sample point, from the boxes that the result stores around them.
 
-Guarantee: every text is within one unit of its last digit of the number it stands for, if the box holds the equilibrium,
-as `ptmcad.verify` checks. Numbers that are not texts are for drawing only.
+Guarantee: every text is within one unit of its last digit of the number it stands for, if the box holds the
+equilibrium, as `ptmcad.verify` checks. Numbers that are not texts are for drawing only.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, PoleError
 from ptmcad.numerals import shortest_text, text_of
@@ -37,6 +37,7 @@ SPRINGS = (("k1", "A1", "A4"), ("k2", "A2", "A3"), ("k3", "A3", "A4"))
 _DIGITS = 7
 
 Point = tuple[Bounds, Bounds]
+Value = TypeVar("Value")
 
 
 def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
@@ -54,7 +55,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     potential = potential_at(result.system, values)
     drawn = result.system.unknowns == UNKNOWNS and all(name in values for name in NEEDED)
     return {
-        "parameters": [[n, text_of(v), _plain(v)] for n, v in _told(values).items()],
+        "parameters": [[n, both(v)] for n, v in told(values).items()],
         "loads": [[float(values["F3x"]), float(values["F3"])], [float(values["F4x"]), float(values["F4"])]]
         if drawn
         else [],
@@ -64,7 +65,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     }
 
 
-def _told(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
+def told(values: Mapping[str, Value]) -> dict[str, Value]:
     """The parameters worth telling: one k when all springs have it."""
     springs = {values.get(name) for name in ("k1", "k2", "k3")}
     if len(springs) == 1 and None not in springs:
@@ -74,13 +75,9 @@ def _told(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
 
 
 def _plain(value: Fraction) -> str:
-    """A decimal beside a fraction; empty when the number is written without a fraction bar anyway."""
-    if value.denominator == 1 or shortest_text(value) == text_of(value):
+    """A decimal beside a fraction; empty for an integer."""
+    if value.denominator == 1:
         return ""
-    return _decimal_of(value)
-
-
-def _decimal_of(value: Fraction) -> str:
     text = shortest_text(value)
     return f"= {text}" if "/" not in text else f"≈ {decimal_text(exactly(value), last_place([exactly(value)], 7))}"
 
@@ -95,11 +92,12 @@ def _equilibria(cell: Cell, values: Mapping[str, Fraction], potential: Potential
     energies = [energy(potential, box) for box in boxes]
     nodes = [_nodes(box, values) for box in boxes]
     lengths = [[square_root(_squared_distance(where[a], where[b])) for _, a, b in SPRINGS] for where in nodes]
-    forces = [[times(exactly(values[k]), l) for (k, _, _), l in zip(SPRINGS, row, strict=True)] for row in lengths]
+    forces = [
+        [times(exactly(values[k]), length) for (k, _, _), length in zip(SPRINGS, row, strict=True)] for row in lengths
+    ]
     energy_place = last_place(energies, _DIGITS)
-    length_place = last_place(
-        [l for row in lengths for l in row] + [x for w in nodes for p in w.values() for x in p], 7
-    )
+    coordinates = [x for where in nodes for place in where.values() for x in place]
+    length_place = last_place([length for row in lengths for length in row] + coordinates, _DIGITS)
     force_place = last_place([f for row in forces for f in row], _DIGITS)
     order = {"++": 0, "+-": 1, "--": 2}
     found = []
@@ -118,8 +116,8 @@ def _equilibria(cell: Cell, values: Mapping[str, Fraction], potential: Potential
                     f"({decimal_text(nodes[k][n][0], length_place)}, {decimal_text(nodes[k][n][1], length_place)})"
                     for n in ("A3", "A4")
                 ],
-                "lengths": [decimal_text(l, length_place) for l in lengths[k]],
-                "forces": [decimal_text(f, force_place) for f in forces[k]],
+                "lengths": [decimal_text(length, length_place) for length in lengths[k]],
+                "forces": [decimal_text(force, force_place) for force in forces[k]],
             }
         )
     return found

@@ -87,16 +87,21 @@ def _decode(data: object) -> ErrorCurve:
 def error_section(curve: ErrorCurve) -> str:
     """The section: picture, legend and table."""
     rows = ((escape(s.name), f"{x:.4g}", f"{y:.3g}") for s in curve.series for x, y in s.points)
-    legend = "".join(
-        f'<li><svg class="swatch line" viewBox="-15 -9 30 18" aria-hidden="true"><path class="series s{k}" '
-        f'd="M-14 0H14"/><path class="point s{k}" d="{_MARKS[k % len(_MARKS)]}"/></svg><span>{escape(s.name)}</span></li>'
-        for k, s in enumerate(curve.series)
-    )
+    legend = "".join(f"<li>{_sample(k)}<span>{escape(s.name)}</span></li>" for k, s in enumerate(curve.series))
     return (
         '<section aria-labelledby="h-errors"><h2 id="h-errors">Error against time</h2>'
         f'<p>{escape(curve.error)}</p>{"".join(_picture(curve))}<ul class="legend">{legend}</ul>'
         f"<details><summary>The measurements</summary>{table(('method', 'seconds', 'error'), rows, 'Measurements')}"
         "</details></section>"
+    )
+
+
+def _sample(number: int) -> str:
+    """The line and the mark of a series, for the legend."""
+    mark = _MARKS[number % len(_MARKS)]
+    return (
+        '<svg class="swatch line" viewBox="-15 -9 30 18" aria-hidden="true">'
+        f'<path class="series s{number}" d="M-14 0H14"/><path class="point s{number}" d="{mark}"/></svg>'
     )
 
 

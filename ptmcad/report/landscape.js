@@ -2,7 +2,7 @@
 
 const GRID = 72;
 const BANDS = 16;
-const PLOT = { side: 400, left: 74, bottom: 70, rim: 14 };
+const PLOT = { side: 400, left: 84, bottom: 74, rim: 34 };
 
 function energyTable(terms, steps) {
   const powers = [];

@@ -10,22 +10,33 @@ function loadVectors(cell, size) {
   return cell.loads.map((f) => (most > 0 ? [f[0] / most * 0.22 * size, f[1] / most * 0.22 * size] : [0, 0]));
 }
 
-// One frame for all poses of a cell, so that they can be compared: [left, bottom, width, height, size].
+// One scale and one horizontal range for all poses of a cell, so that they can be compared: [left, width, size].
 function frameOf(cell) {
-  const box = [Infinity, Infinity, -Infinity, -Infinity];
-  const take = ([x, y]) => {
-    box[0] = Math.min(box[0], x); box[1] = Math.min(box[1], y);
-    box[2] = Math.max(box[2], x); box[3] = Math.max(box[3], y);
-  };
-  for (const pose of cell.equilibria) pose.nodes.forEach(take);
-  const size = Math.max(box[2] - box[0], box[3] - box[1]) || 1;
-  const loads = loadVectors(cell, size);
+  let [left, right, low, high] = [0, 0, 0, 0];
   for (const pose of cell.equilibria) {
-    loads.forEach((f, k) => take([pose.nodes[2 + k][0] + f[0], pose.nodes[2 + k][1] + f[1]]));
+    for (const [x, y] of pose.nodes) {
+      [left, right] = [Math.min(left, x), Math.max(right, x)];
+      [low, high] = [Math.min(low, y), Math.max(high, y)];
+    }
   }
-  take([0, -0.12 * size]);
-  const pad = 0.1 * size;
-  return [box[0] - pad, box[1] - pad, box[2] - box[0] + 2 * pad, box[3] - box[1] + 2 * pad, size];
+  const size = Math.max(right - left, high - low) || 1;
+  for (const pose of cell.equilibria) {
+    loadVectors(cell, size).forEach(([fx], k) => {
+      const tip = pose.nodes[2 + k][0] + fx;
+      [left, right] = [Math.min(left, tip), Math.max(right, tip)];
+    });
+  }
+  const pad = 0.08 * size;
+  return [left - pad, right - left + 2 * pad, size];
+}
+
+// The vertical range of one pose, with its supports and loads: [bottom, height].
+function verticalRange(cell, pose, size) {
+  const loads = loadVectors(cell, size);
+  const heights = [-0.1 * size, ...pose.nodes.map((node) => node[1]), ...loads.map((f, k) => pose.nodes[2 + k][1] + f[1])];
+  const [low, high] = [Math.min(...heights), Math.max(...heights)];
+  const pad = 0.06 * size;
+  return [low - pad, high - low + 2 * pad];
 }
 
 function zigzag([x, y], [u, v], amplitude) {
@@ -43,8 +54,9 @@ function zigzag([x, y], [u, v], amplitude) {
 }
 
 function drawPose(cell, pose, frame) {
-  const [left, bottom, width, height, size] = frame;
-  const unit = 200 / Math.max(width, height);
+  const [left, width, size] = frame;
+  const [bottom, height] = verticalRange(cell, pose, size);
+  const unit = 240 / width;
   const at = ([x, y]) => [(x - left) * unit, (bottom + height - y) * unit];
   const path = (points) => "M" + points.map((p) => at(p).map((c) => c.toFixed(2)).join(" ")).join("L");
   const picture = svg("svg", {
@@ -94,7 +106,7 @@ function springTable(cell) {
   box.setAttribute("aria-label", "Poses in numbers");
   const table = html("table");
   const head = table.createTHead().insertRow();
-  const columns = ["", "θ₁", "θ₂", "energy", "A₃", "A₄"];
+  const columns = ["pose", "θ₁", "θ₂", "energy", "A₃", "A₄"];
   for (const name of SPRING_NAMES) columns.push(`length ${name}`, `force ${name}`);
   for (const text of columns) {
     const th = html("th", "", text);
@@ -106,7 +118,11 @@ function springTable(cell) {
     const row = body.insertRow();
     const entries = [pose.kind, pose.angles[0], pose.angles[1], pose.energy, pose.places[0], pose.places[1]];
     pose.lengths.forEach((length, k) => entries.push(length, pose.forces[k]));
-    for (const text of entries) row.insertCell().textContent = text;
+    entries.forEach((text, k) => {
+      const entry = row.insertCell();
+      entry.dataset.label = columns[k];
+      entry.append(html("div", "", text));
+    });
   }
   box.append(table);
   return box;

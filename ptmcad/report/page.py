@@ -1,7 +1,7 @@
 """The page: the template filled with the map, its data and the sections.
 
-Guarantee: the policy in its head allows nothing but the page's own style sheet and script, told by their hashes; the data
-can not end the element it stands in. The same result gives the same bytes, timings apart.
+Guarantee: the policy in its head allows nothing but the page's own style sheet and script, told by their hashes; the
+data can not end the element it stands in. The same result gives the same bytes, timings apart.
 """
 
 from __future__ import annotations

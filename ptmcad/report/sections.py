@@ -15,20 +15,14 @@ from ptmcad.render.colours import Fill, fill_of
 from ptmcad.render.legend import entries
 from ptmcad.report.bounds import exactly
 from ptmcad.report.chart import Chart, counts_text, hatch_id
-from ptmcad.report.equilibria import both
+from ptmcad.report.equilibria import both, told
 from ptmcad.report.reproduction import reproduction
 from ptmcad.slice import Count
 from ptmcad.table import certified_digits
 
 LONGEST_FORMULA = 100_000
 """Characters of a formula that the page holds in all its forms."""
-_PROGRAMS = (
-    ("text", "Text"),
-    ("sympy", "SymPy"),
-    ("maple", "Maple"),
-    ("mathematica", "Mathematica"),
-    ("latex", "LaTeX"),
-)
+_PROGRAMS = {"text": "text", "sympy": "SymPy", "maple": "Maple", "mathematica": "Mathematica", "latex": "LaTeX"}
 _COUNTED = {
     Count.STABLE: "regions are told apart by the number of stable equilibria",
     Count.TOTAL: "regions are told apart by the number of equilibria",
@@ -45,12 +39,18 @@ Row = Iterable[str]
 
 def table(head: Row, rows: Iterable[Row], label: str) -> str:
     """A table in a box that scrolls by itself; the entries are markup already."""
-    above = "".join(f'<th scope="col">{h}</th>' for h in head)
-    body = "".join(f"<tr>{''.join(f'<td>{c}</td>' for c in row)}</tr>" for row in rows)
+    names = tuple(head)
+    above = "".join(f'<th scope="col">{name}</th>' for name in names)
+    body = "".join(f"<tr>{''.join(map(_entry, names, row))}</tr>" for row in rows)
     return (
         f'<div class="scroll" role="region" tabindex="0" aria-label="{escape(label)}"><table>'
         f"<thead><tr>{above}</tr></thead><tbody>{body}</tbody></table></div>"
     )
+
+
+def _entry(name: str, entry: str) -> str:
+    """An entry with its column's name, which takes its place before it where the screen is narrow."""
+    return f'<td data-label="{escape(name)}"><div>{entry}</div></td>'
 
 
 def copied(text: str, label: str) -> str:
@@ -88,7 +88,7 @@ def question(result: RegionMap) -> str:
     slice = result.slice
     axes = "; ".join(f"{a.name} from {both(a.low)} to {both(a.high)}" for a in slice.axes)
     names = slice.axis_names
-    values = [(n, e.to_text(names)) for n, e in slice.parameters.items() if n not in names]
+    values = [(n, e.to_text(names)) for n, e in told(slice.parameters).items() if n not in names]
     shown = ", ".join(f"{n} = {v}" for n, v in values if v != "0")
     zero = ", ".join(n for n, v in values if v == "0")
     mechanism = "the planar tensegrity mechanism of Wenger and Chablat" if slice.mechanism == "ptm" else slice.mechanism
@@ -116,18 +116,21 @@ def legend(result: RegionMap, chart: Chart) -> str:
     """What colours and lines mean, in words."""
     parts = []
     for entry in entries(result, chart.thin_walls, samples=False, hidden=chart.hidden):
-        if not entry.lines:
-            continue
-        mark = ""
         match entry.mark:
             case Fill() as fill:
-                mark = swatch(fill)
+                parts.append(f"<li>{swatch(fill)}<span>{escape(': '.join(_head_and_rest(entry.lines)))}</span></li>")
             case float(width):
-                kind = "wall strong" if width > 1 else "wall"
-                mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true"><path class="{kind}" d="M0 9H30"/></svg>'
-        text = " ".join(entry.lines)
-        parts.append(f"<li>{mark}<span>{escape(text)}</span></li>" if mark else f"<li><b>{escape(text)}</b></li>")
+                line = f'<path class="{"wall strong" if width > 1 else "wall"}" d="M0 9H30"/>'
+                mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true">{line}</svg>'
+                parts.append(f"<li>{mark}<span>{escape(' '.join(entry.lines))}</span></li>")
+            case _ if entry.lines:
+                parts.append(f"<li><b>{escape(' '.join(entry.lines))}</b></li>")
     return f'<ul class="legend" aria-label="Legend">{"".join(parts)}</ul>'
+
+
+def _head_and_rest(lines: tuple[str, ...]) -> tuple[str, ...]:
+    """A count, and what is said about its regions in one line."""
+    return tuple(" ".join(part) for part in (lines[:1], lines[1:]) if part)
 
 
 def regions(result: RegionMap) -> str:
@@ -182,12 +185,12 @@ def _formula(component: Component, names: tuple[str, str]) -> str:
     if sum(len(integer_text(c)) + 20 for _, _, c in p.terms) > LONGEST_FORMULA:
         return "<p>The formula is too long for this page; the result has it.</p>"
     parts = ["<p>The curve is where this polynomial is zero.</p>"]
-    for style, program in _PROGRAMS:
+    for style, program in _PROGRAMS.items():
         text = polynomial_text(p, names, style)
         if style == "sympy":
             x, y = symbols(names, style)
             text = f'{x}, {y} = sympy.symbols("{names[0]} {names[1]}")\np = {text}'
-        parts.append(copied(text, f"as {program}" if program != "Text" else "as text"))
+        parts.append(copied(text, f"as {program}"))
     return "".join(parts)
 
 
