@@ -102,7 +102,7 @@ function fillPanel(number, cell) {
   panel.replaceChildren(head, html("p", "hint", `At the sample: ${given.join(", ")}.`));
   cells.redraw = null;
   if (!cell.equilibria.length) {
-    const why = DATA.drawable ? "The result stores no poses for this cell." : "Poses of this mechanism can not be drawn.";
+    const why = DATA.drawable ? "The result stores no poses for this cell." : "The poses of this mechanism can not be drawn.";
     panel.append(html("p", "", why));
     return;
   }
@@ -111,7 +111,7 @@ function fillPanel(number, cell) {
   const grid = html("div", "grid-of-poses");
   const pointed = (k, on) => {
     figures[k].classList.toggle("seen", on);
-    marks[k].classList.toggle("seen", on);
+    for (const mark of landscape.marks[k]) mark.classList.toggle("seen", on);
   };
   for (const pose of cell.equilibria) {
     const figure = html("figure", `pose ${pose.kind}`);
@@ -125,9 +125,9 @@ function fillPanel(number, cell) {
     figures.push(figure);
     grid.append(figure);
   }
-  panel.append(grid);
+  panel.append(grid, html("p", "hint", "Thick lines: the rods A₁A₃ and A₂A₄; zigzag: springs; arrows: the loads at A₃ and A₄. "
+    + "A₁ is pinned, A₂ sits on the slider. All poses are drawn to one scale; a strong frame means stable."));
   const landscape = drawLandscape(cell, pointed);
-  const marks = landscape.box.querySelectorAll(".equilibrium");
   cells.redraw = landscape.redraw;
   const numbers = html("details");
   numbers.append(html("summary", "", "Poses in numbers (every digit certified to one unit of the last place)"), springTable(cell));

@@ -10,8 +10,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from html import escape
+from math import ceil
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from ptmcad.numerals import magnitude, shortest_text
@@ -31,6 +33,8 @@ SIDE, LEFT, BOTTOM, RIM = 600, 110, 100, 24
 """In the picture's own units: the window's side, the room for the axes' numbers and names, the rim."""
 SHOWN = 300
 """Pixels of the map's side on a phone: regions thinner than three of them get a view of their own."""
+LABEL, _LETTER = 42, 0.55
+"""Size of the counts' type on phones, in the picture's units, and a character's width against it, on the whole."""
 _MOST_TICKS = 6
 _NAME = 24
 
@@ -75,8 +79,8 @@ def pattern_defs(fills: Sequence[Fill]) -> str:
 
 
 def hatch_id(hatch: str) -> str:
-    """The pattern's name: matplotlib's hatch characters as numbers."""
-    return "hatch-" + "-".join(f"{ord(c):x}" for c in hatch)
+    """The pattern's name: matplotlib's hatch character, which is repeated for density, as a number, and how often."""
+    return f"hatch-{ord(hatch[0]):x}-{len(hatch)}"
 
 
 def _pattern(hatch: str) -> str:
@@ -208,7 +212,7 @@ def _axes(seen: Outline) -> Iterator[str]:
             at = float(position) * SIDE
             if number == 0:
                 yield f'<path class="tick" d="M{at:.1f} {SIDE}v8"/>'
-                yield f'<text class="number x" x="{at:.1f}" y="{SIDE + 14}" dy=".8em">{value}</text>'
+                yield f'<text class="number x" x="{at:.1f}" y="{SIDE + 18}" dy=".8em">{value}</text>'
             else:
                 yield f'<path class="tick" d="M0 {SIDE - at:.1f}h-8"/>'
                 yield f'<text class="number y" x="-14" y="{SIDE - at:.1f}" dy=".36em">{value}</text>'
@@ -243,19 +247,21 @@ def _fixed(value: Fraction, decimals: int) -> str:
 
 
 def _region_labels(seen: Outline) -> list[Label]:
-    """For each region that is thick enough for its count to be written into it, a point in the thick of it."""
-    pixels, least = 60, 3
-    image = np.pad(seen.raster(pixels, pixels), 1, constant_values=-1)
+    """For each region into which its count can be written, even in the larger type of phones, a point deep inside."""
+    pixels = 60
+    image = seen.raster(pixels, pixels)
     found = []
-    for number in range(len(seen.result.regions)):
-        mask, depth, last = image == number, 0, None
-        while mask.any():
-            depth, last = depth + 1, mask
-            inner = mask[1:-1] & mask[:-2] & mask[2:]
-            mask = np.pad(inner[:, 1:-1] & inner[:, :-2] & inner[:, 2:], 1)
-        if last is None or depth < least:
+    for number, region in enumerate(seen.result.regions):
+        half = ceil(len(count_text(region, seen.result.slice.count)) * LABEL * _LETTER / 2 * pixels / SIDE) + 1
+        room = sliding_window_view(np.pad(image == number, ((2, 2), (half, half))), (5, 2 * half + 1)).all(axis=(2, 3))
+        if not room.any():
             continue
+        while room.any():
+            last = room
+            padded = np.pad(room, 1)
+            inner = padded[1:-1] & padded[:-2] & padded[2:]
+            room = inner[:, 1:-1] & inner[:, :-2] & inner[:, 2:]
         rows, columns = np.nonzero(last)
         middle = int(np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2))
-        found.append((number, (columns[middle] - 0.5) / pixels, (rows[middle] - 0.5) / pixels))
+        found.append((number, (columns[middle] + 0.5) / pixels, (rows[middle] + 0.5) / pixels))
     return found

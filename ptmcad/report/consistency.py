@@ -12,6 +12,10 @@ from ptmcad.errors import ConfigError
 from ptmcad.regionmap import RegionMap
 
 
+MOST = 1000
+"""Equilibria that a fill can tell; no mechanism of two angles and three springs has so many."""
+
+
 def check_numbers(result: RegionMap) -> None:
     """Check the references among stacks, cells, regions, components and critical values.
 
@@ -40,6 +44,9 @@ def check_numbers(result: RegionMap) -> None:
     for n, cell in enumerate(result.cells):
         _within((cell.region,), len(result.regions), f"cell {n}", "region")
     for n, region in enumerate(result.regions):
+        most = max((count for count in (region.stable, region.total, *(region.index or ())) if count), default=0)
+        if most > MOST:
+            raise _fault(f"region {n} counts {most} equilibria, more than {MOST}")
         _within(region.cells, len(result.cells), f"region {n}", "cell")
     for n, value in enumerate(result.critical_values):
         if len(value.polynomial) < 2 or not value.polynomial[-1] or value.low > value.high:

@@ -33,6 +33,9 @@ UNKNOWNS = ("cos_th1", "sin_th1", "cos_th2", "sin_th2")
 NEEDED = ("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x")
 """Unknowns and parameters of the paper's mechanism, without which there is no drawing of it."""
 
+LARGEST = 10**100
+"""Of parameters and coefficients that can be drawn: their products stay far within the range of floating point."""
+
 SPRINGS = (("k1", "A1", "A4"), ("k2", "A2", "A3"), ("k3", "A3", "A4"))
 _DIGITS = 7
 
@@ -53,7 +56,11 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     except PoleError as error:
         raise ConfigError(f"a parameter has no value at a sample: {error}") from error
     potential = potential_at(result.system, values)
-    drawn = result.system.unknowns == UNKNOWNS and all(name in values for name in NEEDED)
+    drawn = (
+        result.system.unknowns == UNKNOWNS
+        and all(name in values for name in NEEDED)
+        and all(abs(v) < LARGEST for v in (*values.values(), *potential.values()))
+    )
     return {
         "parameters": [[n, both(v)] for n, v in told(values).items()],
         "loads": [[float(values["F3x"]), float(values["F3"])], [float(values["F4x"]), float(values["F4"])]]
@@ -79,7 +86,10 @@ def _plain(value: Fraction) -> str:
     if value.denominator == 1:
         return ""
     text = shortest_text(value)
-    return f"= {text}" if "/" not in text else f"≈ {decimal_text(exactly(value), last_place([exactly(value)], 7))}"
+    if "/" not in text:
+        return f"= {text}"
+    rounded = decimal_text(exactly(value), last_place([exactly(value)], _DIGITS))
+    return f"≈ {rounded.replace('−', '-')}"
 
 
 def both(value: Fraction) -> str:
@@ -129,7 +139,7 @@ def _angle_text(angle: Bounds) -> str:
 
 
 def _box(solution: Solution) -> tuple[Bounds, ...]:
-    if len(solution.center) != len(UNKNOWNS) or solution.radius < 0 or max(map(abs, solution.center)) > 2:
+    if len(solution.center) != len(UNKNOWNS) or not 0 <= solution.radius < 1 or max(map(abs, solution.center)) > 2:
         raise ConfigError("a stored equilibrium is no box around cosines and sines; check it with ptmcad verify")
     return tuple((c - solution.radius, c + solution.radius) for c in solution.center)
 

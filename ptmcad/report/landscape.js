@@ -1,6 +1,6 @@
 // The energy over both angles, a picture only: shaded bands, contours, the contour through each saddle, the equilibria.
 
-const GRID = 72;
+const GRID = 120;
 const BANDS = 16;
 const PLOT = { side: 400, left: 84, bottom: 74, rim: 34 };
 
@@ -106,22 +106,31 @@ function drawLandscape(cell, pointed) {
   plot.append(svg("text", { class: "name", x: side / 2, y: side + bottom - 8 }, "θ₁"));
   plot.append(svg("text", { class: "name", x: 20 - left, y: side / 2 }, "θ₂"));
   plot.append(svg("rect", { class: "frame", width: side, height: side }));
-  cell.equilibria.forEach((pose, number) => {
+  // an equilibrium at the picture's edge is also at the opposite edge: the angles go round
+  const marks = cell.equilibria.map((pose, number) => {
     const [c1, s1, c2, s2] = pose.at;
     const x = (Math.atan2(s1, c1) / Math.PI + 1) / 2 * side;
     const y = (1 - Math.atan2(s2, c2) / Math.PI) / 2 * side;
-    const mark = svg("path", {
-      class: `equilibrium ${pose.kind}`, transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})`, d: markOf(pose.kind),
-    });
-    mark.append(svg("title", {}, `${pose.kind}, energy ${pose.energy}`));
-    mark.addEventListener("pointerenter", () => pointed(number, true));
-    mark.addEventListener("pointerleave", () => pointed(number, false));
-    plot.append(mark);
+    const shown = [];
+    for (const u of [x - side, x, x + side]) {
+      for (const v of [y - side, y, y + side]) {
+        if (Math.min(u, v) < -6 || Math.max(u, v) > side + 6) continue;
+        const mark = svg("path", {
+          class: `equilibrium ${pose.kind}`, transform: `translate(${u.toFixed(1)} ${v.toFixed(1)})`, d: markOf(pose.kind),
+        });
+        mark.append(svg("title", {}, `${pose.kind}, energy ${pose.energy}`));
+        mark.addEventListener("pointerenter", () => pointed(number, true));
+        mark.addEventListener("pointerleave", () => pointed(number, false));
+        plot.append(mark);
+        shown.push(mark);
+      }
+    }
+    return shown;
   });
   picture.append(plot);
   box.append(canvas, picture);
   const redraw = () => { if (high > low) shade(canvas, cell.potential, low, high); };
-  return { box, redraw };
+  return { box, marks, redraw };
 }
 
 function landscapeLegend() {

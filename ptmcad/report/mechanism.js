@@ -104,7 +104,7 @@ function springTable(cell) {
   box.tabIndex = 0;
   box.setAttribute("role", "region");
   box.setAttribute("aria-label", "Poses in numbers");
-  const table = html("table");
+  const table = html("table", "stacked");
   const head = table.createTHead().insertRow();
   const columns = ["pose", "θ₁", "θ₂", "energy", "A₃", "A₄"];
   for (const name of SPRING_NAMES) columns.push(`length ${name}`, `force ${name}`);

@@ -37,13 +37,14 @@ _STATUS = {
 Row = Iterable[str]
 
 
-def table(head: Row, rows: Iterable[Row], label: str) -> str:
-    """A table in a box that scrolls by itself; the entries are markup already."""
+def table(head: Row, rows: Iterable[Row], label: str, stacked: bool = False) -> str:
+    """A table of markup in a box that scrolls by itself; a stacked one has its entries below each other on phones."""
     names = tuple(head)
+    kind = ' class="stacked"' if stacked else ""
     above = "".join(f'<th scope="col">{name}</th>' for name in names)
     body = "".join(f"<tr>{''.join(map(_entry, names, row))}</tr>" for row in rows)
     return (
-        f'<div class="scroll" role="region" tabindex="0" aria-label="{escape(label)}"><table>'
+        f'<div class="scroll" role="region" tabindex="0" aria-label="{escape(label)}"><table{kind}>'
         f"<thead><tr>{above}</tr></thead><tbody>{body}</tbody></table></div>"
     )
 
@@ -159,7 +160,7 @@ def regions(result: RegionMap) -> str:
     if not rows:
         return "<p>No regions are known yet.</p>"
     note = "" if all(r.index is None for r in result.regions) else "<p>In brackets: minima-saddles-maxima.</p>"
-    return table(("region", "count", "area", "sample", "cells"), rows, "Regions") + note
+    return table(("region", "count", "area", "sample", "cells"), rows, "Regions", stacked=True) + note
 
 
 def curves(result: RegionMap) -> str:
