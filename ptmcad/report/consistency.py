@@ -11,7 +11,6 @@ from collections.abc import Iterable
 from ptmcad.errors import ConfigError
 from ptmcad.regionmap import RegionMap
 
-
 MOST = 1000
 """Equilibria that a fill can tell; no mechanism of two angles and three springs has so many."""
 
@@ -45,6 +44,8 @@ def check_numbers(result: RegionMap) -> None:
         _within((cell.region,), len(result.regions), f"cell {n}", "region")
     for n, region in enumerate(result.regions):
         most = max((count for count in (region.stable, region.total, *(region.index or ())) if count), default=0)
+        if region.area[0] > region.area[1]:
+            raise _fault(f"region {n} has an area below its own lower bound")
         if most > MOST:
             raise _fault(f"region {n} counts {most} equilibria, more than {MOST}")
         _within(region.cells, len(result.cells), f"region {n}", "cell")

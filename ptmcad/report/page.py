@@ -66,7 +66,7 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
         errors=error_section(errors) if errors else "",
         again=sections.again(result),
         version=escape(__version__),
-        data=_harmless(_data(result, drawn)),
+        data=harmless(_data(result, drawn)),
         style=style,
         script=script,
     )
@@ -105,7 +105,7 @@ def _hash(text: str) -> str:
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
 
 
-def _harmless(data: object) -> str:
+def harmless(data: object) -> str:
     """JSON that neither closes nor opens an element, nor is cut by an old line separator."""
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     for character in "<>&\u2028\u2029":
