@@ -274,8 +274,9 @@ def test_poses_satisfy_the_mechanism(shipped: Shipped) -> None:
                 assert float(text) == pytest.approx(100 * length, abs=unit_of(text), rel=0)
             energy = 50 * sum(x * x for x in lengths) + 10 * (a3[1] + a4[1])
             assert float(e["energy"].replace("−", "-")) == pytest.approx(energy, abs=unit_of(e["energy"]), rel=0)
-            shown = [float(t.replace("−", "-").rstrip("°")) for t in e["angles"]]
-            assert shown == pytest.approx([atan2(s1, c1) * 180 / pi, atan2(s2, c2) * 180 / pi], abs=2e-4)
+            for text, angle in zip(e["angles"], (atan2(s1, c1), atan2(s2, c2)), strict=True):
+                digits = text.replace("−", "-").rstrip("°")
+                assert float(digits) == pytest.approx(angle * 180 / pi, abs=unit_of(digits), rel=0)
             gradient = 0.0  # of the embedded potential along th1, which the landscape draws
             for *powers, c in told["potential"]:
                 p, q, r, s = powers
