@@ -24,8 +24,6 @@ from ptmcad.cli import run
 from ptmcad.config import load, slice_from_options
 from ptmcad.errors import ConfigError
 from ptmcad.numerals import text_of
-from ptmcad.plane import PlanePolynomial
-from ptmcad.polynomial_text import STYLES, polynomial_text
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.render.axes import scale_of
 from ptmcad.report import page
@@ -307,42 +305,6 @@ def test_ticks_are_few_and_where_they_say(low: Fraction, width: Fraction) -> Non
 
 
 # ------------------------------------------------------------------------------------------------- formulas
-
-
-POLYNOMIALS = st.lists(
-    st.tuples(st.integers(0, 5), st.integers(0, 5), st.integers(-(10**12), 10**12)), min_size=1, max_size=8
-).map(PlanePolynomial.of)
-
-
-@given(p=POLYNOMIALS, names=st.sampled_from([("rho", "L2"), ("I", "N"), ("lambda", "F_3"), ("D", "E"), ("x", "gamma")]))
-def test_formulas_are_read_back_by_sympy(p: PlanePolynomial, names: tuple[str, str]) -> None:
-    """Each style by SymPy, after the little that its syntax differs in."""
-    import sympy
-
-    x, y = sympy.symbols("x_ y_")
-    expected = p.to_sympy(("x_", "y_"))
-    for style in STYLES:
-        text = polynomial_text(p, names, style)
-        if style == "latex":
-            assert text.count("{") == text.count("}")
-            continue
-        from ptmcad.polynomial_text import symbols
-
-        first, second = symbols(names, style)
-        plain = text.replace("^", "**")
-        for name, letter in sorted(((first, "x_"), (second, "y_")), key=lambda pair: -len(pair[0])):
-            plain = re.sub(rf"(?<![\w$]){re.escape(name)}(?![\w$])", letter, plain)
-        assert sympy.expand(sympy.sympify(plain, locals={"x_": x, "y_": y}) - expected) == 0
-
-
-def test_names_that_mean_something_else_are_changed() -> None:
-    p = PlanePolynomial.of([(1, 0, 1), (0, 1, 2)])
-    assert polynomial_text(p, ("lambda", "x"), "sympy") == "lambda_ + 2*x"
-    assert polynomial_text(p, ("I", "D"), "maple") == "I_ + 2*D_"
-    assert polynomial_text(p, ("F_3", "E"), "mathematica") == "F$3 + 2*E$"
-    assert polynomial_text(p, ("rho", "F3x"), "latex") == r"\rho + 2 F_{3x}"
-    with pytest.raises(ValueError, match="not among"):
-        polynomial_text(p, ("x", "y"), "cobol")
 
 
 def test_the_sympy_form_on_the_page_runs(shipped: Shipped) -> None:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from html import escape
 
 from ptmcad.numerals import integer_text, text_of
-from ptmcad.polynomial_text import polynomial_text, symbols
+from ptmcad.polynomial_text import Style, polynomial_text, symbols
 from ptmcad.regionmap import Component, RegionMap, Status
 from ptmcad.render.colours import Fill, fill_of
 from ptmcad.render.legend import entries
@@ -22,7 +22,13 @@ from ptmcad.table import certified_digits
 
 LONGEST_FORMULA = 100_000
 """Characters of a formula that the page holds in all its forms."""
-_PROGRAMS = {"text": "text", "sympy": "SymPy", "maple": "Maple", "mathematica": "Mathematica", "latex": "LaTeX"}
+_PROGRAMS = {
+    Style.TEXT: "text",
+    Style.SYMPY: "SymPy",
+    Style.MAPLE: "Maple",
+    Style.MATHEMATICA: "Mathematica",
+    Style.LATEX: "LaTeX",
+}
 _COUNTED = {
     Count.STABLE: "regions are told apart by the number of stable equilibria",
     Count.TOTAL: "regions are told apart by the number of equilibria",
@@ -188,7 +194,7 @@ def _formula(component: Component, names: tuple[str, str]) -> str:
     parts = ["<p>The curve is where this polynomial is zero.</p>"]
     for style, program in _PROGRAMS.items():
         text = polynomial_text(p, names, style)
-        if style == "sympy":
+        if style is Style.SYMPY:
             x, y = symbols(names, style)
             text = f'{x}, {y} = sympy.symbols("{names[0]} {names[1]}")\np = {text}'
         parts.append(copied(text, f"as {program}"))
