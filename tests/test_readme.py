@@ -33,7 +33,7 @@ PROGRAM_LINES = [line for line in shell_lines() if not line.startswith("make ")]
 
 def test_the_parts_are_there() -> None:
     assert MAKE_LINES == ["make demo", "make test"]
-    assert [shlex.split(line)[1] for line in PROGRAM_LINES] == ["classify", "classify", "verify", "locate"]
+    assert [shlex.split(line)[1] for line in PROGRAM_LINES] == ["classify", "classify", "verify", "locate", "report"]
     assert len(blocks("yaml")) == 1
     assert len(blocks("python")) == 1
 
@@ -50,7 +50,7 @@ def test_make_command(line: str) -> None:
     assert expected[line] in dry.stdout
 
 
-SAYS = {"classify": "regions ", "verify": "ok ", "locate": "stable  2\n"}
+SAYS = {"classify": "regions ", "verify": "ok ", "locate": "stable  2\n", "report": "fig4.html"}
 
 
 def test_program_commands_in_their_order(tmp_path: Path) -> None:

@@ -33,6 +33,7 @@ from ptmcad.report.error_curve import read_error_curve
 from ptmcad.report.page import harmless
 from ptmcad.report.potential import potential_at
 from ptmcad.report.reproduction import reproduction
+from ptmcad.slice import Point
 
 CONFIGS = Path(__file__).resolve().parents[1] / "configs"
 PAPER = ("fig2", "fig3", "fig4", "fig5-text", "fig5-caption")
@@ -347,6 +348,14 @@ def damaged(result: RegionMap, kind: str) -> RegionMap:
             return replace(result, stacks=(replace(stacks[0], walls=walls), *stacks[1:]))
         case "a million equilibria":
             return replace(result, regions=(replace(regions[0], stable=10**6), *regions[1:]))
+        case "a sample far away":
+            far = Point(result.slice.axis_names, Fraction(10**400), Fraction(1))
+            return replace(result, cells=(replace(cells[0], sample=far), *cells[1:]))
+        case "an area upside down":
+            return replace(result, regions=(replace(regions[0], area=regions[0].area[::-1]), *regions[1:]))
+        case "a box without end":
+            wide = replace(cells[0].solutions[0], radius=Fraction(10**400))
+            return replace(result, cells=(replace(cells[0], solutions=(wide,)), *cells[1:]))
         case "an equilibrium off the circle":
             wrong = replace(cells[0].solutions[0], center=(Fraction(5),) * 4)
             return replace(result, cells=(replace(cells[0], solutions=(wrong,)), *cells[1:]))
@@ -355,6 +364,7 @@ def damaged(result: RegionMap, kind: str) -> RegionMap:
 
 
 KINDS = ("cell of no region", "stack of no cell", "wall too many", "root that is not there", "a million equilibria",
+         "a sample far away", "an area upside down", "a box without end",
          "an equilibrium off the circle", "a potential of unknown names")  # fmt: skip
 
 

@@ -1,6 +1,6 @@
 """Whether the numbers by which the parts of a map refer to each other lead anywhere.
 
-Guarantee: after `check_numbers` every reference of a map has its target. Whether the map is true is `ptmcad.verify`'s
+Guarantee: after `check_numbers` every reference of a map has its target, and what is drawn is in the window. Whether the map is true is `ptmcad.verify`'s
 question.
 """
 
@@ -42,6 +42,8 @@ def check_numbers(result: RegionMap) -> None:
         raise _fault("not every cell is in one stack")
     for n, cell in enumerate(result.cells):
         _within((cell.region,), len(result.regions), f"cell {n}", "region")
+        if not all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, cell.sample, strict=True)):
+            raise _fault(f"the sample of cell {n} is not in the window")
     for n, region in enumerate(result.regions):
         most = max((count for count in (region.stable, region.total, *(region.index or ())) if count), default=0)
         if region.area[0] > region.area[1]:
