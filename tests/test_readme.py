@@ -67,7 +67,14 @@ def test_program_commands_in_their_order(tmp_path: Path) -> None:
         assert done.stderr == ""
         assert SAYS[command] in done.stdout
     written = {path.name for path in (tmp_path / "out").iterdir()}
-    assert written == {"fig4.json", "fig4.svg", "slice-L2-rho.json", "slice-L2-rho.png", "slice-L2-rho.svg"}
+    assert written == {
+        "fig4.html",
+        "fig4.json",
+        "fig4.svg",
+        "slice-L2-rho.json",
+        "slice-L2-rho.png",
+        "slice-L2-rho.svg",
+    }
 
 
 def test_python_block(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,7 +1,7 @@
 """Whether the numbers by which the parts of a map refer to each other lead anywhere.
 
-Guarantee: after `check_numbers` every reference of a map has its target, and what is drawn is in the window. Whether the map is true is `ptmcad.verify`'s
-question.
+Guarantee: after `check_numbers` every reference of a map has its target, and its samples are in the window. Whether the
+map is true is `ptmcad.verify`'s question.
 """
 
 from __future__ import annotations
