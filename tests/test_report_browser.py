@@ -13,8 +13,10 @@ from typing import Any
 import browser as chromium
 import pytest
 from browser import Browser
+from conftest import CONFIGS
 from conftest import shipped as computed
 
+import ptmcad
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.report import page
 
@@ -181,18 +183,35 @@ def test_the_keyboard_does_all_of_it(view: Callable[..., Browser]) -> None:
     quiet(b, "fig4")
 
 
-def test_the_axes_of_the_arrows_follow_the_map(view: Callable[..., Browser]) -> None:
-    """Also where the stacks stand over the vertical axis: up is up."""
-    swapped = next(name for name in ("fig3", "fig5-text", "fig2", "fig4") if computed(name).base == 0)
-    b = view(swapped)
-    for key, axis, sign in (("ArrowRight", 0, 1), ("ArrowLeft", 0, -1), ("ArrowUp", 1, -1), ("ArrowDown", 1, 1)):
-        for number in range(len(computed(swapped).cells)):
-            step = b.run(
+@pytest.mark.parametrize(("axes", "base"), [("rho,L2", 0), ("L2,rho", 1)])
+def test_the_arrows_follow_the_map(one: Browser, tmp_path: Path, axes: str, base: int) -> None:
+    """Also where the stacks stand over the vertical axis: up is up; and samples are drawn within their cells."""
+    result = ptmcad.classify(ptmcad.slice_from_options(CONFIGS / "fig4.yaml", slice=axes))
+    assert result.base == base
+    file = tmp_path / "map.html"
+    file.write_text(page(result), encoding="utf-8")
+    one.media(prefers_color_scheme="light")
+    one.size(1200, 900)
+    one.open(file)
+    moves = 0
+    for number in range(len(result.cells)):
+        for key, axis, sign in (("ArrowRight", 0, 1), ("ArrowLeft", 0, -1), ("ArrowUp", 1, -1), ("ArrowDown", 1, 1)):
+            step = one.run(
                 f"(() => {{ const n = neighbour({number}, '{key}');"
-                f" return n === undefined ? {sign} : DATA.cells[n].at[{axis}] - DATA.cells[{number}].at[{axis}]; }})()"
+                f" return n === undefined ? null : DATA.cells[n].at[{axis}] - DATA.cells[{number}].at[{axis}]; }})()"
             )
-            assert step * sign > 0
-    quiet(b, swapped)
+            if step is not None:
+                assert step * sign > 0
+                moves += 1
+        inside = f"""(() => {{
+          const area = document.querySelector('#map [data-cell="{number}"]'), point = area.ownerSVGElement.createSVGPoint();
+          [point.x, point.y] = DATA.cells[{number}].at;
+          const box = area.getBBox();
+          return Math.min(box.width, box.height) < 3 || area.isPointInFill(point);
+        }})()"""
+        assert one.run(inside)
+    assert moves >= 2 * (len(result.cells) - 1)
+    assert one.complaints() == []
 
 
 def test_light_dark_and_the_button(view: Callable[..., Browser]) -> None:

@@ -27,7 +27,7 @@ _MARKS = ("M-6 0a6 6 0 1 0 12 0a6 6 0 1 0 -12 0", "M-6 -6H6V6H-6Z", "M0 -7L7 6H-
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """Measurements of one method: pairs (seconds, error), both positive."""
+    """Measurements of one method: pairs (seconds, error), both positive, in the order in which they are joined."""
 
     name: str
     points: tuple[tuple[float, float], ...]
@@ -76,7 +76,7 @@ def _decode(data: object) -> ErrorCurve:
         points = s["points"].each(pair)
         if not 0 < len(points) <= _MOST_POINTS:
             raise s["points"].fault(f"has not 1 to {_MOST_POINTS} entries")
-        return Series(s["name"].line(60), tuple(sorted(points)))
+        return Series(s["name"].line(60), points)
 
     found = document["series"].each(series)
     if not 0 < len(found) <= _MOST_SERIES:
