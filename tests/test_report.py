@@ -29,8 +29,8 @@ from ptmcad.regionmap import RegionMap, Status
 from ptmcad.render.axes import scale_of
 from ptmcad.report import page
 from ptmcad.report.bounds import decimal_text, degrees, exactly, power, square_root, times
-from ptmcad.report.chart import ticks
 from ptmcad.report.error_curve import read_error_curve
+from ptmcad.report.frame import ticks
 from ptmcad.report.page import harmless
 from ptmcad.report.potential import potential_at
 from ptmcad.report.reproduction import reproduction

@@ -204,7 +204,8 @@ def test_the_arrows_follow_the_map(one: Browser, tmp_path: Path, axes: str, base
                 assert step * sign > 0
                 moves += 1
         inside = f"""(() => {{
-          const area = document.querySelector('#map [data-cell="{number}"]'), point = area.ownerSVGElement.createSVGPoint();
+          const area = document.querySelector('#map [data-cell="{number}"]');
+          const point = area.ownerSVGElement.createSVGPoint();
           [point.x, point.y] = DATA.cells[{number}].at;
           const box = area.getBBox();
           return Math.min(box.width, box.height) < 3 || area.isPointInFill(point);
@@ -393,6 +394,7 @@ def test_partial_results_open_too(one: Browser, tmp_path: Path) -> None:
     assert one.complaints() == []
 
 
+@pytest.mark.slow
 def test_every_cell_of_every_slice_can_be_chosen(view: Callable[..., Any]) -> None:
     for name, count in (("fig2", None), ("fig3", "index"), ("forces", None), ("rods", "total")):
         b = view(name, count)

@@ -16,12 +16,12 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from ptmcad.numerals import magnitude, shortest_text
+from ptmcad.numerals import shortest_text
 from ptmcad.regionmap import RegionMap
-from ptmcad.render.axes import Scale, scale_of, symbol, unit
 from ptmcad.render.colours import Fill, fill_of
 from ptmcad.render.outline import Outline
 from ptmcad.render.slivers import thin_regions, zooms
+from ptmcad.report.frame import BOTTOM, LEFT, RIM, SIDE, frame
 from ptmcad.table import count_text
 
 Mark = tuple[str, tuple[float, float]]
@@ -29,14 +29,10 @@ Mark = tuple[str, tuple[float, float]]
 Label = tuple[int, float, float]
 """A region and the place of its count."""
 
-SIDE, LEFT, BOTTOM, RIM = 600, 110, 100, 24
-"""In the picture's own units: the window's side, the room for the axes' numbers and names, the rim."""
 SHOWN = 300
 """Pixels of the map's side on a phone: regions thinner than three of them get a view of their own."""
 LABEL, _LETTER = 42, 0.55
 """Size of the counts' type on phones, in the picture's units, and a character's width against it, on the whole."""
-_MOST_TICKS = 6
-_NAME = 24
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +133,7 @@ def _picture(seen: Outline, name: str, marks: Sequence[Mark], labels: Sequence[L
         )
     parts += _cells(seen)
     parts.append("</g>")
-    parts += _axes(seen)
+    parts += frame(seen)
     for letter, (x, y) in marks:
         parts.append(
             f'<g class="mark" transform="translate({x * SIDE:.1f} {(1 - y) * SIDE:.1f})"><circle r="13"/>'
@@ -201,49 +197,6 @@ def counts_text(stable: int | None, total: int | None) -> str:
         return f"{stable} stable"
     noun = "equilibrium" if total == 1 else "equilibria"
     return f"{total} {noun}" if stable is None else f"{stable} stable of {total} {noun}"
-
-
-def _axes(seen: Outline) -> Iterator[str]:
-    yield f'<rect class="frame" width="{SIDE}" height="{SIDE}"/>'
-    slice = seen.result.slice
-    for number, interval in enumerate((seen.view.x, seen.view.y)):
-        scale = scale_of(*interval)
-        for value, position in ticks(interval, scale):
-            at = float(position) * SIDE
-            if number == 0:
-                yield f'<path class="tick" d="M{at:.1f} {SIDE}v8"/>'
-                yield f'<text class="number x" x="{at:.1f}" y="{SIDE + 18}" dy=".8em">{value}</text>'
-            else:
-                yield f'<path class="tick" d="M0 {SIDE - at:.1f}h-8"/>'
-                yield f'<text class="number y" x="-14" y="{SIDE - at:.1f}" dy=".36em">{value}</text>'
-        name = slice.axes[number].name
-        text = scale.name(symbol(name if len(name) <= _NAME else name[: _NAME - 1] + "…"))
-        known = unit(slice, number)
-        text = escape(f"{text} ({known})" if known else text)
-        if number == 0:
-            yield f'<text class="name" x="{SIDE / 2}" y="{SIDE + BOTTOM - 16}">{text}</text>'
-        else:
-            yield f'<text class="name" transform="translate({36 - LEFT} {SIDE / 2}) rotate(-90)">{text}</text>'
-
-
-def ticks(interval: tuple[Fraction, Fraction], scale: Scale) -> list[tuple[str, Fraction]]:
-    """At most `_MOST_TICKS` + 1 round numbers of a scale, as text, and where they are between the ends (0 to 1)."""
-    low, high = interval
-    power = Fraction(10) ** scale.exponent
-    shown = ((low - scale.offset) / power, (high - scale.offset) / power)
-    step = Fraction(10) ** magnitude((shown[1] - shown[0]) / _MOST_TICKS)
-    factor = next(f for f in (1, 2, Fraction(5, 2), 5, 10) if (shown[1] - shown[0]) / (step * f) <= _MOST_TICKS)
-    step *= factor
-    first, last = -(-shown[0] // step), shown[1] // step
-    values = [k * step for k in range(int(first), int(last) + 1)]
-    decimals = max((len(shortest_text(v).partition(".")[2]) for v in values), default=0)
-    return [(_fixed(v, decimals), (v - shown[0]) / (shown[1] - shown[0])) for v in values]
-
-
-def _fixed(value: Fraction, decimals: int) -> str:
-    digits = str(abs(value) * 10**decimals).zfill(decimals + 1)
-    text = f"{digits[:-decimals]}.{digits[-decimals:]}" if decimals else digits
-    return f"−{text}" if value < 0 else text
 
 
 def _region_labels(seen: Outline) -> list[Label]:

@@ -21,10 +21,12 @@ from ptmcad.render.axes import symbol
 from ptmcad.render.colours import fill_of
 from ptmcad.render.outline import Outline, outline
 from ptmcad.report import sections
-from ptmcad.report.chart import SIDE, Chart, chart, counts_text, pattern_defs
+from ptmcad.report.chart import Chart, chart, counts_text, pattern_defs
 from ptmcad.report.consistency import check_numbers
 from ptmcad.report.equilibria import at_sample, both
 from ptmcad.report.error_curve import ErrorCurve, error_section
+from ptmcad.report.formulas import curves
+from ptmcad.report.frame import SIDE
 from ptmcad.table import certified_digits
 from ptmcad.version import __version__
 
@@ -60,7 +62,7 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
         details=_details(drawn),
         legend=sections.legend(result, drawn),
         regions=sections.regions(result),
-        curves=sections.curves(result),
+        curves=curves(result),
         plan=sections.left_out(result),
         times=sections.times_and_precision(result, timings),
         errors=error_section(errors) if errors else "",

@@ -1,4 +1,4 @@
-"""The page's sections below the map: the question, regions, curves, what was left out, times, how to do it again.
+"""The page's sections below the map: the question, regions, what was left out, times, how to do it again.
 
 Guarantee: whatever comes from the result goes through `html.escape`, also what the reader of results has let pass.
 """
@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from html import escape
 
-from ptmcad.numerals import integer_text, text_of
-from ptmcad.polynomial_text import Style, polynomial_text, symbols
-from ptmcad.regionmap import Component, RegionMap, Status
+from ptmcad.numerals import text_of
+from ptmcad.regionmap import RegionMap, Status
 from ptmcad.render.colours import Fill, fill_of
 from ptmcad.render.legend import entries
 from ptmcad.report.bounds import exactly
@@ -20,15 +19,6 @@ from ptmcad.report.reproduction import reproduction
 from ptmcad.slice import Count
 from ptmcad.table import certified_digits
 
-LONGEST_FORMULA = 100_000
-"""Characters of a formula that the page holds in all its forms."""
-_PROGRAMS = {
-    Style.TEXT: "text",
-    Style.SYMPY: "SymPy",
-    Style.MAPLE: "Maple",
-    Style.MATHEMATICA: "Mathematica",
-    Style.LATEX: "LaTeX",
-}
 _COUNTED = {
     Count.STABLE: "regions are told apart by the number of stable equilibria",
     Count.TOTAL: "regions are told apart by the number of equilibria",
@@ -167,38 +157,6 @@ def regions(result: RegionMap) -> str:
         return "<p>No regions are known yet.</p>"
     note = "" if all(r.index is None for r in result.regions) else "<p>In brackets: minima-saddles-maxima.</p>"
     return table(("region", "count", "area", "sample", "cells"), rows, "Regions", stacked=True) + note
-
-
-def curves(result: RegionMap) -> str:
-    """Every curve that the decomposition uses, with its formula in the forms that programs read."""
-    used = [(n, c) for n, c in enumerate(result.components) if not c.left_out]
-    if not used:
-        return "<p>There is no boundary curve in the window.</p>"
-    return "".join(_curve(n, c, result.slice.axis_names) for n, c in used)
-
-
-def _curve(number: int, component: Component, names: tuple[str, str]) -> str:
-    p = component.polynomial
-    role = "separates regions" if component.separates else "separates nothing"
-    title = (
-        f"Curve {number}: {component.kind.value}, degree {p.degrees[0]} in {names[0]}, {p.degrees[1]} in {names[1]}, "
-        f"{p.total_degree} in all, {len(p.terms)} term{'s' * (len(p.terms) != 1)}; {role}"
-    )
-    return f"<details><summary>{escape(title)}</summary>{_formula(component, names)}</details>"
-
-
-def _formula(component: Component, names: tuple[str, str]) -> str:
-    p = component.polynomial
-    if sum(len(integer_text(c)) + 20 for _, _, c in p.terms) > LONGEST_FORMULA:
-        return "<p>The formula is too long for this page; the result has it.</p>"
-    parts = ["<p>The curve is where this polynomial is zero.</p>"]
-    for style, program in _PROGRAMS.items():
-        text = polynomial_text(p, names, style)
-        if style is Style.SYMPY:
-            x, y = symbols(names, style)
-            text = f'{x}, {y} = sympy.symbols("{names[0]} {names[1]}")\np = {text}'
-        parts.append(copied(text, f"as {program}"))
-    return "".join(parts)
 
 
 def left_out(result: RegionMap) -> str:
