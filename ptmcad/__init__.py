@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from typing import Any
 
     from ptmcad.config import load, slice_from_mapping, slice_from_options
+    from ptmcad.enclosure import AlgebraicNumber, Enclosure
     from ptmcad.pipeline import classify
+    from ptmcad.poses import Pose, Poses, solve
     from ptmcad.regionmap import RegionMap
     from ptmcad.slice import Count, Point, Slice
     from ptmcad.verification import VerifyReport, verify
@@ -24,7 +26,12 @@ _HOMES = {
     "load": "config",
     "slice_from_mapping": "config",
     "slice_from_options": "config",
+    "AlgebraicNumber": "enclosure",
+    "Enclosure": "enclosure",
     "classify": "pipeline",
+    "Pose": "poses",
+    "Poses": "poses",
+    "solve": "poses",
     "RegionMap": "regionmap",
     "Count": "slice",
     "Point": "slice",
@@ -34,8 +41,12 @@ _HOMES = {
 }
 
 __all__ = [
+    "AlgebraicNumber",
     "Count",
+    "Enclosure",
     "Point",
+    "Pose",
+    "Poses",
     "RegionMap",
     "Slice",
     "VerifyReport",
@@ -44,6 +55,7 @@ __all__ = [
     "load",
     "slice_from_mapping",
     "slice_from_options",
+    "solve",
     "verify",
 ]
 

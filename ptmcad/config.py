@@ -13,18 +13,30 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from decimal import Decimal
 from enum import Enum
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.expressions import NAME, Expression, axis, did_you_mean, names_in, parse
+from ptmcad.expressions import NAME, Expression, axis, constant, did_you_mean, names_in, parse
 from ptmcad.positivity import find_nonpositive, find_pole
 from ptmcad.slice import Axis, Count, Slice
 from ptmcad.yamltree import Node, Place, Scalar, Sequence, Tree, from_python, plain_data, read_file
 
-__all__ = ["PARAMETERS", "RECORD_KEYS", "Kind", "Parameter", "load", "slice_from_mapping", "slice_from_options"]
+__all__ = [
+    "PARAMETERS",
+    "RECORD_KEYS",
+    "Kind",
+    "Parameter",
+    "file_name",
+    "load",
+    "point_from_mapping",
+    "point_from_options",
+    "slice_from_mapping",
+    "slice_from_options",
+]
 
 
 class Kind(Enum):
@@ -147,6 +159,70 @@ def slice_from_options(
     return _slice(record)
 
 
+def point_from_mapping(values: Mapping[str, object]) -> dict[str, Fraction]:
+    """Every parameter of the mechanism at a point: the given ones, and the defaults of `PARAMETERS`.
+
+    >>> point = point_from_mapping({"rho": "0.7", "L2": "3/2", "F3": -10})
+    >>> point["rho"], point["k3"], point["F4"]
+    (Fraction(7, 10), Fraction(100, 1), Fraction(0, 1))
+
+    Parameters
+    ----------
+    values : text (a number, or arithmetic with other parameters), int, Fraction or Decimal; no float, which is not the
+        decimal that was written.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong, with the parameter's name.
+    """
+    given = {}
+    for name, value in values.items():
+        place = Place(name)
+        if name not in PARAMETERS:
+            raise ConfigError(_unknown_parameter(name))
+        node = from_python(str(value) if isinstance(value, Decimal) else value, place)
+        given[name] = _number_text(node)
+    return _point(_Record(values=given), {})
+
+
+def point_from_options(
+    config: str | Path | None = None, at: Mapping[str, str] | None = None, sets: Iterable[str] = ()
+) -> dict[str, Fraction]:
+    """Every parameter of the mechanism at the point of the command line's options, with or without a record under them.
+
+    Parameters
+    ----------
+    config : a YAML file, whose axes all need a value in ``at`` or ``sets``.
+    at : names of parameters, or of the record's axes, to numbers or expressions.
+    sets : texts ``NAME=VALUE``.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong, with file, line and key, or the option.
+    """
+    record = _record(read_file(config)) if config is not None else _Record()
+    given = _settings(sets)
+    axes: dict[str, Expression] = {}
+    for name, text in (at or {}).items():
+        scalar = Scalar(text, Place(f"--at {name[:40]}"))
+        if name in given:
+            raise scalar.place.error("is given with --set too: leave one out")
+        if name in PARAMETERS:
+            given[name] = scalar
+        elif name in record.axes:
+            axes[name] = constant(_bound(scalar, "the value of this axis"))
+        else:
+            raise scalar.place.error(_unknown_parameter(name))
+    for name in record.axes:
+        if name not in given and name not in axes:
+            raise ConfigError(
+                f"{name} is an axis of {record.place.file} and has no value: add {name}=VALUE", key="--at"
+            )
+    return _point(replace(record, values={**record.values, **given}), axes)
+
+
 # --------------------------------------------------------------------------------- the record, read but not resolved
 
 
@@ -205,6 +281,17 @@ def _text(node: Node, limit: int) -> str:
     if len(node.text) > limit:
         raise node.place.error(f"the text is longer than {limit} characters")
     return node.text
+
+
+def file_name(name: str, option: str) -> str:
+    """A name for files that an option gives.
+
+    Raises
+    ------
+    ConfigError
+        When it is not safe as the start of a file's name.
+    """
+    return _file_name(Scalar(name, Place(option)))
 
 
 def _file_name(node: Node) -> str:
@@ -365,7 +452,7 @@ def _slice(record: _Record) -> Slice:
         if name in PARAMETERS and PARAMETERS[name].kind is Kind.FREE_LENGTH:
             raise window.place.error(_NO_FREE_LENGTHS)
     axes = tuple(_axis(name, window) for name, window in record.axes.items())
-    resolved = _Resolution(record).run()
+    resolved = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)}).run()
     for name, expression in resolved.items():
         if name not in record.axes:
             _check_value(name, expression, record, (axes[0], axes[1]))
@@ -395,6 +482,24 @@ def _slice(record: _Record) -> Slice:
     )
 
 
+def _point(record: _Record, axes: Mapping[str, Expression]) -> dict[str, Fraction]:
+    """Resolve a record to a point; ``axes`` holds the values of its axes that are no parameters."""
+    resolved = _Resolution(record, axes).run()
+    values = {}
+    for name, expression in resolved.items():
+        place = _place_of(name, record)
+        value = expression.constant()
+        if PARAMETERS[name].kind is Kind.FREE_LENGTH:
+            if value:
+                raise place.error(_NO_FREE_LENGTHS)
+            continue
+        _check_number(name, value, place)
+        values[name] = value
+    _check_stiffness_is_used(record, all(spring in record.values for spring in _SPRINGS))
+    del values["k"]  # what k1, k2 and k3 have by default
+    return values
+
+
 _NO_FREE_LENGTHS = "free lengths other than 0 are not supported yet: the certified engine they need is not built"
 
 
@@ -416,10 +521,10 @@ def _axis(name: str, window: _Window) -> Axis:
     return Axis(name, low, high)
 
 
-def _bound(scalar: Scalar) -> Fraction:
+def _bound(scalar: Scalar, what: str = "the end of a range") -> Fraction:
     names = _names_in_scalar(scalar)
     if names and names[0].lower() not in ("nan", "inf", "infinity"):
-        raise scalar.place.error(f"the end of a range is a number, not an expression in {names[0][:40]}")
+        raise scalar.place.error(f"{what} is a number, not an expression in {names[0][:40]}")
     return _parsed(scalar, {}).constant()
 
 
@@ -447,10 +552,10 @@ def _located(scalar: Scalar, error: ExpressionError) -> ConfigError:
 class _Resolution:
     """Replaces names by what they stand for, depth first, refusing cycles."""
 
-    def __init__(self, record: _Record):
+    def __init__(self, record: _Record, free: Mapping[str, Expression]):
         self.record = record
-        self.done = {name: axis(index) for index, name in enumerate(record.axes)}
-        self.known = tuple(dict.fromkeys((*record.axes, *PARAMETERS)))
+        self.done = dict(free)
+        self.known = tuple(dict.fromkeys((*free, *PARAMETERS)))
 
     def run(self) -> dict[str, Expression]:
         for name in PARAMETERS:
@@ -478,7 +583,7 @@ class _Resolution:
 def _check_value(name: str, expression: Expression, record: _Record, axes: tuple[Axis, Axis]) -> None:
     """Refuse what the geometry excludes, and a denominator that vanishes in the window."""
     kind = PARAMETERS[name].kind
-    place = record.values[name].place if name in record.values else record.place.below(name)
+    place = _place_of(name, record)
     if expression.degree > MAX_DEGREE:
         raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
     if kind is Kind.FREE_LENGTH:
@@ -486,10 +591,7 @@ def _check_value(name: str, expression: Expression, record: _Record, axes: tuple
             raise place.error(_NO_FREE_LENGTHS)
         return
     if expression.is_constant:
-        value = expression.constant()
-        if kind is not Kind.FORCE and (value < 0 or (value == 0 and kind is not Kind.BASE)):
-            least = "not negative" if kind is Kind.BASE else "positive"
-            raise place.error(f"{name} is {value}, but a {kind.value} must be {least}")
+        _check_number(name, expression.constant(), place)
         return
     pole = find_pole(expression, axes)
     if pole is not None:
@@ -499,6 +601,18 @@ def _check_value(name: str, expression: Expression, record: _Record, axes: tuple
         raise place.error(
             f"a {kind.value} must be positive in the whole window, but {name} is {witness}: narrow the window"
         )
+
+
+def _place_of(name: str, record: _Record) -> Place:
+    return record.values[name].place if name in record.values else record.place.below(name)
+
+
+def _check_number(name: str, value: Fraction, place: Place) -> None:
+    """Refuse a number that the geometry excludes."""
+    kind = PARAMETERS[name].kind
+    if kind is not Kind.FORCE and (value < 0 or (value == 0 and kind is not Kind.BASE)):
+        least = "not negative" if kind is Kind.BASE else "positive"
+        raise place.error(f"{name} is {value}, but a {kind.value} must be {least}")
 
 
 def _check_stiffness_is_used(record: _Record, springs_set: bool) -> None:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ptmcad.enclosure import Enclosure
+from ptmcad.errors import ConfigError, shown
 from ptmcad.regionmap import Status
 
 Vector = tuple[Enclosure, Enclosure]
@@ -17,7 +18,8 @@ Vector = tuple[Enclosure, Enclosure]
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """A spring in a pose: nodes ``start`` and ``end``; ``length``; ``force`` = stiffness * length, its tension."""
+    """A spring in a pose: ``name`` of its stiffness, nodes ``start`` and ``end``; ``force`` = stiffness * length is its
+    tension."""
 
     name: str
     start: str
@@ -34,6 +36,7 @@ class Pose:
     Attributes
     ----------
     angles : th1, th2 in radians, in (-pi, pi].
+    degrees : the same in degrees, exact when rational.
     cosines_sines : cos th1, sin th1, cos th2, sin th2.
     nodes : A1, A2, A3, A4 to their coordinates, in the unit of the lengths.
     energy : of springs and loads, in force times length.
@@ -45,6 +48,7 @@ class Pose:
     """
 
     angles: tuple[Enclosure, Enclosure]
+    degrees: tuple[Enclosure, Enclosure]
     cosines_sines: tuple[Enclosure, Enclosure, Enclosure, Enclosure]
     nodes: Mapping[str, Vector]
     springs: tuple[Spring, ...]
@@ -66,6 +70,7 @@ class Poses:
     equilibria : stable ones first, then by energy.
     status : EXACT; ON_VARIETY when an equilibrium is degenerate; UNDECIDED with no equilibria when there are infinitely
         many, as ``remark`` then says.
+    digits : significant digits that each enclosure settles.
     bits : the precision that was needed.
     """
 
@@ -73,6 +78,7 @@ class Poses:
     parameters: Mapping[str, Fraction]
     equilibria: tuple[Pose, ...]
     status: Status
+    digits: int
     bits: int
     remark: str = ""
 
@@ -81,7 +87,60 @@ class Poses:
         """The number of stable equilibria."""
         return sum(p.stable is True for p in self.equilibria)
 
+    def __str__(self) -> str:
+        return self.table()
 
-def solve(digits: int = 12, **parameters: object) -> Poses:
-    """All equilibria at a rational point, each number known to ``digits`` digits."""
-    raise NotImplementedError
+    def table(self, digits: int | None = None) -> str:
+        """Everything about each equilibrium as text for a terminal, with fewer digits when asked for."""
+        from ptmcad.posetable import table
+
+        return table(self, digits)
+
+    def to_json(self) -> str:
+        """The poses as JSON text (docs/poses.schema.json)."""
+        from ptmcad.document.poses import write_poses
+
+        return write_poses(self)
+
+    @classmethod
+    def from_json(cls, text: str) -> Poses:
+        """The poses that `to_json` wrote.
+
+        Raises
+        ------
+        ValueError
+            When the text is not such a document; the message names the place.
+        """
+        from ptmcad.document.poses import read_poses
+
+        return read_poses(text)
+
+
+DIGITS = 12
+MOST_DIGITS = 1000
+
+
+def solve(digits: int = DIGITS, **parameters: object) -> Poses:
+    """All equilibria of the paper's mechanism at a rational point.
+
+    >>> poses = solve(rho="1", L2="3/2")
+    >>> [pose.angles[0].text(6) for pose in poses.equilibria if pose.stable]
+    ['0.812756', '-0.812756']
+
+    Parameters
+    ----------
+    digits : significant digits that every number settles, 1 to `MOST_DIGITS`; more digits cost more time.
+    parameters : by the names of a problem record (L1, L2, rho, k or k1, k2, k3, F3, F4, F3x, F4x), with its defaults:
+        lengths 1, stiffness 100, no load. Text, int, Fraction or Decimal; no float.
+
+    Raises
+    ------
+    ConfigError
+        For a name or a value that is wrong, with the name.
+    """
+    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
+        raise ConfigError(f"{shown(repr(digits), 60)} is not a number of digits from 1 to {MOST_DIGITS}", key="digits")
+    from ptmcad.config import point_from_mapping
+    from ptmcad.solving import poses_at
+
+    return poses_at(point_from_mapping(parameters), digits)

@@ -20,6 +20,9 @@ EXACT = (
     "models",
     "cad",
     "counting",
+    "balls",
+    "statics",
+    "solving",
     "variety",
     "area",
     "regions",
@@ -180,6 +183,19 @@ def test_the_report_tells_what_the_result_holds_and_computes_nothing(path: Path)
 def test_the_report_does_without_matplotlib(tmp_path: Path) -> None:
     """Outlines and colours are all that it takes from render/."""
     assert not loaded_after("import ptmcad.report", tmp_path) & {"matplotlib", "sympy"}
+
+
+def test_reading_poses_loads_nothing_of_the_engine(tmp_path: Path) -> None:
+    """Enclosures, poses, their document and table are free of any engine."""
+    code = "import ptmcad, ptmcad.document.poses, ptmcad.posetable; ptmcad.Poses, ptmcad.Enclosure"
+    assert not loaded_after(code, tmp_path) & {"flint", "yaml", "numpy", "matplotlib", "sympy"}
+
+
+def test_solving_needs_no_picture_or_symbolic_library(tmp_path: Path) -> None:
+    code = "import ptmcad; ptmcad.solve(rho='7/10', F3=-10).to_json()"
+    loaded = loaded_after(code, tmp_path)
+    assert "flint" in loaded
+    assert not loaded & {"matplotlib", "sympy", "numpy"}
 
 
 def loaded_after(code: str, tmp_path: Path) -> set[str]:

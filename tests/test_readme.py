@@ -33,7 +33,8 @@ PROGRAM_LINES = [line for line in shell_lines() if not line.startswith("make ")]
 
 def test_the_parts_are_there() -> None:
     assert MAKE_LINES == ["make demo", "make test"]
-    assert [shlex.split(line)[1] for line in PROGRAM_LINES] == ["classify", "classify", "verify", "locate", "report"]
+    commands = " ".join(shlex.split(line)[1] for line in PROGRAM_LINES)
+    assert commands == "classify classify verify locate report solve solve"
     assert len(blocks("yaml")) == 1
     assert len(blocks("python")) == 1
 
@@ -50,7 +51,13 @@ def test_make_command(line: str) -> None:
     assert expected[line] in dry.stdout
 
 
-SAYS = {"classify": "regions ", "verify": "ok ", "locate": "stable  2\n", "report": "fig4.html"}
+SAYS = {
+    "classify": "regions ",
+    "verify": "ok ",
+    "locate": "stable  2\n",
+    "report": "fig4.html",
+    "solve": "6 equilibria: 2 stable, 3 saddles, 1 maximum",
+}
 
 
 def test_program_commands_in_their_order(tmp_path: Path) -> None:
@@ -67,14 +74,8 @@ def test_program_commands_in_their_order(tmp_path: Path) -> None:
         assert done.stderr == ""
         assert SAYS[command] in done.stdout
     written = {path.name for path in (tmp_path / "out").iterdir()}
-    assert written == {
-        "fig4.html",
-        "fig4.json",
-        "fig4.svg",
-        "slice-L2-rho.json",
-        "slice-L2-rho.png",
-        "slice-L2-rho.svg",
-    }
+    maps = {"fig4.html", "fig4.json", "fig4.svg", "slice-L2-rho.json", "slice-L2-rho.png", "slice-L2-rho.svg"}
+    assert written == maps | {"poses.json", "poses.svg", "poses-landscape.svg"}
 
 
 def test_python_block(monkeypatch: pytest.MonkeyPatch) -> None:

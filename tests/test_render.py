@@ -28,7 +28,7 @@ from ptmcad.render.axes import scale_of, symbol, unit
 from ptmcad.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of
 from ptmcad.render.labels import place
 from ptmcad.render.outline import View, outline
-from ptmcad.render.regionmap import _figure
+from ptmcad.render.regionmap import figure_of
 from ptmcad.render.slivers import thin_regions, zooms
 from ptmcad.slice import Axis, Count, Point, Slice
 
@@ -230,7 +230,7 @@ def test_every_region_can_be_zoomed() -> None:
 def test_labels_and_texts_do_not_overlap() -> None:
     heights = [Fraction(k // 2 + 1, 17) + (k % 2) * Fraction(1, 10**5) for k in range(14)]
     with matplotlib.rc_context({"text.parse_math": False, "font.family": ["DejaVu Sans"]}):
-        figure = _figure(bands(heights, title="word " * 50), samples=False, dpi=100)
+        figure = figure_of(bands(heights, title="word " * 50), samples=False, dpi=100)
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
         renderer = canvas.get_renderer()
@@ -276,7 +276,7 @@ def test_every_colour_is_in_the_picture(name: str, count: str, dpi: int, tmp_pat
 def test_no_seams_between_the_cells_of_a_region(tmp_path: Path) -> None:
     """Within a region every pixel away from walls has exactly its colour."""
     result = classified("fig4", "stable")
-    figure = _figure(result, samples=False, dpi=100)
+    figure = figure_of(result, samples=False, dpi=100)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     image = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255

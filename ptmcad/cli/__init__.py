@@ -25,6 +25,7 @@ from ptmcad.version import __version__
 
 COMMANDS = {
     "classify": "ptmcad.cli.classify",
+    "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",
     "report": "ptmcad.cli.report",
     "verify": "ptmcad.cli.verify",

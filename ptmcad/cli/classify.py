@@ -10,6 +10,7 @@ from typing import Any
 
 import click
 
+from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits, tell_deadline
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.config import slice_from_options
@@ -110,14 +111,6 @@ def explanation(plan: Any) -> str:
     return plan if isinstance(plan, str) else "\n".join(str(step) for step in plan)
 
 
-def _formats(_context: click.Context, _parameter: click.Parameter, value: str) -> tuple[str, ...]:
-    formats = tuple(dict.fromkeys(part.strip().lower() for part in value.split(",") if part.strip()))
-    unknown = [part for part in formats if part not in FORMATS]
-    if unknown or not formats:
-        raise click.BadParameter(f"{', '.join(unknown) or 'nothing'} is not among {', '.join(FORMATS)}")
-    return formats
-
-
 def _tolerance(_context: click.Context, _parameter: click.Parameter, value: str | None) -> Fraction | None:
     if value is None:
         return None
@@ -138,8 +131,8 @@ def _tolerance(_context: click.Context, _parameter: click.Parameter, value: str 
 @click.option("--count", type=click.Choice([c.value for c in Count]), help="What tells two regions apart.")
 @click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
-@click.option("--format", "formats", callback=_formats, default="json,png,svg", show_default=True,
-              metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
+@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="json,png,svg",
+              show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Number of processes.")
 @limit_options

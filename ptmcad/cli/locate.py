@@ -41,9 +41,7 @@ def point_of(text: str) -> dict[str, str]:
     for part in text.split(","):
         name, equals, value = (piece.strip() for piece in part.partition("="))
         if not (name and equals and value) or name in point:
-            raise ConfigError(
-                f"'{shown(part, 60)}' is not NAME=VALUE: write both axes, as in rho=7/10,L2=3/2", key="--at"
-            )
+            raise ConfigError(f"'{shown(part, 60)}' is not NAME=VALUE: as in rho=7/10,L2=3/2", key="--at")
         point[name] = value
     return point
 

@@ -45,7 +45,7 @@ MAX_NAME = 100
 MAX_TITLE = 300
 
 
-def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) != len(pairs):
         key = next(k for n, (k, _) in enumerate(pairs) if k in (other for other, _ in pairs[:n]))
@@ -53,7 +53,7 @@ def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return found
 
 
-def _constant(text: str) -> Any:
+def constant_refused(text: str) -> Any:
     raise ValueError(f"{text} is not a number of JSON")
 
 
@@ -68,7 +68,7 @@ def read(text: str) -> RegionMap:
     if len(text) > MAX_TEXT:
         raise ValueError(f"the document has {len(text)} characters, more than {MAX_TEXT}")
     try:
-        data = json.loads(text, object_pairs_hook=_distinct, parse_constant=_constant)
+        data = json.loads(text, object_pairs_hook=distinct, parse_constant=constant_refused)
     except RecursionError as error:
         raise ValueError("the document is nested too deeply") from error
     node = Node(data, "")

@@ -8,6 +8,7 @@ are A1A4 (k1), A2A3 (k2), A3A4 (k3), of free length zero; the loads are (F3x, F3
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 
 from flint import fmpq
@@ -52,3 +53,9 @@ def ptm_system() -> ParametricSystem:
     """The mechanism's equilibrium equations and Hessian with all ten parameters symbolic."""
     ring = TrigonometricRing(PARAMETERS, ANGLES)
     return from_potential(ring, potential(ring), positive=("L1", "L2", "k1", "k2", "k3"), nonnegative=("rho",))
+
+
+@lru_cache(maxsize=1)
+def ptm_nodes() -> Mapping[str, Vector]:
+    """Coordinates of the four nodes as elements of the ring of `ptm_system`."""
+    return nodes(ptm_system().ring)

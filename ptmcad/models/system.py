@@ -182,22 +182,29 @@ def at_point(
     system: ParametricSystem, values: Mapping[str, fmpq]
 ) -> tuple[tuple[RationalPolynomial, ...], tuple[tuple[RationalPolynomial, ...], ...]]:
     """Gradient and Hessian with rational numbers for the parameters, exactly and with their true signs."""
-    numbers = [values[name] for name in system.ring.parameters]
-
-    def specialise(terms: Terms) -> RationalPolynomial:
-        result: RationalPolynomial = {}
-        for monomial, part in terms:
-            total = fmpq(0)
-            for powers, coefficient in part:
-                term = coefficient
-                for k, e in powers:
-                    term = term * numbers[k] ** e
-                total += term
-            if total:
-                result[monomial] = total
-        return result
-
     return (
-        tuple(specialise(g) for g in system.gradient_terms),
-        tuple(tuple(specialise(h) for h in row) for row in system.hessian_terms),
+        tuple(_specialised(system, g, values) for g in system.gradient_terms),
+        tuple(tuple(_specialised(system, h, values) for h in row) for row in system.hessian_terms),
     )
+
+
+def polynomial_at(
+    system: ParametricSystem, p: TrigonometricPolynomial, values: Mapping[str, fmpq]
+) -> RationalPolynomial:
+    """Any element of the system's ring with rational numbers for the parameters, exactly."""
+    return _specialised(system, _terms(system.ring, p), values)
+
+
+def _specialised(system: ParametricSystem, terms: Terms, values: Mapping[str, fmpq]) -> RationalPolynomial:
+    numbers = [values[name] for name in system.ring.parameters]
+    result: RationalPolynomial = {}
+    for monomial, part in terms:
+        total = fmpq(0)
+        for powers, coefficient in part:
+            term = coefficient
+            for k, e in powers:
+                term = term * numbers[k] ** e
+            total += term
+        if total:
+            result[monomial] = total
+    return result

@@ -6,7 +6,7 @@ Guarantee: every digit of an area is certified (`ptmcad.table.certified_digits`)
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -29,12 +29,16 @@ _HEADS = {
 }
 
 
+Mark = Callable[[Any, float, float], None]
+"""Draws into a figure, from a place in inches (left, middle) to the right, no wider than a swatch."""
+
+
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """Some lines of text beside a fill, a line's width, a dot or nothing."""
+    """Some lines of text beside a fill, a line's width, a dot, a drawing of its own or nothing."""
 
     lines: tuple[str, ...]
-    mark: Fill | float | str | None = None
+    mark: Fill | float | str | Mark | None = None
     strong: bool = False
 
 
@@ -125,6 +129,10 @@ def draw_legend(figure: Any, legend: tuple[Entry, ...], left: float, top: float)
                 figure.add_artist(
                     Line2D((left + SWATCH / 2,), (middle,), transform=inches, color=INK, marker="o", markersize=2.5)
                 )
+            case None:
+                pass
+            case mark:
+                mark(figure, left, middle)
         for k, line in enumerate(entry.lines):
             figure.text(
                 left + (0 if entry.mark is None else SWATCH + 0.1),

@@ -9,14 +9,10 @@ Not guaranteed: anything that only the picture tells. It is drawn in floating po
 from __future__ import annotations
 
 import textwrap
-import warnings
 from collections.abc import Sequence
-from html import escape
-from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -26,35 +22,18 @@ from ptmcad.render.colours import fill_of
 from ptmcad.render.labels import Placement, place
 from ptmcad.render.legend import INK, STRONG, THIN, draw_legend, entries, height
 from ptmcad.render.outline import Outline, outline
+from ptmcad.render.printing import printed, settings, suffix_of
 from ptmcad.render.slivers import Sliver, Zoom, thin_regions, zooms
 from ptmcad.table import certified_digits, count_text
 
 RESOLVED = 42
 """What is thinner than three pixels of this many to the inch (5 points) is taken for hidden by the walls around it."""
 
-FORMATS = ("png", "svg", "pdf")
-
 SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15
 """In inches: the map's side, the space at its left and below, a column at its right, the space before, the rim."""
 INSET_WIDTH, INSET_HEIGHT, INSET_LEFT, INSET_BELOW, INSET_ABOVE = 1.75, 1.2, 0.62, 0.48, 0.42
 BLOCK = INSET_ABOVE + INSET_HEIGHT + INSET_BELOW
 TITLE_LINE, TITLE_COLUMNS, TITLE_LINES = 0.22, 80, 3
-
-_SETTINGS: dict[str, Any] = {
-    "font.family": ["DejaVu Sans"],  # comes with matplotlib
-    "text.parse_math": False,
-    "text.usetex": False,
-    "axes.unicode_minus": True,
-    "axes.linewidth": 0.8,
-    "hatch.linewidth": 0.6,
-    "path.simplify": False,
-    "path.snap": True,
-    "savefig.bbox": None,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "ptmcad",
-    "svg.image_inline": True,
-    "pdf.compression": 6,
-}
 
 
 def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150) -> None:
@@ -77,22 +56,14 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
     ---------
     No region is invisible.
     """
-    suffix = path.suffix.lower().removeprefix(".")
-    if suffix not in FORMATS:
-        raise ValueError(f"{path.name}: the format {suffix!r} is not among {', '.join(FORMATS)}")
-    # matplotlib's own defaults, not those of a user's matplotlibrc
-    settings: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS
-    with matplotlib.rc_context(settings), warnings.catch_warnings():
-        # a title in a script that the font lacks is shown with boxes; SVG's title and the JSON keep it
-        warnings.filterwarnings("ignore", message="Glyph .* missing from")
-        data = _printed(_figure(result, samples, dpi), result, suffix, dpi)
+    suffix = suffix_of(path)
+    with settings():
+        data = printed(figure_of(result, samples, dpi), suffix, dpi, " ".join(_title(result)), description(result))
     path.write_bytes(data)
 
 
-_KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
-
-
-def _figure(result: RegionMap, samples: bool, dpi: int) -> Figure:
+def figure_of(result: RegionMap, samples: bool, dpi: int, beside: float = 0.0, tallest: float = 0.0) -> Figure:
+    """The picture, with so many inches left free at its right and at least so tall there."""
     whole = outline(result)
     thin = thin_regions(whole, round(SIDE * min(dpi, RESOLVED)))
     views = zooms(whole, thin)
@@ -106,10 +77,10 @@ def _figure(result: RegionMap, samples: bool, dpi: int) -> Figure:
     title = _title(result)
 
     below = height(legend) + 0.1
-    tall = max(SIDE + BOTTOM, below + 0.1, BLOCK)
+    tall = max(SIDE + BOTTOM, below + 0.1, BLOCK, tallest)
     places = _places(len(views), below, tall)
     columns = 1 + max((column for column, _ in places), default=0)
-    size = (LEFT + SIDE + GAP + columns * COLUMN + MARGIN, tall + TITLE_LINE * len(title) + 2 * MARGIN)
+    size = (LEFT + SIDE + GAP + columns * COLUMN + MARGIN + beside, tall + TITLE_LINE * len(title) + 2 * MARGIN)
     top = tall
 
     figure = Figure(figsize=size, dpi=dpi, facecolor="white")
@@ -227,35 +198,7 @@ def _mark(axes: Any, whole: Outline, thin: Sequence[Sliver], names: Sequence[str
         )  # fmt: skip
 
 
-def _printed(figure: Figure, result: RegionMap, suffix: str, dpi: int) -> bytes:
-    """The picture as a file's content, without dates and versions."""
-    title = " ".join(_title(result))
-    canvas: Any
-    if suffix == "svg":
-        from matplotlib.backends.backend_svg import FigureCanvasSVG
-
-        text = StringIO()
-        canvas = FigureCanvasSVG(figure)
-        canvas.print_svg(text, metadata={"Date": None, "Creator": "ptmcad", "Title": title})
-        head = f"<title>{escape(title, quote=False)}</title>"
-        described = f"{head}\n <desc>{escape(_description(result), quote=False)}</desc>"
-        return text.getvalue().replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
-    data = BytesIO()
-    if suffix == "pdf":
-        from matplotlib.backends.backend_pdf import FigureCanvasPdf
-
-        canvas = FigureCanvasPdf(figure)
-        metadata = {"CreationDate": None, "Creator": "ptmcad", "Producer": None, "Title": title}
-        canvas.print_pdf(data, metadata=metadata)
-    else:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-        canvas = FigureCanvasAgg(figure)
-        canvas.print_png(data, metadata={"Software": None, "Title": title})
-    return data.getvalue()
-
-
-def _description(result: RegionMap) -> str:
+def description(result: RegionMap) -> str:
     """What the picture shows, in words."""
     count = result.slice.count
     window = " and ".join(f"{a.name} from {a.low} to {a.high}" for a in result.slice.axes)

@@ -1,0 +1,149 @@
+"""The real points of a fibre with their multiplicities, and polynomials in the unknowns as numbers there.
+
+Guarantee: exact, also where points are multiple. Each real solution is there once; its multiplicity is the dimension
+of the local algebra.
+
+Reference: Rouillier, Solving zero-dimensional systems through the rational univariate representation, AAECC 9 (1999),
+theorem 3.1 (the traces) and lemma 2.1 (the list of forms).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from flint import fmpq, fmpq_mat, fmpq_poly, fmpz_poly
+
+from ptmcad.algebra.fibre import Fibre, RationalPolynomial, evaluate, hermite_matrix, signature
+from ptmcad.algebra.number_field import Element, RealField
+from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
+
+
+@dataclass(frozen=True, slots=True)
+class RealPoint:
+    """A real solution: the unknowns as elements of a real field, and the multiplicity."""
+
+    field: RealField
+    unknowns: tuple[Element, ...]
+    multiplicity: int
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """The points of a fibre.
+
+    Attributes
+    ----------
+    real : by the value of the separating form, which increases.
+    form : the separating form's coefficients, one for each unknown, not negative.
+    distinct, total : numbers of complex points, once each and with multiplicity.
+    """
+
+    real: tuple[RealPoint, ...]
+    form: tuple[int, ...]
+    distinct: int
+    total: int
+
+
+def points(algebra: Fibre, bound: int = 1) -> Points:
+    """The points of a fibre all of whose real points have unknowns of at most ``bound``, which bounds the search."""
+    form, matrix, characteristic, distinct = _separating_form(algebra)
+    factors = [(factor, int(multiplicity)) for factor, multiplicity in characteristic.numer().factor()[1]]
+    radical = _product([factor for factor, _ in factors])
+    numerators = _trace_polynomials(algebra, matrix, radical)
+    limit = fmpq(bound * sum(form) + 1)
+    coordinates: dict[int, tuple[fmpq_poly, list[fmpq_poly]]] = {}
+    found = []
+    for root in isolate(radical, -limit, limit):
+        number = next(n for n, (factor, _) in enumerate(factors) if _owns(factor, root))
+        factor, multiplicity = factors[number]
+        if number not in coordinates:
+            modulus = fmpq_poly(factor)
+            inverse = _inverse(numerators[0], modulus)
+            coordinates[number] = modulus, [p * inverse % modulus for p in numerators[1:]]
+        modulus, residues = coordinates[number]
+        field = RealField(modulus, RealRoot(factor, root.low, root.high))
+        found.append(RealPoint(field, tuple(Element(field, r) for r in residues), multiplicity))
+    return Points(tuple(found), form, distinct, algebra.dimension)
+
+
+def value_at(point: RealPoint, p: RationalPolynomial) -> Element:
+    """A polynomial in the unknowns as a number."""
+    total = point.field.constant(fmpq(0))
+    for monomial, c in p.items():
+        term = point.field.constant(c)
+        for unknown, e in zip(point.unknowns, monomial, strict=True):
+            for _ in range(e):
+                term = term * unknown
+        total = total + term
+    return total
+
+
+def real_values(algebra: Fibre, p: RationalPolynomial, bound: fmpq) -> tuple[RealRoot, ...]:
+    """The real numbers in (-bound, bound) that p takes at complex points of the fibre, in increasing order."""
+    factors = evaluate(algebra, p).charpoly().numer().factor()[1]
+    return isolate(_product([factor for factor, _ in factors]), -bound, bound)
+
+
+def _separating_form(algebra: Fibre) -> tuple[tuple[int, ...], fmpq_mat, fmpq_poly, int]:
+    """The first linear form of a fixed list with a different value at each point: coefficients, matrix,
+    characteristic polynomial, and the number of points."""
+    size, count = algebra.dimension, len(algebra.multiplication)
+    expected: int | None = None
+    for trial in range(1, size * (size - 1) // 2 * (count - 1) + 2):
+        form = tuple(trial**k for k in range(count))  # points on a moment curve
+        matrix = fmpq_mat(size, size)
+        for coefficient, m in zip(form, algebra.multiplication, strict=True):
+            matrix = matrix + m * fmpq(coefficient)
+        characteristic = matrix.charpoly()
+        distinct = size - characteristic.gcd(characteristic.derivative()).degree()
+        if distinct < size and expected is None:
+            one = evaluate(algebra, {(0,) * count: fmpq(1)})
+            expected = sum(signature(hermite_matrix(algebra, one)))
+        if distinct in (size, expected):
+            return form, matrix, characteristic, distinct
+    raise ArithmeticError("no form of the list separates the points of a fibre")
+
+
+def _trace_polynomials(algebra: Fibre, matrix: fmpq_mat, radical: fmpz_poly) -> list[fmpq_poly]:
+    """For v = 1 and each unknown, the sum over the points of multiplicity times v times the product of (T - value of
+    the form) over the other points; the value of v at a point is the quotient of that by the first of them."""
+    size, degree = algebra.dimension, radical.degree()
+    traces = fmpq_mat(1, size, [_trace(evaluate(algebra, {m: fmpq(1)})) for m in algebra.basis])
+    vectors = fmpq_mat(size, 1, [fmpq(int(i == 0)) for i in range(size)])
+    columns = [vectors, *(m * vectors for m in algebra.multiplication)]
+    monic = fmpq_poly(radical) / fmpq(radical[degree])
+    tails = [fmpq_poly([monic[degree - k + i] for i in range(k + 1)]) for k in range(degree)]
+    result = []
+    for vector in columns:
+        total, shifted = fmpq_poly([0]), vector
+        for j in range(degree):
+            total += tails[degree - 1 - j] * (traces * shifted)[0, 0]
+            shifted = matrix * shifted
+        result.append(total)
+    return result
+
+
+def _trace(matrix: fmpq_mat) -> fmpq:
+    return sum((matrix[i, i] for i in range(matrix.nrows())), fmpq(0))
+
+
+def _inverse(p: fmpq_poly, modulus: fmpq_poly) -> fmpq_poly:
+    common, inverse, _ = p.xgcd(modulus)
+    if common.degree() != 0:
+        raise ArithmeticError("the first trace polynomial vanishes at a point of the fibre")
+    return inverse / common[0] % modulus
+
+
+def _owns(factor: fmpz_poly, root: RealRoot) -> bool:
+    """Whether the only root in an isolating interval of a product is one of this factor's."""
+    if root.is_rational:
+        return sign_at(factor, root.low) == 0
+    return sign_at(factor, root.low) != sign_at(factor, root.high)
+
+
+def _product(factors: Sequence[fmpz_poly]) -> fmpz_poly:
+    product = fmpz_poly([1])
+    for factor in factors:
+        product *= factor
+    return product

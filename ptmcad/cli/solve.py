@@ -1,0 +1,113 @@
+"""``ptmcad solve``: every equilibrium at one point, as a table, JSON and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ptmcad.cli.formats import formats_of
+from ptmcad.cli.limits import limit_options, limits, tell_deadline
+from ptmcad.cli.locate import point_of
+from ptmcad.config import file_name, point_from_options
+from ptmcad.errors import ConfigError
+from ptmcad.memory import Bound
+from ptmcad.output import Writer, check_writable, text_writer, write_files
+from ptmcad.poses import MOST_DIGITS, Poses
+
+FORMATS = ("table", "json", "png", "svg", "pdf")
+DIGITS = 10
+
+
+def file_names(name: str, formats: tuple[str, ...], landscape: bool) -> tuple[str, ...]:
+    """The files that are written; the JSON file, which vouches for the pictures, comes last."""
+    pictures = [suffix for suffix in formats if suffix not in ("table", "json")]
+    names = [f"{name}.{suffix}" for suffix in pictures]
+    if landscape:
+        names += [f"{name}-landscape.{suffix}" for suffix in pictures or ["png"]]
+    return (*names, *([f"{name}.json"] if "json" in formats else []))
+
+
+def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
+    """Write the files of these names, all or none.
+
+    Raises
+    ------
+    OutputError
+        When a file can not be written.
+    """
+    writers: dict[str, Writer] = {}
+    for file in names:
+        if file.endswith(".json"):
+            writers[file] = text_writer(poses.to_json())
+            continue
+        from ptmcad.render.landscape import draw_landscape  # brings matplotlib
+        from ptmcad.render.poses import draw_poses
+
+        draw = draw_landscape if file.startswith(f"{name}-landscape.") else draw_poses
+        writers[file] = partial(_write_picture, draw, poses)
+    write_files(folder, writers)
+
+
+def _write_picture(draw: Callable[[Poses], Any], poses: Poses, path: Path) -> None:
+    from ptmcad.render.printing import save as save_figure
+
+    save_figure(draw(poses), path)
+
+
+@click.command("solve")
+@click.argument("config", required=False, type=click.Path(path_type=Path))
+@click.option("--at", "at", metavar="NAME=VALUE,...", help="The point: parameters, or axes of CONFIG, exact numbers.")
+@click.option("--set", "sets", multiple=True, metavar="NAME=VALUE", help="Fix one more parameter.")
+@click.option("--digits", type=click.IntRange(1, MOST_DIGITS), default=DIGITS, show_default=True, metavar="N",
+              help="Significant digits, all of them right.")  # fmt: skip
+@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="table", show_default=True,
+              metavar="LIST", help=f"What to make, of {', '.join(FORMATS)}; the table is printed.")  # fmt: skip
+@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: poses]")
+@click.option("--landscape", is_flag=True, help="Draw the energy over both angles too (NAME-landscape.png).")
+@limit_options
+def command(
+    *,
+    config: Path | None,
+    at: str | None,
+    sets: tuple[str, ...],
+    digits: int,
+    formats: tuple[str, ...],
+    out: Path,
+    name: str | None,
+    landscape: bool,
+    timeout: float | None,
+    max_memory: Bound | None,
+) -> None:
+    """Find every equilibrium at one point of the parameters, with stability, spring forces and energy.
+
+    CONFIG is a problem record (YAML) for what --at and --set leave open. Without it, parameters that are not given have
+    their defaults: L1 = L2 = rho = 1, k = 100, no load. Every digit that is shown is right; a zero or another number
+    that is shown without trailing digits is exact; a degenerate equilibrium is named, with its multiplicity.
+
+    \b
+    Examples:
+        ptmcad solve --at rho=1,L2=3/2
+        ptmcad solve --at rho=7/10,L2=3/2,F3=-10,F4=-10 --format table,json,svg --out poses
+        ptmcad solve configs/fig4.yaml --at rho=7/10,L2=3/2 --digits 30
+    """
+    if at is None and not sets and config is None:
+        raise ConfigError("give a point, as in --at rho=1,L2=3/2")
+    start = "poses" if name is None else file_name(name, "--name")
+    names = file_names(start, formats, landscape)
+    with limits(timeout, max_memory):
+        parameters = point_from_options(config, {} if at is None else point_of(at), sets)
+        if names:
+            check_writable(out, names)
+        from ptmcad.solving import poses_at
+
+        tell_deadline(timeout)  # anew: the time that the import took is not the computation's
+        poses = poses_at(parameters, digits)
+        if names:
+            save(poses, out, start, names)
+    if "table" in formats:
+        click.echo(poses.table())

@@ -1,0 +1,153 @@
+"""Places for labels clear of drawn strokes and of each other.
+
+Guarantee: the same for the same drawing. A label covers a stroke, a box or another label only where none of the
+`TRIED` places within the bounds is free; then it stands where it covers the fewest. A line that
+leads to a label crosses boxes only where it must.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import atan2, cos, hypot, pi, sin
+
+Position = tuple[float, float]
+Box = tuple[float, float, float, float]
+"""Left, bottom, right, top."""
+
+_DIRECTIONS = 32
+_DISTANCES = (4.0, 6.0, 9.0, 13.0, 18.0, 24.0, 31.0, 40.0, 52.0, 66.0, 84.0, 110.0, 140.0, 180.0)
+TRIED = _DIRECTIONS * len(_DISTANCES)
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """A straight line from ``start`` to ``end`` with half its width, all in points."""
+
+    start: Position
+    end: Position
+    half: float
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A text and the point that it names; half its width and height; the direction that it had best lie in."""
+
+    text: str
+    at: Position
+    half: Position
+    towards: Position
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A label's centre, and the end of a line that leads from its point to it when it lies far from there."""
+
+    label: Label
+    center: Position
+    leader: Position | None
+
+    @property
+    def box(self) -> Box:
+        """What the label covers."""
+        return _around(self.center, self.label.half)
+
+
+def polyline(points: Sequence[Position], half: float) -> Iterator[Stroke]:
+    """The strokes of a line through the points."""
+    for start, end in pairwise(points):
+        yield Stroke(start, end, half)
+
+
+def place(labels: Iterable[Label], strokes: Iterable[Stroke], boxes: Iterable[Box], bounds: Box) -> list[Placed]:
+    """Places for the labels, one after the other.
+
+    Parameters
+    ----------
+    strokes, boxes : what no label may cover.
+    bounds : the box that no label may leave.
+    """
+    drawn, taken = list(strokes), list(boxes)
+    result = []
+    for label in labels:
+        placed = _best(label, drawn, taken, bounds)
+        result.append(placed)
+        taken.append(placed.box)
+        if placed.leader is not None:
+            drawn.append(Stroke(label.at, placed.leader, 0.5))
+    return result
+
+
+def _best(label: Label, strokes: Sequence[Stroke], boxes: Sequence[Box], bounds: Box) -> Placed:
+    fewest, best = (len(strokes) + len(boxes) + 1, 0), Placed(label, label.at, None)
+    start = atan2(label.towards[1], label.towards[0])
+    for distance in _DISTANCES:
+        for k in range(_DIRECTIONS):
+            # 0, 1, -1, 2, -2, ... steps away from the wanted direction
+            angle = start + 2 * pi / _DIRECTIONS * ((k + 1) // 2) * (1 if k % 2 else -1)
+            center = _beside(label, angle, distance)
+            box = _around(center, label.half)
+            if box[0] < bounds[0] or box[1] < bounds[1] or box[2] > bounds[2] or box[3] > bounds[3]:
+                continue
+            leader = _edge(label.at, box) if distance > 11 else None
+            covered = sum(crosses(stroke, box) for stroke in strokes) + sum(overlap(box, other) for other in boxes)
+            passed = 0
+            if leader is not None:
+                line = Stroke(label.at, leader, 0.5)
+                passed = sum(crosses(line, other) for other in boxes if not _holds(other, label.at))
+            if (covered, passed) < fewest:
+                fewest, best = (covered, passed), Placed(label, center, leader)
+                if covered + passed == 0:
+                    return best
+    return best
+
+
+def _beside(label: Label, angle: float, distance: float) -> Position:
+    """The centre of a label whose nearest edge or corner is at a distance from its point."""
+    dx, dy = cos(angle), sin(angle)
+    width, height = label.half
+    reach = min(width / abs(dx) if abs(dx) > 1e-9 else 1e9, height / abs(dy) if abs(dy) > 1e-9 else 1e9)
+    return label.at[0] + dx * (reach + distance), label.at[1] + dy * (reach + distance)
+
+
+def _edge(at: Position, box: Box) -> Position:
+    """The point of the box that is nearest to a point."""
+    return min(max(at[0], box[0]), box[2]), min(max(at[1], box[1]), box[3])
+
+
+def _around(center: Position, half: Position) -> Box:
+    return center[0] - half[0], center[1] - half[1], center[0] + half[0], center[1] + half[1]
+
+
+def _holds(box: Box, point: Position) -> bool:
+    return box[0] <= point[0] <= box[2] and box[1] <= point[1] <= box[3]
+
+
+def overlap(a: Box, b: Box) -> bool:
+    """Whether two boxes have inner points in common."""
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+
+
+def crosses(stroke: Stroke, box: Box) -> bool:
+    """Whether a stroke meets a box: its middle line is clipped to the box, which is made larger by half the width."""
+    low, high = 0.0, 1.0
+    for k in (0, 1):
+        origin, step = stroke.start[k], stroke.end[k] - stroke.start[k]
+        near, far = box[k] - stroke.half, box[k + 2] + stroke.half
+        if abs(step) < 1e-12:
+            if not near < origin < far:
+                return False
+            continue
+        first, last = sorted(((near - origin) / step, (far - origin) / step))
+        low, high = max(low, first), min(high, last)
+    return low < high
+
+
+def distance(point: Position, stroke: Stroke) -> float:
+    """From a point to a stroke's middle line."""
+    (ax, ay), (bx, by) = stroke.start, stroke.end
+    dx, dy = bx - ax, by - ay
+    square = dx * dx + dy * dy
+    t = 0.0 if square == 0 else min(1.0, max(0.0, ((point[0] - ax) * dx + (point[1] - ay) * dy) / square))
+    return hypot(point[0] - ax - t * dx, point[1] - ay - t * dy)

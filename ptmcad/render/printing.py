@@ -1,0 +1,111 @@
+"""Printing: a figure as the content of a PNG, SVG or PDF file, for screen readers with a title and a description.
+
+Guarantee: the same figure gives the same bytes with the same matplotlib, whatever the user's settings, the date and
+the machine. Global state of matplotlib is neither used nor changed.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from html import escape
+from io import BytesIO, StringIO
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.figure import Figure
+
+FORMATS = ("png", "svg", "pdf")
+
+_SETTINGS: dict[str, Any] = {
+    "font.family": ["DejaVu Sans"],  # comes with matplotlib
+    "text.parse_math": False,
+    "text.usetex": False,
+    "axes.unicode_minus": True,
+    "axes.linewidth": 0.8,
+    "hatch.linewidth": 0.6,
+    "path.simplify": False,
+    "path.snap": True,
+    "savefig.bbox": None,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "ptmcad",
+    "svg.image_inline": True,
+    "pdf.compression": 6,
+}
+_KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
+
+
+@contextmanager
+def settings() -> Iterator[None]:
+    """Matplotlib's own defaults and the project's fonts, not a user's matplotlibrc; for drawing and for printing."""
+    own: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS
+    with matplotlib.rc_context(own), warnings.catch_warnings():
+        # a title in a script that the font lacks is shown with boxes; SVG's title and the JSON keep it
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
+        yield
+
+
+def suffix_of(path: Path) -> str:
+    """The format that a file's name asks for.
+
+    Raises
+    ------
+    ValueError
+        For another suffix than those of `FORMATS`.
+    """
+    suffix = path.suffix.lower().removeprefix(".")
+    if suffix not in FORMATS:
+        raise ValueError(f"{path.name}: the format {suffix!r} is not among {', '.join(FORMATS)}")
+    return suffix
+
+
+def save(figure: Figure, path: Path, *, dpi: int = 150) -> None:
+    """Write a figure whose label is its title and, on further lines, its description.
+
+    Parameters
+    ----------
+    path : its suffix tells the format: png, svg or pdf.
+    dpi : resolution of a PNG.
+
+    Raises
+    ------
+    ValueError
+        For another suffix.
+    OSError
+        When the file can not be written.
+    """
+    suffix = suffix_of(path)
+    title, _, description = str(figure.get_label()).partition("\n")
+    with settings():
+        data = printed(figure, suffix, dpi, title, description)
+    path.write_bytes(data)
+
+
+def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str) -> bytes:
+    """The picture as a file's content, without dates and versions; to be called within `settings`."""
+    figure.set_dpi(dpi)
+    canvas: Any
+    if suffix == "svg":
+        from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+        text = StringIO()
+        canvas = FigureCanvasSVG(figure)
+        canvas.print_svg(text, metadata={"Date": None, "Creator": "ptmcad", "Title": title})
+        head = f"<title>{escape(title, quote=False)}</title>"
+        described = f"{head}\n <desc>{escape(description, quote=False)}</desc>"
+        return text.getvalue().replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
+    data = BytesIO()
+    if suffix == "pdf":
+        from matplotlib.backends.backend_pdf import FigureCanvasPdf
+
+        canvas = FigureCanvasPdf(figure)
+        metadata = {"CreationDate": None, "Creator": "ptmcad", "Producer": None, "Title": title}
+        canvas.print_pdf(data, metadata=metadata)
+    else:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+        canvas = FigureCanvasAgg(figure)
+        canvas.print_png(data, metadata={"Software": None, "Title": title})
+    return data.getvalue()
