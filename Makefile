@@ -15,7 +15,7 @@ help:
 	@echo "make fuzz       damaged and hostile records, results and points by the ten thousand, guided by coverage"
 	@echo "make check      ruff, its formatter and mypy in strict mode"
 	@echo "make bench      run time and memory of every slice in configs/, into docs/benchmarks/"
-	@echo "make docs       the pictures that the README and docs/ show, into docs/img/"
+	@echo "make docs       the manual, as out/docs/html/index.html, and the README's picture, into docs/img/"
 	@echo "make clean      removes what the targets made, except the environment"
 	@echo "make distclean  removes the environment too"
 
@@ -39,6 +39,10 @@ $(VENV)/.installed-check: $(VENV)/.installed-test
 	$(PIP) --editable '.[test,check]'
 	@touch $@
 
+$(VENV)/.installed-docs: $(VENV)/.installed
+	$(PIP) --editable '.[docs]'
+	@touch $@
+
 demo: $(VENV)/.installed
 	$(BIN)/ptmcad classify configs/fig4.yaml --format json,png,svg --out out
 
@@ -59,11 +63,13 @@ check: $(VENV)/.installed-check
 bench: $(VENV)/.installed
 	$(BIN)/python -m ptmcad.bench --out docs/benchmarks
 
-docs: $(VENV)/.installed
+docs: $(VENV)/.installed-docs
 	$(BIN)/ptmcad classify configs/fig4.yaml --format png --out docs/img
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet -b html -d out/docs/doctrees docs out/docs/html
+	@echo "the manual is out/docs/html/index.html"
 
 clean:
-	rm -rf out build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info
+	rm -rf out build dist docs/generated .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info
 	find . -name __pycache__ -type d -not -path './$(VENV)/*' -prune -exec rm -rf {} +
 
 distclean: clean

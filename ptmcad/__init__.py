@@ -16,10 +16,11 @@ if TYPE_CHECKING:
 
     from ptmcad.config import load, slice_from_mapping, slice_from_options
     from ptmcad.enclosure import AlgebraicNumber, Enclosure
-    from ptmcad.pipeline import classify
+    from ptmcad.pipeline import classify, slice_variety
     from ptmcad.poses import Pose, Poses, solve
     from ptmcad.regionmap import RegionMap
     from ptmcad.slice import Count, Point, Slice
+    from ptmcad.slicevariety import SliceVariety
     from ptmcad.verification import VerifyReport, verify
 
 _HOMES = {
@@ -29,6 +30,7 @@ _HOMES = {
     "AlgebraicNumber": "enclosure",
     "Enclosure": "enclosure",
     "classify": "pipeline",
+    "slice_variety": "pipeline",
     "Pose": "poses",
     "Poses": "poses",
     "solve": "poses",
@@ -36,6 +38,7 @@ _HOMES = {
     "Count": "slice",
     "Point": "slice",
     "Slice": "slice",
+    "SliceVariety": "slicevariety",
     "VerifyReport": "verification",
     "verify": "verification",
 }
@@ -49,12 +52,14 @@ __all__ = [
     "Poses",
     "RegionMap",
     "Slice",
+    "SliceVariety",
     "VerifyReport",
     "__version__",
     "classify",
     "load",
     "slice_from_mapping",
     "slice_from_options",
+    "slice_variety",
     "solve",
     "verify",
 ]

@@ -35,10 +35,12 @@ from ptmcad.cad.stacks import lift
 from ptmcad.counting import DegeneratePoint, Equilibria, equilibria, solutions_at
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
 from ptmcad.models import ParametricSystem, system_of
+from ptmcad.models.elimination import elimination_system
 from ptmcad.models.text import system_text
 from ptmcad.plan import plan_of
 from ptmcad.regionmap import Component, RegionMap, Status
 from ptmcad.slice import Count, Slice
+from ptmcad.slicevariety import SliceVariety
 from ptmcad.variety import discriminant_variety
 from ptmcad.version import __version__
 
@@ -130,6 +132,31 @@ def classify(
         raise LimitReached(str(stop), partial=best) from stop
     assert best is not None
     return best
+
+
+def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVariety:
+    """The discriminant variety of a slice, the first stage of `classify` alone.
+
+    Parameters
+    ----------
+    keep : names of savings to switch off, see `ptmcad.plan`.
+
+    Raises
+    ------
+    HypothesisError
+        When the slice is degenerate or has infinitely many equilibria.
+    """
+    now = perf_counter()
+    first = next(_stages(slice, AREA_TOLERANCE, _Clock(None, None, now, now, {}), keep))
+    system = system_of(slice.mechanism)
+    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
+    return SliceVariety(
+        slice,
+        first.components,
+        first.complex_solutions,
+        elimination_system(system, parameters, slice.axis_names),
+        first.versions,
+    )
 
 
 def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str]) -> Iterator[RegionMap]:

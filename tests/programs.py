@@ -99,12 +99,7 @@ def real_solutions(variables: Sequence[str], equations: Sequence[str]) -> int:
     ProgramError
         When it finds infinitely many complex ones, or does not answer.
     """
-    assert MSOLVE is not None
-    with tempfile.TemporaryDirectory() as folder:
-        asked, answer = Path(folder) / "system.ms", Path(folder) / "answer"
-        asked.write_text(f"{','.join(variables)}\n0\n" + ",\n".join(equations) + "\n", encoding="ascii")
-        _run((MSOLVE, "-f", str(asked), "-o", str(answer)), "")
-        output = answer.read_text(encoding="ascii") if answer.exists() else ""
+    output = _msolve(f"{','.join(variables)}\n0\n" + ",\n".join(equations) + "\n")
     text = "".join(output.split())
     if text == "[-1]:":
         return 0
@@ -112,6 +107,35 @@ def real_solutions(variables: Sequence[str], equations: Sequence[str]) -> int:
     if not text.startswith("[0,[1,") or rest:
         raise ProgramError(f"msolve does not answer: {output[:300]!r}")
     return number
+
+
+def eliminated(text: str, unknowns: int) -> list[str]:
+    """The generators that msolve finds for an ideal cut with the polynomials in all but the first variables.
+
+    Parameters
+    ----------
+    text : msolve's input.
+    unknowns : how many variables are eliminated, from the first on.
+
+    Raises
+    ------
+    ProgramError
+        When it does not answer.
+    """
+    output = _msolve(text, "-e", str(unknowns), "-g", "2")
+    found = re.search(r"^\[(.*)\]:", output, re.MULTILINE | re.DOTALL)
+    if found is None:
+        raise ProgramError(f"msolve does not answer: {output[:300]!r}")
+    return [generator.strip() for generator in found.group(1).split(",")]
+
+
+def _msolve(text: str, *options: str) -> str:
+    assert MSOLVE is not None
+    with tempfile.TemporaryDirectory() as folder:
+        asked, answer = Path(folder) / "system.ms", Path(folder) / "answer"
+        asked.write_text(text, encoding="ascii")
+        _run((MSOLVE, *options, "-f", str(asked), "-o", str(answer)), "")
+        return answer.read_text(encoding="ascii") if answer.exists() else ""
 
 
 def _run(command: Sequence[str], text: str) -> str:

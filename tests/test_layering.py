@@ -160,10 +160,14 @@ def test_the_fork_comes_before_everything_large(tmp_path: Path) -> None:
 def test_data_flows_one_way(path: Path) -> None:
     """What computes knows nothing of how results are shown, asked for or timed."""
     if part(path) not in {"cli", "bench", "render", "report", "__main__"}:
-        allowed = {"render"} if part(path) == "regionmap" else set()
-        assert not imported_parts(path) & {"cli", "bench", "render"} - allowed
+        allowed = {"regionmap": {"render"}, "slicevariety": {"export"}, "export": {"export"}}.get(part(path), set())
+        assert not imported_parts(path) & {"cli", "bench", "render", "export"} - allowed
     if part(path) in {"errors", "expressions", "textfile"}:
         assert imported_parts(path) <= {"errors", "numerals"}
+    if part(path) == "export":
+        assert imported_parts(path) <= {
+            "export", "slicevariety", "polynomial_text", "plane", "regionmap", "numerals", "errors", "expressions",
+        }  # fmt: skip
     if part(path) == "yamltree":
         assert imported_parts(path) <= {"errors", "textfile"}
 

@@ -89,7 +89,9 @@ def read_back(text: str, names: tuple[str, str], style: Style) -> PlanePolynomia
     assert len(set(spelled)) == 2
     pair = (spelled[0], spelled[1])
     if style is Style.SYMPY:
-        return of_sympy(sympy.sympify(text, locals={name: sympy.Symbol(name) for name in pair}), pair)
+        return of_sympy(
+            sympy.sympify(text, locals={name: sympy.Symbol(name) for name in pair}, convert_xor=False), pair
+        )
     if style is Style.MATHEMATICA:  # SymPy's reader takes some names for Python's or its own
         for k, name in enumerate(pair):
             text = re.sub(rf"(?<![\w$]){re.escape(name)}(?![\w$])", f"z{k}", text)

@@ -34,7 +34,7 @@ PROGRAM_LINES = [line for line in shell_lines() if not line.startswith("make ")]
 def test_the_parts_are_there() -> None:
     assert MAKE_LINES == ["make demo", "make test"]
     commands = " ".join(shlex.split(line)[1] for line in PROGRAM_LINES)
-    assert commands == "classify classify verify locate report solve solve"
+    assert commands == "classify classify verify locate report solve solve variety"
     assert len(blocks("yaml")) == 1
     assert len(blocks("python")) == 1
 
@@ -57,6 +57,7 @@ SAYS = {
     "locate": "stable  2\n",
     "report": "fig4.html",
     "solve": "6 equilibria: 2 stable, 3 saddles, 1 maximum",
+    "variety": "variety := [",
 }
 
 

@@ -28,6 +28,7 @@ COMMANDS = {
     "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",
     "report": "ptmcad.cli.report",
+    "variety": "ptmcad.cli.variety",
     "verify": "ptmcad.cli.verify",
 }
 MOST_ARGUMENTS = 10_000

@@ -13,6 +13,7 @@ import click
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits, tell_deadline
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.slices import slice_options
 from ptmcad.config import slice_from_options
 from ptmcad.errors import ConfigError, ExpressionError, LimitReached
 from ptmcad.expressions import rational
@@ -124,10 +125,7 @@ def _tolerance(_context: click.Context, _parameter: click.Parameter, value: str 
 
 
 @click.command("classify")
-@click.argument("config", required=False, type=click.Path(path_type=Path))
-@click.option("--slice", "axes", metavar="X,Y", help="The two axes, the horizontal one first.")
-@click.option("--set", "sets", multiple=True, metavar="NAME=VALUE", help="Fix a parameter: a number or an expression.")
-@click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", help="The range of an axis.")
+@slice_options
 @click.option("--count", type=click.Choice([c.value for c in Count]), help="What tells two regions apart.")
 @click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")

@@ -1,0 +1,61 @@
+"""``ptmcad variety``: the discriminant variety of a slice, as text or for another program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.slices import slice_options
+from ptmcad.config import slice_from_options
+from ptmcad.export import FORMATS
+from ptmcad.memory import Bound
+from ptmcad.output import check_writable, text_writer, write_files
+
+
+@click.command("variety")
+@slice_options
+@click.option("--format", "format", type=click.Choice(list(FORMATS)), default="text", show_default=True,
+              help="The language to write it in.")  # fmt: skip
+@click.option("--out", type=click.Path(path_type=Path), metavar="FILE", help="Write to a file, not to the terminal.")
+@limit_options
+def command(
+    *,
+    config: Path | None,
+    axes: str | None,
+    sets: tuple[str, ...],
+    ranges: tuple[str, ...],
+    format: str,
+    out: Path | None,
+    timeout: float | None,
+    max_memory: Bound | None,
+) -> None:
+    """Compute the curves off which the number of equilibria is locally constant.
+
+    CONFIG is a problem record (YAML); options override it. Each curve is irreducible and has a kind: critical (an
+    equilibrium is singular there), infinity (a complex solution leaves every bounded set) or boundary (the slice's
+    equations lose their meaning).
+
+    sympy, maple and mathematica are programs that define the list "variety". qepcad is a session that decomposes the
+    window by the curves. msolve is the system from which they follow: "msolve -e 4 -g 2 -f FILE" eliminates its four
+    unknowns, and the critical curves are factors of what is left.
+
+    \b
+    Examples:
+        ptmcad variety --slice L2,rho
+        ptmcad variety --slice L2,rho --format maple --out unloaded.mpl
+        ptmcad variety --slice rho,L2 --set F3=-10 --set F4=-10 --format qepcad
+    """
+    slice = slice_from_options(config, axes, sets, ranges)
+    if out is not None:
+        check_writable(out.parent, (out.name,))
+    with limits(timeout, max_memory):
+        from ptmcad.pipeline import slice_variety
+
+        text = slice_variety(slice).text(format)
+    if out is None:
+        click.echo(text, nl=False)
+    else:
+        write_files(out.parent, {out.name: text_writer(text)})
+        click.echo(f"written   {out}")
