@@ -161,7 +161,7 @@ def test_the_fork_comes_before_everything_large(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", MODULES, ids=relative)
 def test_data_flows_one_way(path: Path) -> None:
     """What computes knows nothing of how results are shown, asked for or timed."""
-    if part(path) not in {"cli", "bench", "render", "paper", "__main__"}:
+    if part(path) not in {"cli", "bench", "render", "report", "paper", "__main__"}:
         allowed = {"regionmap": {"render"}, "slicevariety": {"export"}, "export": {"export"}}.get(part(path), set())
         assert not imported_parts(path) & {"cli", "bench", "render", "export"} - allowed
     if part(path) in {"errors", "expressions", "textfile"}:
@@ -172,6 +172,23 @@ def test_data_flows_one_way(path: Path) -> None:
         }  # fmt: skip
     if part(path) == "yamltree":
         assert imported_parts(path) <= {"errors", "textfile"}
+
+
+@pytest.mark.parametrize("path", MODULES, ids=relative)
+def test_the_report_tells_what_the_result_holds_and_computes_nothing(path: Path) -> None:
+    """It may read, write down and draw; the engine is out of its reach, and only a command asks for it."""
+    if part(path) == "report":
+        assert imported_parts(path) <= {
+            "report", "regionmap", "slice", "plane", "polynomial_text", "table", "numerals", "errors", "version",
+            "render", "config", "yamltree", "document", "textfile",
+        }  # fmt: skip
+    elif part(path) != "cli":
+        assert "report" not in imported_parts(path)
+
+
+def test_the_report_does_without_matplotlib(tmp_path: Path) -> None:
+    """Outlines and colours are all that it takes from render/."""
+    assert not loaded_after("import ptmcad.report", tmp_path) & {"matplotlib", "sympy"}
 
 
 def test_reading_poses_loads_nothing_of_the_engine(tmp_path: Path) -> None:

@@ -34,7 +34,7 @@ PROGRAM_LINES = [line for line in shell_lines() if not line.startswith("make ")]
 def test_the_parts_are_there() -> None:
     assert MAKE_LINES == ["make demo", "make test"]
     commands = " ".join(shlex.split(line)[1] for line in PROGRAM_LINES)
-    assert commands == "classify classify verify locate range solve solve variety"
+    assert commands == "classify classify verify locate range report solve solve variety"
     assert len(blocks("yaml")) == 1
     assert len(blocks("python")) == 1
 
@@ -56,6 +56,7 @@ SAYS = {
     "verify": "ok ",
     "locate": "stable  2\n",
     "range": "operation range: 0.4981306959 to 1.041432630",
+    "report": "fig4.html",
     "solve": "6 equilibria: 2 stable, 3 saddles, 1 maximum",
     "variety": "variety := [",
 }
@@ -75,7 +76,7 @@ def test_program_commands_in_their_order(tmp_path: Path) -> None:
         assert done.stderr == ""
         assert SAYS[command] in done.stdout
     written = {path.name for path in (tmp_path / "out").iterdir()}
-    maps = {"fig4.json", "fig4.svg", "slice-L2-rho.json", "slice-L2-rho.png", "slice-L2-rho.svg"}
+    maps = {"fig4.html", "fig4.json", "fig4.svg", "slice-L2-rho.json", "slice-L2-rho.png", "slice-L2-rho.svg"}
     assert written == maps | {"poses.json", "poses.svg", "poses-landscape.svg"}
 
 

@@ -29,6 +29,7 @@ COMMANDS = {
     "locate": "ptmcad.cli.locate",
     "paper": "ptmcad.cli.paper",
     "range": "ptmcad.cli.range",
+    "report": "ptmcad.cli.report",
     "variety": "ptmcad.cli.variety",
     "verify": "ptmcad.cli.verify",
 }

@@ -1,0 +1,70 @@
+"""``ptmcad report``: a stored result as one HTML page that needs nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.stored import read_result
+from ptmcad.errors import ConfigError
+from ptmcad.memory import Bound
+from ptmcad.output import check_writable, text_writer, write_files
+
+
+def _file_name(_context: click.Context, _parameter: click.Parameter, value: str | None) -> str | None:
+    if value is None:
+        return None
+    name = value.removesuffix(".html")
+    if not name or not name[0].isalnum() or not all(c.isalnum() or c in "._-" for c in name) or len(name) > 100:
+        raise ConfigError("is no name for a file: use letters, digits, '.', '_' and '-'", key="--name")
+    return name
+
+
+@click.command("report")
+@click.argument("result", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="Folder for the page.  [default: that of RESULT]")
+@click.option("--name", callback=_file_name, metavar="NAME", help="Name of the page.  [default: the slice's name]")
+@click.option("--bench", type=click.Path(path_type=Path), metavar="FILE",
+              help="A measurement of error against time to show.  "
+                   "[default: NAME.error-time.json beside RESULT, if there is one]")  # fmt: skip
+@click.option("--no-timings", is_flag=True, help="Leave run times out, so that the page is the same every time.")
+@limit_options
+def command(
+    *,
+    result: Path,
+    out: Path | None,
+    name: str | None,
+    bench: Path | None,
+    no_timings: bool,
+    timeout: float | None,
+    max_memory: Bound | None,
+) -> None:
+    """Write RESULT, a JSON file of `ptmcad classify`, as one HTML page.
+
+    The page works from a file without a network: the map, the poses and the energy of every cell, the curves' formulas,
+    what was left out, and how to compute and check the result again.
+
+    \b
+    Example:
+        ptmcad classify --slice L2,rho --format json
+        ptmcad report slice-L2-rho.json
+    """
+    with limits(timeout, max_memory):
+        stored = read_result(result)
+        folder = result.parent if out is None else out
+        file = f"{name or stored.slice.name}.html"
+        check_writable(folder, (file,))
+        from ptmcad.report import page
+        from ptmcad.report.error_curve import read_error_curve
+
+        beside = result.with_name(f"{stored.slice.name}.error-time.json")
+        curve = bench if bench is not None else beside if beside.is_file() else None
+        errors = None if curve is None else read_error_curve(curve)
+        try:
+            text = page(stored, timings=not no_timings, errors=errors)
+        except ConfigError as error:
+            raise ConfigError(error.message, key=error.key, file=str(result)) from error
+        (written,) = write_files(folder, {file: text_writer(text)})
+    click.echo(f"{written}  {len(text.encode()) / 1e6:.2f} MB")

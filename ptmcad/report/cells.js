@@ -1,0 +1,179 @@
+// The map's cells: pointing shows what a cell is, choosing draws its poses; keyboard, pointer and touch alike.
+
+const cells = {
+  areas: new Map(), // number of the cell -> its areas: one in the map, perhaps more in the views of thin regions
+  current: -1,      // the one that Tab reaches
+  chosen: -1,
+  redraw: null,     // of the landscape that is shown
+};
+const readout = document.getElementById("readout");
+const panel = document.getElementById("poses");
+const sampleDot = document.querySelector("#map .sample");
+
+for (const area of document.querySelectorAll(".cell")) {
+  const number = Number(area.dataset.cell);
+  if (!cells.areas.has(number)) cells.areas.set(number, []);
+  cells.areas.get(number).push(area);
+}
+
+function line(parent, label, text) {
+  const p = html("div");
+  if (label) p.append(html("b", "", `${label} `));
+  p.append(text);
+  parent.append(p);
+}
+
+function show(number) {
+  readout.replaceChildren();
+  const cell = DATA.cells[number];
+  for (const area of document.querySelectorAll(".cell.seen")) area.classList.remove("seen");
+  if (!cell) {
+    line(readout, "", DATA.cells.length ? "No cell is pointed at." : "No cells are known yet.");
+    sampleDot.setAttribute("visibility", "hidden");
+    return;
+  }
+  const index = cell.index ? ` (minima-saddles-maxima ${cell.index.join("-")})` : "";
+  line(readout, `Cell ${number}, region ${cell.region}:`, `${cell.counts}${index}`);
+  line(readout, "Sample:", cell.sample.map(([name, text]) => `${name} = ${text}`).join(", "));
+  const region = DATA.regions[cell.region];
+  line(readout, "Area of the region:", region.area);
+  for (const area of cells.areas.get(number) || []) area.classList.add("seen");
+  sampleDot.setAttribute("cx", cell.at[0]);
+  sampleDot.setAttribute("cy", cell.at[1]);
+  sampleDot.setAttribute("visibility", "visible");
+}
+
+function settle() {
+  show(document.activeElement.classList.contains("cell") ? cells.current : cells.chosen);
+}
+
+function moveTo(number, focus) {
+  const own = cells.areas.get(number);
+  if (!own) return;
+  for (const area of cells.areas.get(cells.current) || []) area.setAttribute("tabindex", "-1");
+  cells.current = number;
+  own[0].setAttribute("tabindex", "0");
+  if (focus) own[0].focus({ preventScroll: false });
+}
+
+function press(number, pressed) {
+  for (const area of cells.areas.get(number) || []) area.setAttribute("aria-pressed", String(pressed));
+  for (const chip of document.querySelectorAll(`.chip[data-cell="${number}"]`)) chip.setAttribute("aria-pressed", String(pressed));
+}
+
+function close() {
+  if (cells.chosen < 0) return;
+  const last = cells.chosen;
+  press(last, false);
+  cells.chosen = -1;
+  cells.redraw = null;
+  const within = panel.contains(document.activeElement);
+  panel.replaceChildren(html("p", "hint", "No cell is chosen."));
+  if (within) moveTo(last, true);
+  settle();
+  say("Closed.");
+}
+
+function choose(number, bringIntoView) {
+  const cell = DATA.cells[number];
+  if (!cell) return;
+  press(cells.chosen, false);
+  cells.chosen = number;
+  press(number, true);
+  moveTo(number, false);
+  show(number);
+  fillPanel(number, cell);
+  say(`Cell ${number}: ${cell.counts}. Its poses are drawn.`);
+  const top = panel.getBoundingClientRect().top;
+  if (bringIntoView && (top < 0 || top > window.innerHeight - 120)) panel.scrollIntoView({ block: "start" });
+}
+
+function fillPanel(number, cell) {
+  const head = html("div", "poses-head");
+  const title = html("h3", "", `Cell ${number}: ${cell.counts}`);
+  const button = html("button", "", "Close");
+  button.type = "button";
+  button.id = "close";
+  button.addEventListener("click", close);
+  head.append(title, button);
+  const given = [...cell.sample.map(([name, text]) => `${name} = ${text}`),
+    ...cell.parameters.filter(([name]) => !cell.sample.some(([axis]) => axis === name))
+      .map(([name, text]) => `${name} = ${text}`)];
+  panel.replaceChildren(head, html("p", "hint", `At the sample: ${given.join(", ")}.`));
+  cells.redraw = null;
+  if (!cell.equilibria.length) {
+    const why = DATA.drawable ? "The result stores no poses for this cell." : "The poses of this mechanism can not be drawn.";
+    panel.append(html("p", "", why));
+    return;
+  }
+  const frame = frameOf(cell);
+  const figures = [];
+  const grid = html("div", "grid-of-poses");
+  const pointed = (k, on) => {
+    figures[k].classList.toggle("seen", on);
+    for (const mark of landscape.marks[k]) mark.classList.toggle("seen", on);
+  };
+  for (const pose of cell.equilibria) {
+    const figure = html("figure", `pose ${pose.kind}`);
+    const caption = html("figcaption");
+    caption.append(html("b", "", pose.kind), html("br"), `θ₁ = ${pose.angles[0]}`, html("br"), `θ₂ = ${pose.angles[1]}`,
+      html("br"), `U = ${pose.energy}`);
+    figure.append(drawPose(cell, pose, frame), caption);
+    const k = figures.length;
+    figure.addEventListener("pointerenter", () => pointed(k, true));
+    figure.addEventListener("pointerleave", () => pointed(k, false));
+    figures.push(figure);
+    grid.append(figure);
+  }
+  panel.append(grid, html("p", "hint", "Thick lines: the rods A₁A₃ and A₂A₄; zigzag: springs; arrows: the loads at A₃ and A₄. "
+    + "A₁ is pinned, A₂ sits on the slider. All poses are drawn to one scale; a strong frame means stable."));
+  const landscape = drawLandscape(cell, pointed);
+  cells.redraw = landscape.redraw;
+  const numbers = html("details");
+  numbers.append(html("summary", "", "Poses in numbers (every digit certified to one unit of the last place)"), springTable(cell));
+  panel.append(html("h3", "", "Energy over both angles"), landscape.box, landscapeLegend(), numbers);
+}
+theme.changed.push(() => { if (cells.redraw) cells.redraw(); });
+
+// The next cell in a direction: along a stack, or in the neighbouring stack the one whose sample is nearest in height.
+function neighbour(number, key) {
+  const cell = DATA.cells[number];
+  const along = DATA.base === 0 ? { ArrowLeft: -1, ArrowRight: 1 } : { ArrowDown: -1, ArrowUp: 1 };
+  const across = DATA.base === 0 ? { ArrowDown: -1, ArrowUp: 1 } : { ArrowLeft: -1, ArrowRight: 1 };
+  if (key in across) return DATA.stacks[cell.stack][cell.level + across[key]];
+  const others = DATA.stacks[cell.stack + along[key]];
+  if (!others) return undefined;
+  const height = (n) => DATA.cells[n].at[1 - DATA.base];
+  return others.reduce((best, n) => (Math.abs(height(n) - height(number)) < Math.abs(height(best) - height(number)) ? n : best));
+}
+
+for (const [number, areas] of cells.areas) {
+  for (const area of areas) {
+    area.addEventListener("pointerenter", () => show(number));
+    area.addEventListener("pointerleave", settle);
+    area.addEventListener("focus", () => { moveTo(number, false); show(number); });
+    area.addEventListener("blur", settle);
+    area.addEventListener("click", () => choose(number, true));
+    area.addEventListener("keydown", (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.key === "Enter" || event.key === " ") {
+        choose(number, false);
+      } else if (/^Arrow(Left|Right|Up|Down)$/.test(event.key)) {
+        const next = neighbour(number, event.key);
+        if (next !== undefined) moveTo(next, true);
+      } else if (event.key === "Home" || event.key === "End") {
+        moveTo(event.key === "Home" ? 0 : DATA.cells.length - 1, true);
+      } else {
+        return;
+      }
+      event.preventDefault();
+    });
+  }
+}
+for (const chip of document.querySelectorAll(".chip")) {
+  chip.setAttribute("aria-label", `Show cell ${chip.dataset.cell}`);
+  chip.addEventListener("click", () => choose(Number(chip.dataset.cell), true));
+}
+document.addEventListener("keydown", (event) => { if (event.key === "Escape") close(); });
+moveTo(0, false);
+show(-1);

@@ -1,0 +1,160 @@
+"""The equilibria at a cell's sample point, from the boxes that the result stores around them.
+
+Guarantee: every text is within one unit of its last digit of the number it stands for, if the box holds the
+equilibrium, as `ptmcad.verify` checks. Numbers that are not texts are for drawing only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any, TypeVar
+
+from ptmcad.errors import ConfigError, PoleError
+from ptmcad.numerals import shortest_text, text_of
+from ptmcad.regionmap import Cell, RegionMap, Solution
+from ptmcad.report.bounds import (
+    Bounds,
+    decimal_text,
+    degrees,
+    exactly,
+    last_place,
+    plus,
+    power,
+    square_root,
+    times,
+)
+from ptmcad.report.potential import Potential, energy, potential_at
+
+KINDS = {"++": "stable", "+-": "saddle", "--": "maximum"}
+"""What the signs of the Hessian's eigenvalues say."""
+
+UNKNOWNS = ("cos_th1", "sin_th1", "cos_th2", "sin_th2")
+NEEDED = ("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x")
+"""Unknowns and parameters of the paper's mechanism, without which there is no drawing of it."""
+
+LARGEST = 10**100
+"""Of parameters and coefficients that can be drawn: their products stay far within the range of floating point."""
+
+SPRINGS = (("k1", "A1", "A4"), ("k2", "A2", "A3"), ("k3", "A3", "A4"))
+_DIGITS = 7
+
+Point = tuple[Bounds, Bounds]
+Value = TypeVar("Value")
+
+
+def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
+    """All that the page tells and draws for a cell's sample: parameters, loads, potential and equilibria, as JSON data.
+
+    Raises
+    ------
+    ConfigError
+        When a parameter has no value there, or the stored potential or a box is none.
+    """
+    try:
+        values = {n: e.evaluate(cell.sample[0], cell.sample[1]) for n, e in result.slice.parameters.items()}
+    except PoleError as error:
+        raise ConfigError(f"a parameter has no value at a sample: {error}") from error
+    potential = potential_at(result.system, values)
+    drawn = (
+        result.system.unknowns == UNKNOWNS
+        and all(name in values for name in NEEDED)
+        and all(abs(v) < LARGEST for v in (*values.values(), *potential.values()))
+    )
+    return {
+        "parameters": [[n, both(v)] for n, v in told(values).items()],
+        "loads": [[float(values["F3x"]), float(values["F3"])], [float(values["F4x"]), float(values["F4"])]]
+        if drawn
+        else [],
+        "base": float(values["rho"]) if drawn else 0.0,
+        "potential": [[*exponents, float(c)] for exponents, c in potential.items()] if drawn else [],
+        "equilibria": _equilibria(cell, values, potential) if drawn else [],
+    }
+
+
+def told(values: Mapping[str, Value]) -> dict[str, Value]:
+    """The parameters worth telling: one k when all springs have it."""
+    springs = {values.get(name) for name in ("k1", "k2", "k3")}
+    if len(springs) == 1 and None not in springs:
+        merged = {n: v for n, v in values.items() if n not in ("k1", "k2", "k3", "k")}
+        return merged | {"k": values["k1"]}
+    return {n: v for n, v in values.items() if n != "k"}
+
+
+def _plain(value: Fraction) -> str:
+    """A decimal beside a fraction; empty for an integer."""
+    if value.denominator == 1:
+        return ""
+    text = shortest_text(value)
+    if "/" not in text:
+        return f"= {text}"
+    rounded = decimal_text(exactly(value), last_place([exactly(value)], _DIGITS))
+    return f"≈ {rounded.replace('−', '-')}"
+
+
+def both(value: Fraction) -> str:
+    """A number exactly, and as a decimal when it is not one: ``7/10 = 0.7``, ``1/3 ≈ 0.3333333``."""
+    return f"{text_of(value)} {_plain(value)}".rstrip()
+
+
+def _equilibria(cell: Cell, values: Mapping[str, Fraction], potential: Potential) -> list[dict[str, Any]]:
+    boxes = [_box(s) for s in cell.solutions]
+    energies = [energy(potential, box) for box in boxes]
+    nodes = [_nodes(box, values) for box in boxes]
+    lengths = [[square_root(_squared_distance(where[a], where[b])) for _, a, b in SPRINGS] for where in nodes]
+    forces = [
+        [times(exactly(values[k]), length) for (k, _, _), length in zip(SPRINGS, row, strict=True)] for row in lengths
+    ]
+    energy_place = last_place(energies, _DIGITS)
+    coordinates = [x for where in nodes for place in where.values() for x in place]
+    length_place = last_place([length for row in lengths for length in row] + coordinates, _DIGITS)
+    force_place = last_place([f for row in forces for f in row], _DIGITS)
+    order = {"++": 0, "+-": 1, "--": 2}
+    found = []
+    for k in sorted(range(len(boxes)), key=lambda k: (order.get(cell.solutions[k].signs, 3), sum(energies[k]))):
+        solution, box = cell.solutions[k], boxes[k]
+        angles = [degrees(box[0], box[1]), degrees(box[2], box[3])]
+        found.append(
+            {
+                "kind": KINDS.get(solution.signs, "degenerate"),
+                "angles": ["not determined" if a is None else _angle_text(a) for a in angles],
+                "at": [float(sum(c) / 2) for c in box],
+                "energy": decimal_text(energies[k], energy_place),
+                "level": float(sum(energies[k]) / 2),
+                "nodes": [[float(sum(x) / 2) for x in nodes[k][n]] for n in ("A1", "A2", "A3", "A4")],
+                "places": [
+                    f"({decimal_text(nodes[k][n][0], length_place)}, {decimal_text(nodes[k][n][1], length_place)})"
+                    for n in ("A3", "A4")
+                ],
+                "lengths": [decimal_text(length, length_place) for length in lengths[k]],
+                "forces": [decimal_text(force, force_place) for force in forces[k]],
+            }
+        )
+    return found
+
+
+def _angle_text(angle: Bounds) -> str:
+    text = decimal_text(angle, -4)
+    return f"{text.lstrip('−') if text in ('−180.0000', '−0.0000') else text}°"
+
+
+def _box(solution: Solution) -> tuple[Bounds, ...]:
+    if len(solution.center) != len(UNKNOWNS) or not 0 <= solution.radius < 1 or max(map(abs, solution.center)) > 2:
+        raise ConfigError("a stored equilibrium is no box around cosines and sines; check it with ptmcad verify")
+    return tuple((c - solution.radius, c + solution.radius) for c in solution.center)
+
+
+def _nodes(box: tuple[Bounds, ...], values: Mapping[str, Fraction]) -> dict[str, Point]:
+    """A1 and A2 on the base, A3 at the end of the first rod, A4 at that of the second."""
+    first, second = exactly(values["L1"]), exactly(values["L2"])
+    base = exactly(values["rho"])
+    return {
+        "A1": (exactly(0), exactly(0)),
+        "A2": (base, exactly(0)),
+        "A3": (times(first, box[0]), times(first, box[1])),
+        "A4": (plus(base, times(times(second, exactly(-1)), box[2])), times(second, box[3])),
+    }
+
+
+def _squared_distance(p: Point, q: Point) -> Bounds:
+    return plus(*(power(plus(a, times(b, exactly(-1))), 2) for a, b in zip(p, q, strict=True)))

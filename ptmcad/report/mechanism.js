@@ -1,0 +1,129 @@
+// A pose as a drawing: supports, slider, rods, springs, loads. Lengths are in the mechanism's unit, y upwards.
+
+const NODES = ["A₁", "A₂", "A₃", "A₄"];
+const RODS = [[0, 2], [1, 3]];
+const SPRINGS = [[0, 3], [1, 2], [2, 3]];
+const SPRING_NAMES = ["A₁A₄", "A₂A₃", "A₃A₄"];
+
+function loadVectors(cell, size) {
+  const most = Math.max(...cell.loads.map((f) => Math.hypot(f[0], f[1])));
+  return cell.loads.map((f) => (most > 0 ? [f[0] / most * 0.22 * size, f[1] / most * 0.22 * size] : [0, 0]));
+}
+
+// One scale and one horizontal range for all poses of a cell, so that they can be compared: [left, width, size].
+function frameOf(cell) {
+  let [left, right, low, high] = [0, 0, 0, 0];
+  for (const pose of cell.equilibria) {
+    for (const [x, y] of pose.nodes) {
+      [left, right] = [Math.min(left, x), Math.max(right, x)];
+      [low, high] = [Math.min(low, y), Math.max(high, y)];
+    }
+  }
+  const size = Math.max(right - left, high - low) || 1;
+  for (const pose of cell.equilibria) {
+    loadVectors(cell, size).forEach(([fx], k) => {
+      const tip = pose.nodes[2 + k][0] + fx;
+      [left, right] = [Math.min(left, tip), Math.max(right, tip)];
+    });
+  }
+  const pad = 0.08 * size;
+  return [left - pad, right - left + 2 * pad, size];
+}
+
+// The vertical range of one pose, with its supports and loads: [bottom, height].
+function verticalRange(cell, pose, size) {
+  const loads = loadVectors(cell, size);
+  const heights = [-0.1 * size, ...pose.nodes.map((node) => node[1]), ...loads.map((f, k) => pose.nodes[2 + k][1] + f[1])];
+  const [low, high] = [Math.min(...heights), Math.max(...heights)];
+  const pad = 0.06 * size;
+  return [low - pad, high - low + 2 * pad];
+}
+
+function zigzag([x, y], [u, v], amplitude) {
+  const length = Math.hypot(u - x, v - y);
+  const across = length > 0 ? [-(v - y) / length, (u - x) / length] : [0, 0];
+  const turns = 8;
+  const points = [[x, y]];
+  for (let k = 0; k <= turns; k += 1) {
+    const t = 0.15 + 0.7 * k / turns;
+    const side = k === 0 || k === turns ? 0 : (k % 2 ? 1 : -1) * Math.min(amplitude, 0.15 * length);
+    points.push([x + (u - x) * t + across[0] * side, y + (v - y) * t + across[1] * side]);
+  }
+  points.push([u, v]);
+  return points;
+}
+
+function drawPose(cell, pose, frame) {
+  const [left, width, size] = frame;
+  const [bottom, height] = verticalRange(cell, pose, size);
+  const unit = 240 / width;
+  const at = ([x, y]) => [(x - left) * unit, (bottom + height - y) * unit];
+  const path = (points) => "M" + points.map((p) => at(p).map((c) => c.toFixed(2)).join(" ")).join("L");
+  const picture = svg("svg", {
+    viewBox: `0 0 ${(width * unit).toFixed(1)} ${(height * unit).toFixed(1)}`, role: "img",
+    "aria-label": `${pose.kind} pose, angles ${pose.angles.join(" and ")}`,
+  });
+  const nodes = pose.nodes;
+  const right = left + width;
+  const s = 0.045 * size;
+  const line = (points, className) => picture.append(svg("path", { class: className, d: path(points) }));
+  line([[left + 0.02 * size, nodes[1][1] - 1.5 * s], [right - 0.02 * size, nodes[1][1] - 1.5 * s]], "rail");
+  line([[0, 0], [-s, -1.5 * s], [s, -1.5 * s], [0, 0]], "ground");
+  for (let k = -1; k <= 1; k += 1) line([[k * s, -1.5 * s], [(k - 0.7) * s, -2.2 * s]], "ground");
+  const [bx, by] = at([nodes[1][0] - 1.4 * s, nodes[1][1] + 0.8 * s]);
+  picture.append(svg("rect", {
+    class: "slider", x: bx.toFixed(2), y: by.toFixed(2), width: (2.8 * s * unit).toFixed(2), height: (1.6 * s * unit).toFixed(2),
+  }));
+  for (const k of [-0.8, 0.8]) {
+    const [cx, cy] = at([nodes[1][0] + k * s, nodes[1][1] - 1.15 * s]);
+    picture.append(svg("circle", { class: "slider", cx: cx.toFixed(2), cy: cy.toFixed(2), r: (0.35 * s * unit).toFixed(2) }));
+  }
+  for (const [a, b] of SPRINGS) line(zigzag(nodes[a], nodes[b], 0.03 * size), "spring");
+  for (const [a, b] of RODS) line([nodes[a], nodes[b]], "bar");
+  loadVectors(cell, size).forEach((f, k) => {
+    const length = Math.hypot(f[0], f[1]);
+    if (length === 0) return;
+    const [x, y] = nodes[2 + k];
+    const [ex, ey] = [f[0] / length, f[1] / length];
+    const h = Math.min(0.06 * size, 0.6 * length);
+    const tip = [x + f[0], y + f[1]];
+    line([[x, y], [tip[0] - ex * h, tip[1] - ey * h]], "load");
+    const back = [tip[0] - ex * h, tip[1] - ey * h];
+    const head = [tip, [back[0] - ey * h * 0.45, back[1] + ex * h * 0.45], [back[0] + ey * h * 0.45, back[1] - ex * h * 0.45]];
+    picture.append(svg("path", { class: "load-head", d: path(head) + "Z" }));
+  });
+  nodes.forEach((node) => {
+    const [cx, cy] = at(node);
+    picture.append(svg("circle", { class: "node", cx: cx.toFixed(2), cy: cy.toFixed(2), r: 4.2 }));
+  });
+  return picture;
+}
+
+function springTable(cell) {
+  const box = html("div", "scroll");
+  box.tabIndex = 0;
+  box.setAttribute("role", "region");
+  box.setAttribute("aria-label", "Poses in numbers");
+  const table = html("table", "stacked");
+  const head = table.createTHead().insertRow();
+  const columns = ["pose", "θ₁", "θ₂", "energy", "A₃", "A₄"];
+  for (const name of SPRING_NAMES) columns.push(`length ${name}`, `force ${name}`);
+  for (const text of columns) {
+    const th = html("th", "", text);
+    th.scope = "col";
+    head.append(th);
+  }
+  const body = table.createTBody();
+  for (const pose of cell.equilibria) {
+    const row = body.insertRow();
+    const entries = [pose.kind, pose.angles[0], pose.angles[1], pose.energy, pose.places[0], pose.places[1]];
+    pose.lengths.forEach((length, k) => entries.push(length, pose.forces[k]));
+    entries.forEach((text, k) => {
+      const entry = row.insertCell();
+      entry.dataset.label = columns[k];
+      entry.append(html("div", "", text));
+    });
+  }
+  box.append(table);
+  return box;
+}
