@@ -34,7 +34,7 @@ PROGRAM_LINES = [line for line in shell_lines() if not line.startswith("make ")]
 def test_the_parts_are_there() -> None:
     assert MAKE_LINES == ["make demo", "make test"]
     commands = " ".join(shlex.split(line)[1] for line in PROGRAM_LINES)
-    assert commands == "classify classify verify locate range report solve solve variety"
+    assert commands == "classify classify verify locate report range solve solve variety"
     assert len(blocks("yaml")) == 1
     assert len(blocks("python")) == 1
 
