@@ -131,7 +131,8 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
     """The operation ranges at the tabulated values, and their width with its largest value."""
     title = textwrap.wrap(slice.heading, _COLUMNS)[:3]
     lines = [maximum_text(m, found.over.name, _DIGITS) for m in found.maxima] or ["there is no operation range"]
-    texts = [part for line in lines for part in textwrap.wrap(f"widest: {line}", _COLUMNS)]
+    texts = ["above: where two equilibria are stable; below: how wide that is; diamond: the widest"]
+    texts += [part for line in lines for part in textwrap.wrap(f"widest: {line}", _COLUMNS)]
     foot = 0.55 + 0.2 * len(texts)
     tall = 2.3 + 1.9 + 0.35 + foot + 0.1
     with settings():
@@ -154,7 +155,8 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
         lower.plot([p[0] for p in points], [p[1] for p in points], "o", color=INK, markersize=2.5)
         for m in found.maxima:
             ends = [_scaled(v, over) for v in (m.at.low, m.at.high)]
-            lower.plot(ends, [float(m.width)] * 2, "-D", color="#b45f06", markersize=6, fillstyle="none")
+            # a maximum at the window's edge would be cut in half
+            lower.plot(ends, [float(m.width)] * 2, "-D", color="#b45f06", markersize=6, fillstyle="none", clip_on=False)
         upper.set_ylim(fibre.low, fibre.high)
         upper.set_ylabel(_axis_name(slice, along), fontsize=SIZE + 2)
         lower.set_ylabel("width of the\noperation range", fontsize=SIZE + 1)
