@@ -55,7 +55,7 @@ def record_of(tree: Tree) -> Record:
         raise mechanism.place.error("unknown mechanism: the one that is built is 'ptm', the paper's")
     return Record(
         name=_file_name(entries["name"]) if "name" in entries else _name_of_file(tree.place.file),
-        title=_text(entries["title"], _MAX_TITLE) if "title" in entries else "",
+        title=_title(entries["title"]) if "title" in entries else "",
         values=_values(entries["parameters"]) if "parameters" in entries else {},
         axes=_axes(entries["axes"]) if "axes" in entries else {},
         count=count_of(entries["count"]) if "count" in entries else Count.STABLE,
@@ -75,6 +75,15 @@ def _text(node: Node, limit: int) -> str:
     if len(node.text) > limit:
         raise node.place.error(f"the text is longer than {limit} characters")
     return node.text
+
+
+def _title(node: Node) -> str:
+    """A title as one line: YAML's folded and literal texts end with a line break."""
+    title = " ".join(_text(node, _MAX_TITLE).split())
+    if not title.isprintable():
+        hidden = next(c for c in title if not c.isprintable())
+        raise node.place.error(f"the title has a character that can not be printed, U+{ord(hidden):04X}: remove it")
+    return title
 
 
 def file_name(name: str, option: str) -> str:

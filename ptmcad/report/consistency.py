@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ptmcad.errors import ConfigError
-from ptmcad.regionmap import RegionMap
+from ptmcad.regionmap import Cell, Region, RegionMap
+from ptmcad.slice import Count
 
 MOST = 1000
 """Equilibria that a fill can tell; no mechanism of two angles and three springs has so many."""
@@ -42,6 +43,15 @@ def check_numbers(result: RegionMap) -> None:
         raise _fault("not every cell is in one stack")
     for n, cell in enumerate(result.cells):
         _within((cell.region,), len(result.regions), f"cell {n}", "region")
+        _check_counts(cell, f"cell {n}")
+        if cell.solutions and len(cell.solutions) != cell.total:
+            raise _fault(f"cell {n} has {cell.total} equilibria and {len(cell.solutions)} boxes")
+        region = result.regions[cell.region]
+        if n not in region.cells:
+            raise _fault(f"cell {n} is in region {cell.region}, which does not have it")
+        for name in _told_by(result.slice.count):
+            if getattr(cell, name) != getattr(region, name):
+                raise _fault(f"cell {n} and its region {cell.region} differ in their counts")
         if not all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, cell.sample, strict=True)):
             raise _fault(f"the sample of cell {n} is not in the window")
     for n, region in enumerate(result.regions):
@@ -51,9 +61,25 @@ def check_numbers(result: RegionMap) -> None:
         if most > MOST:
             raise _fault(f"region {n} counts {most} equilibria, more than {MOST}")
         _within(region.cells, len(result.cells), f"region {n}", "cell")
+        _check_counts(region, f"region {n}")
+        if not region.cells:
+            raise _fault(f"region {n} has no cells")
+        if any(result.cells[number].region != n for number in region.cells):
+            raise _fault(f"region {n} has a cell that is in another one")
     for n, value in enumerate(result.critical_values):
         if len(value.polynomial) < 2 or not value.polynomial[-1] or value.low > value.high:
             raise _fault(f"critical value {n} is no root in an interval")
+
+
+def _check_counts(part: Cell | Region, place: str) -> None:
+    """The Morse index has to add up to the other counts, as far as these are known."""
+    if part.index is not None and (part.total, part.stable) != (sum(part.index), part.index[0]):
+        raise _fault(f"{place} has index {part.index}, {part.total} equilibria and {part.stable} stable ones")
+
+
+def _told_by(count: Count) -> tuple[str, ...]:
+    """The counts that are the same in all cells of a region."""
+    return {Count.STABLE: ("stable",), Count.TOTAL: ("total",), Count.INDEX: ("stable", "total", "index")}[count]
 
 
 def _within(numbers: Iterable[int], length: int, place: str, what: str) -> None:

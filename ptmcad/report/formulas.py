@@ -50,6 +50,6 @@ def _formula(component: Component, names: tuple[str, str]) -> str:
         text = polynomial_text(p, names, style)
         if style is Style.SYMPY:
             x, y = symbols(names, style)
-            text = f'{x}, {y} = sympy.symbols("{names[0]} {names[1]}")\np = {text}'
+            text = f'import sympy\n\n{x}, {y} = sympy.symbols("{names[0]} {names[1]}")\np = {text}'
         parts.append(copied(text, f"as {program}"))
     return "".join(parts)

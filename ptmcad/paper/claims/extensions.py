@@ -16,7 +16,7 @@ from ptmcad.paper import printed
 from ptmcad.paper.claim import Claim, Outcome, judge, unchecked
 from ptmcad.paper.free_lengths import FreeLengthDesign, ProvedEquilibrium, proved_equilibria
 from ptmcad.paper.slices import equilibria_at
-from ptmcad.paper.symbolic import half_angle_equations, k, quadratic_elimination, t1, t2
+from ptmcad.paper.symbolic import F3, F4, F3x, F4x, half_angle_equations, k, quadratic_elimination, rho, t1, t2
 
 TWELVE = ("0.96859", "1", "1.00609", "0.2", "-0.1", "-0.1")
 """(rho, L1, L2, l0, F3/k, F4/k) of the witness against six solutions."""
@@ -58,15 +58,26 @@ def same_nature() -> Outcome:
     }
     found = {name: equilibria_at(F3=-10, F4=-10, **at) for name, at in points.items()}
     allowed = all((f.total, f.stable) in {(4, 1), (6, 1), (6, 2)} for f in found.values())
+    # these forces cancel what the springs at the base do: 2 rho + F3x/k = 2 rho - F4x/k = 0
+    cancelled = sp.expand(resultant.subs({F3: 0, F4: 0, F3x: -2 * rho, F4x: 2 * rho}))
     return judge(
-        degree == 6 and allowed,
+        degree == 6 and allowed and cancelled != 0,
         (
-            f"with horizontal forces the eliminated polynomial still has degree {degree}, so theorem 1 of "
-            "docs/method.md "
-            "holds: 4 equilibria with 1 stable, or 6 with 1 or 2",
+            f"with horizontal forces the eliminated polynomial still has degree {degree}, so where there are finitely "
+            "many, theorem 1 of docs/method.md holds: 4 equilibria with 1 stable, or 6 with 1 or 2",
             "(total, stable) at " + "; ".join(f"{n}: ({f.total}, {f.stable})" for n, f in found.items()),
+            "for F3 = F4 = 0, F3x = -2 k rho, F4x = 2 k rho the polynomial vanishes identically: the horizontal forces "
+            "cancel the springs, and every pose with th1 + th2 = 0 or pi is an equilibrium",
         ),
-        {"degree": degree, "counts": tuple(f"{f.total},{f.stable}" for f in found.values())},
+        {
+            "degree": degree,
+            "counts": tuple(f"{f.total},{f.stable}" for f in found.values()),
+            "cancelled": bool(cancelled == 0),
+        },
+        corrected=degree == 6 and allowed,
+        right="at most six, one or two of them stable, where there are finitely many equilibria (there are infinitely "
+        "many where F3 = F4 = 0, F3x = -2 k rho, F4x = 2 k rho)",
+        witness="L1 = 1, L2 = 3/2, rho = 1, k = 100, F3 = F4 = 0, F3x = -200, F4x = 200",
     )
 
 
@@ -160,6 +171,10 @@ CLAIMS = (
           "Horizontal forces add 2 F3x and 2 F4x to (5) and (6).", horizontal_terms),
     Claim("5.1-nature", "5.1", "a system yielding 6 solutions, of which 1 or 2 are stable",
           "With horizontal forces there are still at most six equilibria, one or two stable.", same_nature),
+    Claim("5.2-eq17", "5.2", "Eq. (1) becomes", "Equation (17), the potential with free lengths.",
+          unchecked("a definition; what follows from it is checked below")),
+    Claim("5.2-specialise", "5.2", "parameters must be specified before proceeding",
+          "Elimination with free lengths needs numbers for the parameters.", unchecked("a report of what was tried")),
     Claim("5.2-crane", "5.2", "an amazing increase in complexity", "Another mechanism became complicated too.",
           unchecked("a statement about a reference")),
     Claim("5.2-degree-28", "5.2", "their degree is now 28", "After two squarings the equations have degree 28.",

@@ -148,6 +148,8 @@ CLAIMS = (
     Claim("1-always-six", "1", "there are always up to six equilibrium solutions",
           "At most six equilibria for all parameters.", always_up_to_six),
     Claim("1-stable", "1", "at most one or two are stable", "One or two equilibria are stable.", one_or_two_stable),
+    Claim("1-complicated", "1", "the algebra involved in the stability analysis may prove very complicated",
+          "The stability analysis is complicated.", unchecked("a judgement of effort")),
     Claim("1-references", "1", "Most results on tensegrity mechanisms have been published recently",
           "The state of the art.", unchecked("statements about references and applications")),
     Claim("c-degree-6", "conclusions", "a univariate polynomial of degree 6 must be solved",
@@ -158,6 +160,8 @@ CLAIMS = (
           "The unloaded mechanism is always a parallelogram.", always_parallelogram),
     Claim("c-singular", "conclusions", "one flat stable solution, which is singular",
           "The stable flat pose is singular.", singular_flat),
+    Claim("c-tools", "conclusions", "can be treated using computer algebra tools",
+          "Without free lengths computer algebra does it.", unchecked("a judgement; this reproduction is an instance")),
     Claim("c-store", "conclusions", "might be of interest to store the mechanism", "A flat pose is useful for storage.",
           unchecked("a suggestion for use")),
 )  # fmt: skip

@@ -94,7 +94,8 @@ def singular_flat() -> Outcome:
             "stable ones near the flat one under a small load": resisting,
         },
         corrected=all(d != 0 for d in found.values()) and not loaded and resisting == 1,
-        right="the flat equilibria are regular (det H is not zero) except where 2 rho = L1 + L2 or 2 rho = |L1 - L2|; "
+        right="the flat equilibria are regular (det H is not zero) except where rho = 0, 2 rho = L1 + L2 or "
+        "2 rho = |L1 - L2|; "
         "a vertical force displaces them, with finite stiffness",
         witness="L1 = L2 = 1, rho = 2: det H = 8 k^2 at th1 = th2 = 0, a stable equilibrium",
     )
