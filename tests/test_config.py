@@ -227,3 +227,20 @@ def test_every_parameter_can_be_an_axis() -> None:
         if not name.startswith("l0") and name != "L1":
             low, high = parameter.window
             assert slice_from_options(slice=f"L1,{name}").axes[1].low == Fraction(low) < Fraction(high)
+
+
+@pytest.mark.parametrize(
+    "title", ["title: >\n  Two lines\n  folded", "title: |\n  Two lines\n  folded", 'title: "Two\\tlines\\u00a0folded"']
+)
+def test_titles_of_several_lines_become_one(tmp_path: Path, title: str) -> None:
+    """Their results were refused by every command that reads one."""
+    path = tmp_path / "title.yaml"
+    path.write_text(f"name: t\n{title}\naxes: {{rho: [3, 4], L2: [0, 1]}}\n", encoding="utf-8")
+    assert load(path).title == "Two lines folded"
+
+
+def test_a_title_with_a_hidden_character_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "title.yaml"
+    path.write_text('name: t\ntitle: "a\\u202Eb"\naxes: {rho: [3, 4], L2: [0, 1]}\n', encoding="utf-8")
+    with pytest.raises(ConfigError, match="U\\+202E"):
+        load(path)

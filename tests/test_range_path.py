@@ -10,6 +10,7 @@ from typing import Any
 
 import jsonschema
 import pytest
+from conftest import CONFIGS
 from flint import arb, ctx
 
 import ptmcad
@@ -184,3 +185,18 @@ def test_text_and_document() -> None:
     data = json.loads(document("x", "ptm", {"path": path_data(found)}))
     jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
     assert data["path"]["paths"][0]["high"]["fate"] == "snap"
+
+
+def test_a_path_towards_infinitely_many_equilibria_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Unloaded equal rods: near rho = 0 the steps shrink like rho^2, so they are counted, and the rest is undecided."""
+    monkeypatch.setattr("ptmcad.ranges.tracking._MOST_STEPS", 40)
+    slice = ptmcad.load(CONFIGS / "fig3.yaml")
+    paths = pose_paths(slice, "rho", {"F": Fraction(0)}, Fraction(1, 2), 1)
+    assert paths.paths[0].low.fate is Fate.UNDECIDED
+    assert paths.paths[0].low.last.value > 0
+
+
+def test_a_start_that_can_not_be_enclosed_is_refused() -> None:
+    slice = ptmcad.load(CONFIGS / "fig2.yaml")
+    with pytest.raises(ConfigError, match="start farther away"):
+        pose_paths(slice, "rho", {"L2": Fraction(1)}, Fraction(1, 10**24), 1)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits
@@ -201,6 +202,8 @@ def command(
     values = {} if at is None else point_of(at)
     slice, other = slice_and_line(config, axes, along, values, over, sets, ranges)
     request = Request(along, other, over is not None, rows, _start(start, other), pose, digits)
+    if over is None and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
+        raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
     if pose is not None and start is None:
         raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
     stem = name or f"{slice.name}-range"

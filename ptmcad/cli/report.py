@@ -25,7 +25,7 @@ def _file_name(_context: click.Context, _parameter: click.Parameter, value: str 
 @click.command("report")
 @click.argument("result", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the page.  [default: that of RESULT]")
-@click.option("--name", callback=_file_name, metavar="NAME", help="Name of the page.  [default: the slice's name]")
+@click.option("--name", callback=_file_name, metavar="NAME", help="Name of the page.  [default: that of RESULT]")
 @click.option("--bench", type=click.Path(path_type=Path), metavar="FILE",
               help="A measurement of error against time to show.  "
                    "[default: NAME.error-time.json beside RESULT, if there is one]")  # fmt: skip
@@ -54,7 +54,7 @@ def command(
     with limits(timeout, max_memory):
         stored = read_result(result)
         folder = result.parent if out is None else out
-        file = f"{name or stored.slice.name}.html"
+        file = f"{name or result.stem}.html"
         check_writable(folder, (file,))
         from ptmcad.report import page
         from ptmcad.report.error_curve import read_error_curve

@@ -40,13 +40,13 @@ FINE = Fraction(1, 2**100)
 
 
 class Event(Enum):
-    """What happens to the equilibria at a critical value, by the counts on both sides."""
+    """What happens to the numbers of equilibria at a critical value: which of them meet, only a path tells."""
 
-    STABLE_PAIR = "a stable equilibrium and a saddle"
-    UNSTABLE_PAIR = "a saddle and a maximum"
+    STABLE_PAIR = "one stable equilibrium and one saddle"
+    UNSTABLE_PAIR = "one saddle and one maximum"
     STABILITY = "indices change without a pair"
     SEVERAL = "several pairs"
-    UNCHANGED = "tangent: counts unchanged"
+    UNCHANGED = "the counts do not change"
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ class Change:
         if event in (Event.UNCHANGED, Event.STABILITY):
             return str(event.value)
         grows = sum(self.after) > sum(self.before)
-        return f"{event.value} {'appear' if grows else 'meet and vanish'}"
+        return f"{event.value} {'more' if grows else 'less'}"
 
 
 @dataclass(frozen=True, slots=True)

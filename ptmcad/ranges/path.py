@@ -165,7 +165,11 @@ def _path(
 ) -> PosePath:
     box = at_value(family, start, _guess(pose))
     if box is None:
-        raise ArithmeticError(f"the pose at {line.along.name} = {start} could not be enclosed")
+        raise ConfigError(
+            f"pose {number} at {line.along.name} = {start} is too near to a degenerate one to be followed at "
+            f"{BITS} bits: start farther away",
+            key="--path",
+        )
     origin = Reached(start, box, box)
     left = _one_way(family, line, [n for n in reversed(numbers) if n.compare(start) < 0], origin, -1)
     right = _one_way(family, line, [n for n in numbers if n.compare(start) > 0], origin, 1)

@@ -95,7 +95,8 @@ def width_table(found: OperationWidths, digits: int = 10) -> str:
 def maximum_text(found: Maximum, over: str, digits: int) -> str:
     """A maximum in words."""
     if found.at.exact is not None or found.place.name in ("SMOOTH", "ENCLOSED"):
-        at = f"{over} = {settled(found.at, digits) or 'an enclosed value'}"
+        low, high = (Enclosure(v, v).text(3) for v in (found.at.low, found.at.high))
+        at = f"{over} = {settled(found.at, digits) or f'a value between {low} and {high}'}"
     else:
         low, high = (Enclosure(v, v).text(digits) for v in (found.at.low, found.at.high))
         at = f"{over} from {low} to {high}"

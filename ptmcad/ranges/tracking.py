@@ -15,7 +15,8 @@ from fractions import Fraction
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.polynomials import from_fraction
+from ptmcad.algebra.polynomials import from_fraction, to_fraction
+from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.expressions import Expression, Term
 from ptmcad.models.system import ParametricSystem, Terms
 
@@ -24,6 +25,8 @@ Matrix = tuple[Pair, Pair]
 BITS = 160
 _LEAST = Fraction(1, 2**60)
 """Steps shorter than this, against the distance to be gone, are not tried."""
+_MOST_STEPS = 3000
+"""Where a branch comes ever nearer to others, steps shrink with the distance and their number has no bound."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -269,9 +272,10 @@ def follow(family: Family, start: Reached, end: Fraction, longest: Fraction) -> 
     current, step = start, max(-longest, min(longest, (end - start.value) / 8))
     least = abs(end - start.value) * _LEAST
     while current.value != end:
-        if abs(step) >= abs(end - current.value):
-            step = end - current.value
-        reached = bridge(family, current, current.value + step)
+        if len(found) == _MOST_STEPS:
+            return found, False
+        goal = end if abs(step) >= abs(end - current.value) else _short(current.value, step)
+        reached = bridge(family, current, goal)
         if reached is not None:
             found.append(reached)
             current, step = reached, max(-longest, min(longest, step * 3 / 2))
@@ -280,6 +284,12 @@ def follow(family: Family, start: Reached, end: Fraction, longest: Fraction) -> 
             if abs(step) < least:
                 return found, False
     return found, True
+
+
+def _short(value: Fraction, step: Fraction) -> Fraction:
+    """A rational of few digits about a step away: without this each step would make the value's digits more."""
+    low, high = sorted((value + step * 15 / 16, value + step))
+    return to_fraction(simplest_between(from_fraction(low), from_fraction(high)))
 
 
 def bridge(family: Family, start: Reached, value: Fraction) -> Reached | None:

@@ -28,12 +28,15 @@ def curves(result: RegionMap) -> str:
     used = [(n, c) for n, c in enumerate(result.components) if not c.left_out]
     if not used:
         return "<p>There is no boundary curve in the window.</p>"
-    return "".join(_curve(n, c, result.slice.axis_names) for n, c in used)
+    known = bool(result.cells)
+    return "".join(_curve(n, c, result.slice.axis_names, known) for n, c in used)
 
 
-def _curve(number: int, component: Component, names: tuple[str, str]) -> str:
+def _curve(number: int, component: Component, names: tuple[str, str], known: bool) -> str:
     p = component.polynomial
     role = "separates regions" if component.separates else "separates nothing"
+    if not known:
+        role = "what it separates was not computed"
     title = (
         f"Curve {number}: {component.kind.value}, degree {p.degrees[0]} in {names[0]}, {p.degrees[1]} in {names[1]}, "
         f"{p.total_degree} in all, {len(p.terms)} term{'s' * (len(p.terms) != 1)}; {role}"

@@ -73,7 +73,7 @@ def banner(result: RegionMap) -> str:
         return ""
     text = _STATUS.get(result.status, "The result is of an unusual kind.")
     if result.undetermined:
-        text += f" {both(result.undetermined)} of the window's area is not decided."
+        text += f" The undecided fraction of the window is {both(result.undetermined)}."
     if result.status is Status.PARTIAL:
         text += " What is missing below was not computed; what is there is proved, but areas may not be known yet."
     return f'<p class="banner" role="status"><strong>{escape(result.status.value.capitalize())} result.</strong> ' \
@@ -102,6 +102,8 @@ def question(result: RegionMap) -> str:
 def answer(result: RegionMap) -> str:
     """The result in one line."""
     cells, regions = len(result.cells), len(result.regions)
+    if not cells:
+        return f"no cells were computed; {result.status.value}"
     curves = sum(c.separates for c in result.components)
     return (
         f"{regions} region{'s' * (regions != 1)} in {cells} cell{'s' * (cells != 1)}, parted by {curves} "
