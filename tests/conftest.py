@@ -20,9 +20,12 @@ settings.register_profile(
 )
 settings.load_profile("ptmcad")
 
-# a shell makes what it starts in the background ignore Ctrl-C, and every process that a test starts would inherit that
+# a shell makes what it starts in the background ignore Ctrl-C, nohup makes it ignore SIGHUP, and every process that a
+# test starts would inherit that
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+if hasattr(signal, "SIGHUP"):
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 
