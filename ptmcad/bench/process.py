@@ -86,15 +86,16 @@ def run(command: Sequence[str], *, text: str = "", timeout: float | None = None)
         if timer is not None:
             timer.daemon = True
             timer.start()
+        ended = False
         try:
             _, status, resources = os.wait4(process.pid, 0)
-        except BaseException:
-            process.kill()
-            process.wait()
-            raise
+            ended = True
         finally:
             if timer is not None:
                 timer.cancel()
+            if not ended:  # interrupted: the process must not outlive its measurement
+                process.kill()
+                process.wait()
         seconds = time.perf_counter() - start
         process.returncode = os.waitstatus_to_exitcode(status)
         outcome = Outcome.DONE

@@ -6,6 +6,7 @@ the place of the fault, such as ``cells[3].sample``.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
@@ -127,3 +128,35 @@ class Node:
         if text not in {member.value for member in kind}:
             raise self.fault(f"is {text[:40]!r}, not one of {', '.join(str(member.value) for member in kind)}")
         return kind(text)
+
+
+def opened(text: str, expected: str, longest: int, command: str) -> Node:
+    """The root of a JSON document of the expected format; ``command`` is what makes such a document anew.
+
+    Raises
+    ------
+    ValueError
+        For text that is too long, no JSON or nested too deeply, for a key that occurs twice, and for another format.
+    """
+    if len(text) > longest:
+        raise ValueError(f"the document has {len(text)} characters, more than {longest}")
+    try:
+        data = json.loads(text, object_pairs_hook=_distinct, parse_constant=_refused)
+    except RecursionError as error:
+        raise ValueError("the document is nested too deeply") from error
+    found = data.get("format") if isinstance(data, dict) else None
+    if found != expected:
+        raise ValueError(f"its format is {str(found)[:40]!r}, not {expected!r}; make it anew with {command}")
+    return Node(data, "")
+
+
+def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        key = next(k for n, (k, _) in enumerate(pairs) if k in (other for other, _ in pairs[:n]))
+        raise ValueError(f"the key {key[:40]!r} occurs twice")
+    return found
+
+
+def _refused(text: str) -> Any:
+    raise ValueError(f"{text} is not a number of JSON")

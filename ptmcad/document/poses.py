@@ -12,8 +12,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from ptmcad.document.node import Node
-from ptmcad.document.reading import constant_refused, distinct
+from ptmcad.document.node import Node, opened
 from ptmcad.enclosure import Enclosure, exact_text
 from ptmcad.poses import MOST_DIGITS, Pose, Poses, Spring, Vector
 from ptmcad.regionmap import Status
@@ -78,16 +77,7 @@ def read_poses(text: str) -> Poses:
     ValueError
         With the place of the first fault.
     """
-    if len(text) > MAX_TEXT:
-        raise ValueError(f"the document has {len(text)} characters, more than {MAX_TEXT}")
-    try:
-        data = json.loads(text, object_pairs_hook=distinct, parse_constant=constant_refused)
-    except RecursionError as error:
-        raise ValueError("the document is nested too deeply") from error
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        found = data.get("format") if isinstance(data, dict) else None
-        raise ValueError(f"its format is {str(found)[:40]!r}, not {FORMAT!r}; make it anew with ptmcad solve")
-    document = Node(data, "").record(
+    document = opened(text, FORMAT, MAX_TEXT, "ptmcad solve").record(
         "format", "status", "remark", "mechanism", "parameters", "digits", "bits", "equilibria"
     )
     digits = document["digits"].natural()

@@ -6,10 +6,7 @@ its place.
 
 from __future__ import annotations
 
-import json
-from typing import Any
-
-from ptmcad.document.node import Node
+from ptmcad.document.node import Node, opened
 from ptmcad.document.writing import FORMAT
 from ptmcad.errors import ExpressionError
 from ptmcad.expressions import NAME, Expression, parse
@@ -45,18 +42,6 @@ MAX_NAME = 100
 MAX_TITLE = 300
 
 
-def distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) != len(pairs):
-        key = next(k for n, (k, _) in enumerate(pairs) if k in (other for other, _ in pairs[:n]))
-        raise ValueError(f"the key {key[:40]!r} occurs twice")
-    return found
-
-
-def constant_refused(text: str) -> Any:
-    raise ValueError(f"{text} is not a number of JSON")
-
-
 def read(text: str) -> RegionMap:
     """The map in a JSON document.
 
@@ -65,17 +50,7 @@ def read(text: str) -> RegionMap:
     ValueError
         With the place of the first fault.
     """
-    if len(text) > MAX_TEXT:
-        raise ValueError(f"the document has {len(text)} characters, more than {MAX_TEXT}")
-    try:
-        data = json.loads(text, object_pairs_hook=distinct, parse_constant=constant_refused)
-    except RecursionError as error:
-        raise ValueError("the document is nested too deeply") from error
-    node = Node(data, "")
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        found = data.get("format") if isinstance(data, dict) else None
-        raise ValueError(f"its format is {str(found)[:40]!r}, not {FORMAT!r}; make it anew with ptmcad classify")
-    return _decode(node)
+    return _decode(opened(text, FORMAT, MAX_TEXT, "ptmcad classify"))
 
 
 def _decode(document: Node) -> RegionMap:
