@@ -1,0 +1,141 @@
+"""The paper's mechanism with springs of any free length: equilibrium, Hessian and what decides stability, as formulas.
+
+Guarantee: derivatives are those of the potential; no term is typed in twice. A load, a horizontal load or a free length
+that is zero leaves no trace in the formulas.
+
+With d1 = A4 - A1, d2 = A3 - A2, d3 = A4 - A3 (d1 = (rho - L2 c2, L2 s2), d2 = -(rho - L1 c1, -L1 s1) up to sign, which
+does not matter), l_i = |d_i| and u_i = d_i / l_i, the potential is the sum of k_i (l_i - l0_i)^2 / 2 minus the loads'
+work. Everything is divided by k, an arbitrary positive unit of stiffness; E1 = (1/L1) dU/dth1 and E2 = (1/L2) dU/dth2
+are polynomials in L1, L2, also where a length is zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ptmcad.interval.formula import Formula, Graph, direction, inverse_length, length, meet
+
+NAMES = ("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x", "l0_1", "l0_2", "l0_3")
+Vector = tuple[Formula, Formula]
+
+
+def dot(p: Vector, q: Vector) -> Formula:
+    return p[0] * q[0] + p[1] * q[1]
+
+
+def cross(p: Vector, q: Vector) -> Formula:
+    return p[0] * q[1] - p[1] * q[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Hessian:
+    """The Hessian H of U, scaled: P11 = H11/L1, P22 = H22/L2, q = H12/(L1 L2), D = P11 P22 - L1 L2 q^2 = det H/(L1 L2)."""
+
+    p11: Formula
+    p22: Formula
+    q: Formula
+    determinant: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Mechanism:
+    """Formulas at a configuration (th1, th2).
+
+    Attributes
+    ----------
+    equilibrium : E1, E2.
+    hessian : formulas of the Hessian everywhere.
+    at_equilibrium : formulas of the same numbers that hold, and are finite for shorter springs, only where E1 = E2 = 0;
+        never to be differentiated.
+    dependent : further formulas that vanish where E1 = E2 = 0; they stay narrow where spring 3 is short.
+    lengths : l1, l2, l3.
+    vectors : d1, d2, d3.
+    free : the free lengths.
+    """
+
+    equilibrium: tuple[Formula, Formula]
+    hessian: Hessian
+    at_equilibrium: Hessian
+    dependent: tuple[Formula, ...]
+    lengths: tuple[Formula, Formula, Formula]
+    vectors: tuple[Vector, Vector, Vector]
+    free: tuple[Formula, Formula, Formula]
+    residual: tuple[Formula, Formula]
+    """E1 and E2 without the pull of spring 3's free length: E1 + k3 l0_3 u3.t1, E2 + k3 l0_3 u3.t2."""
+    tangents: tuple[Vector, Vector]
+
+
+def mechanism(graph: Graph, values: Mapping[str, Formula], th1: Formula, th2: Formula) -> Mechanism:
+    """The mechanism with parameters ``values`` (all of `NAMES`, stiffness and loads in one unit of stiffness)."""
+    p1, p2, rho = values["L1"], values["L2"], values["rho"]
+    k1, k2, k3 = values["k1"], values["k2"], values["k3"]
+    f1, f2, f3 = values["l0_1"], values["l0_2"], values["l0_3"]
+    y3, y4, x3, x4 = values["F3"], values["F4"], values["F3x"], values["F4x"]
+    s1, c1, s2, c2 = th1.sin(), th1.cos(), th2.sin(), th2.cos()
+    s12, c12 = (th1 + th2).sin(), (th1 + th2).cos()
+    d1 = (rho - p2 * c2, p2 * s2)
+    d2 = (rho - p1 * c1, -(p1 * s1))
+    d3 = (rho - p1 * c1 - p2 * c2, p2 * s2 - p1 * s1)
+    u1, u2, u3 = ((direction(x, y), direction(y, x)) for x, y in (d1, d2, d3))
+    r1, r2, r3 = (inverse_length(x, y) for x, y in (d1, d2, d3))
+    # tangents: d(d2)/dth1 = d(d3)/dth1 = L1 t1, d(d1)/dth2 = d(d3)/dth2 = L2 t2; normals: dt1/dth1, dt2/dth2
+    t1, t2 = (s1, -c1), (s2, c2)
+    n1, n2 = (c1, s1), (c2, -s2)
+    along21, along31, along12, along32 = dot(u2, t1), dot(u3, t1), dot(u1, t2), dot(u3, t2)
+    # without free lengths: quadratic springs and loads; A3 = L1 (c1, s1), A4 = (rho - L2 c2, L2 s2)
+    linear1 = k2 * (rho * s1) + k3 * (rho * s1 - p2 * s12) + x3 * s1 - y3 * c1
+    linear2 = k1 * (rho * s2) + k3 * (rho * s2 - p1 * s12) - x4 * s2 - y4 * c2
+    pull1, pull2, pull3 = k1 * f1, k2 * f2, k3 * f3
+    residual1, residual2 = linear1 - pull2 * along21, linear2 - pull1 * along12
+    e1, e2 = residual1 - pull3 * along31, residual2 - pull3 * along32
+    across31, across32 = cross(u3, t1), cross(u3, t2)
+
+    def hessian(q21: Formula, q31: Formula, q12: Formula, q32: Formula) -> Hessian:
+        """From the squared sines of the angles between springs and tangents; spring 3 enters D to the first power."""
+        rigid1 = (
+            k2 * (rho * c1) + k3 * (rho * c1 - p2 * c12) + x3 * c1 + y3 * s1
+            - pull2 * dot(u2, n1) - pull3 * dot(u3, n1) - p1 * (pull2 * (r2 * q21))
+        )  # fmt: skip
+        rigid2 = (
+            k1 * (rho * c2) + k3 * (rho * c2 - p1 * c12) - x4 * c2 + y4 * s2
+            - pull1 * dot(u1, n2) - pull3 * dot(u3, n2) - p2 * (pull1 * (r1 * q12))
+        )  # fmt: skip
+        tilt = pull3 * r3
+        mixed = -(k3 * c12)
+        determinant = (
+            rigid1 * rigid2 - p1 * p2 * mixed.squared()
+            - tilt * (p1 * (q31 * rigid2) + p2 * (q32 * rigid1) - 2 * (p1 * p2 * (mixed * (across31 * across32))))
+        )  # fmt: skip
+        q = mixed - tilt * (across31 * across32)
+        return Hessian(rigid1 - p1 * (tilt * q31), rigid2 - p2 * (tilt * q32), q, determinant)
+
+    everywhere = hessian(
+        cross(u2, t1).squared(), across31.squared(), cross(u1, t2).squared(), across32.squared()
+    )
+
+    def sine_squared(sine: Formula, cosine: Formula, others: Formula, pull: Formula) -> Formula:
+        """sine^2 = 1 - cosine^2, where equilibrium demands pull * cosine = others."""
+        if pull.value == 0:
+            return sine.squared()
+        return meet(sine.squared(), 1 - meet(cosine, others / pull).squared())
+
+    at_equilibrium = hessian(
+        sine_squared(cross(u2, t1), along21, linear1 - pull3 * along31, pull2),
+        sine_squared(across31, along31, residual1, pull3),
+        sine_squared(cross(u1, t2), along12, linear2 - pull3 * along32, pull1),
+        sine_squared(across32, along32, residual2, pull3),
+    )
+    # t2 = -c12 t1 + s12 n1: in E2 + c12 E1 the direction of spring 3 is multiplied by s12
+    dependent = residual2 + c12 * residual1 - pull3 * (s12 * dot(u3, n1))
+    return Mechanism(
+        (e1, e2),
+        everywhere,
+        at_equilibrium,
+        () if pull3.value == 0 else (dependent,),
+        (length(*d1), length(*d2), length(*d3)),
+        (d1, d2, d3),
+        (f1, f2, f3),
+        (residual1, residual2),
+        (t1, t2),
+    )

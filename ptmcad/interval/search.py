@@ -1,0 +1,78 @@
+"""Branch and prune: boxes that may hold solutions of a system, contracted and bisected until they are small.
+
+Guarantee: every solution in the boxes at the start lies in one of the boxes at the end, those still waiting included.
+
+The search knows no mathematics: `ptmcad.interval.contraction` discards and shrinks.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.interval.compiled import compiled
+from ptmcad.interval.contraction import contract, workspace
+from ptmcad.interval.system import Arguments
+
+Boxes = NDArray[np.float64]
+"""Shape (k, 2v): low ends of the v variables, then high ends."""
+CUT = 0.5
+
+
+@compiled
+def search_curve(system: Arguments, start: Boxes, area: float, budget: int) -> tuple[Boxes, Boxes, int]:
+    """Enclose a curve in the plane of variables 0 and 1 (the first two unknowns).
+
+    Parameters
+    ----------
+    area : boxes whose projection to the plane has at most this area are not bisected further.
+    budget : number of boxes after which the search stops.
+
+    Returns
+    -------
+    small : boxes that were not bisected further.
+    waiting : boxes that the budget did not reach.
+    used : number of boxes treated.
+    """
+    variables = start.shape[1] // 2
+    unknowns = system[2]
+    m, n = system[4].shape
+    work = workspace(system[0][0].shape[0], variables, m, n)
+    top = start.shape[0]
+    stack = np.empty((max(256, 2 * top), 2 * variables))
+    stack[:top] = start
+    small = np.empty((256, 2 * variables))
+    found = used = 0
+    low, high = np.empty(variables), np.empty(variables)
+    while top > 0 and used < budget:
+        top -= 1
+        used += 1
+        low[:] = stack[top, :variables]
+        high[:] = stack[top, variables:]
+        if not contract(system, low, high, work):
+            continue
+        if (high[0] - low[0]) * (high[1] - low[1]) <= area:
+            if found == small.shape[0]:
+                larger = np.empty((2 * found, 2 * variables))
+                larger[:found] = small
+                small = larger
+            small[found, :variables] = low
+            small[found, variables:] = high
+            found += 1
+            continue
+        widest, width = 0, -1.0
+        for x in unknowns:
+            if high[x] - low[x] > width:
+                widest, width = x, high[x] - low[x]
+        if top + 2 > stack.shape[0]:
+            larger = np.empty((2 * stack.shape[0], 2 * variables))
+            larger[:top] = stack[:top]
+            stack = larger
+        middle = low[widest] + CUT * (high[widest] - low[widest])
+        for k in range(2):
+            stack[top + k, :variables] = low
+            stack[top + k, variables:] = high
+        stack[top, variables + widest] = middle
+        stack[top + 1, widest] = middle
+        top += 2
+    return small[:found].copy(), stack[:top].copy(), used
