@@ -11,6 +11,7 @@ from enum import Enum
 from fractions import Fraction
 from typing import Any
 
+from ptmcad.cover import Cover
 from ptmcad.plane import PlanePolynomial
 from ptmcad.slice import Point, Slice
 
@@ -133,11 +134,15 @@ class Solution:
 class Cell:
     """An open cell with its rational sample point and the counts there, which hold in the whole cell.
 
+    In a certified map ``stack`` is None and the cell is the connected component of the cover's complement that holds
+    its sample; ``level`` is its number. ``admissible`` counts the stable equilibria with every spring longer than its
+    free length; None in an exact map.
+
     ``solutions`` proves the counts: disjoint boxes, one around each of the real solutions at the sample. Empty when the
     counts were proved in another way.
     """
 
-    stack: int
+    stack: int | None
     level: int
     sample: Point
     region: int
@@ -145,6 +150,7 @@ class Cell:
     stable: int | None
     index: MorseIndex | None
     solutions: tuple[Solution, ...] = ()
+    admissible: int | None = None
 
 
 class Merge(Enum):
@@ -232,6 +238,7 @@ class Region:
     area: tuple[Fraction, Fraction]
     cells: tuple[int, ...]
     sample: Point
+    admissible: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,6 +251,7 @@ class Location:
     total: int | None = None
     stable: int | None = None
     index: MorseIndex | None = None
+    admissible: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -269,6 +277,8 @@ class RegionMap:
     complex_solutions : number of complex solutions at a generic point.
     precision : largest number of bits that signs of Hessians and areas needed.
     timings : seconds by stage; not part of equality.
+    cover : what a certified map leaves open, None in an exact map. A certified map has no components, critical values
+        and stacks; its cells are the connected components of the cover's complement in the open window.
     """
 
     slice: Slice
@@ -288,6 +298,7 @@ class RegionMap:
     versions: Mapping[str, str]
     precision: Mapping[str, int]
     timings: Mapping[str, float] = field(default_factory=dict, compare=False)
+    cover: Cover | None = None
 
     def __str__(self) -> str:
         return self.table()

@@ -21,6 +21,8 @@ class Count(Enum):
     STABLE = "stable"
     TOTAL = "total"
     INDEX = "index"
+    ADMISSIBLE = "admissible"
+    """stable equilibria at which every spring is longer than its free length"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +65,11 @@ class Slice:
         return (self.axes[0].name, self.axes[1].name)
 
     @property
+    def has_free_lengths(self) -> bool:
+        """Whether some spring has a free length that is not zero everywhere; algebra can not answer then."""
+        return any(bool(self.parameters[name].numerator) for name in FREE_LENGTHS if name in self.parameters)
+
+    @property
     def heading(self) -> str:
         """The title; without one, what is fixed and how parameters depend on the axes, such as "L1 = 1, k = 100"."""
         return self.title or ", ".join(self._fixed()) or self.name
@@ -83,6 +90,8 @@ class Slice:
             yield "no load"
 
 
+FREE_LENGTHS = ("l0_1", "l0_2", "l0_3")
+"""Free lengths of the springs A1A4, A2A3, A3A4; a slice without free lengths need not have them."""
 LONGEST = 24
 """Longer values are cut in a heading."""
 
