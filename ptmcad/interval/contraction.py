@@ -178,10 +178,8 @@ def solve_row(system: Arguments, i: int, pivot: int, box_low: Floats, box_high: 
     x = unknowns[pivot]
     u, v = down(middle_low[x] + u), up(middle_low[x] + v)
     before = box_high[x] - box_low[x]
-    if u > box_low[x]:
-        box_low[x] = u
-    if v < box_high[x]:
-        box_high[x] = v
+    box_low[x] = max(box_low[x], u)
+    box_high[x] = min(box_high[x], v)
     if box_low[x] > box_high[x]:
         return -1
     return 1 if box_high[x] - box_low[x] < WORTHWHILE * before else 0
