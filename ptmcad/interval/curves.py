@@ -21,7 +21,7 @@ TORUS = (-3.0, -3.0 + 6.2832)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
-    """One curve: its name and the system that defines it; the boxes' variables are x, y and those that ``ranges`` gives."""
+    """One curve: its name, the system that defines it, and the ranges of the variables beside x and y."""
 
     name: str
     system: System

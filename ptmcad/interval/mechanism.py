@@ -30,7 +30,7 @@ def cross(p: Vector, q: Vector) -> Formula:
 
 @dataclass(frozen=True, slots=True)
 class Hessian:
-    """The Hessian H of U, scaled: P11 = H11/L1, P22 = H22/L2, q = H12/(L1 L2), D = P11 P22 - L1 L2 q^2 = det H/(L1 L2)."""
+    """The Hessian H of U, scaled: P11 = H11/L1, P22 = H22/L2, q = H12/(L1 L2), D = det H/(L1 L2)."""
 
     p11: Formula
     p22: Formula
