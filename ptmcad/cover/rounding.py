@@ -6,14 +6,13 @@ bound leaves two of them open, rational arithmetic decides.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from fractions import Fraction
 from math import isinf
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.cover import MOST_STEPS, Cover, Rectangle, Window
+from ptmcad.cover import MOST_STEPS, Cover, Window
 
 Integers = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -61,9 +60,10 @@ def from_boxes(window: Window, low: Floats, high: Floats, steps: int) -> Cover:
 
 def cover_of(array: Integers, steps: int) -> Cover:
     """The cover of rectangles in an array of shape (k, 4)."""
-    rows: Iterable[list[int]] = np.unique(array, axis=0).tolist() if len(array) else ()
-    rectangles: tuple[Rectangle, ...] = tuple((a, b, c, d) for a, b, c, d in rows)
-    return Cover(steps, rectangles)
+    rows = array[np.lexsort(array.T[::-1])]
+    if len(rows):
+        rows = rows[np.concatenate([[True], (rows[1:] != rows[:-1]).any(axis=1)])]
+    return Cover(steps, tuple((left, right, bottom, top) for left, right, bottom, top in rows.tolist()))
 
 
 def rounded_down(values: Floats, low: Fraction, high: Fraction, steps: int) -> Integers:
