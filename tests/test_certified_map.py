@@ -164,7 +164,7 @@ def test_the_table_tells_what_is_open() -> None:
     assert result.table().splitlines() == [
         "regions   3 of 3 cells, certified",
         "counts    1 stable: 1 region; 2 stable: 2 regions",
-        "areas     1: 2; 2: 2",
+        "areas     1: 1.09 to 2.21; 2: 1.79 to 2.91",
         "cover     3 rectangles around the curves where counts change",
         "time      1.50 s; undetermined 0.28; area bounds within 1.0e+00",
     ]
