@@ -75,7 +75,8 @@ def classify(
     _check_count(slice)
     deadline = None if timeout is None else started + timeout
     if engine == "certified" or (engine == "auto" and slice.has_free_lengths):
-        return _certified(slice, undetermined, relative, deadline, jobs, progress, keep, partial, resume)
+        result = _certified(slice, undetermined, relative, deadline, jobs, progress, keep, partial, resume)
+        return replace(result, timings={**result.timings, "total": perf_counter() - started})
     _check_exact(slice)
     if resume is not None:
         raise ConfigError("only the certified engine can go on from an earlier map", key="resume")
@@ -104,7 +105,6 @@ def _certified(
         raise ConfigError("the certified engine has no savings to switch off", key="keep")
     if resume is not None:
         check_resumable(slice, resume)
-    import ptmcad.interval.compiled  # first: where numba is missing, it says so
     from ptmcad.interval.engine import certified_map
 
     cover = None if resume is None else resume.cover
