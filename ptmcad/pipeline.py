@@ -75,7 +75,8 @@ def classify(
     _check_count(slice)
     deadline = None if timeout is None else started + timeout
     if engine == "certified" or (engine == "auto" and slice.has_free_lengths):
-        return _certified(slice, undetermined, relative, deadline, jobs, progress, keep, partial, resume)
+        result = _certified(slice, undetermined, relative, deadline, jobs, progress, keep, partial, resume)
+        return replace(result, timings={**result.timings, "total": perf_counter() - started})
     _check_exact(slice)
     if resume is not None:
         raise ConfigError("only the certified engine can go on from an earlier map", key="resume")
