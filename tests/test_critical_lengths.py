@@ -31,18 +31,18 @@ def potential(rho: float, l1: float, l2: float, l0: float, f3: float, f4: float,
 def test_equations_are_derivatives_of_the_potential(seed: int) -> None:
     """Difference quotients of U/k from the nodes' coordinates; each polynomial up to one positive factor."""
     random = Random(seed)
-    rho, l1, l2, f3, f4 = (random.randint(1, 30) for _ in range(5))  # integers, so that the scale is 1
-    system = critical_system(Fraction(rho), (Fraction(l1), Fraction(l2)), (Fraction(f3), Fraction(f4)))
-    assert system.scale == 1
-    equations = [sympy.sympify(e.replace("^", "**")) for e in system.equations]
+    exact = [Fraction(random.randint(1, 30), 10) for _ in range(5)]
+    rho, l1, l2, f3, f4 = map(float, exact)
+    texts = critical_system(exact[0], (exact[1], exact[2]), (exact[3], exact[4]))
+    equations = [sympy.sympify(text.replace("^", "**")) for text in texts]
     ratios = []
     for _ in range(3):
-        free, a, b = random.uniform(1, 20), random.uniform(-3, 3), random.uniform(-3, 3)
+        free, a, b = random.uniform(0.5, 3), random.uniform(-3, 3), random.uniform(-3, 3)
         x3, y3, x4, y4 = l1 * cos(a), l1 * sin(a), rho - l2 * cos(b), l2 * sin(b)
         inverses = 1 / hypot(x4, y4), 1 / hypot(x3 - rho, y3), 1 / hypot(x3 - x4, y3 - y4)
         at = dict(zip(NAMES, (*inverses, cos(a), sin(a), cos(b), sin(b), free), strict=True))
         values = [float(e.subs(at)) for e in equations]
-        assert max(map(abs, values[:5])) < 1e-9
+        assert max(map(abs, values[:5])) < 1e-7
         h = 1e-3
 
         def u(i: int, j: int, free: float = free, a: float = a, b: float = b, h: float = h) -> float:

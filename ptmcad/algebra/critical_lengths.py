@@ -10,7 +10,6 @@ of m_i q_i''/2 + n_i q_i' q_i'/4, and of the loads' part. The last polynomial is
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from fractions import Fraction
 
 from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
@@ -19,17 +18,12 @@ NAMES = ("v1", "v2", "v3", "c1", "s1", "c2", "s2", "l0")
 _RING: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(NAMES, Ordering.degrevlex)
 
 
-@dataclass(frozen=True, slots=True)
-class CriticalSystem:
-    """Polynomials as text in `NAMES`; the unknown l0 is ``scale`` times the free length."""
-
-    equations: tuple[str, ...]
-    scale: int
-
-
-def critical_system(rho: Fraction, rods: tuple[Fraction, Fraction], loads: tuple[Fraction, Fraction]) -> CriticalSystem:
-    """The equations for a base, rods and loads over k, all in one unit; stiffnesses and free lengths are equal."""
+def critical_system(
+    rho: Fraction, rods: tuple[Fraction, Fraction], loads: tuple[Fraction, Fraction]
+) -> tuple[str, ...]:
+    """Polynomials in `NAMES` as text, for base, rods and loads over k in one unit; stiffnesses and l0 are equal."""
     numbers = (rho, *rods, *loads)
+    # numbers times this are integers; the unknowns stay as they are, because longer roots make elimination slower
     scale = math.lcm(*(n.denominator for n in numbers))
     r, length1, length2, f3, f4 = (int(n * scale) for n in numbers)
     v1, v2, v3, c1, s1, c2, s2, l0 = _RING.gens()
@@ -41,19 +35,20 @@ def critical_system(rho: Fraction, rods: tuple[Fraction, Fraction], loads: tuple
         - 2 * r * length1 * c1 - 2 * r * length2 * c2,
     )  # fmt: skip
     gradient = [-2 * f3 * length1 * c1, -2 * f4 * length2 * c2]  # twice that of U/k
-    # four times the Hessian of U/k
-    h11, h12, h22 = 4 * f3 * length1 * s1, _RING.constant(0), 4 * f4 * length2 * s2
+    unit = scale**2
+    # 4 unit times the Hessian of U/k
+    h11, h12, h22 = 4 * unit * f3 * length1 * s1, _RING.constant(0), 4 * unit * f4 * length2 * s2
     for v, q in zip(inverses, squares, strict=True):
         m, n = 1 - l0 * v, l0 * v**3
         q1, q2 = _by_angle(q, 1), _by_angle(q, 2)
         gradient = [gradient[0] + m * q1, gradient[1] + m * q2]
-        h11 += 2 * m * _by_angle(q1, 1) + n * q1 * q1
-        h12 += 2 * m * _by_angle(q1, 2) + n * q1 * q2
-        h22 += 2 * m * _by_angle(q2, 2) + n * q2 * q2
+        h11 += 2 * unit * m * _by_angle(q1, 1) + n * q1 * q1
+        h12 += 2 * unit * m * _by_angle(q1, 2) + n * q1 * q2
+        h22 += 2 * unit * m * _by_angle(q2, 2) + n * q2 * q2
     equations = [c1**2 + s1**2 - 1, c2**2 + s2**2 - 1]
-    equations += [v**2 * q - 1 for v, q in zip(inverses, squares, strict=True)]
+    equations += [v**2 * q - unit for v, q in zip(inverses, squares, strict=True)]
     equations += [*gradient, h11 * h22 - h12 * h12]
-    return CriticalSystem(tuple(str(_primitive(e)).replace(" ", "") for e in equations), scale)
+    return tuple(str(_primitive(e)).replace(" ", "") for e in equations)
 
 
 def _by_angle(p: fmpz_mpoly, rod: int) -> fmpz_mpoly:

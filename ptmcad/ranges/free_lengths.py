@@ -50,10 +50,9 @@ def critical_free_lengths(
     """
     if min(rho, *rods) <= 0:
         raise ConfigError("rho and the rods must be positive")
-    system = critical_system(rho, rods, loads)
     found = []
-    for box in real_solutions(NAMES, system.equations, timeout):
-        low, high = (end / system.scale for end in box[-1])
+    for box in real_solutions(NAMES, critical_system(rho, rods, loads), timeout):
+        low, high = box[-1]
         first, second, third = (_sign(*interval) for interval in box[:3])
         _sign(low, high)  # at l0 = 0 the signs have no meaning
         found.append(CriticalFreeLength(Enclosure(low, high), (first, second, third)))
