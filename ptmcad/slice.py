@@ -12,6 +12,7 @@ from enum import Enum
 from fractions import Fraction
 from typing import Any
 
+from ptmcad.errors import ConfigError
 from ptmcad.expressions import Expression
 
 
@@ -44,7 +45,8 @@ class Slice:
     mechanism : the model's name, ``"ptm"`` for the paper's mechanism.
     axes : the two axes, first the horizontal one.
     parameters : every parameter of the mechanism as an `Expression` (a rational function in the two axes, exponent
-        pairs in the order of ``axes``). An axis that is itself a parameter maps to itself.
+        pairs in the order of ``axes``). An axis that is itself a parameter maps to itself. The free lengths are among
+        them unless all of them are zero everywhere.
     count : which count tells two regions apart.
     title : the picture's title, the name when empty.
     reference : published answers, as read from the record; never used by the computation.
@@ -81,6 +83,9 @@ class Slice:
             values = {n: v for n, v in values.items() if n not in ("k1", "k2", "k3")} | {"k": springs.pop()}
         else:
             values.pop("k", None)
+        free = {values[name] for name in FREE_LENGTHS if name in values}
+        if len(free) == 1:
+            values = {n: v for n, v in values.items() if n not in FREE_LENGTHS} | {"l0": free.pop()}
         loads = [name for name in values if name.startswith("F")]
         for name, value in values.items():
             if value not in (name, "0"):
@@ -88,6 +93,26 @@ class Slice:
                 yield f"{name} = {shown if len(shown) <= LONGEST else shown[: LONGEST - 1] + '…'}"
         if loads and all(values[name] == "0" for name in loads):
             yield "no load"
+
+
+def without_free_lengths(parameters: Mapping[str, Expression], what: str) -> dict[str, Expression]:
+    """The parameters for algebra, which would leave free lengths out: they have to be zero.
+
+    Parameters
+    ----------
+    what : that is not computed otherwise, as the start of a sentence.
+
+    Raises
+    ------
+    ConfigError
+        When a spring has a free length.
+    """
+    if any(parameters[name].numerator for name in FREE_LENGTHS if name in parameters):
+        raise ConfigError(
+            f"{what} not computed for springs with a free length, which bring in square roots and curves of degree "
+            "over 1000; ptmcad classify encloses them"
+        )
+    return {name: value for name, value in parameters.items() if name not in FREE_LENGTHS}
 
 
 FREE_LENGTHS = ("l0_1", "l0_2", "l0_3")

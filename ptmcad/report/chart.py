@@ -7,7 +7,7 @@ policy forbids. The same map gives the same text.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from html import escape
 from math import ceil
@@ -17,10 +17,10 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from ptmcad.numerals import shortest_text
-from ptmcad.regionmap import RegionMap
+from ptmcad.regionmap import Cell, Region, RegionMap
 from ptmcad.render.colours import Fill, fill_of
-from ptmcad.render.outline import Outline
 from ptmcad.render.slivers import thin_regions, zooms
+from ptmcad.render.view import Shapes
 from ptmcad.report.frame import BOTTOM, LEFT, RIM, SIDE, frame
 from ptmcad.table import count_text
 
@@ -46,7 +46,7 @@ class Chart:
     hidden: int
 
 
-def chart(seen: Outline) -> Chart:
+def chart(seen: Shapes) -> Chart:
     """The pictures of a map."""
     result = seen.result
     thin = thin_regions(seen, SHOWN)
@@ -102,15 +102,16 @@ def _pattern(hatch: str) -> str:
     )
 
 
-def _picture(seen: Outline, name: str, marks: Sequence[Mark], labels: Sequence[Label]) -> str:
+def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[Label]) -> str:
     result = seen.result
     count = result.slice.count
+    plate = "plate" if result.cover is None else "undetermined"
     parts = [
         f'<svg id="{name}" class="map" viewBox="0 0 {LEFT + SIDE + RIM} {RIM + SIDE + BOTTOM}" role="group" '
         f'aria-label="{escape(_window_text(seen))}">',
         f'<clipPath id="{name}-window"><rect width="{SIDE}" height="{SIDE}"/></clipPath>',
         f'<g transform="translate({LEFT} {RIM})">',
-        f'<rect class="plate" width="{SIDE}" height="{SIDE}"/><g clip-path="url(#{name}-window)">',
+        f'<rect class="{plate}" width="{SIDE}" height="{SIDE}"/><g clip-path="url(#{name}-window)">',
     ]
     for number, region in enumerate(result.regions):
         outline = "".join(_closed(p) for p in seen.polygons(number))
@@ -120,6 +121,9 @@ def _picture(seen: Outline, name: str, marks: Sequence[Mark], labels: Sequence[L
         parts.append(f'<path class="fill" fill="{fill.face}" d="{outline}"/>')
         if fill.hatch:
             parts.append(f'<path class="fill" fill="url(#{hatch_id(fill.hatch)})" d="{outline}"/>')
+    rim = "".join(_open(line) for line in seen.edges())
+    if rim:
+        parts.append(f'<path class="rim" d="{rim}"/>')
     lines: dict[tuple[bool, int], list[str]] = {}
     for component, separates, line in seen.walls():
         lines.setdefault((separates, component), []).append(_open(line))
@@ -143,7 +147,7 @@ def _picture(seen: Outline, name: str, marks: Sequence[Mark], labels: Sequence[L
     return "".join(parts)
 
 
-def _window_text(seen: Outline) -> str:
+def _window_text(seen: Shapes) -> str:
     axes = seen.result.slice.axes
     ends = (seen.view.x, seen.view.y)
     spans = (f"{a.name} from {_short(e[0])} to {_short(e[1])}" for a, e in zip(axes, ends, strict=True))
@@ -167,30 +171,29 @@ def _closed(polygon: NDArray[np.float64]) -> str:
     return _open(polygon) + "Z"
 
 
-def _cells(seen: Outline) -> Iterator[str]:
+def _cells(seen: Shapes) -> Iterator[str]:
     """The cells of the view, from the left and from below, as areas that take pointer and focus."""
-    result = seen.result
-    for stack in seen.stacks:
-        cells = result.stacks[stack.number].cells
-        for level, number in enumerate(cells):
-            bottom = seen.points(stack.along, stack.heights[level])
-            top = seen.points(stack.along, stack.heights[level + 1])
-            outline = _closed(np.concatenate([bottom, top[::-1]]))
-            yield (
-                f'<path class="cell" data-cell="{number}" tabindex="-1" role="button" aria-pressed="false" '
-                f'aria-label="{escape(cell_text(result, number))}" d="{outline}"/>'
-            )
+    for number, polygons in seen.cells():
+        yield (
+            f'<path class="cell" data-cell="{number}" tabindex="-1" role="button" aria-pressed="false" '
+            f'aria-label="{escape(cell_text(seen.result, number))}" d="{"".join(map(_closed, polygons))}"/>'
+        )
 
 
 def cell_text(result: RegionMap, number: int) -> str:
     """What a cell is, in words: its region, its counts, its sample."""
     cell = result.cells[number]
     at = ", ".join(f"{name} = {_short(cell.sample[name])}" for name in cell.sample.names)
-    return f"Cell {number} of region {cell.region}: {counts_text(cell.stable, cell.total)}; sample {at}"
+    return f"Cell {number} of region {cell.region}: {counts_text(cell)}; sample {at}"
 
 
-def counts_text(stable: int | None, total: int | None) -> str:
-    """Both counts in words, as far as they are known."""
+def counts_text(part: Cell | Region) -> str:
+    """The counts in words, as far as they are known."""
+    stable, total = part.stable, part.total
+    if part.admissible is not None:
+        known = replace(part, admissible=None)
+        more = f", {counts_text(known)}" if (stable, total) != (None, None) else ""
+        return f"{part.admissible} admissible{more}"
     if stable is None and total is None:
         return "counts not known"
     if total is None:
@@ -199,7 +202,7 @@ def counts_text(stable: int | None, total: int | None) -> str:
     return f"{total} {noun}" if stable is None else f"{stable} stable of {total} {noun}"
 
 
-def _region_labels(seen: Outline) -> list[Label]:
+def _region_labels(seen: Shapes) -> list[Label]:
     """For each region into which its count can be written, even in the larger type of phones, a point deep inside."""
     pixels = 60
     image = seen.raster(pixels, pixels)
