@@ -123,7 +123,7 @@ def refined(equations: System, box: Box, precision: int) -> Box:
         if step is None:
             raise ArithmeticError("a zero that was proved to exist is not there")
         size = width(equations, step[0])
-        if not 2 * size < width(equations, box) or size < finest:
+        if not 100 * size < 99 * width(equations, box) or size < finest:
             return step[0]
         box = step[0]
 
