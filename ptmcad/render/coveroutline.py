@@ -82,7 +82,9 @@ class CoverOutline:
             places.append(np.array([int(start + (k + Fraction(1, 2)) * step) for k in range(n)], dtype=np.int64))
         x, y = np.clip(places[0], 0, steps - 1), np.clip(places[1], 0, steps - 1)
         leaf = tree.leaves_right_above(np.tile(x, rows), np.repeat(y, columns))
-        image = np.where(tree.state[leaf] == FREE, self.region_at[self.complement.owner[leaf]], -1)
+        free = tree.state[leaf] == FREE
+        image = np.full(len(leaf), -1, dtype=np.int64)  # a covered leaf's owner is a cluster, not a component
+        image[free] = self.region_at[self.complement.owner[leaf[free]]]
         return image.reshape(rows, columns)
 
     def _of_cell(self, cell: int) -> Iterator[Floats]:

@@ -45,8 +45,13 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
     Raises
     ------
     ConfigError
-        When the map contradicts itself so that it can not be drawn.
+        When the map is a certified one, or contradicts itself so that it can not be drawn.
     """
+    if result.cover is not None:
+        raise ConfigError(
+            "the page of a certified map is not made, because its poses and energies are drawn for springs without "
+            "free lengths; ptmcad classify draws the map"
+        )
     check_numbers(result)
     seen = _outline(result)
     drawn = chart(seen)
