@@ -19,6 +19,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 from matplotlib.path import Path as Curve
 
+from ptmcad.cli import run
 from ptmcad.cover import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.regionmap import RegionMap, Status
@@ -211,3 +212,23 @@ def test_a_damaged_certified_map_has_no_page(fault: str) -> None:
         damaged = replace(first, stack=0)
     with pytest.raises(ConfigError, match="contradicts itself"):
         page(replace(result, cells=(damaged, second)))
+
+
+def test_a_stored_certified_map_has_a_page_and_pictures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "map.json"
+    path.write_text(circle(6).to_json(), encoding="utf-8")
+    assert run(["report", str(path)]) == 0
+    assert "Certified result." in (tmp_path / "map.html").read_text(encoding="utf-8")
+    assert run(["plot", str(path), "--format", "png,svg", "--dpi", "100"]) == 0
+    assert capsys.readouterr().out.splitlines()[1:] == [str(tmp_path / "map.png"), str(tmp_path / "map.svg")]
+    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_damaged_certified_map_has_no_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made = circle(6)
+    first = replace(made.cells[0], sample=Point(made.slice.axis_names, Fraction(1, 2), Fraction(1)))
+    (tmp_path / "map.json").write_text(replace(made, cells=(first, made.cells[1])).to_json(), encoding="utf-8")
+    assert run(["plot", str(tmp_path / "map.json")]) == 2
+    message = capsys.readouterr().err
+    assert "contradicts itself" in message and message.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["map.json"]
