@@ -30,7 +30,7 @@ def search_curve(system: Arguments, start: Boxes, area: float, budget: int) -> t
 
     Returns
     -------
-    small : boxes that were not bisected further.
+    small : boxes that were not bisected further, for their area or because no float lies between their ends.
     waiting : boxes that the budget did not reach.
     used : number of boxes treated.
     """
@@ -51,7 +51,12 @@ def search_curve(system: Arguments, start: Boxes, area: float, budget: int) -> t
         high[:] = stack[top, variables:]
         if not contract(system, low, high, work):
             continue
-        if (high[0] - low[0]) * (high[1] - low[1]) <= area:
+        widest, width = -1, -1.0
+        for x in unknowns:
+            middle = low[x] + CUT * (high[x] - low[x])
+            if high[x] - low[x] > width and low[x] < middle < high[x]:
+                widest, width = x, high[x] - low[x]
+        if widest < 0 or (high[0] - low[0]) * (high[1] - low[1]) <= area:
             if found == small.shape[0]:
                 larger = np.empty((2 * found, 2 * variables))
                 larger[:found] = small
@@ -60,10 +65,6 @@ def search_curve(system: Arguments, start: Boxes, area: float, budget: int) -> t
             small[found, variables:] = high
             found += 1
             continue
-        widest, width = 0, -1.0
-        for x in unknowns:
-            if high[x] - low[x] > width:
-                widest, width = x, high[x] - low[x]
         if top + 2 > stack.shape[0]:
             larger = np.empty((2 * stack.shape[0], 2 * variables))
             larger[:top] = stack[:top]
