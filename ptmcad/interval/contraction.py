@@ -45,13 +45,11 @@ def discarded(low: Floats, high: Floats, vanishing: NDArray[np.int64]) -> bool:
 
 
 @compiled
-def precondition(
-    middle: Floats, inverse: Floats, widths: Floats, pivots: NDArray[np.int64], tolerance: float
-) -> None:
+def precondition(middle: Floats, inverse: Floats, widths: Floats, pivots: NDArray[np.int64], tolerance: float) -> None:
     """Gauss-Jordan elimination of ``middle`` (m, n) with full pivoting, columns weighted by ``widths``.
 
-    ``inverse`` becomes the product of the row operations; ``pivots[i]`` the column that row i solves for, or -1. Rounding
-    needs no care here: any matrix is a valid preconditioner.
+    ``inverse`` becomes the product of the row operations; ``pivots[i]`` the column that row i solves for, or -1.
+    Rounding needs no care here: any matrix is a valid preconditioner.
     """
     m, n = middle.shape
     for i in range(m):
@@ -146,7 +144,7 @@ def contract(system: Arguments, box_low: Floats, box_high: Floats, work: Workspa
 
 @compiled
 def solve_row(system: Arguments, i: int, pivot: int, box_low: Floats, box_high: Floats, work: Workspace) -> int:
-    """Row i of the preconditioned linearised equations, solved for its pivot: -1 no solution, 1 much narrower, 0 else."""
+    """Row i of the preconditioned linear equations, solved for its pivot: -1 no solution, 1 much narrower, 0 else."""
     _, _, unknowns, equations, jacobian, _, _, _, _ = system
     _, _, low_at, high_at, middle_low, _, radius, j_low, j_high, _, inverse = work
     m, n = jacobian.shape
@@ -178,10 +176,8 @@ def solve_row(system: Arguments, i: int, pivot: int, box_low: Floats, box_high: 
     x = unknowns[pivot]
     u, v = down(middle_low[x] + u), up(middle_low[x] + v)
     before = box_high[x] - box_low[x]
-    if u > box_low[x]:
-        box_low[x] = u
-    if v < box_high[x]:
-        box_high[x] = v
+    box_low[x] = max(box_low[x], u)
+    box_high[x] = min(box_high[x], v)
     if box_low[x] > box_high[x]:
         return -1
     return 1 if box_high[x] - box_low[x] < WORTHWHILE * before else 0

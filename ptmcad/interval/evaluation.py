@@ -68,10 +68,8 @@ def run(
             u, v = sine(low[a], high[a], 1)
         elif operation == _MEET:
             u, v = low[a], high[a]
-            if low[b] > u:
-                u = low[b]
-            if high[b] < v:
-                v = high[b]
+            u = max(u, low[b])
+            v = min(v, high[b])
             if u > v:
                 return False
         elif operation == _LENGTH:

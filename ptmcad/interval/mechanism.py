@@ -110,9 +110,7 @@ def mechanism(graph: Graph, values: Mapping[str, Formula], th1: Formula, th2: Fo
         q = mixed - tilt * (across31 * across32)
         return Hessian(rigid1 - p1 * (tilt * q31), rigid2 - p2 * (tilt * q32), q, determinant)
 
-    everywhere = hessian(
-        cross(u2, t1).squared(), across31.squared(), cross(u1, t2).squared(), across32.squared()
-    )
+    everywhere = hessian(cross(u2, t1).squared(), across31.squared(), cross(u1, t2).squared(), across32.squared())
 
     def sine_squared(sine: Formula, cosine: Formula, others: Formula, pull: Formula) -> Formula:
         """sine^2 = 1 - cosine^2, where equilibrium demands pull * cosine = others."""

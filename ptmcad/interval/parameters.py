@@ -24,9 +24,7 @@ def _polynomial(graph: Graph, terms: tuple[Term, ...]) -> Formula:
     for i, j, c in terms:
         rows.setdefault(i, {})[j] = c
     x, y = graph.variable(0), graph.variable(1)
-    coefficients = {
-        i: _horner(graph, {j: graph.constant(c) for j, c in row.items()}, y) for i, row in rows.items()
-    }
+    coefficients = {i: _horner(graph, {j: graph.constant(c) for j, c in row.items()}, y) for i, row in rows.items()}
     return _horner(graph, coefficients, x)
 
 

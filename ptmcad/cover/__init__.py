@@ -1,0 +1,77 @@
+"""A cover: closed rectangles on a lattice of the window that contain everything a certified map leaves open.
+
+Guarantee: all its numbers are integers, so what lies in a rectangle, and what is connected outside all of them, is
+decided exactly.
+
+The geometry is in the modules of this package, which need numpy; the functions here load it when they are called, so
+that a map without a cover is read and written without.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ptmcad.cover.complement import Components
+
+Rectangle = tuple[int, int, int, int]
+"""left, right, bottom, top in lattice steps from the window's lower left corner; closed; 0 <= left < right <= steps."""
+Window = tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
+"""Low and high end of both axes."""
+MOST_STEPS = 2**40
+
+
+@dataclass(frozen=True, slots=True)
+class Cover:
+    """The rectangles, sorted and distinct; they may overlap.
+
+    Attributes
+    ----------
+    steps : number of equal lattice steps along each axis of the window, a power of two, at most `MOST_STEPS`.
+    """
+
+    steps: int
+    rectangles: tuple[Rectangle, ...]
+
+
+def components(cover: Cover) -> Components:
+    """The connected components of the open window without the closed rectangles.
+
+    Raises
+    ------
+    ValueError
+        When a rectangle is not one, or the lattice is too fine.
+    """
+    from ptmcad.cover import complement
+
+    return complement.components(cover)
+
+
+def union_area(cover: Cover) -> int:
+    """The area of the rectangles' union, in squares of a lattice step."""
+    from ptmcad.cover import complement
+
+    return complement.union_area(cover)
+
+
+def from_boxes(window: Window, low: Any, high: Any, steps: int) -> Cover:
+    """The cover of boxes that floats bound: each is rounded outward to the lattice and clipped to the window.
+
+    Parameters
+    ----------
+    low, high : arrays of shape (k, 2), the ends along the two axes, in the axes' own units; infinite ends are allowed.
+
+    Raises
+    ------
+    ValueError
+        When an end is not a number, or low > high.
+
+    Guarantee
+    ---------
+    Every point of the open window that lies in a closed box lies in a rectangle.
+    """
+    from ptmcad.cover import rounding
+
+    return rounding.from_boxes(window, low, high, steps)

@@ -1,0 +1,163 @@
+"""What a cover leaves of the window: connected components with exact areas, and the clusters of rectangles between.
+
+Guarantee: exact. Two points of the open window are in one component if and only if a path joins them that meets no
+closed rectangle; two rectangles are in one cluster if and only if a chain of rectangles with common points joins them.
+
+An open part of the window that meets the interior of no rectangle can be left only through its edges. As rectangles
+have interiors, an edge between two such parts is in no rectangle, and a corner at which only two of them meet diagonally
+is; so components are joined across edges, and clusters across edges and corners.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.cover import Cover, Rectangle
+from ptmcad.cover.graph import connected, touching
+from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
+
+Integers = NDArray[np.int64]
+_LIMB = 20
+"""Bits of a half coordinate: products of halves are summed without overflow, and put together as Python's integers."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Components:
+    """The components, by descending area, then from the left, then from below; and the clusters in the same order.
+
+    Attributes
+    ----------
+    areas : of the components, in squares of a lattice step.
+    rectangles : for each component an open rectangle inside of it whose smaller side is large.
+    cluster_areas : areas of the unions of the clusters' rectangles.
+    cluster_of : for each rectangle of the cover the number of its cluster.
+    clusters_at : for each component the clusters that it touches along a segment or in a point, ascending.
+    subdivision : of the window.
+    owner : for each part of the subdivision the number of its component or, for a covered one, of its cluster.
+    """
+
+    cover: Cover
+    areas: tuple[int, ...]
+    rectangles: tuple[Rectangle, ...]
+    cluster_areas: tuple[int, ...]
+    cluster_of: tuple[int, ...]
+    clusters_at: tuple[tuple[int, ...], ...]
+    subdivision: Subdivision
+    owner: Integers
+
+    def locate(self, u: Fraction, v: Fraction) -> int | None:
+        """The component of a point in lattice coordinates; None when the point is in a closed rectangle.
+
+        Raises
+        ------
+        ValueError
+            When the point is not in the open window.
+        """
+        steps = self.cover.steps
+        if not (0 < u < steps and 0 < v < steps):
+            raise ValueError(f"({u}, {v}) is not in the open window")
+        leaves = self.subdivision.leaves_at(u, v)
+        if any(self.subdivision.state[leaf] == COVERED for leaf in leaves):
+            return None
+        return int(self.owner[leaves[0]])
+
+    @property
+    def touching(self) -> tuple[tuple[int, int], ...]:
+        """All pairs of a component and a cluster that touch."""
+        return tuple((n, cluster) for n, clusters in enumerate(self.clusters_at) for cluster in clusters)
+
+
+def components(cover: Cover) -> Components:
+    """The connected components of the open window without the closed rectangles.
+
+    Raises
+    ------
+    ValueError
+        When a rectangle is not one, or the lattice is too fine.
+    """
+    tree = subdivide(cover)
+    parts = np.flatnonzero(tree.state != CUT)
+    leaves, free = tree.bounds[parts], tree.state[parts] == FREE
+    pairs = touching(leaves)
+    a_free, b_free = free[pairs.first], free[pairs.second]
+    joined = (a_free & b_free & pairs.along) | ~(a_free | b_free)
+    label = connected(len(leaves), pairs.first[joined], pairs.second[joined])
+
+    number, areas, rectangles = _numbered(leaves, label, free)
+    clusters, cluster_areas, _ = _numbered(leaves, label, ~free)
+    own = np.where(free, number, clusters)
+    border = a_free != b_free
+    inner = np.where(a_free, pairs.first, pairs.second)[border]
+    outer = np.where(a_free, pairs.second, pairs.first)[border]
+    borders = np.unique(own[inner] * (len(cluster_areas) + 1) + own[outer])
+    at: list[list[int]] = [[] for _ in areas]
+    for code in borders.tolist():
+        n, cluster = divmod(code, len(cluster_areas) + 1)
+        at[n].append(cluster)
+
+    owner = np.full(len(tree.state), -1, dtype=np.int64)
+    owner[parts] = own
+    array = rectangle_array(cover)
+    cluster_of = owner[tree.leaves_right_above(array[:, 0], array[:, 2])]
+    return Components(
+        cover, areas, rectangles, cluster_areas, tuple(cluster_of.tolist()), tuple(map(tuple, at)), tree, owner
+    )
+
+
+def _numbered(
+    leaves: Integers, label: Integers, chosen: NDArray[np.bool_]
+) -> tuple[Integers, tuple[int, ...], tuple[Rectangle, ...]]:
+    """Numbers for the labels of the chosen leaves: by descending area, then from the left, then from below.
+
+    Returns
+    -------
+    number : of each leaf, -1 for those that are not chosen.
+    areas : by number.
+    largest : by number, the leaf whose smaller side is the longest.
+    """
+    number = np.full(len(leaves), -1, dtype=np.int64)
+    if not chosen.any():
+        return number, (), ()
+    own = leaves[chosen]
+    labels, inverse = np.unique(label[chosen], return_inverse=True)
+    areas = _sums_of_areas(own, inverse, len(labels))
+    first = np.empty(len(labels), dtype=np.int64)
+    corner = np.lexsort((own[:, 2], own[:, 0]))[::-1]
+    first[inverse[corner]] = corner  # the last one written is the first from the left and below
+    size = np.minimum(own[:, 1] - own[:, 0], own[:, 3] - own[:, 2])
+    thick = np.empty(len(labels), dtype=np.int64)
+    by_size = np.lexsort((-own[:, 2], -own[:, 0], size))
+    thick[inverse[by_size]] = by_size
+    places = own[first][:, (0, 2)].tolist()
+    order = sorted(range(len(labels)), key=lambda k: (-areas[k], places[k]))
+    rank = np.empty(len(labels), dtype=np.int64)
+    rank[order] = np.arange(len(labels))
+    number[chosen] = rank[inverse]
+    largest = own[thick[order]].tolist()
+    return number, tuple(areas[k] for k in order), tuple((x0, x1, y0, y1) for x0, x1, y0, y1 in largest)
+
+
+def _sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:
+    """The exact sum of the areas in each group."""
+    width, tall = boxes[:, 1] - boxes[:, 0], boxes[:, 3] - boxes[:, 2]
+    mask = (1 << _LIMB) - 1
+    sums = [0] * groups
+    for i in (0, 1):
+        for j in (0, 1):
+            part = np.zeros(groups, dtype=np.int64)
+            # at most 2^40 each: room for 2^22 leaves
+            np.add.at(part, group, ((width >> _LIMB) if i else width & mask) * ((tall >> _LIMB) if j else tall & mask))
+            shift = _LIMB * (i + j)
+            sums = [s + (p << shift) for s, p in zip(sums, part.tolist(), strict=True)]
+    return sums
+
+
+def union_area(cover: Cover) -> int:
+    """The area of the rectangles' union, in squares of a lattice step."""
+    tree = subdivide(cover)
+    covered = tree.bounds[tree.state == COVERED]
+    return _sums_of_areas(covered, np.zeros(len(covered), dtype=np.int64), 1)[0]

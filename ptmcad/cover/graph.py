@@ -1,0 +1,84 @@
+"""Which leaves of a subdivision touch, and what is connected by touching.
+
+Guarantee: exact; coordinates are compared by their ranks, which are exact integers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Touching:
+    """Pairs of leaves, as positions in the array of leaves; each pair once.
+
+    Attributes
+    ----------
+    first, second : shape (k,).
+    along : whether the two share a segment; else they share one point.
+    """
+
+    first: Integers
+    second: Integers
+    along: NDArray[np.bool_]
+
+
+def touching(leaves: Integers) -> Touching:
+    """The pairs of leaves whose closures meet.
+
+    Parameters
+    ----------
+    leaves : shape (n, 4): left, right, bottom, top of rectangles that tile the window.
+    """
+    left, right, bottom, top = leaves.T
+    a, b, along = _across(left, right, bottom, top, corners=True)
+    # a corner that two leaves share is the end of an upright line between them: the pass above has it
+    c, d, _ = _across(bottom, top, left, right, corners=False)
+    return Touching(
+        np.concatenate([a, c]), np.concatenate([b, d]), np.concatenate([along, np.ones(len(c), dtype=np.bool_)])
+    )
+
+
+def _across(
+    left: Integers, right: Integers, bottom: Integers, top: Integers, *, corners: bool
+) -> tuple[Integers, Integers, NDArray[np.bool_]]:
+    """Pairs of leaves at the two sides of an upright line, with an edge or, if asked, a corner in common."""
+    lines = np.unique(right)
+    heights, ranks = np.unique(np.concatenate([bottom, top]), return_inverse=True)
+    low, high = ranks[: len(bottom)], ranks[len(bottom) :]
+    span = len(heights) + 1
+    sides = np.searchsorted(lines, left)
+    inner = np.flatnonzero(left > 0)
+    # the leaves at the right of one line do not overlap, so that bottoms and tops have the same order
+    order = inner[np.argsort(sides[inner] * span + low[inner])]
+    bottoms, tops = sides[order] * span + low[order], sides[order] * span + high[order]
+    line = np.searchsorted(lines, right) * span
+    begin = np.searchsorted(tops, line + low, side="left" if corners else "right")
+    end = np.searchsorted(bottoms, line + high, side="right" if corners else "left")
+    number = np.maximum(end - begin, 0)
+    first = np.repeat(np.arange(len(left)), number)
+    within = np.arange(len(first)) - np.repeat(np.cumsum(number) - number, number)
+    second = order[np.repeat(begin, number) + within]
+    return first, second, np.minimum(top[first], top[second]) > np.maximum(bottom[first], bottom[second])
+
+
+def connected(number: int, first: Integers, second: Integers) -> Integers:
+    """For each of so many nodes the smallest node that edges join it to."""
+    label = np.arange(number)
+    while len(first):
+        a, b = label[first], label[second]
+        apart = a != b
+        first, second, a, b = first[apart], second[apart], a[apart], b[apart]
+        # labels are roots here: every root takes the smallest of its neighbours' roots, if that is smaller
+        np.minimum.at(label, np.maximum(a, b), np.minimum(a, b))
+        while True:
+            shorter = label[label]
+            if np.array_equal(shorter, label):
+                break
+            label = shorter
+    return label

@@ -1,0 +1,201 @@
+"""A subdivision of the window into cells that are each covered by one rectangle or meet the interior of none.
+
+Guarantee: the leaves tile the window, and every leaf is of one of the two kinds, exactly. All coordinates are 64 bit
+integers of at most `ptmcad.cover.MOST_STEPS`, whose sums and doubles do not overflow.
+
+The window is cut in two at an edge of a rectangle, and so are the parts, as long as a rectangle meets a part without
+covering it. The edge next to the middle is taken, so that the depth is near the logarithm of the number of rectangles.
+All parts of one depth are cut at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.cover import MOST_STEPS, Cover
+
+Integers = NDArray[np.int64]
+FREE, COVERED, CUT = 0, 1, 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Subdivision:
+    """The tree of parts; part 0 is the window. All arrays have one entry for each part.
+
+    Attributes
+    ----------
+    state : FREE, COVERED or CUT.
+    bounds : shape (parts, 4): left, right, bottom, top.
+    axis, cut : where a part is cut: at this coordinate of axis 0 or 1.
+    child : number of the lower of its two parts; the other one follows it.
+    """
+
+    steps: int
+    state: NDArray[np.int8]
+    bounds: Integers
+    axis: NDArray[np.int8]
+    cut: Integers
+    child: Integers
+
+    def leaves_at(self, u: Fraction, v: Fraction) -> list[int]:
+        """All leaves whose closure holds a point of the window."""
+        found, waiting = [], [0]
+        # the cuts are integers: compare with the floor, and see whether the point is on the cut
+        floors = (u.__floor__(), v.__floor__())
+        whole = (u == floors[0], v == floors[1])
+        while waiting:
+            part = waiting.pop()
+            if self.state[part] != CUT:
+                found.append(part)
+                continue
+            axis, cut, child = int(self.axis[part]), int(self.cut[part]), int(self.child[part])
+            if floors[axis] >= cut:
+                waiting.append(child + 1)
+            if floors[axis] < cut or (whole[axis] and floors[axis] == cut):
+                waiting.append(child)
+        return found
+
+    def leaves_right_above(self, x: Integers, y: Integers) -> Integers:
+        """For lattice points, the leaf that holds what is just right of and above each; x, y < steps."""
+        part = np.zeros(len(x), dtype=np.int64)
+        active = np.flatnonzero(self.state[part] == CUT)
+        while len(active):
+            here = part[active]
+            along = np.where(self.axis[here] == 0, x[active], y[active])
+            part[active] = self.child[here] + (along >= self.cut[here])
+            active = active[self.state[part[active]] == CUT]
+        return part
+
+
+def rectangle_array(cover: Cover) -> Integers:
+    """The rectangles as an array of shape (k, 4).
+
+    Raises
+    ------
+    ValueError
+        When a rectangle is not one, or the lattice is too fine.
+    """
+    steps = cover.steps
+    if not 0 < steps <= MOST_STEPS:
+        raise ValueError(f"a cover's lattice has 1 to {MOST_STEPS} steps, not {steps}")
+    try:
+        array = np.array(cover.rectangles, dtype=np.int64).reshape(-1, 4)
+    except (OverflowError, ValueError) as error:
+        raise ValueError("a rectangle of the cover is not four integers within the window") from error
+    left, right, bottom, top = array.T
+    bad = (left < 0) | (left >= right) | (right > steps) | (bottom < 0) | (bottom >= top) | (top > steps)
+    if bad.any():
+        raise ValueError(f"not a rectangle of the cover's window: {cover.rectangles[int(np.argmax(bad))]}")
+    return array
+
+
+def subdivide(cover: Cover) -> Subdivision:
+    """Cut the window until every part is covered by one rectangle or meets the interior of none.
+
+    Raises
+    ------
+    ValueError
+        When a rectangle is not one, or the lattice is too fine.
+    """
+    rectangles = rectangle_array(cover)
+    growing = _Growing(cover.steps)
+    parts = np.zeros(1 if len(rectangles) else 0, dtype=np.int64)
+    """the parts of this depth that some rectangle meets"""
+    counts = np.full(len(parts), len(rectangles))
+    members = np.arange(len(rectangles))
+    """numbers of the rectangles that meet each part, part after part"""
+    while len(parts):
+        owner = np.repeat(np.arange(len(parts)), counts)
+        starts = np.cumsum(counts) - counts
+        box = growing.bounds[parts]
+        x0, x1, y0, y1 = box[owner].T
+        left, right, bottom, top = rectangles[members].T
+        left, right = np.maximum(left, x0), np.minimum(right, x1)
+        bottom, top = np.maximum(bottom, y0), np.minimum(top, y1)
+        covers = (left == x0) & (right == x1) & (bottom == y0) & (top == y1)
+        covered = np.logical_or.reduceat(covers, starts)
+        growing.state[parts[covered]] = COVERED
+        if covered.all():
+            break
+        kept = ~covered[owner]
+        renumbered = np.cumsum(~covered) - 1
+        parts, box, counts = parts[~covered], box[~covered], counts[~covered]
+        owner, members = renumbered[owner[kept]], members[kept]
+        left, right, bottom, top = left[kept], right[kept], bottom[kept], top[kept]
+        starts = np.cumsum(counts) - counts
+        cut_x, found_x = _next_to_the_middle(left, right, box[:, 0], box[:, 1], owner, starts)
+        cut_y, found_y = _next_to_the_middle(bottom, top, box[:, 2], box[:, 3], owner, starts)
+        wide = box[:, 1] - box[:, 0] >= box[:, 3] - box[:, 2]
+        upright = found_x & (wide | ~found_y)
+        cut = np.where(upright, cut_x, cut_y)
+        child = growing.divide(parts, np.where(upright, 0, 1), cut)
+
+        low, high = np.where(upright[owner], left, bottom), np.where(upright[owner], right, top)
+        halves = (low < cut[owner], high > cut[owner])
+        numbers = [np.bincount(owner[half], minlength=len(parts)) for half in halves]
+        counts = np.stack(numbers, axis=1).ravel()
+        starts = np.cumsum(counts) - counts
+        following = np.empty(int(counts.sum()), dtype=np.int64)
+        for side, half in enumerate(halves):
+            rank = np.arange(int(half.sum())) - np.repeat(np.cumsum(numbers[side]) - numbers[side], numbers[side])
+            following[starts[2 * owner[half] + side] + rank] = members[half]
+        members = following
+        parts = np.stack([child, child + 1], axis=1).ravel()[counts > 0]
+        counts = counts[counts > 0]
+    return growing.finished()
+
+
+def _next_to_the_middle(
+    low: Integers, high: Integers, first: Integers, last: Integers, owner: Integers, starts: Integers
+) -> tuple[Integers, NDArray[np.bool_]]:
+    """For each part, the edge of a rectangle strictly inside of it that is nearest to its middle, if there is one."""
+    double = first + last
+    a, b, d = first[owner], last[owner], double[owner]
+    low_below, high_below = 2 * low <= d, 2 * high <= d
+    below = np.maximum(np.where(low_below, low, a), np.where(high_below, high, a))
+    above = np.minimum(np.where(low_below, b, low), np.where(high_below, b, high))
+    below, above = np.maximum.reduceat(below, starts), np.minimum.reduceat(above, starts)
+    from_above = (above < last) & ((below == first) | (2 * above - double < double - 2 * below))
+    return np.where(from_above, above, below), (above < last) | (below > first)
+
+
+class _Growing:
+    """The arrays of a subdivision while parts are added; parts that no rectangle meets stay FREE."""
+
+    def __init__(self, steps: int) -> None:
+        self.steps, self.parts = steps, 1
+        self.state = np.zeros(1024, dtype=np.int8)
+        self.axis = np.zeros(1024, dtype=np.int8)
+        self.bounds = np.zeros((1024, 4), dtype=np.int64)
+        self.cut = np.zeros(1024, dtype=np.int64)
+        self.child = np.zeros(1024, dtype=np.int64)
+        self.bounds[0] = (0, steps, 0, steps)
+
+    def divide(self, parts: Integers, axis: Integers, cut: Integers) -> Integers:
+        """Cut the parts; the numbers of their lower halves."""
+        child = self.parts + 2 * np.arange(len(parts))
+        self.parts += 2 * len(parts)
+        while self.parts > len(self.state):
+            self.state, self.axis = _doubled(self.state), _doubled(self.axis)
+            self.bounds, self.cut, self.child = _doubled(self.bounds), _doubled(self.cut), _doubled(self.child)
+        self.state[parts], self.axis[parts], self.cut[parts], self.child[parts] = CUT, axis, cut, child
+        for side in (0, 1):
+            self.bounds[child + side] = self.bounds[parts]
+            self.bounds[child + side, 2 * axis + 1 - side] = cut
+        return child
+
+    def finished(self) -> Subdivision:
+        n = self.parts
+        return Subdivision(
+            self.steps, self.state[:n].copy(), self.bounds[:n].copy(), self.axis[:n].copy(), self.cut[:n].copy(),
+            self.child[:n].copy(),
+        )  # fmt: skip
+
+
+def _doubled(array: NDArray[Any]) -> NDArray[Any]:
+    return np.concatenate([array, np.zeros_like(array)])

@@ -1,0 +1,147 @@
+"""From a cover and counts at points to a region map.
+
+Guarantee: every cell's counts are proved at its sample, and hold in the whole cell because no curve enters it. A
+component of the cover's complement gets no cell when its counts were not decided, or when it is a pocket: so small that
+it may be an artefact of the boxes, with the same counts as a larger component beside it. Its area is then undetermined.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from ptmcad.cover import Cover, Rectangle, components
+from ptmcad.cover.complement import Components
+from ptmcad.interval.points import PointCount, PointCounter
+from ptmcad.interval.statement import system_text
+from ptmcad.regionmap import Cell, PlanStep, Region, RegionMap, Status
+from ptmcad.slice import Count, Point, Slice
+
+MOST_COUNTED = 2000
+"""Components whose counts are computed; smaller ones are undetermined."""
+POCKET = Fraction(1, 10_000)
+"""Share of the window below which a component beside a larger one with equal counts is taken for an artefact."""
+
+
+@dataclass(frozen=True, slots=True)
+class Assembler:
+    """Makes maps of one slice."""
+
+    slice: Slice
+    counter: PointCounter
+    plan: tuple[PlanStep, ...]
+    versions: Mapping[str, str]
+
+    def map(self, cover: Cover, status: Status, seconds: Mapping[str, float]) -> RegionMap:
+        """The map of the window outside the cover."""
+        complement = components(cover)
+        counted = self._counts(complement)
+        kept = [n for n in counted if not _is_pocket(n, complement, counted, self.slice.count)]
+        cells, regions = [], []
+        for region, n in enumerate(kept):
+            sample, count = counted[n]
+            admissible = count.admissible
+            cells.append(
+                Cell(None, n, sample, region, count.total, count.stable, count.index, count.solutions, admissible)
+            )
+            area = self._area_bounds(complement, n)
+            regions.append(Region(count.stable, count.total, count.index, area, (region,), sample, admissible))
+        open_area = cover.steps**2 - sum(complement.areas[n] for n in kept)
+        return RegionMap(
+            slice=self.slice,
+            status=status,
+            system=system_text(),
+            base=0,
+            complex_solutions=0,
+            components=(),
+            critical_values=(),
+            stacks=(),
+            cells=tuple(cells),
+            adjacencies=(),
+            non_adjacencies=(),
+            regions=tuple(regions),
+            plan=self.plan,
+            undetermined=Fraction(open_area, cover.steps**2),
+            versions=self.versions,
+            precision={},
+            timings=dict(seconds),
+            cover=cover,
+        )
+
+    def _counts(self, complement: Components) -> dict[int, tuple[Point, PointCount]]:
+        """Samples and counts of the components, largest first, as far as they are decided."""
+        counted = {}
+        for n in range(min(len(complement.areas), MOST_COUNTED)):
+            for part in _parts(complement.rectangles[n]):
+                sample = self._sample(complement.cover, part)
+                count = self.counter.at(sample[0], sample[1], self.slice.count)
+                if count.decided:
+                    counted[n] = (sample, count)
+                    break
+        return counted
+
+    def _sample(self, cover: Cover, part: tuple[Fraction, Fraction, Fraction, Fraction]) -> Point:
+        """A point of small height in a part of the window that is given in lattice steps."""
+        names, values = [], []
+        for axis, (low, high) in zip(self.slice.axes, (part[:2], part[2:]), strict=True):
+            step = (axis.high - axis.low) / cover.steps
+            names.append(axis.name)
+            values.append(simplest_between(axis.low + low * step, axis.low + high * step))
+        return Point((names[0], names[1]), values[0], values[1])
+
+    def _area_bounds(self, complement: Components, n: int) -> tuple[Fraction, Fraction]:
+        """The component's area, and with the undetermined clusters that touch it."""
+        horizontal, vertical = self.slice.axes
+        square = (horizontal.high - horizontal.low) * (vertical.high - vertical.low) / complement.cover.steps**2
+        low = complement.areas[n]
+        high = low + sum(complement.cluster_areas[cluster] for cluster in complement.clusters_at[n])
+        return low * square, high * square
+
+
+def _key(count: PointCount, which: Count) -> object:
+    """What tells two cells apart."""
+    if which is Count.STABLE:
+        return count.stable
+    if which is Count.TOTAL:
+        return count.total
+    return count.index if which is Count.INDEX else count.admissible
+
+
+def _is_pocket(n: int, complement: Components, counted: Mapping[int, tuple[Point, PointCount]], which: Count) -> bool:
+    """Whether a component is small and a larger one at the same cluster has the same count."""
+    if complement.areas[n] >= POCKET * complement.cover.steps**2:
+        return False
+    near = set(complement.clusters_at[n])
+    mine = _key(counted[n][1], which)
+    return any(
+        m < n and _key(counted[m][1], which) == mine and near.intersection(complement.clusters_at[m]) for m in counted
+    )
+
+
+def _parts(rectangle: Rectangle) -> Sequence[tuple[Fraction, Fraction, Fraction, Fraction]]:
+    """Smaller rectangles in the middle of a free one, and then off the middle, where to try a sample."""
+    left, right, bottom, top = rectangle
+
+    def span(low: int, high: int, place: Fraction) -> tuple[Fraction, Fraction]:
+        width = Fraction(high - low, 8)
+        middle = low + (high - low) * place
+        return middle - width, middle + width
+
+    places = [(Fraction(1, 2), Fraction(1, 2)), (Fraction(1, 3), Fraction(3, 7)), (Fraction(3, 5), Fraction(2, 7))]
+    return [(*span(left, right, u), *span(bottom, top, v)) for u, v in places]
+
+
+def simplest_between(low: Fraction, high: Fraction) -> Fraction:
+    """The fraction with the least denominator strictly between two numbers, by continued fractions."""
+    if low < 0 < high:
+        return Fraction(0)
+    if high <= 0:
+        return -simplest_between(-high, -low)
+    whole = low.numerator // low.denominator
+    if whole + 1 < high:
+        return Fraction(whole + 1)
+    if low == whole:
+        # whole + 1/n with the least n that is small enough
+        return whole + Fraction(1, int(1 / (high - whole)) + 1)
+    return whole + 1 / simplest_between(1 / (high - whole), 1 / (low - whole))

@@ -1,0 +1,105 @@
+"""Refinement of the curves' enclosure, level by level: each level quarters the area at which boxes are left alone.
+
+Guarantee: at every moment the boxes that are left contain all curves over the rectangles at the start. The boxes of a
+finished level depend on nothing but the system and the start: not on the number of threads, nor on the time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+from time import perf_counter
+
+import numpy as np
+
+from ptmcad.interval.curves import Curve
+from ptmcad.interval.search import Boxes, search_curve
+
+BUDGET = 20_000
+"""Boxes that a task treats before it returns: about a tenth of a second."""
+BATCH = 64
+"""Boxes that a task starts with."""
+
+
+@dataclass(slots=True)
+class Enclosure:
+    """The boxes of one curve: those that the present level has not reached, and those that it has left alone."""
+
+    curve: Curve
+    waiting: list[Boxes]
+    small: list[Boxes] = field(default_factory=list)
+
+    def boxes(self) -> Boxes:
+        """All of them."""
+        return np.concatenate([*self.waiting, *self.small])
+
+
+def begin(curves: Sequence[Curve], rectangles: Boxes) -> list[Enclosure]:
+    """Everything over the rectangles (k, 4: low x, low y, high x, high y) is open."""
+    return [Enclosure(curve, [curve.start(rectangles)]) for curve in curves]
+
+
+def refine(
+    enclosures: Sequence[Enclosure],
+    area: float,
+    jobs: int,
+    deadline: float | None,
+    report: Callable[[int, int], None] | None = None,
+) -> bool:
+    """One level: bisect until every box's projection has at most the given area. False when the deadline came first.
+
+    Parameters
+    ----------
+    deadline : reading of `time.perf_counter` at which to stop.
+    report : called with the numbers of boxes treated and waiting.
+    """
+    for enclosure in enclosures:
+        enclosure.waiting = [*enclosure.waiting, *enclosure.small]
+        enclosure.small = []
+    with ThreadPoolExecutor(jobs) as pool:
+        for enclosure in enclosures:
+            if not _refine_one(enclosure, area, pool, jobs, deadline, report):
+                return False
+    return True
+
+
+def _refine_one(
+    enclosure: Enclosure,
+    area: float,
+    pool: ThreadPoolExecutor,
+    jobs: int,
+    deadline: float | None,
+    report: Callable[[int, int], None] | None,
+) -> bool:
+    arguments = enclosure.curve.system.arguments()
+    queue = list(_batches(enclosure.waiting))
+    running: dict[Future[tuple[Boxes, Boxes, int]], Boxes] = {}
+    treated = 0
+    try:
+        while queue or running:
+            late = deadline is not None and perf_counter() > deadline
+            while queue and len(running) < jobs and not late:
+                batch = queue.pop()
+                running[pool.submit(search_curve, arguments, batch, area, BUDGET)] = batch
+            if not running:
+                return False
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                small, waiting, used = future.result()
+                del running[future]
+                treated += used
+                if len(small):
+                    enclosure.small.append(small)
+                queue.extend(_batches([waiting]))
+            if report is not None:
+                report(treated, sum(len(batch) for batch in queue))
+        return True
+    finally:
+        # an interrupted task has changed nothing: its batch is still open
+        enclosure.waiting = [*queue, *running.values()]
+
+
+def _batches(boxes: Sequence[Boxes]) -> Iterator[Boxes]:
+    together = np.concatenate(boxes) if boxes else np.empty((0, 0))
+    for start in range(0, len(together), BATCH):
+        yield together[start : start + BATCH]
