@@ -54,6 +54,7 @@ def system(
     unknowns: Sequence[int],
     vanishing: tuple[Sequence[Formula], Sequence[Formula]] = ((), ()),
     nonnegative: Sequence[Formula] = (),
+    jacobian: Sequence[Sequence[Formula]] | None = None,
 ) -> System:
     """Write a system out.
 
@@ -63,9 +64,11 @@ def system(
     unknowns : numbers of the variables to search; for a curve the two axes come first.
     vanishing : formulas that vanish at every solution, beside the equations: cheap ones without a `meet`, then others.
     nonnegative : formulas that are at least zero at every solution looked for.
+    jacobian : the equations' derivatives by the unknowns, where there are better formulas than those of the graph.
     """
     graph = equations[0].graph
-    jacobian = [[graph.derivative(f, x) for x in unknowns] for f in equations]
+    if jacobian is None:
+        jacobian = [[graph.derivative(f, x) for x in unknowns] for f in equations]
     cheap, costly = vanishing
     first, rest = list(equations[:2]), list(equations[2:])
     tape = record([

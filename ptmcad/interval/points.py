@@ -1,0 +1,259 @@
+"""The equilibria at one rational point of a slice, counted with proof.
+
+Guarantee: when a `PointCount` is decided, each equilibrium (for `Count.STABLE` and `Count.ADMISSIBLE` each minimum) has
+its own box, proved to hold exactly one, and it is proved that there are no others. What is not proved is undecided.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import frexp, inf
+
+import numpy as np
+from flint import arb, ctx
+
+from ptmcad.interval.arb_evaluation import ball, lower, run_arb, upper
+from ptmcad.interval.arb_isolation import Box, Isolated, isolate_arb, refined
+from ptmcad.interval.cones import cones
+from ptmcad.interval.distinct import distinct
+from ptmcad.interval.equilibria import TH1, TH2, Equilibria, slice_equilibria
+from ptmcad.interval.evaluation import program, run
+from ptmcad.interval.isolation import isolate
+from ptmcad.interval.mechanism import NAMES
+from ptmcad.interval.search import Boxes
+from ptmcad.interval.system import Arguments
+from ptmcad.interval.tape import enclosing_floats
+from ptmcad.regionmap import MorseIndex, Solution
+from ptmcad.slice import Count, Slice
+
+START, END = -3.0, -3.0 + 6.2832
+"""A little more than a full turn, cut where no symmetric solution lies."""
+BUDGET = 60_000
+"""Boxes in floating point for one point."""
+OPEN = 200
+"""Boxes that floating point may leave to Arb."""
+PRECISIONS = (128, 320)
+ARB_BUDGET = 3_000
+
+
+@dataclass(frozen=True, slots=True)
+class PointCount:
+    """The counts at a point; None where the count asked for does not need them, and where nothing is decided.
+
+    Attributes
+    ----------
+    index : numbers of minima, saddles and maxima.
+    cones : configurations without length of spring 3 in which the energy has a peak.
+    solutions : disjoint boxes in (th1, th2), in radians: all equilibria, or the minima when only these were counted.
+    """
+
+    total: int | None = None
+    stable: int | None = None
+    admissible: int | None = None
+    index: MorseIndex | None = None
+    cones: int | None = None
+    solutions: tuple[Solution, ...] = ()
+    decided: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Zero:
+    """A proved zero with the signs of its Hessian's eigenvalues and of l_i - l0_i (0 where not decided)."""
+
+    solution: Solution
+    excess: tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PointCounter:
+    """Counts at points of one slice; it keeps the formulas that `point_counter` wrote out."""
+
+    slice: Slice
+    equilibria: Equilibria
+    _all: Arguments
+    _minima: Arguments
+    _equations: Arguments
+
+    def at(self, x: Fraction, y: Fraction, count: Count) -> PointCount:
+        """What ``count`` needs at the point (x, y) of the two axes.
+
+        Raises
+        ------
+        ArithmeticError
+            When the counts contradict Euler's sum, which would be a fault of this program.
+        """
+        zeros = self.zeros(x, y, count)
+        if zeros is None:
+            return PointCount()
+        minima = [zero for zero in zeros if zero.solution.signs == "++"]
+        solutions = tuple(zero.solution for zero in zeros)
+        if count is Count.STABLE:
+            return PointCount(stable=len(minima), solutions=tuple(z.solution for z in minima), decided=True)
+        if count is Count.ADMISSIBLE:
+            if any(-1 not in zero.excess and 0 in zero.excess for zero in minima):
+                return PointCount()
+            admissible = sum(zero.excess == (1, 1, 1) for zero in minima)
+            return PointCount(
+                stable=len(minima), admissible=admissible, solutions=tuple(z.solution for z in minima), decided=True
+            )
+        kinds = [zero.solution.signs for zero in zeros]
+        index = (kinds.count("++"), kinds.count("+-"), kinds.count("--"))
+        peaks = cones(self._values(x, y))
+        if peaks.regular and index[0] - index[1] + index[2] + peaks.count != 0:
+            raise ArithmeticError(f"minima, saddles and maxima {index} with {peaks.count} cones at ({x}, {y})")
+        return PointCount(len(zeros), len(minima), None, index, peaks.count, solutions, True)
+
+    def zeros(self, x: Fraction, y: Fraction, count: Count) -> list[_Zero] | None:
+        """The equilibria that ``count`` needs, each once; None when they can not be told."""
+        only_minima = count in (Count.STABLE, Count.ADMISSIBLE)
+        (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
+        start = np.array([[x_low, y_low, START, START, x_high, y_high, END, END]])
+        unique, narrow, left, used = isolate(
+            self._minima if only_minima else self._all, self._equations, start, BUDGET, OPEN
+        )
+        if used >= BUDGET or len(left) > OPEN:
+            return None
+        if len(left):
+            return self._by_arb(x, y, only_minima, unique, left)
+        kept = distinct(unique, narrow, TH1)
+        if kept is None:
+            return None
+        return self._kinds(x, y, unique[kept], narrow[kept], only_minima)
+
+    def _values(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
+        given = self.slice.parameters
+        return {name: given[name].evaluate(x, y) if name in given else Fraction(0) for name in NAMES}
+
+    def _kinds(self, x: Fraction, y: Fraction, unique: Boxes, narrow: Boxes, only_minima: bool) -> list[_Zero] | None:
+        tape = self.equilibria.decisive
+        low, high = np.empty(len(tape)), np.empty(len(tape))
+        outputs = tape.outputs[0]
+        zeros = []
+        for wide, box in zip(unique, narrow, strict=True):
+            run(program(tape), box[:4], box[4:], low, high, 0, len(tape))
+            signs = [int(low[k] > 0) - int(high[k] < 0) for k in outputs]
+            kind = _kind(signs)
+            if kind is None or (only_minima and kind == "++" and 0 in signs[3:]):
+                exact = Isolated(_balls(x, y, wide, 128), _balls(x, y, box, 128))
+                zero = self._kind_by_arb(exact)
+                if zero is None:
+                    return None
+                zeros.append(zero)
+            else:
+                zeros.append(_Zero(_solution(wide, box, kind), (signs[3], signs[4], signs[5])))
+        return [zero for zero in zeros if not only_minima or zero.solution.signs == "++"]
+
+    def _by_arb(self, x: Fraction, y: Fraction, only_minima: bool, unique: Boxes, left: Boxes) -> list[_Zero] | None:
+        """The same with Arb, for the boxes that floating point left open."""
+        system = self.equilibria.minima if only_minima else self.equilibria.all
+        equations = self.equilibria.equations
+        for precision in PRECISIONS:
+            more = isolate_arb(system, equations, [_balls(x, y, box, precision) for box in left], precision, ARB_BUDGET)
+            if more is None:
+                continue
+            for wide in unique:
+                box = _balls(x, y, wide, precision)
+                more.append(Isolated(box, refined(equations, box, precision)))
+            kept = _distinct_balls(more, precision)
+            if kept is None:
+                continue
+            zeros = [self._kind_by_arb(zero) for zero in kept]
+            if any(zero is None for zero in zeros):
+                continue
+            return [z for z in zeros if z is not None and (not only_minima or z.solution.signs == "++")]
+        return None
+
+    def _kind_by_arb(self, zero: Isolated) -> _Zero | None:
+        tape = self.equilibria.decisive
+        for precision in PRECISIONS:
+            narrow = refined(self.equilibria.equations, zero.narrow, precision)
+            values = run_arb(tape, narrow, precision)
+            signs = [int(values[int(k)] > 0) - int(values[int(k)] < 0) for k in tape.outputs[0]]
+            kind = _kind(signs)
+            if kind is not None:
+                return _Zero(_solution_of_balls(Isolated(zero.unique, narrow), kind), (signs[3], signs[4], signs[5]))
+        return None
+
+
+def point_counter(slice: Slice) -> PointCounter:
+    """Write the equilibria of a slice out, to count them at its points."""
+    equilibria = slice_equilibria(slice)
+    return PointCounter(
+        slice, equilibria, equilibria.all.arguments(), equilibria.minima.arguments(), equilibria.equations.arguments()
+    )
+
+
+def _kind(signs: Sequence[int]) -> str | None:
+    """The signs of the Hessian's eigenvalues from those of P11, P22 and D."""
+    if signs[2] < 0:
+        return "+-"
+    if signs[2] > 0 and (signs[0] or signs[1]):
+        return "++" if (signs[0] or signs[1]) > 0 else "--"
+    return None
+
+
+def _solution(unique: Boxes, narrow: Boxes, kind: str) -> Solution:
+    """A square box between the two, its radius a power of two."""
+    center = [0.5 * (narrow[k] + narrow[k + 4]) for k in (TH1, TH2)]
+    room = inf
+    need = 0.0
+    for c, k in zip(center, (TH1, TH2), strict=True):
+        room = min(room, c - unique[k], unique[k + 4] - c)
+        need = max(need, c - narrow[k], narrow[k + 4] - c)
+    radius = _between(Fraction(need), Fraction(room))
+    return Solution((Fraction(center[0]), Fraction(center[1])), radius, kind)
+
+
+def _solution_of_balls(zero: Isolated, kind: str) -> Solution:
+    wide = [(lower(zero.unique[k]), upper(zero.unique[k])) for k in (TH1, TH2)]
+    tight = [(lower(zero.narrow[k]), upper(zero.narrow[k])) for k in (TH1, TH2)]
+    center = [(low + high) / 2 for low, high in tight]
+    room = min(min(c - low, high - c) for c, (low, high) in zip(center, wide, strict=True))
+    need = max(high - c for c, (_, high) in zip(center, tight, strict=True))
+    return Solution((center[0], center[1]), _between(need, room), kind)
+
+
+def _between(need: Fraction, room: Fraction) -> Fraction:
+    """A power of two well below ``room``, or all of it where ``need`` leaves no choice."""
+    if room <= 0:
+        raise ArithmeticError("a narrow box leaves the box in which its zero is the only one")
+    _, exponent = frexp(float(room)) if room > Fraction(1, 2**1000) else (0.0, -1000)
+    radius = Fraction(2) ** (exponent - 3)
+    return radius if need <= radius else room
+
+
+def _balls(x: Fraction, y: Fraction, box: Boxes, precision: int) -> Box:
+    with ctx.workprec(precision):
+        angles = [ball(Fraction(float(box[k])), Fraction(float(box[k + 4]))) for k in (TH1, TH2)]
+        return (ball(x, x), ball(y, y), *angles)
+
+
+def _distinct_balls(found: Sequence[Isolated], precision: int) -> list[Isolated] | None:
+    """Each zero once, modulo full turns; None when it can not be told whether two are the same."""
+    kept: list[Isolated] = []
+    with ctx.workprec(precision):
+        turn = 2 * arb.pi()
+        for zero in found:
+            matches = [_same(zero, other, turn) for other in kept]
+            if None in matches:
+                return None
+            if not any(matches):
+                kept.append(zero)
+    return kept
+
+
+def _same(a: Isolated, b: Isolated, turn: arb) -> bool | None:
+    """Whether two zeros are one on the torus."""
+    moved = []
+    for k in (TH1, TH2):
+        turns = round(float((b.narrow[k].mid() - a.narrow[k].mid()) / turn))
+        moved.append(a.narrow[k] + turns * turn)
+    pairs = list(zip((TH1, TH2), moved, strict=True))
+    if all(b.unique[k].contains(m) for k, m in pairs):
+        return True
+    if any(not b.narrow[k].overlaps(m) for k, m in pairs):
+        return False
+    back = [(k, b.narrow[k] - (m - a.narrow[k])) for k, m in pairs]
+    return True if all(a.unique[k].contains(m) for k, m in back) else None
