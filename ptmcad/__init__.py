@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from ptmcad.config import load, slice_from_mapping, slice_from_options
     from ptmcad.enclosure import AlgebraicNumber, Enclosure
-    from ptmcad.pipeline import classify, slice_variety
+    from ptmcad.exactmap import slice_variety
+    from ptmcad.pipeline import classify
     from ptmcad.poses import Pose, Poses, solve
     from ptmcad.ranges import intervals, operation_widths, pose_paths
     from ptmcad.regionmap import RegionMap
@@ -31,7 +32,7 @@ _HOMES = {
     "AlgebraicNumber": "enclosure",
     "Enclosure": "enclosure",
     "classify": "pipeline",
-    "slice_variety": "pipeline",
+    "slice_variety": "exactmap",
     "Pose": "poses",
     "Poses": "poses",
     "solve": "poses",

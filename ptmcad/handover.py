@@ -26,6 +26,7 @@ class Topic(Enum):
     MEMORY = b"M"  # the memory limit in words
     TARGET = b"F"  # path of the result file
     RESULT = b"P"  # "partial" or "complete", and the result's text as it is by now
+    RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work
     PROGRESS = b"B"  # the progress bar stands in the terminal's line
     EXHAUSTED = b"X"  # memory has run out
     DONE = b"E"  # the program has come to its end and exits with its status

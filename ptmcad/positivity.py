@@ -22,6 +22,7 @@ from ptmcad.slice import Axis
 MAX_BOXES = 64
 MAX_DEGREE = 12
 
+_Point = tuple[Fraction, Fraction]
 _Interval = tuple[Fraction, Fraction]
 _Box = tuple[_Interval, _Interval]
 
@@ -42,19 +43,36 @@ def find_nonpositive(expression: Expression, axes: tuple[Axis, Axis]) -> str | N
 
     The denominator must not change sign in the window (see `find_pole`).
     """
+    lowest = _lowest(expression, axes)
+    return None if lowest is None or lowest[1] > 0 else _witness(expression, lowest[0], axes)
+
+
+def find_negative(expression: Expression, axes: tuple[Axis, Axis]) -> str | None:
+    """A point inside the window where the function is negative, in words; None when nothing was found.
+
+    The denominator must not change sign in the window (see `find_pole`).
+    """
+    lowest = _lowest(expression, axes)
+    return None if lowest is None or lowest[1] >= 0 else _witness(expression, lowest[0], axes)
+
+
+def _lowest(expression: Expression, axes: tuple[Axis, Axis]) -> tuple[_Point, Fraction] | None:
+    """The point seen where the numerator, with the denominator's sign, is least, and its value there."""
     middle = tuple((axis.low + axis.high) / 2 for axis in axes)
     sign = 1 if _value(expression.denominator, *middle) > 0 else -1
     numerator = tuple((i, j, sign * c) for i, j, c in expression.numerator)
     (point, value), _ = _extremes(numerator, axes)
-    if point is None or value > 0:
-        return None
+    return None if point is None else (point, value)
+
+
+def _witness(expression: Expression, point: _Point, axes: tuple[Axis, Axis]) -> str:
     # a value of a high power at a point of many digits may be longer than Python writes out
     value, longest = expression.evaluate(*point), 10**40
     short = abs(value.numerator) < longest and value.denominator < longest
     return f"{value if short else 'about ' + approximate_text(value)} at {_named(point, axes)}"
 
 
-_Seen = tuple[tuple[Fraction, Fraction] | None, Fraction]
+_Seen = tuple[_Point | None, Fraction]
 
 
 def _extremes(terms: tuple[Term, ...], axes: tuple[Axis, Axis]) -> tuple[_Seen, _Seen]:
@@ -119,5 +137,5 @@ def _value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fraction:
     return sum((c * x**i * y**j for i, j, c in terms), Fraction(0))
 
 
-def _named(point: tuple[Fraction, Fraction], axes: tuple[Axis, Axis]) -> str:
+def _named(point: _Point, axes: tuple[Axis, Axis]) -> str:
     return ", ".join(f"{axis.name} = {value}" for axis, value in zip(axes, point, strict=True))

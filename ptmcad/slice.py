@@ -44,7 +44,8 @@ class Slice:
     mechanism : the model's name, ``"ptm"`` for the paper's mechanism.
     axes : the two axes, first the horizontal one.
     parameters : every parameter of the mechanism as an `Expression` (a rational function in the two axes, exponent
-        pairs in the order of ``axes``). An axis that is itself a parameter maps to itself.
+        pairs in the order of ``axes``). An axis that is itself a parameter maps to itself. The free lengths are among
+        them unless all of them are zero everywhere.
     count : which count tells two regions apart.
     title : the picture's title, the name when empty.
     reference : published answers, as read from the record; never used by the computation.
@@ -81,6 +82,9 @@ class Slice:
             values = {n: v for n, v in values.items() if n not in ("k1", "k2", "k3")} | {"k": springs.pop()}
         else:
             values.pop("k", None)
+        free = {values[name] for name in FREE_LENGTHS if name in values}
+        if len(free) == 1:
+            values = {n: v for n, v in values.items() if n not in FREE_LENGTHS} | {"l0": free.pop()}
         loads = [name for name in values if name.startswith("F")]
         for name, value in values.items():
             if value not in (name, "0"):

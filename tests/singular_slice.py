@@ -17,11 +17,12 @@ from pathlib import Path
 
 import yaml
 from programs import Monomials, ProgramError, monomials, singular
+from shipped_records import EXACT
 
 from ptmcad.plane import PlanePolynomial
 
 CONFIGS = Path(__file__).parent.parent / "configs"
-SHIPPED = tuple(sorted(path.stem for path in CONFIGS.glob("*.yaml")))
+SHIPPED = tuple(path.stem for path in EXACT)
 SOLUTIONS = 6
 """Complex solutions at a generic point of every shipped slice."""
 

@@ -10,10 +10,11 @@ import pytest
 from ptmcad.config import PARAMETERS, load, slice_from_mapping, slice_from_options
 from ptmcad.errors import ConfigError
 from ptmcad.expressions import axis, constant
-from ptmcad.slice import Count
+from ptmcad.slice import FREE_LENGTHS, Count
 
 CONFIGS = sorted((Path(__file__).parent.parent / "configs").glob("*.yaml"))
-SHIPPED = ["fig2", "fig3", "fig4", "fig5-caption", "fig5-text", "forces", "horizontal", "rods", "stiffness",
+SHIPPED = ["fig2", "fig3", "fig4", "fig5-caption", "fig5-text", "forces", "free-l0-L1", "free-l0-L32", "free-load",
+           "free02-unloaded", "free02", "free05", "free08", "horizontal", "rods", "stiffness",
            "unequal-springs"]  # fmt: skip
 AXES = "axes: {rho: [0, 2], L2: [0, 2]}\n"
 
@@ -34,6 +35,7 @@ def test_shipped_records_load(path: Path) -> None:
     assert slice.name == path.stem
     assert slice.title
     assert slice.reference["source"]
+    assert slice.has_free_lengths == path.stem.startswith("free")
 
 
 def test_numbers_are_exact(tmp_path: Path) -> None:
@@ -64,6 +66,36 @@ def test_a_free_length_of_zero_is_accepted(tmp_path: Path) -> None:
     assert "l0" not in load(write(tmp_path, AXES + "parameters: {l0: 0, l0_1: 0.0}")).parameters
 
 
+def test_free_lengths_fixed_as_axes_and_as_expressions(tmp_path: Path) -> None:
+    fixed = load(write(tmp_path, AXES + "parameters: {l0: 1/5, l0_2: 2*l0}\ncount: admissible\n"))
+    assert fixed.count is Count.ADMISSIBLE
+    assert fixed.has_free_lengths
+    assert [fixed.parameters[n].constant() for n in FREE_LENGTHS] == [Fraction(1, 5), Fraction(2, 5), Fraction(1, 5)]
+    assert list(fixed.parameters)[-3:] == list(FREE_LENGTHS)
+    assert "l0" not in fixed.parameters
+    assert [fixed.text[n] for n in FREE_LENGTHS] == ["1/5", "2*l0", "1/5"]
+    window = slice_from_options(slice="rho,l0", sets=["F3=-10"])
+    assert (window.axes[1].low, window.axes[1].high) == (0, 1)
+    assert [window.parameters[n] for n in FREE_LENGTHS] == [axis(1)] * 3
+    one = slice_from_options(slice="l0_3,rho", ranges=["l0_3=1/10:1/2"])
+    assert [one.parameters[n] for n in FREE_LENGTHS] == [constant(0), constant(0), axis(0)]
+    varying = load(write(tmp_path, AXES + "parameters: {l0: rho/10, l0_1: (rho-1)^2/4}"))
+    assert varying.parameters["l0_2"] == axis(0) * Fraction(1, 10)
+    assert varying.parameters["l0_1"].evaluate(Fraction(1), Fraction(1)) == 0  # zero inside the window is a length too
+
+
+def test_free_lengths_that_cancel_leave_an_exact_slice(tmp_path: Path) -> None:
+    exact, cancelled = (load(write(tmp_path, AXES + text)) for text in ("", "parameters: {l0_1: rho - rho, l0: 0}"))
+    assert not cancelled.has_free_lengths
+    assert cancelled == exact
+
+
+def test_a_heading_names_the_free_length_once() -> None:
+    assert "l0 = 1/5" in slice_from_options(slice="rho,L2", sets=["l0=1/5"]).heading
+    assert "l0_2 = 1/5" in slice_from_options(slice="rho,L2", sets=["l0_2=1/5"]).heading
+    assert "l0" not in slice_from_options(slice="rho,l0").heading
+
+
 BAD = [
     ("unknown key", AXES + "paramters: {F3: 1}", 2, "paramters", "did you mean 'parameters'?"),
     ("unknown key, nothing close", AXES + "zzz: 1", 2, "zzz", "the keys are"),
@@ -92,8 +124,24 @@ BAD = [
     ("nan", AXES + "parameters: {F3: .nan}", 2, "parameters.F3", "can not be used"),
     ("comma", AXES + "parameters:\n  F3: 0,5", 3, "parameters.F3", "decimal point"),
     ("huge exponent", AXES + "parameters: {F3: rho**1000000000}", 2, "parameters.F3", "at most 64"),
-    ("free length", AXES + "parameters: {l0: 0.2}", 2, "parameters.l0", "not supported yet"),
-    ("free length axis", "axes: {rho: [0, 2], l0: [0, 1]}", 1, "axes.l0", "not supported yet"),
+    ("negative free length", AXES + "parameters: {l0: -0.2}", 2, "parameters.l0", "must be not negative"),
+    ("free length axis below zero", "axes: {rho: [0, 2], l0: [-1, 1]}", 1, "axes.l0", "not negative: start it at 0"),
+    (
+        "free length negative in the window",
+        AXES + "parameters: {l0_2: 1/8 - rho/4}",
+        2,
+        "parameters.l0_2",
+        "must not be",
+    ),
+    ("pole of a free length", AXES + "parameters: {l0: 1/(rho-1)}", 2, "parameters.l0", "division by zero inside"),
+    ("l0 without use", AXES + "parameters: {l0: 1, l0_1: 1, l0_2: 1, l0_3: 1}", 2, "parameters.l0", "no effect"),
+    (
+        "axis l0 without use",
+        "axes: {rho: [0, 1], l0: [0, 1]}\nparameters: {l0_1: 0, l0_2: 1, l0_3: 1}",
+        1,
+        "axes.l0",
+        "l0_1, l0_2 and l0_3 are all given",
+    ),
     ("one axis", "axes: {rho: [0, 2]}", 1, "axes", "1 axes"),
     ("three axes", "axes: {rho: [0, 2], L1: [0, 2], L2: [0, 2]}", 1, "axes", "3 axes"),
     ("no axes", "name: a", 1, "axes", "is missing"),
@@ -105,7 +153,7 @@ BAD = [
     ("bad axis name", "axes: {2x: [0, 2], L2: [0, 2]}", 1, "axes.2x", "can not name an axis"),
     ("range of three", "axes: {rho: [0, 1, 2], L2: [0, 2]}", 1, "axes.rho", "expected a range"),
     ("range with a name", "axes: {rho: [0, L2], L2: [0, 2]}", 1, "axes.rho", "not an expression in L2"),
-    ("count", AXES + "count: all", 2, "count", "stable, total or index"),
+    ("count", AXES + "count: all", 2, "count", "stable, total, index or admissible"),
     ("mechanism", AXES + "mechanism: {rods: 3}", 2, "mechanism", "unknown mechanism"),
     ("name with a path", AXES + "name: ../x", 2, "name", "can not name a file"),
     ("name that hides", AXES + "name: .x", 2, "name", "can not name a file"),
@@ -224,7 +272,7 @@ def test_mappings() -> None:
 
 def test_every_parameter_can_be_an_axis() -> None:
     for name, parameter in PARAMETERS.items():
-        if not name.startswith("l0") and name != "L1":
+        if name != "L1":
             low, high = parameter.window
             assert slice_from_options(slice=f"L1,{name}").axes[1].low == Fraction(low) < Fraction(high)
 

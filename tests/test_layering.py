@@ -27,7 +27,7 @@ EXACT = (
     "area",
     "regions",
     "regionmap",
-    "pipeline",
+    "exactmap",
     "assembly",
     "locate",
     "ranges",
@@ -123,7 +123,7 @@ def test_verification_loads_nothing_of_the_engine(tmp_path: Path) -> None:
     code = (
         "import sys, ptmcad\n"
         "ptmcad.verify\n"
-        "engine = ('algebra', 'cad', 'models', 'variety', 'counting', 'regions', 'pipeline', 'locate')\n"
+        "engine = ('algebra', 'cad', 'models', 'variety', 'counting', 'regions', 'pipeline', 'exactmap', 'locate')\n"
         "loaded = [name for name in sys.modules if name.startswith(tuple('ptmcad.' + e for e in engine))\n"
         "          and not name.startswith('ptmcad.regionmap')]\n"
         "assert not loaded, loaded\n"

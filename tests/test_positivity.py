@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.expressions import axis, parse
-from ptmcad.positivity import bernstein, find_nonpositive, find_pole
+from ptmcad.positivity import bernstein, find_negative, find_nonpositive, find_pole
 from ptmcad.slice import Axis
 
 AXES = (Axis("rho", Fraction(0), Fraction(2)), Axis("F", Fraction(-3), Fraction(1)))
@@ -44,6 +44,15 @@ def test_the_bernstein_form_has_the_polynomial_values(
 )  # fmt: skip
 def test_lengths(text: str, found: bool) -> None:
     assert (find_nonpositive(parse(text, NAMES), AXES) is not None) == found
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [("0*rho", False), ("(rho-1)^2", False), ("rho*(F+3)", False), ("rho-1/8", True), ("(rho-1)^2-1/1000", True),
+     ("1/(-1-rho)", True), ("(rho-1)^2/(-1-rho)", True), ("rho-2", True)],
+)  # fmt: skip
+def test_free_lengths_may_be_zero(text: str, found: bool) -> None:
+    assert (find_negative(parse(text, NAMES), AXES) is not None) == found
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from typing import Any
 import jsonschema
 import pytest
 import yaml
+from shipped_records import EXACT
 
 from ptmcad import RegionMap, classify, load
 from ptmcad.config import PARAMETERS, RECORD_KEYS
@@ -69,14 +70,14 @@ def test_the_schema_of_results_is_valid_and_names_the_format() -> None:
     assert RESULT["properties"]["format"]["const"] == FORMAT
 
 
-@pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EXACT, ids=lambda path: path.stem)
 def test_shipped_results_validate(path: Path, shipped: Callable[..., RegionMap]) -> None:
     jsonschema.validate(json.loads(shipped(path.stem).to_json()), RESULT, cls=jsonschema.Draft202012Validator)
 
 
 def partial_map() -> RegionMap:
     with pytest.raises(LimitReached) as stopped:
-        classify(load(CONFIGS[0]), progress=_stop_at("areas"))
+        classify(load(EXACT[0]), progress=_stop_at("areas"))
     assert isinstance(stopped.value.partial, RegionMap)
     return stopped.value.partial
 

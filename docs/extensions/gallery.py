@@ -1,4 +1,4 @@
-"""The gallery: every shipped problem record with its picture, its table and the command that makes them.
+"""The gallery: every shipped record without free lengths, with its picture, its table and the command for them.
 
 Guarantee: pictures and tables are computed from the record when the manual is built.
 """
@@ -26,7 +26,8 @@ def page(configs: Path, folder: Path) -> str:
     configs : the folder of problem records.
     folder : where the page will be.
     """
-    return _START + "\n".join(entry(path, folder) for path in sorted(configs.glob("*.yaml")))
+    exact = (path for path in sorted(configs.glob("*.yaml")) if not ptmcad.load(path).has_free_lengths)
+    return _START + "\n".join(entry(path, folder) for path in exact)
 
 
 def entry(path: Path, folder: Path) -> str:

@@ -35,7 +35,9 @@ class Request:
     explain: bool = False
     jobs: int | None = None
     timeout: float | None = None
+    tolerance: Fraction | None = None
     area_tolerance: Fraction | None = None
+    resume: Any = None
     samples: bool = False
     timings: bool = True
 
@@ -65,10 +67,12 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
                 slice,
                 engine=request.engine,
                 timeout=request.timeout,
+                tolerance=request.tolerance,
                 area_tolerance=request.area_tolerance,
                 jobs=request.jobs,
                 progress=progress,
                 partial=partial(_hand_over, request) if watched() else None,
+                resume=request.resume,
             )
         except LimitReached as stopped:
             if stopped.partial is None or "json" not in request.formats:
@@ -90,7 +94,10 @@ def _text(result: Any, request: Request) -> str:
 def _hand_over(request: Request, result: Any) -> None:
     """Give the result so far to the process that watches, which saves it if this one has to be stopped."""
     if "json" in request.formats:
-        tell(Topic.RESULT, "complete" if result.status.value == "exact" else "partial", _text(result, request))
+        if result.cover is not None:
+            tell(Topic.RESUMABLE)
+        state = "partial" if result.status.value == "partial" else "complete"
+        tell(Topic.RESULT, state, _text(result, request))
 
 
 def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) -> None:
@@ -112,16 +119,30 @@ def explanation(plan: Any) -> str:
     return plan if isinstance(plan, str) else "\n".join(str(step) for step in plan)
 
 
-def _tolerance(_context: click.Context, _parameter: click.Parameter, value: str | None) -> Fraction | None:
+def _share(_context: click.Context, parameter: click.Parameter, value: str | None) -> Fraction | None:
     if value is None:
         return None
+    option = parameter.opts[0]
     try:
-        tolerance = rational(value)
+        share = rational(value)
     except ExpressionError as error:
-        raise ConfigError(str(error), key="--area-tolerance") from error
-    if not 0 < tolerance < 1:
-        raise ConfigError(f"{value} is not between 0 and 1: write a number such as 1e-6", key="--area-tolerance")
-    return tolerance
+        raise ConfigError(str(error), key=option) from error
+    if not 0 < share < 1:
+        raise ConfigError(f"{value} is not between 0 and 1: write a number such as 1e-6", key=option)
+    return share
+
+
+def _resumed(slice: Slice, path: Path) -> Any:
+    """The stored map from which to go on."""
+    from ptmcad.cli.stored import read_result
+    from ptmcad.pipeline import check_resumable
+
+    earlier = read_result(path)
+    try:
+        check_resumable(slice, earlier)
+    except ConfigError as error:
+        raise ConfigError(error.message, key="--resume", file=str(path)) from error
+    return earlier
 
 
 @click.command("classify")
@@ -132,9 +153,15 @@ def _tolerance(_context: click.Context, _parameter: click.Parameter, value: str 
 @click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="json,png,svg",
               show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
-@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Number of processes.")
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N",
+              help="Number of threads of the certified engine.  [default: all processors]")
 @limit_options
-@click.option("--area-tolerance", callback=_tolerance, metavar="EPS", help="Relative width of the areas' bounds.")
+@click.option("--tolerance", callback=_share, metavar="EPS",
+              help="Stop when this share of the window is undetermined (certified engine).")
+@click.option("--resume", type=click.Path(path_type=Path), metavar="RESULT",
+              help="Go on from a stored certified map of the same slice.")
+@click.option("--area-tolerance", callback=_share, metavar="EPS",
+              help="Relative width of the areas' bounds (exact engine).")
 @click.option("--samples", is_flag=True, help="Draw the cells' sample points.")
 @click.option("--no-timings", is_flag=True, help="Leave run times out of the JSON, so that it is the same every time.")
 def command(
@@ -151,6 +178,8 @@ def command(
     jobs: int | None,
     timeout: float | None,
     max_memory: Bound | None,
+    tolerance: Fraction | None,
+    resume: Path | None,
     area_tolerance: Fraction | None,
     samples: bool,
     no_timings: bool,
@@ -161,11 +190,15 @@ def command(
     Without a record, parameters that are neither axes nor --set have their defaults: L1 = L2 = rho = 1, k = 100, no
     load.
 
+    Springs with a free length (--set l0=1/5) are the certified engine's: it leaves a part of the window undetermined,
+    which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the map so far; --resume goes on from there.
+
     \b
     Examples:
         ptmcad classify --slice L2,rho
         ptmcad classify --slice rho,L2 --range rho=0:2 --range L2=0:2 --set F3=-10 --set F4=-10 --out fig4
         ptmcad classify --slice rho,F --range rho=0:2 --range F=-10:0 --set F3=F --set F4=F --format json
+        ptmcad classify --slice rho,L2 --range rho=1/20:2 --range L2=0:2 --set l0=1/5 --set F3=-10 --set F4=-10
     """
     slice = slice_from_options(config, axes, sets, ranges, count)
     request = Request(
@@ -175,7 +208,9 @@ def command(
         explain=explain,
         jobs=jobs,
         timeout=timeout,
+        tolerance=tolerance,
         area_tolerance=area_tolerance,
+        resume=None if resume is None else _resumed(slice, resume),
         samples=samples,
         timings=not no_timings,
     )

@@ -51,7 +51,7 @@ def command(
     if out is not None:
         check_writable(out.parent, (out.name,))
     with limits(timeout, max_memory):
-        from ptmcad.pipeline import slice_variety
+        from ptmcad.exactmap import slice_variety
 
         text = slice_variety(slice).text(format)
     if out is None:

@@ -13,11 +13,12 @@ from ptmcad.config.parameters import PARAMETERS, Kind
 from ptmcad.config.record import Record, Window
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.expressions import Expression, axis, did_you_mean, names_in, parse
-from ptmcad.positivity import find_nonpositive, find_pole
-from ptmcad.slice import Axis, Slice
+from ptmcad.positivity import find_negative, find_nonpositive, find_pole
+from ptmcad.slice import FREE_LENGTHS, Axis, Slice
 from ptmcad.yamltree import Place, Scalar
 
 _SPRINGS = ("k1", "k2", "k3")
+_MAY_VANISH = (Kind.BASE, Kind.FREE_LENGTH)
 MAX_DEGREE = 32
 """Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far more."""
 
@@ -26,30 +27,33 @@ def slice_of(record: Record) -> Slice:
     """Resolve a record to a slice."""
     if not record.axes:
         raise record.place.below("axes").error("is missing: a slice needs two axes, such as {rho: [0, 2], L2: [0, 2]}")
-    for name, window in record.axes.items():
+    for name in record.axes:
         if name in record.values:
             place = record.values[name].place
             raise place.error(f"{name} is an axis and can not be fixed too: remove it here or from the axes")
-        if name in PARAMETERS and PARAMETERS[name].kind is Kind.FREE_LENGTH:
-            raise window.place.error(_NO_FREE_LENGTHS)
     axes = tuple(_axis(name, window) for name, window in record.axes.items())
     resolved = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)}).run()
     for name, expression in resolved.items():
         if name not in record.axes:
             _check_value(name, expression, record, (axes[0], axes[1]))
     springs_set = all(spring in record.values or spring in record.axes for spring in _SPRINGS)
+    without_free_lengths = not any(resolved[name].numerator for name in FREE_LENGTHS)
     effective = {
         name: expression
         for name, expression in resolved.items()
-        if PARAMETERS[name].kind is not Kind.FREE_LENGTH and not (name == "k" and springs_set)
+        if not (name == "k" and springs_set)
+        and name != "l0"  # what the three free lengths have by default
+        and not (name in FREE_LENGTHS and without_free_lengths)
     }
     _check_stiffness_is_used(record, springs_set)
+    _check_free_length_is_used(record)
     for index, name in enumerate(record.axes):
         if not any(expression.uses(index) for expression in effective.values()):
             hint = did_you_mean(name, tuple(PARAMETERS)) if name not in PARAMETERS else ""
             remedy = f"no parameter depends on it{hint or ';'} use it in an expression, such as F3: {name}"
             if name in PARAMETERS:
-                remedy = "k1, k2 and k3 are all given and none depends on it; use it in one of them"
+                own = FREE_LENGTHS if PARAMETERS[name].kind is Kind.FREE_LENGTH else _SPRINGS
+                remedy = f"{own[0]}, {own[1]} and {own[2]} are all given and none depends on it; use it in one of them"
             raise record.axes[name].place.error(f"the axis {name} is not used: {remedy}")
     return Slice(
         name=record.name or "slice-" + "-".join(record.axes),
@@ -87,6 +91,8 @@ _NO_FREE_LENGTHS = "free lengths other than 0 are not supported yet: the certifi
 def _written(name: str, record: Record) -> str:
     if name in record.axes:
         return name
+    if name in FREE_LENGTHS and name not in record.values:
+        return _written("l0", record)  # which the slice does not name
     return record.values[name].text if name in record.values else PARAMETERS[name].default
 
 
@@ -97,8 +103,9 @@ def _axis(name: str, window: Window) -> Axis:
     if low > high:
         raise window.place.error(f"the range of {name} is reversed: write [{high}, {low}]")
     if name in PARAMETERS and PARAMETERS[name].kind is not Kind.FORCE and low < 0:
+        least = "not negative" if PARAMETERS[name].kind in _MAY_VANISH else "positive"
         raise window.place.error(f"the range of {name} goes below zero, but a {PARAMETERS[name].kind.value} is "
-                                 "positive: start it at 0 or above")  # fmt: skip
+                                 f"{least}: start it at 0 or above")  # fmt: skip
     return Axis(name, low, high)
 
 
@@ -167,20 +174,19 @@ def _check_value(name: str, expression: Expression, record: Record, axes: tuple[
     place = _place_of(name, record)
     if expression.degree > MAX_DEGREE:
         raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
-    if kind is Kind.FREE_LENGTH:
-        if expression.numerator:
-            raise place.error(_NO_FREE_LENGTHS)
-        return
     if expression.is_constant:
         _check_number(name, expression.constant(), place)
         return
     pole = find_pole(expression, axes)
     if pole is not None:
         raise place.error(f"division by zero inside the window: the denominator of {name} vanishes {pole}")
-    witness = find_nonpositive(expression, axes) if kind is not Kind.FORCE else None
+    if kind is Kind.FORCE:
+        return
+    witness = find_negative(expression, axes) if kind is Kind.FREE_LENGTH else find_nonpositive(expression, axes)
     if witness is not None:
+        least = "not be negative" if kind is Kind.FREE_LENGTH else "be positive"
         raise place.error(
-            f"a {kind.value} must be positive in the whole window, but {name} is {witness}: narrow the window"
+            f"a {kind.value} must {least} in the whole window, but {name} is {witness}: narrow the window"
         )
 
 
@@ -191,8 +197,8 @@ def _place_of(name: str, record: Record) -> Place:
 def _check_number(name: str, value: Fraction, place: Place) -> None:
     """Refuse a number that the geometry excludes."""
     kind = PARAMETERS[name].kind
-    if kind is not Kind.FORCE and (value < 0 or (value == 0 and kind is not Kind.BASE)):
-        least = "not negative" if kind is Kind.BASE else "positive"
+    if kind is not Kind.FORCE and (value < 0 or (value == 0 and kind not in _MAY_VANISH)):
+        least = "not negative" if kind in _MAY_VANISH else "positive"
         raise place.error(f"{name} is {value}, but a {kind.value} must be {least}")
 
 
@@ -202,3 +208,13 @@ def _check_stiffness_is_used(record: Record, springs_set: bool) -> None:
         return
     if not any("k" in _names_in_scalar(scalar) for name, scalar in record.values.items() if name != "k"):
         raise record.values["k"].place.error("has no effect, since k1, k2 and k3 are all given: leave it out")
+
+
+def _check_free_length_is_used(record: Record) -> None:
+    """Refuse an l0 that nothing uses."""
+    if "l0" not in record.values or not all(name in record.values or name in record.axes for name in FREE_LENGTHS):
+        return
+    if not any("l0" in _names_in_scalar(scalar) for name, scalar in record.values.items() if name != "l0"):
+        raise record.values["l0"].place.error(
+            f"has no effect, since {', '.join(FREE_LENGTHS[:2])} and {FREE_LENGTHS[2]} are all given: leave it out"
+        )

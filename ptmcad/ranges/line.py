@@ -28,7 +28,7 @@ from ptmcad.errors import ConfigError, DegenerateSliceError, ExpressionError, In
 from ptmcad.expressions import Expression, axis, constant, rational
 from ptmcad.models import ParametricSystem, system_of
 from ptmcad.numerals import shortest_text
-from ptmcad.pipeline import count_at, domain_limits
+from ptmcad.exactmap import count_at, domain_limits
 from ptmcad.regionmap import Kind, MorseIndex
 from ptmcad.slice import Axis, Slice
 from ptmcad.variety import discriminant_variety

@@ -17,7 +17,7 @@ from ptmcad.cad.curves import Curve, curve
 from ptmcad.cad.projection import project
 from ptmcad.cad.stacks import BaseEnd, StackData, Wall, lift
 from ptmcad.models import system_of
-from ptmcad.pipeline import count_at, domain_limits
+from ptmcad.exactmap import count_at, domain_limits
 from ptmcad.regionmap import MorseIndex
 from ptmcad.slice import Slice
 from ptmcad.variety import discriminant_variety

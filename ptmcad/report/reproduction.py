@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from ptmcad.config import PARAMETERS, slice_from_mapping, slice_from_options
 from ptmcad.errors import ConfigError
 from ptmcad.numerals import text_of
-from ptmcad.slice import Count, Slice
+from ptmcad.slice import FREE_LENGTHS, Count, Slice
 from ptmcad.yamltree import plain_data, read_text
 
 _SPRINGS = ("k1", "k2", "k3")
@@ -49,6 +49,9 @@ def _given(slice: Slice, written: Mapping[str, str]) -> dict[str, str]:
         if name in _SPRINGS and "k" in slice.parameters and expression == slice.parameters["k"]:
             continue
         values[name] = text
+    free = {values.get(name, "") for name in FREE_LENGTHS}
+    if len(free) == 1 and "l0" not in names and (text := free.pop()) and "l0" not in text:
+        values = {name: value for name, value in values.items() if name not in FREE_LENGTHS} | {"l0": text}
     return values
 
 

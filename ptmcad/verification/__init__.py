@@ -1,7 +1,7 @@
 """Verification of a stored region map by methods that share no code with the one that made it.
 
 Guarantee: nothing here imports the exact engine (`algebra`, `cad`, `variety`, `counting`, `regions`, `locate`,
-`pipeline`) or its models; a layering test holds that. Common to both are FLINT, and the result's own data classes.
+`exactmap`) or its models; a layering test holds that. Common to both are FLINT, and the result's own data classes.
 """
 
 from __future__ import annotations

@@ -17,8 +17,8 @@ import atheris
 
 # everything of ptmcad that a case reaches must be imported here, or coverage does not see it
 with atheris.instrument_imports(include=["ptmcad"]):
+    import ptmcad.exactmap
     import ptmcad.locate
-    import ptmcad.pipeline
     import ptmcad.table
     import ptmcad.verification  # noqa: F401
     from fuzz import targets
