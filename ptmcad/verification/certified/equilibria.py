@@ -102,14 +102,14 @@ def _excluded(energy: Energy, square: Square, d: Derivatives, minima: bool) -> b
     """Whether no equilibrium that is asked for lies in the square."""
     if d.e1 > 0 or d.e1 < 0 or d.e2 > 0 or d.e2 < 0:
         return True
+    m1, r1, m2, r2 = square
     if minima:
         if d.short == 0 and (d.e11 < 0 or d.e22 < 0 or d.e11 * d.e22 - d.e12 * d.e21 < 0):
             return True
-        if (d.short == 1 and d.rest is None and d.e11 < 0) or (d.short == 2 and d.rest is None and d.e22 < 0):
+        if d.bare is not None and energy.peaks(arb(m1, r1), arb(m2, r2), d):
             return True
     if not energy.free3:
         return False
-    m1, r1, m2, r2 = square
     if d.rest is None and r1 + r2 > 0.25:
         return False
     th1, th2 = arb(m1, r1), arb(m2, r2)
