@@ -22,10 +22,10 @@ from ptmcad.verification.certified.points import MINIMA, Counts, admissible, all
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.report import Violation
 
-WIDEST = 128
+WIDEST = 512
 """The first box tried has at most this part of the window's width on each side of its middle."""
-ATTEMPTS = 5
-BUDGET = 6_000
+ATTEMPTS = 7
+BUDGET = 12_000
 """Squares of the torus for one box."""
 _LOOKS = 400
 """Random places looked at for one that is free."""
@@ -146,7 +146,9 @@ def _prove(claims: CertifiedClaims, place: Place, half: int) -> None:
     low, high = (claims.off_lattice(Fraction(place.u + d), Fraction(place.v + d)) for d in (-half, half))
     x, y = (exact(low[i]).union(exact(high[i])) for i in (0, 1))
     energy = energy_over(slice, x, y)
-    found, _ = equilibria(energy, slice.count in MINIMA, budget=BUDGET)
+    # squares much smaller than the box of parameters are excluded no better than larger ones
+    smallest = float(max(x.rad(), y.rad())) / 64
+    found, _ = equilibria(energy, slice.count in MINIMA, budget=BUDGET, smallest=max(smallest, 2.0**-30))
     kinds = [e.signs for e in found]
     stable = kinds.count("++")
     cell = claims.result.cells[place.cell]
