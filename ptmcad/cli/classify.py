@@ -153,15 +153,28 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="json,png,svg",
               show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
-@click.option("--jobs", type=click.IntRange(min=1), metavar="N",
-              help="Number of threads of the certified engine.  [default: all processors]")
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Number of threads of the certified engine.  [default: all processors]",
+)
 @limit_options
-@click.option("--tolerance", callback=_share, metavar="EPS",
-              help="Stop when this share of the window is undetermined (certified engine).")
-@click.option("--resume", type=click.Path(path_type=Path), metavar="RESULT",
-              help="Go on from a stored certified map of the same slice.")
-@click.option("--area-tolerance", callback=_share, metavar="EPS",
-              help="Relative width of the areas' bounds (exact engine).")
+@click.option(
+    "--tolerance",
+    callback=_share,
+    metavar="EPS",
+    help="Stop when this share of the window is undetermined (certified engine).",
+)
+@click.option(
+    "--resume",
+    type=click.Path(path_type=Path),
+    metavar="RESULT",
+    help="Go on from a stored certified map of the same slice.",
+)
+@click.option(
+    "--area-tolerance", callback=_share, metavar="EPS", help="Relative width of the areas' bounds (exact engine)."
+)
 @click.option("--samples", is_flag=True, help="Draw the cells' sample points.")
 @click.option("--no-timings", is_flag=True, help="Leave run times out of the JSON, so that it is the same every time.")
 def command(

@@ -239,4 +239,3 @@ def test_error_of_sine_and_cosine_is_a_quarter_of_what_is_claimed() -> None:
         worst = max(float(e.upper()) for x in places.tolist() for e in _error(x))
     assert worst < arithmetic.SINE_ERROR / 4
     assert worst > arithmetic.SINE_ERROR / 64, "a bound this loose, or a test this blind, is a mistake"
-

@@ -86,7 +86,9 @@ def _check_cell(count: Count, cell: Cell, values: Values) -> int:
         if len(match) != 1 or match[0] in taken:
             raise Violation(f"the solution {k} near ({e.th1:.6g}, {e.th2:.6g}) is stored twice, or not asked for")
         if kept[match[0]].signs != solution.signs:
-            raise Violation(f"the Hessian at the solution {k} has eigenvalues of signs {e.signs}, not {solution.signs!r}")
+            raise Violation(
+                f"the Hessian at the solution {k} has eigenvalues of signs {e.signs}, not {solution.signs!r}"
+            )
         taken.add(match[0])
     return len(kept)
 

@@ -11,7 +11,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from ptmcad.numerals import text_of
-from ptmcad.regionmap import RegionMap, Status
+from ptmcad.regionmap import Status
 from ptmcad.slice import Count
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims

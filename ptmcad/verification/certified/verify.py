@@ -14,7 +14,7 @@ from ptmcad.verification.certified.system import check_potential
 from ptmcad.verification.parameters import check_text
 from ptmcad.verification.report import Check, VerifyReport, checked
 
-BOXES = 60
+BOXES = 40
 NOT_CHECKED = (
     ("the whole free area", "only random boxes of it: a proof of all of it costs more than the map"),
     ("plan", "what it says of curves and unknowns is no claim about the regions"),
