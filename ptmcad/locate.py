@@ -1,23 +1,27 @@
 """Where a rational point lies in a region map.
 
 Guarantee: exact, however near the point is to a wall. The answer comes from the map's stored walls: signs of the stored
-polynomials at the point and numbers of their real roots below it.
+polynomials at the point and numbers of their real roots below it; in a certified map from its cover, in integers.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction, from_plane
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at
 from ptmcad.cad.curves import Curve, curve
+from ptmcad.cover import Cover, components
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.expressions import rational
 from ptmcad.regionmap import CriticalValue, Location, RegionMap, Status
+
+if TYPE_CHECKING:
+    from ptmcad.cover.complement import Components
 
 
 def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
@@ -32,6 +36,8 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     inside = all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, point, strict=True))
     if not inside:
         return Location(Status.OUTSIDE)
+    if result.cover is not None:
+        return _locate_outside_cover(result, result.cover, point)
     if not result.cells:
         return Location(Status.UNDECIDED)
     used = [(n, c) for n, c in enumerate(result.components) if not c.left_out]
@@ -58,6 +64,45 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     # in a map that was stopped before its areas were known, the counts are exact all the same
     status = Status.EXACT if result.status is Status.PARTIAL else result.status
     return Location(status, cell.region, number, cell.total, cell.stable, cell.index)
+
+
+def _locate_outside_cover(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> Location:
+    complement, cells = _complement(result, cover)
+    number = cells.get(complement.locate(*_in_steps(result, cover, point)))
+    if number is None:
+        return Location(Status.UNDECIDED)
+    cell = result.cells[number]
+    return Location(Status.CERTIFIED, cell.region, number, cell.total, cell.stable, cell.index, cell.admissible)
+
+
+def _in_steps(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
+    """Lattice coordinates."""
+    u, v = ((x - a.low) / (a.high - a.low) * cover.steps for a, x in zip(result.slice.axes, point, strict=True))
+    return u, v
+
+
+def _complement(result: RegionMap, cover: Cover) -> tuple[Components, dict[int | None, int]]:
+    """The components outside the cover, and which cell each of them is; kept for the next point of the same map."""
+    if not _latest or _latest[0][0] is not result:
+        complement = components(cover)
+        cells: dict[int | None, int] = {}
+        for number, cell in enumerate(result.cells):
+            try:
+                place = complement.locate(*_in_steps(result, cover, (cell.sample[0], cell.sample[1])))
+            except ValueError as error:
+                raise _contradiction(f"the sample of cell {number} is not in the window") from error
+            if place is None or place in cells:
+                raise _contradiction(f"the sample of cell {number} is in the cover or in the component of another cell")
+            cells[place] = number
+        _latest[:] = [(result, complement, cells)]
+    return _latest[0][1:]
+
+
+_latest: list[tuple[RegionMap, Components, dict[int | None, int]]] = []
+
+
+def _contradiction(what: str) -> ConfigError:
+    return ConfigError(f"the map contradicts itself: {what}; check it with ptmcad verify")
 
 
 def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction]:

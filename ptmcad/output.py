@@ -30,7 +30,7 @@ Writer = Callable[[Path], None]
 
 _TEMPORARY = re.compile(r"\.(?P<stem>.*)\.[0-9a-f]{8}\.tmp(?P<suffix>\.[a-z]+)?", re.DOTALL)
 _PROBE = "probe"
-MOST_BYTES = 10_000_000
+MOST_BYTES = 60_000_000
 """Of an older result that is looked at."""
 
 

@@ -104,7 +104,6 @@ def _certified(
         raise ConfigError("the certified engine has no savings to switch off", key="keep")
     if resume is not None:
         check_resumable(slice, resume)
-    import ptmcad.interval.compiled  # first: where numba is missing, it says so
     from ptmcad.interval.engine import certified_map
 
     cover = None if resume is None else resume.cover

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from fractions import Fraction
 
+from ptmcad.cover import Cover
 from ptmcad.numerals import decimal, magnitude
 from ptmcad.regionmap import Region, RegionMap
 from ptmcad.slice import Count
 
-_NAMES = {Count.STABLE: "stable", Count.TOTAL: "in all", Count.INDEX: "(minima, saddles, maxima)"}
+_NAMES = {
+    Count.STABLE: "stable",
+    Count.TOTAL: "in all",
+    Count.INDEX: "(minima, saddles, maxima)",
+    Count.ADMISSIBLE: "stable and admissible",
+}
 
 
 def count_text(region: Region, count: Count) -> str:
@@ -18,6 +25,8 @@ def count_text(region: Region, count: Count) -> str:
         return str(region.stable)
     if count is Count.TOTAL:
         return str(region.total)
+    if count is Count.ADMISSIBLE:
+        return str(region.admissible)
     return "({}, {}, {})".format(*region.index) if region.index else "?"
 
 
@@ -46,13 +55,8 @@ def _short(value: Fraction) -> str:
     )
 
 
-def table(result: RegionMap) -> str:
-    """Regions, counts, areas, boundary curves with degrees, time and error."""
+def _curves(result: RegionMap) -> str:
     names = result.slice.axis_names
-    count = result.slice.count
-    tally = Counter(count_text(r, count) for r in result.regions)
-    counts = "; ".join(f"{text} {_NAMES[count]}: {n} region{'s' * (n > 1)}" for text, n in sorted(tally.items()))
-    areas = "; ".join(f"{count_text(r, count)}: {certified_digits(r.area)}" for r in result.regions)
     alike = Counter(
         (c.kind.value, c.polynomial.degrees, len(c.polynomial.terms)) for c in result.components if c.separates
     )
@@ -60,8 +64,42 @@ def table(result: RegionMap) -> str:
         f"{n} {kind} of degree {degrees[0]} in {names[0]}, {degrees[1]} in {names[1]} ({terms} terms)"
         for (kind, degrees, terms), n in alike.items()
     )
-    widths = [(r.area[1] - r.area[0]) / r.area[0] for r in result.regions if r.area[0]]
-    known = widths and len(widths) == len(result.regions) and min(widths) >= 0  # a damaged file may say anything
+    return f"curves    {curves or 'none separates counts'}"
+
+
+def _covered(cover: Cover) -> str:
+    n = len(cover.rectangles)
+    return f"cover     {n} rectangle{'s' * (n != 1)} around the curves where counts change"
+
+
+_Bounds = tuple[str, tuple[Fraction, Fraction]]
+
+
+def _by_count(bounds: Sequence[_Bounds], result: RegionMap) -> list[_Bounds]:
+    """The area of all points with one count: at least that of its cells, and with all that is undetermined at most.
+
+    A certified map may have many small regions; this is also what they leave out.
+    """
+    first, second = result.slice.axes
+    undetermined = result.undetermined * (first.high - first.low) * (second.high - second.low)
+    found: list[_Bounds] = []
+    for text in sorted({text for text, _ in bounds}):
+        low = sum((area[0] for other, area in bounds if other == text), Fraction(0))
+        found.append((text, (low, low + undetermined)))
+    return found
+
+
+def table(result: RegionMap) -> str:
+    """Regions, counts, areas, boundary curves with degrees (or the cover), time and error."""
+    count = result.slice.count
+    tally = Counter(count_text(r, count) for r in result.regions)
+    counts = "; ".join(f"{text} {_NAMES[count]}: {n} region{'s' * (n > 1)}" for text, n in sorted(tally.items()))
+    bounds = [(count_text(r, count), r.area) for r in result.regions]
+    if result.cover is not None:
+        bounds = _by_count(bounds, result)
+    areas = "; ".join(f"{text}: {certified_digits(area)}" for text, area in bounds)
+    widths = [(high - low) / low for _, (low, high) in bounds if low]
+    known = widths and len(widths) == len(bounds) and min(widths) >= 0  # a damaged file may say anything
     error = _short(max(widths)) if known else "unknown"
     seconds = result.timings.get("total")
     time = "not recorded" if seconds is None else f"{seconds:.2f} s"
@@ -71,7 +109,7 @@ def table(result: RegionMap) -> str:
             f"regions   {len(result.regions)} of {len(result.cells)} cells, {result.status.value}",
             f"counts    {counts or 'none yet'}",
             f"areas     {areas or 'none yet'}",
-            f"curves    {curves or 'none separates counts'}",
+            _curves(result) if result.cover is None else _covered(result.cover),
             f"time      {time}; undetermined {undetermined}; area bounds within {error}",
         ]
     )

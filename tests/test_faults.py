@@ -46,7 +46,7 @@ import flint
 from pathlib import Path
 here = Path(sys.argv.pop(1))
 class Result:
-    plan = ()
+    plan, cover = (), None
     def __init__(self, state):
         self.status = types.SimpleNamespace(value=state)
     def to_json(self, timings=True):
@@ -157,6 +157,47 @@ def test_a_signal_stops_c_code(tmp_path: Path, number: signal.Signals, status: i
     assert running.end() == (status, "")
     assert not lives(computing)
     assert running.files() == old
+
+
+CERTIFIED = "Result.cover = 'of a certified map'\n"
+
+
+@linux
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+@pytest.mark.parametrize("stay", ["for_long_in_c()", "time.sleep(3600)"], ids=["in C code", "in Python"])
+def test_a_signal_saves_a_map_that_can_be_gone_on_from(
+    tmp_path: Path, number: signal.Signals, status: int, stay: str
+) -> None:
+    old = put(tmp_path, json='{"status": "certified"}', png="old picture")
+    work = f"{CERTIFIED}def engine(progress, partial):\n    arrived()\n    {stay}\n"
+    running = Running(tmp_path, work, formats="png,json")
+    running.arrive()
+    running.process.send_signal(number)
+    place = running.out / "fig2.partial.json"
+    message = (
+        f"stopped: by {number.name}; the partial result is in {place}, because fig2.json holds an older result that is "
+        "not partial\n"
+    )
+    assert running.end() == (status, message)
+    assert running.files() == {**old, "fig2.partial.json": PARTIAL}
+
+
+@linux
+def test_the_map_saved_by_a_signal_replaces_the_one_it_went_on_from(tmp_path: Path) -> None:
+    """And without JSON among the formats nothing is saved, as nothing was asked for."""
+    put(tmp_path, json='{"status": "partial", "stage": "earlier"}')
+    work = f"{CERTIFIED}def engine(progress, partial):\n    arrived()\n    time.sleep(3600)\n"
+    running = Running(tmp_path, work)
+    running.arrive()
+    running.process.send_signal(signal.SIGINT)
+    assert running.end() == (130, f"stopped: by SIGINT; the partial result is in {running.out / 'fig2.json'}\n")
+    assert running.files() == {"fig2.json": PARTIAL}
+    (tmp_path / "arrived").unlink()
+    again = Running(tmp_path, work, formats="png")
+    again.arrive()
+    again.process.send_signal(signal.SIGINT)
+    assert again.end() == (130, "")
+    assert again.files() == {"fig2.json": PARTIAL}
 
 
 @linux

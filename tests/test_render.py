@@ -426,8 +426,9 @@ def test_index_colours_differ_on_grey_prints() -> None:
     assert min(abs(a - b) for a, b in combinations(shades, 2)) > 10
 
 
-def region(stable: int = 0, total: int = 0, index: tuple[int, int, int] = (0, 0, 0)) -> Region:
-    return Region(stable, total, index, (Fraction(1), Fraction(1)), (0,), Point(("a", "b"), HALF, HALF))
+def region(stable: int = 0, total: int = 0, index: tuple[int, int, int] = (0, 0, 0), admissible: int = 0) -> Region:
+    at = Point(("a", "b"), HALF, HALF)
+    return Region(stable, total, index, (Fraction(1), Fraction(1)), (0,), at, admissible)
 
 
 @pytest.mark.parametrize("count", list(Count))
@@ -435,6 +436,7 @@ def test_different_counts_have_different_fills(count: Count) -> None:
     regions = {
         Count.STABLE: [region(stable=n) for n in range(40)],
         Count.TOTAL: [region(total=n) for n in range(40)],
+        Count.ADMISSIBLE: [region(admissible=n) for n in range(40)],
         Count.INDEX: [region(index=(a, a + b, b)) for a in range(9) for b in range(9)],
     }[count]
     fills = [fill_of(r, count) for r in regions]

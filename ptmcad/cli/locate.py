@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import click
@@ -22,11 +22,23 @@ LONGEST_ROW = 100_000
 FIELDS = ("status", "region", "cell", "total", "stable", "index")
 
 
-def answer(location: Location) -> list[str]:
-    """The entries of a location in the order of `FIELDS`; empty where there is none."""
-    index = "" if location.index is None else "-".join(map(str, location.index))
-    numbers = (location.region, location.cell, location.total, location.stable)
-    return [location.status.value, *("" if n is None else str(n) for n in numbers), index]
+def fields_of(result: RegionMap) -> tuple[str, ...]:
+    """What is told of a point: in a certified map also how many stable equilibria are admissible."""
+    return FIELDS if result.cover is None else (*FIELDS, "admissible")
+
+
+def answer(location: Location, fields: Sequence[str] = FIELDS) -> list[str]:
+    """The entries of a location in the order of the fields; empty where there is none."""
+    texts = {
+        "status": location.status.value,
+        "index": None if location.index is None else "-".join(map(str, location.index)),
+        "region": location.region,
+        "cell": location.cell,
+        "total": location.total,
+        "stable": location.stable,
+        "admissible": location.admissible,
+    }
+    return ["" if texts[name] is None else str(texts[name]) for name in fields]
 
 
 def point_of(text: str) -> dict[str, str]:
@@ -103,23 +115,25 @@ class _Lines:
 
 def _table(result: RegionMap, points: Iterator[dict[str, str]], path: Path) -> None:
     writer = csv.writer(sys.stdout, lineterminator="\n")
-    writer.writerow([*result.slice.axis_names, *FIELDS])
+    fields = fields_of(result)
+    writer.writerow([*result.slice.axis_names, *fields])
     for number, point in enumerate(points, start=2):
         try:
             location = result.locate(**point)
         except ConfigError as error:
             raise ConfigError(error.message, key=error.key, file=str(path), line=number) from error
-        writer.writerow([*(point[name] for name in result.slice.axis_names), *answer(location)])
+        writer.writerow([*(point[name] for name in result.slice.axis_names), *answer(location, fields)])
         if reader_left(sys.stdout):
             return
 
 
-def _lines(location: Location, point: Mapping[str, str]) -> Iterator[str]:
-    yield f"{'point':8}{', '.join(f'{name} = {value}' for name, value in point.items())}"
-    for name, value in zip(FIELDS, answer(location), strict=True):
+def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str]) -> Iterator[str]:
+    width = max(map(len, fields)) + 2
+    yield f"{'point':{width}}{', '.join(f'{name} = {value}' for name, value in point.items())}"
+    for name, value in zip(fields, answer(location, fields), strict=True):
         if value:
             note = " (minima-saddles-maxima)" if name == "index" else ""
-            yield f"{name:8}{value}{note}"
+            yield f"{name:{width}}{value}{note}"
 
 
 @click.command("locate")
@@ -134,7 +148,8 @@ def command(
     """Tell in which cell and region of RESULT a rational point lies, and the number of equilibria there.
 
     The answer is exact, however near the point is to a boundary: "on the variety" exactly on a curve, "outside the
-    window" otherwise outside. Numbers such as 7/10, 0.7 and 7e-1 are exact.
+    window" otherwise outside. In a certified map a point of its undetermined part is "undecided". Numbers such as 7/10,
+    0.7 and 7e-1 are exact.
 
     \b
     Examples:
@@ -151,5 +166,5 @@ def command(
         elif at is not None:
             point = point_of(at)
             location = stored.locate(**point)
-            for line in _lines(location, point):
+            for line in _lines(location, point, fields_of(stored)):
                 click.echo(line)

@@ -12,8 +12,8 @@ from ptmcad.errors import ConfigError, PtmcadError, shown
 from ptmcad.regionmap import RegionMap
 from ptmcad.textfile import read_text
 
-MAX_BYTES = 10_000_000
-"""Some hundred times the largest result of a slice in configs/."""
+MAX_BYTES = 60_000_000
+"""Twice what a certified map with a million rectangles takes."""
 
 
 def read_result(path: Path) -> RegionMap:

@@ -3,9 +3,9 @@
 Guarantee: exact. Two points of the open window are in one component if and only if a path joins them that meets no
 closed rectangle; two rectangles are in one cluster if and only if a chain of rectangles with common points joins them.
 
-An open part of the window that meets the interior of no rectangle can be left only through its edges. As rectangles
-have interiors, an edge between two such parts is in no rectangle, and a corner at which only two of them meet diagonally
-is; so components are joined across edges, and clusters across edges and corners.
+As rectangles have interiors, an edge between two parts of the window that meet the interior of no rectangle is in no
+rectangle, while a corner at which only two such parts meet, diagonally, is in one. So components are joined across
+edges, and clusters across edges and corners.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.cover import Cover, Rectangle
+from ptmcad.cover import MOST_STEPS, Cover, Rectangle
 from ptmcad.cover.graph import connected, touching
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
 
@@ -32,7 +32,8 @@ class Components:
     Attributes
     ----------
     areas : of the components, in squares of a lattice step.
-    rectangles : for each component an open rectangle inside of it whose smaller side is large.
+    rectangles : for each component an open rectangle inside of it that can not be made longer on any side: the part
+        of the subdivision with the longest smaller side, grown.
     cluster_areas : areas of the unions of the clusters' rectangles.
     cluster_of : for each rectangle of the cover the number of its cluster.
     clusters_at : for each component the clusters that it touches along a segment or in a point, ascending.
@@ -87,8 +88,9 @@ def components(cover: Cover) -> Components:
     joined = (a_free & b_free & pairs.along) | ~(a_free | b_free)
     label = connected(len(leaves), pairs.first[joined], pairs.second[joined])
 
-    number, areas, rectangles = _numbered(leaves, label, free)
+    number, areas, thick = _numbered(leaves, label, free)
     clusters, cluster_areas, _ = _numbered(leaves, label, ~free)
+    rectangles = _grown(tree, thick, _bounding_boxes(leaves[free], number[free], len(areas)))
     own = np.where(free, number, clusters)
     border = a_free != b_free
     inner = np.where(a_free, pairs.first, pairs.second)[border]
@@ -104,24 +106,31 @@ def components(cover: Cover) -> Components:
     array = rectangle_array(cover)
     cluster_of = owner[tree.leaves_right_above(array[:, 0], array[:, 2])]
     return Components(
-        cover, areas, rectangles, cluster_areas, tuple(cluster_of.tolist()), tuple(map(tuple, at)), tree, owner
+        cover,
+        areas,
+        as_rectangles(rectangles),
+        cluster_areas,
+        tuple(cluster_of.tolist()),
+        tuple(map(tuple, at)),
+        tree,
+        owner,
     )
 
 
 def _numbered(
     leaves: Integers, label: Integers, chosen: NDArray[np.bool_]
-) -> tuple[Integers, tuple[int, ...], tuple[Rectangle, ...]]:
+) -> tuple[Integers, tuple[int, ...], Integers]:
     """Numbers for the labels of the chosen leaves: by descending area, then from the left, then from below.
 
     Returns
     -------
     number : of each leaf, -1 for those that are not chosen.
     areas : by number.
-    largest : by number, the leaf whose smaller side is the longest.
+    thick : by number, the leaf whose smaller side is the longest.
     """
     number = np.full(len(leaves), -1, dtype=np.int64)
     if not chosen.any():
-        return number, (), ()
+        return number, (), np.zeros((0, 4), dtype=np.int64)
     own = leaves[chosen]
     labels, inverse = np.unique(label[chosen], return_inverse=True)
     areas = _sums_of_areas(own, inverse, len(labels))
@@ -137,8 +146,41 @@ def _numbered(
     rank = np.empty(len(labels), dtype=np.int64)
     rank[order] = np.arange(len(labels))
     number[chosen] = rank[inverse]
-    largest = own[thick[order]].tolist()
-    return number, tuple(areas[k] for k in order), tuple((x0, x1, y0, y1) for x0, x1, y0, y1 in largest)
+    return number, tuple(areas[k] for k in order), own[thick[order]]
+
+
+def _bounding_boxes(leaves: Integers, group: Integers, groups: int) -> Integers:
+    """The smallest rectangle around the leaves of each group."""
+    boxes = np.empty((groups, 4), dtype=np.int64)
+    for k, (extreme, start) in enumerate(((np.minimum, MOST_STEPS), (np.maximum, 0)) * 2):
+        boxes[:, k] = start
+        extreme.at(boxes[:, k], group, leaves[:, k])
+    return boxes
+
+
+def _grown(tree: Subdivision, boxes: Integers, around: Integers) -> Integers:
+    """Free rectangles made as long as they can be, first along their shorter sides; each stays in what is around it."""
+    boxes = boxes.copy()
+    upright = boxes[:, 1] - boxes[:, 0] > boxes[:, 3] - boxes[:, 2]
+    for flipped in (False, True):
+        for lower in (True, False):
+            # column of the side that moves, and of the opposite one
+            side = np.where(upright != flipped, 2, 0) + (0 if lower else 1)
+            rows = np.arange(len(boxes))
+            strip = boxes.copy()
+            strip[rows, side], strip[rows, side ^ 1] = around[rows, side], boxes[rows, side]
+            box, leaf = tree.meeting(strip, closed=False)
+            hit = tree.state[leaf] == COVERED
+            ends = tree.bounds[leaf[hit], side[box[hit]] ^ 1]
+            limit = strip[rows, side]
+            (np.maximum if lower else np.minimum).at(limit, box[hit], ends)
+            boxes[rows, side] = limit
+    return boxes
+
+
+def as_rectangles(array: Integers) -> tuple[Rectangle, ...]:
+    """Rows of an array of shape (k, 4) as tuples."""
+    return tuple((left, right, bottom, top) for left, right, bottom, top in array.tolist())
 
 
 def _sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:

@@ -6,14 +6,13 @@ bound leaves two of them open, rational arithmetic decides.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from fractions import Fraction
 from math import isinf
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.cover import MOST_STEPS, Cover, Rectangle, Window
+from ptmcad.cover import MOST_STEPS, Cover, Window
 
 Integers = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -61,13 +60,17 @@ def from_boxes(window: Window, low: Floats, high: Floats, steps: int) -> Cover:
 
 def cover_of(array: Integers, steps: int) -> Cover:
     """The cover of rectangles in an array of shape (k, 4)."""
-    rows: Iterable[list[int]] = np.unique(array, axis=0).tolist() if len(array) else ()
-    rectangles: tuple[Rectangle, ...] = tuple((a, b, c, d) for a, b, c, d in rows)
-    return Cover(steps, rectangles)
+    rows = array[np.lexsort(array.T[::-1])]
+    if len(rows):
+        rows = rows[np.concatenate([[True], (rows[1:] != rows[:-1]).any(axis=1)])]
+    return Cover(steps, tuple((left, right, bottom, top) for left, right, bottom, top in rows.tolist()))
 
 
 def rounded_down(values: Floats, low: Fraction, high: Fraction, steps: int) -> Integers:
-    """floor((value - low) steps / (high - low)) exactly, but -1 and steps stand for all that is outside."""
+    """floor((value - low) steps / (high - low)), but -1 and steps stand for all that is outside.
+
+    A value that is so near above a line of the lattice that floats can not tell gets the step below that line.
+    """
     width = high - low
     if max(abs(low), 1 / width, width) > _USUAL:
         return np.array([_exactly(value, low, width, steps) for value in values.tolist()], dtype=np.int64)
@@ -75,9 +78,8 @@ def rounded_down(values: Floats, low: Fraction, high: Fraction, steps: int) -> I
     with np.errstate(over="ignore", invalid="ignore"):
         estimate = (values - start) * scale
         margin = (np.abs(values) + abs(start)) * scale * _ERROR + _LEAST_ERROR
-        below, above = np.floor(estimate - margin), np.floor(estimate + margin)
-    below, above = np.clip(below, -1, steps), np.clip(above, -1, steps)
-    unsure = ~(below == above)
+        below = np.clip(np.floor(estimate - margin), -1, steps)
+    unsure = np.isnan(below)
     result = np.where(unsure, 0.0, below).astype(np.int64)
     result[unsure] = [_exactly(value, low, width, steps) for value in values[unsure].tolist()]
     return result

@@ -71,6 +71,26 @@ class Subdivision:
             active = active[self.state[part[active]] == CUT]
         return part
 
+    def meeting(self, boxes: Integers, *, closed: bool) -> tuple[Integers, Integers]:
+        """All pairs of a box (its position) and a leaf that have points in common; unless closed, inner points.
+
+        Parameters
+        ----------
+        boxes : shape (k, 4): left, right, bottom, top.
+        """
+        box, part = np.arange(len(boxes)), np.zeros(len(boxes), dtype=np.int64)
+        found = [(box[:0], part[:0])]
+        while len(part):
+            leaf = self.state[part] != CUT
+            found.append((box[leaf], part[leaf]))
+            box, part = box[~leaf], part[~leaf]
+            axis, cut, child = self.axis[part], self.cut[part], self.child[part]
+            low, high = boxes[box, 2 * axis], boxes[box, 2 * axis + 1]
+            below, above = (low <= cut, high >= cut) if closed else (low < cut, high > cut)
+            box = np.concatenate([box[below], box[above]])
+            part = np.concatenate([child[below], child[above] + 1])
+        return np.concatenate([b for b, _ in found]), np.concatenate([p for _, p in found])
+
 
 def rectangle_array(cover: Cover) -> Integers:
     """The rectangles as an array of shape (k, 4).

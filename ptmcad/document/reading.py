@@ -6,6 +6,7 @@ its place.
 
 from __future__ import annotations
 
+from ptmcad.document.cover import read_cover
 from ptmcad.document.node import Node, opened
 from ptmcad.document.writing import FORMAT
 from ptmcad.errors import ExpressionError
@@ -35,11 +36,13 @@ from ptmcad.regionmap import (
 from ptmcad.slice import Axis, Count, Point, Slice
 
 # Limits far beyond any slice's result, like those of `ptmcad.document.node`.
-MAX_TEXT = 20_000_000
+MAX_TEXT = 60_000_000
 MAX_COMPONENTS = 1_000
 MAX_DEGREE = 400
 MAX_NAME = 100
 MAX_TITLE = 300
+_EXACT_ONLY = ("components", "critical_values", "stacks", "adjacencies", "non_adjacencies")
+"""What a certified map does not have."""
 
 
 def read(text: str) -> RegionMap:
@@ -57,9 +60,20 @@ def _decode(document: Node) -> RegionMap:
     data = document.record(
         "format", "status", "slice", "system", "base", "complex_solutions", "undetermined", "regions", "components",
         "critical_values", "stacks", "cells", "adjacencies", "non_adjacencies", "plan", "versions", "precision",
-        "timings?",
+        "timings?", "cover?",
     )  # fmt: skip
     slice = _slice(data["slice"])
+    status = data["status"].choice(Status)
+    cover = read_cover(data["cover"]) if "cover" in data else None
+    if cover is None and (status is Status.CERTIFIED or slice.count is Count.ADMISSIBLE):
+        raise document.fault("lacks the key 'cover', which a certified map has")
+    if cover is not None:
+        if status not in (Status.CERTIFIED, Status.PARTIAL):
+            raise data["status"].fault("is not that of a map with a cover")
+        for key in _EXACT_ONLY:
+            if data[key].value != []:
+                raise data[key].fault("is not empty, as it is in a map with a cover")
+    also = ("admissible",) if cover is not None else ()
     names = slice.axis_names
 
     def point(node: Node) -> Point:
@@ -72,16 +86,19 @@ def _decode(document: Node) -> RegionMap:
         return Component(polynomial, c["kind"].choice(Kind), c["left_out"].text(), c["separates"].truth())
 
     def region(node: Node) -> Region:
-        r = node.record("stable", "total", "index", "area", "sample", "cells")
+        r = node.record("stable", "total", "index", *also, "area", "sample", "cells")
         low, high = r["area"].each(Node.size, 2)
         stable, total = r["stable"].optional(Node.natural), r["total"].optional(Node.natural)
         cells = r["cells"].each(Node.natural)
-        return Region(stable, total, r["index"].optional(_index), (low, high), cells, point(r["sample"]))
+        index, admissible = r["index"].optional(_index), r["admissible"].optional(Node.natural) if also else None
+        return Region(stable, total, index, (low, high), cells, point(r["sample"]), admissible)
 
     def cell(node: Node) -> Cell:
-        c = node.record("stack", "level", "sample", "region", "total", "stable", "index", "solutions")
+        c = node.record("stack", "level", "sample", "region", "total", "stable", "index", *also, "solutions")
+        if cover is not None and c["stack"].value is not None:
+            raise c["stack"].fault("is not null, as it is in a map with a cover")
         return Cell(
-            stack=c["stack"].natural(),
+            stack=c["stack"].natural() if cover is None else None,
             level=c["level"].natural(),
             sample=point(c["sample"]),
             region=c["region"].natural(),
@@ -89,6 +106,7 @@ def _decode(document: Node) -> RegionMap:
             stable=c["stable"].optional(Node.natural),
             index=c["index"].optional(_index),
             solutions=c["solutions"].each(_solution),
+            admissible=c["admissible"].optional(Node.natural) if also else None,
         )
 
     if (base := data["base"].text()) not in names:
@@ -99,7 +117,7 @@ def _decode(document: Node) -> RegionMap:
         raise data["undetermined"].fault("is more than the whole window")
     return RegionMap(
         slice=slice,
-        status=data["status"].choice(Status),
+        status=status,
         system=_system(data["system"]),
         base=names.index(base),
         complex_solutions=data["complex_solutions"].natural(),
@@ -115,6 +133,7 @@ def _decode(document: Node) -> RegionMap:
         versions={name: node.text() for name, node in data["versions"].mapping().items()},
         precision={name: node.natural() for name, node in data["precision"].mapping().items()},
         timings={n: s.number() for n, s in data["timings"].mapping().items()} if "timings" in data else {},
+        cover=cover,
     )
 
 

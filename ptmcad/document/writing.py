@@ -1,14 +1,16 @@
 """Writing a region map as JSON.
 
-Guarantee: numbers are written exactly, areas as decimals of 18 digits rounded outwards; the same map gives the same
-text, timings apart.
+Guarantee: numbers are written exactly, areas of an exact map as decimals of 18 digits rounded outwards; the same map
+gives the same text, timings apart.
 """
 
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from typing import Any
 
+from ptmcad.cover import Cover
 from ptmcad.numerals import decimal, integer_text, shortest_text, text_of
 from ptmcad.regionmap import RegionMap, Segment, Solution
 from ptmcad.slice import Point
@@ -28,11 +30,14 @@ def write(result: RegionMap, timings: bool = True) -> str:
             lines.append(f"  {json.dumps(key)}: [\n{items}\n  ]")
         else:
             lines.append(f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}")
+    if result.cover is not None:
+        lines.append(_cover(result.cover))
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
 def _encode(result: RegionMap) -> dict[str, Any]:
     names = result.slice.axis_names
+    certified = result.cover is not None
     return {
         "format": FORMAT,
         "status": result.status.value,
@@ -61,7 +66,8 @@ def _encode(result: RegionMap) -> dict[str, Any]:
                 "stable": r.stable,
                 "total": r.total,
                 "index": r.index,
-                "area": [decimal(r.area[0], up=False), decimal(r.area[1], up=True)],
+                **({"admissible": r.admissible} if certified else {}),
+                "area": _exact(r.area) if certified else _decimals(r.area),
                 "sample": _point(r.sample),
                 "cells": r.cells,
             }
@@ -104,6 +110,7 @@ def _encode(result: RegionMap) -> dict[str, Any]:
                 "total": c.total,
                 "stable": c.stable,
                 "index": c.index,
+                **({"admissible": c.admissible} if certified else {}),
                 "solutions": [
                     {
                         "center": [shortest_text(x) for x in s.center],
@@ -139,6 +146,20 @@ def _encode(result: RegionMap) -> dict[str, Any]:
         "versions": dict(result.versions),
         "precision": dict(result.precision),
     }
+
+
+def _cover(cover: Cover) -> str:
+    """The cover with a line for each rectangle and nothing more: there may be a million of them."""
+    rectangles = ",\n".join(f"{left},{right},{low},{high}" for left, right, low, high in cover.rectangles)
+    return f'  "cover": {{"steps": {cover.steps}, "rectangles": [\n{rectangles}\n]}}'
+
+
+def _exact(area: tuple[Fraction, Fraction]) -> list[str]:
+    return [text_of(area[0]), text_of(area[1])]
+
+
+def _decimals(area: tuple[Fraction, Fraction]) -> list[str]:
+    return [decimal(area[0], up=False), decimal(area[1], up=True)]
 
 
 def _point(point: Point) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""A tape run on a box in Arb's ball arithmetic, at any precision: an evaluator that shares no code with the compiled one.
+"""A tape run on a box in Arb's ball arithmetic, at any precision; it shares no code with the compiled evaluator.
 
 Guarantee: as for `ptmcad.interval.evaluation.run`: value k encloses the k-th node's values at every point of the box;
 where a node is a `meet`, at every point at which its two operands are equal. A ball that is not finite says nothing.

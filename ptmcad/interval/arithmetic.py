@@ -87,7 +87,7 @@ def reciprocal(c: float, d: float) -> tuple[float, float]:
 
 @compiled
 def sine_cosine(x: float) -> tuple[float, float]:
-    """sin x and cos x for |x| <= LARGEST_ANGLE, within SINE_ERROR: quarter turns taken off, then Taylor's polynomials."""
+    """sin x and cos x for |x| <= LARGEST_ANGLE, within SINE_ERROR: less quarter turns, then Taylor's polynomials."""
     turns = floor(x * _INVERSE + 0.5)
     r = ((x - turns * _HALF_PI_1) - turns * _HALF_PI_2) - turns * _HALF_PI_3
     z = r * r

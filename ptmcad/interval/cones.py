@@ -2,8 +2,8 @@
 
 Guarantee: rational arithmetic in Q(sqrt(W)) only, so that no sign is rounded.
 
-With |L1 - L2| < rho < L1 + L2 there are two, mirror images: A3 and A4 meet at the corner of the triangle with sides rho,
-L1, L2, at height H = +-sqrt(W). Springs 1 and 2 are as long as the bars there. Near such a point U = k3 l0_3 (-l3) + a
+With |L1 - L2| < rho < L1 + L2 there are two, mirror images: A3 and A4 meet at the corner of the triangle with sides
+rho, L1, L2, at height H = +-sqrt(W). Springs 1 and 2 are as long as the bars there. Near such a point U = k3 l0_3 (-l3) + a
 smooth function whose slope along d3 is g: a peak where |g| < k3 l0_3, and a regular point where |g| is larger.
 """
 
@@ -26,7 +26,7 @@ class Cones:
 
 
 def cones(values: Mapping[str, Fraction]) -> Cones:
-    """The cones of a mechanism with parameters ``values`` (`ptmcad.interval.mechanism.NAMES`, any unit of stiffness)."""
+    """The cones of a mechanism with all parameters of `ptmcad.interval.mechanism.NAMES`, in any unit of stiffness."""
     rho, p1, p2 = values["rho"], values["L1"], values["L2"]
     pull1, pull2, pull3 = (values[f"k{i}"] * values[f"l0_{i}"] for i in (1, 2, 3))
     regular = not (pull1 and rho == p2) and not (pull2 and rho == p1)

@@ -22,22 +22,21 @@ from ptmcad.interval.system import Arguments
 
 NARROW = 1e-2
 """Boxes at most this wide are tried for a proof of existence."""
-FINEST = 1e-12
-"""Boxes at most this wide are not bisected further."""
 INFLATION = 1e-5
-"""The first attempt widens a box by this much on each side; each further one by 1/64 of the last."""
-ATTEMPTS = 6
+"""The first attempt widens a box by this much on each side; each further one by 1/8 of the last."""
+ATTEMPTS = 10
 
 
 @compiled
 def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> bool:
     """Whether it is proved that the equations have exactly one zero in the box, and that it is an inner point.
 
-    With Y the preconditioner, A = Y J(box) and c = Y f(middle): |c_i| + sum_{j not i} |A_ij| r_j < |A_ii| r_i for each i,
-    so (Y f)_i has opposite signs on opposite faces (existence, by Miranda), and no matrix in A is singular (uniqueness).
+    With Y the preconditioner, A = Y J(box), c = Y f(middle) and r the half-widths, |c_i| + sum_{j not i} |A_ij| r_j <
+    |A_ii| r_i for each i. So (Y f)_i has opposite signs on opposite faces, which proves existence (Miranda), and no matrix
+    in A is singular, which proves uniqueness.
     """
     program, stages, unknowns, equations, jacobian, _, _, _, _ = system
-    low, high, low_at, high_at, middle_low, middle_high, radius, j_low, j_high, matrix, inverse = work
+    low, high, low_at, high_at, middle_low, middle_high, radius, _, _, matrix, inverse = work
     m, n = jacobian.shape
     run(program, box_low, box_high, low, high, 0, stages[3])
     for k in range(box_low.shape[0]):
@@ -93,7 +92,7 @@ def _enlarged(store: Boxes, count: int) -> Boxes:
 
 @compiled
 def isolate(
-    system: Arguments, narrowing: Arguments, start: Boxes, budget: int, allowed: int
+    system: Arguments, narrowing: Arguments, start: Boxes, finest: float, budget: int, allowed: int
 ) -> tuple[Boxes, Boxes, Boxes, int]:
     """Isolate the solutions of a square system.
 
@@ -101,6 +100,7 @@ def isolate(
     ----------
     system : with what discards boxes that hold no solution looked for.
     narrowing : the same equations alone, for the proofs.
+    finest : boxes at most this wide are not bisected further.
     budget : number of boxes after which the search stops.
     allowed : number of boxes that may stay open; the search stops beyond.
 
@@ -139,9 +139,9 @@ def isolate(
                 for x in unknowns:
                     wide_low[x], wide_high[x] = low[x] - inflation, high[x] + inflation
                 proved = holds_one(narrowing, wide_low, wide_high, work)
-                if proved or inflation * 64 < width:
+                if proved or inflation * 8 < width:
                     break
-                inflation /= 64
+                inflation /= 8
             if proved:
                 if found == unique.shape[0]:
                     unique, narrow = _enlarged(unique, found), _enlarged(narrow, found)
@@ -155,7 +155,7 @@ def isolate(
                 found += 1
                 continue
         middle = low[widest] + CUT * (high[widest] - low[widest])
-        if width <= FINEST or not (low[widest] < middle < high[widest]):
+        if width <= finest or not (low[widest] < middle < high[widest]):
             if open_boxes == left.shape[0]:
                 left = _enlarged(left, open_boxes)
             left[open_boxes, :variables] = low

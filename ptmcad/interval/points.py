@@ -32,7 +32,9 @@ START, END = -3.0, -3.0 + 6.2832
 """A little more than a full turn, cut where no symmetric solution lies."""
 BUDGET = 60_000
 """Boxes in floating point for one point."""
-OPEN = 200
+FINEST = (1e-8, 1e-4)
+"""Boxes this narrow are left to Arb; the second number counts where the first leaves too many, next to a fold."""
+OPEN = 40
 """Boxes that floating point may leave to Arb."""
 PRECISIONS = (128, 320)
 ARB_BUDGET = 3_000
@@ -110,16 +112,16 @@ class PointCounter:
         only_minima = count in (Count.STABLE, Count.ADMISSIBLE)
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
         start = np.array([[x_low, y_low, START, START, x_high, y_high, END, END]])
-        unique, narrow, left, used = isolate(
-            self._minima if only_minima else self._all, self._equations, start, BUDGET, OPEN
-        )
-        if used >= BUDGET or len(left) > OPEN:
+        system = self._minima if only_minima else self._all
+        for finest in FINEST:
+            unique, narrow, left, used = isolate(system, self._equations, start, finest, BUDGET, OPEN)
+            if used < BUDGET and len(left) <= OPEN:
+                break
+        else:
             return None
-        if len(left):
-            return self._by_arb(x, y, only_minima, unique, left)
-        kept = distinct(unique, narrow, TH1)
+        kept = None if len(left) else distinct(unique, narrow, TH1)
         if kept is None:
-            return None
+            return self._by_arb(x, y, only_minima, unique, left)
         return self._kinds(x, y, unique[kept], narrow[kept], only_minima)
 
     def _values(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:

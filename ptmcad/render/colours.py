@@ -31,6 +31,8 @@ class Fill:
 
 UNKNOWN = Fill("#ffffff")
 NONE = Fill("#ffffff", "////")
+UNDETERMINED = Fill("#8f8f8f")
+"""L* = 59; the only grey, so that its lightness need not differ from all others'."""
 
 
 def fill_of(region: Region, count: Count) -> Fill:
@@ -40,6 +42,8 @@ def fill_of(region: Region, count: Count) -> Fill:
     """
     if count is Count.STABLE:
         return UNKNOWN if region.stable is None else _of(ONE_MAXIMUM, region.stable, 0)
+    if count is Count.ADMISSIBLE:
+        return UNKNOWN if region.admissible is None else _of(ONE_MAXIMUM, region.admissible, 0)
     if count is Count.TOTAL:
         if region.total is None:
             return UNKNOWN

@@ -18,10 +18,10 @@ from ptmcad.regionmap import RegionMap
 from ptmcad.render import regionmap
 from ptmcad.render.legend import INK, Entry, draw_legend, height
 from ptmcad.render.mechanism import spring_mark, symbol_mark
-from ptmcad.render.outline import View
 from ptmcad.render.poses import BELOW, HEAD, assigned, describe, in_order, panel, scale_bar, value_text
 from ptmcad.render.printing import settings
 from ptmcad.render.sketch import arrow_lengths, frame_of
+from ptmcad.render.view import View
 from ptmcad.slice import Slice
 
 _GAP, _RIM, _LINE = 0.2, 0.15, 0.2

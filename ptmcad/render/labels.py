@@ -12,7 +12,7 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
-from ptmcad.render.outline import Outline
+from ptmcad.render.view import Shapes
 
 FONT_SIZE = 8.0
 _EM = 0.64
@@ -33,7 +33,7 @@ class Placement:
     size: float
 
 
-def place(tips: Sequence[tuple[float, float]], texts: Sequence[str], seen: Outline, side: float) -> list[Placement]:
+def place(tips: Sequence[tuple[float, float]], texts: Sequence[str], seen: Shapes, side: float) -> list[Placement]:
     """Places for the texts, one after the other.
 
     Parameters

@@ -11,13 +11,16 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from ptmcad.numerals import decimal
 from ptmcad.regionmap import Region, RegionMap
-from ptmcad.render.colours import Fill, fill_of
+from ptmcad.render.colours import UNDETERMINED, Fill, fill_of
 from ptmcad.slice import Count
 from ptmcad.table import certified_digits, count_text
 
 STRONG, THIN, INK = 1.3, 0.5, "#111111"
 """Widths in points of walls that separate regions and of others, and the colour of both."""
+HAIRLINE = 0.4
+"""Width of the rim of what is undetermined: under a pixel at 150 dpi, as half of it lies on each side."""
 
 LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
 """Inches between lines, width of a swatch, characters in a line."""
@@ -26,6 +29,7 @@ _HEADS = {
     Count.STABLE: "Stable equilibria",
     Count.TOTAL: "Equilibria",
     Count.INDEX: "(minima, saddles, maxima)",
+    Count.ADMISSIBLE: "Stable, all springs taut",
 }
 
 
@@ -62,7 +66,10 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> Itera
     for text, regions in groups.items():
         yield Entry((_with_total(text, regions, count), *_areas(regions)), fill_of(regions[0], count))
     yield Entry(())
-    if len(result.regions) > 1:
+    if result.cover is not None and result.undetermined:
+        note = ("the count changes within it",) if len(result.regions) > 1 else ()
+        yield Entry((f"undetermined {percent(result.undetermined)}", *note), UNDETERMINED)
+    elif len(result.regions) > 1:
         yield Entry(("the count changes",), STRONG)
     if thin:
         yield Entry(("equilibria merge or vanish,", "the count does not change"), THIN)
@@ -73,8 +80,18 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> Itera
 
 
 def _key(region: Region, count: Count) -> tuple[int, ...]:
-    value = {Count.STABLE: region.stable, Count.TOTAL: region.total, Count.INDEX: region.index}[count]
+    value = {
+        Count.STABLE: region.stable,
+        Count.TOTAL: region.total,
+        Count.INDEX: region.index,
+        Count.ADMISSIBLE: region.admissible,
+    }[count]
     return (-1,) if value is None else value if isinstance(value, tuple) else (value,)
+
+
+def percent(share: Fraction) -> str:
+    """A share of the window in percent: two digits, rounded up."""
+    return f"{decimal(100 * share, up=True, digits=2)} %"
 
 
 def _with_total(text: str, regions: list[Region], count: Count) -> str:
@@ -82,7 +99,7 @@ def _with_total(text: str, regions: list[Region], count: Count) -> str:
     total = totals.pop() if len(totals) == 1 else None
     if count is Count.TOTAL or total is None:
         return text
-    return f"{text}   of {total} equilibria" if count is Count.STABLE else f"{text}   {total} equilibria"
+    return f"{text}   {total} equilibria" if count is Count.INDEX else f"{text}   of {total} equilibria"
 
 
 def _areas(regions: list[Region]) -> list[str]:
@@ -93,7 +110,8 @@ def _areas(regions: list[Region]) -> list[str]:
     if rest:
         together = (sum((r.area[0] for r in rest), Fraction(0)), sum((r.area[1] for r in rest), Fraction(0)))
         areas.append(f"{len(rest)} more: {certified_digits(together, 7)} together")
-    return textwrap.wrap(f"{len(regions)} regions, areas " + ", ".join(areas), COLUMNS)
+    comma = "; " if any(" to " in area for area in areas) else ", "
+    return textwrap.wrap(f"{len(regions)} regions, areas " + comma.join(areas), COLUMNS)
 
 
 def height(legend: tuple[Entry, ...]) -> float:

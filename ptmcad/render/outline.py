@@ -23,37 +23,12 @@ from ptmcad.algebra.real_roots import RealRoot, isolate, refine
 from ptmcad.cad.curves import Curve, curve
 from ptmcad.plane import PlanePolynomial
 from ptmcad.regionmap import RegionMap, Stack
+from ptmcad.render.view import Floats, Interval, View
 
 TOLERANCE = 1.5e-4
 DEPTH = 7
 _LIMIT = Fraction(1, 2**48)
 """A stack's ends are seen as limits from this fraction of its width: a square root's error is 2^-24 of its size."""
-
-Floats = NDArray[np.float64]
-Interval = tuple[Fraction, Fraction]
-
-
-@dataclass(frozen=True, slots=True)
-class View:
-    """The rectangle that is shown: intervals of the two axes, in their order."""
-
-    x: Interval
-    y: Interval
-
-    @classmethod
-    def whole(cls, result: RegionMap) -> View:
-        """The map's window."""
-        first, second = result.slice.axes
-        return cls((first.low, first.high), (second.low, second.high))
-
-    def along(self, axis: int) -> Interval:
-        """The interval of axis 0 or 1."""
-        return self.y if axis else self.x
-
-    def approximate_position(self, point: tuple[Fraction, Fraction]) -> tuple[float, float]:
-        """A point in the view's own coordinates, (0, 0) to (1, 1)."""
-        (left, right), (bottom, top) = self.x, self.y
-        return float((point[0] - left) / (right - left)), float((point[1] - bottom) / (top - bottom))
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +63,10 @@ class Outline:
     stacks: tuple[StackOutline, ...]
     lines: tuple[tuple[float, int, int], ...]
 
+    def in_view(self, view: View) -> Outline:
+        """The same map in another view."""
+        return outline(self.result, view)
+
     def points(self, along: Floats, heights: Floats) -> Floats:
         """Positions as an array of shape (n, 2) in the order of the picture's axes."""
         pair = (heights, along) if self.swapped else (along, heights)
@@ -106,6 +85,18 @@ class Outline:
                     top = self.points(stack.along, stack.heights[level])
                     yield np.concatenate([bottom, top[::-1]])
                     start = None
+
+    def cells(self) -> Iterator[tuple[int, list[Floats]]]:
+        """Every cell of the view with its outline, stack after stack from below."""
+        for stack in self.stacks:
+            for level, number in enumerate(self.result.stacks[stack.number].cells):
+                bottom = self.points(stack.along, stack.heights[level])
+                top = self.points(stack.along, stack.heights[level + 1])
+                yield number, [np.concatenate([bottom, top[::-1]])]
+
+    def edges(self) -> Iterator[Floats]:
+        """None: an exact map leaves nothing open between its cells."""
+        return iter(())
 
     def walls(self) -> Iterator[tuple[int, bool, Floats]]:
         """Every wall as (component, whether it separates two regions, polyline)."""

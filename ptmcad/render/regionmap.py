@@ -1,7 +1,8 @@
 """The picture of a region map: regions coloured by count, walls, legend, and an inset for every sliver.
 
 Guarantee: the same map gives the same bytes (SVG and PNG) with the same matplotlib; regions that the drawing's
-resolution hides are marked by an arrow and shown in insets. Global state of matplotlib is neither used nor changed.
+resolution hides are marked by an arrow and shown in insets. What a certified map leaves undetermined is grey, with a
+hairline around it, so that it is seen however narrow it is. Global state of matplotlib is neither used nor changed.
 
 Not guaranteed: anything that only the picture tells. It is drawn in floating point from the exact map.
 """
@@ -18,12 +19,12 @@ from matplotlib.figure import Figure
 
 from ptmcad.regionmap import RegionMap
 from ptmcad.render.axes import dress
-from ptmcad.render.colours import fill_of
+from ptmcad.render.colours import UNDETERMINED, fill_of
 from ptmcad.render.labels import Placement, place
-from ptmcad.render.legend import INK, STRONG, THIN, draw_legend, entries, height
-from ptmcad.render.outline import Outline, outline
+from ptmcad.render.legend import HAIRLINE, INK, STRONG, THIN, draw_legend, entries, height
 from ptmcad.render.printing import printed, settings, suffix_of
 from ptmcad.render.slivers import Sliver, Zoom, thin_regions, zooms
+from ptmcad.render.view import Shapes, shapes
 from ptmcad.table import certified_digits, count_text
 
 RESOLVED = 42
@@ -64,7 +65,7 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
 
 def figure_of(result: RegionMap, samples: bool, dpi: int, beside: float = 0.0, tallest: float = 0.0) -> Figure:
     """The picture, with so many inches left free at its right and at least so tall there."""
-    whole = outline(result)
+    whole = shapes(result)
     thin = thin_regions(whole, round(SIDE * min(dpi, RESOLVED)))
     views = zooms(whole, thin)
     marked = [sliver for zoom in views for sliver in zoom.slivers]
@@ -136,13 +137,20 @@ def _axes(figure: Figure, box: tuple[float, float, float, float], gid: str) -> A
     return axes
 
 
-def _paint(axes: Any, seen: Outline, prefix: str) -> None:
+def _paint(axes: Any, seen: Shapes, prefix: str) -> None:
     """Fill the regions and draw the walls."""
     from matplotlib.collections import LineCollection
-    from matplotlib.patches import PathPatch
+    from matplotlib.patches import PathPatch, Rectangle
     from matplotlib.path import Path as Curve
 
     result = seen.result
+    if result.cover is not None:
+        axes.add_artist(
+            Rectangle(
+                (0, 0), 1, 1, transform=axes.transAxes, facecolor=UNDETERMINED.face, linewidth=0, snap=False,
+                gid=f"{prefix}undetermined",
+            )
+        )  # fmt: skip
     for number, region in enumerate(result.regions):
         polygons = [Curve(p, closed=False) for p in seen.polygons(number)]
         if not polygons:
@@ -153,6 +161,14 @@ def _paint(axes: Any, seen: Outline, prefix: str) -> None:
             PathPatch(
                 Curve.make_compound_path(*polygons), transform=axes.transAxes, facecolor=fill.face, edgecolor=INK,
                 hatch=fill.hatch or None, linewidth=0, snap=False, gid=f"{prefix}region-{number}",
+            )
+        )  # fmt: skip
+    edges = list(seen.edges())
+    if edges:
+        axes.add_artist(
+            LineCollection(
+                edges, transform=axes.transAxes, colors=INK, linewidths=HAIRLINE, joinstyle="round", zorder=2,
+                gid=f"{prefix}edges",
             )
         )  # fmt: skip
     lines: dict[tuple[bool, int], list[Any]] = {}
@@ -182,7 +198,7 @@ def _inset(figure: Figure, zoom: Zoom, names: Sequence[str], corner: tuple[float
     axes.set_title(title, fontsize=7.5, loc="left", pad=3)
 
 
-def _mark(axes: Any, whole: Outline, thin: Sequence[Sliver], names: Sequence[str]) -> None:
+def _mark(axes: Any, whole: Shapes, thin: Sequence[Sliver], names: Sequence[str]) -> None:
     """An arrow to every sliver, labels apart from each other."""
     tips = [whole.view.approximate_position(s.at) for s in thin]
     marks: list[Placement] = place(tips, names, whole, SIDE * 72)

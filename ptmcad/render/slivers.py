@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.regionmap import RegionMap
-from ptmcad.render.outline import Interval, Outline, View, outline
+from ptmcad.render.view import Interval, Shapes, View
 
 STEPS = 100
 MOST_ZOOMS = 12
@@ -37,11 +37,11 @@ class Sliver:
 class Zoom:
     """A view that shows some slivers clearly."""
 
-    outline: Outline
+    outline: Shapes
     slivers: tuple[Sliver, ...]
 
 
-def thin_regions(whole: Outline, pixels: int) -> tuple[int, ...]:
+def thin_regions(whole: Shapes, pixels: int) -> tuple[int, ...]:
     """The regions that are thinner than three of the drawing's pixels everywhere.
 
     Parameters
@@ -52,7 +52,7 @@ def thin_regions(whole: Outline, pixels: int) -> tuple[int, ...]:
     return tuple(n for n in range(len(whole.result.regions)) if not _eroded(image == n).any())
 
 
-def zooms(whole: Outline, thin: Sequence[int], most: int = MOST_ZOOMS) -> tuple[Zoom, ...]:
+def zooms(whole: Shapes, thin: Sequence[int], most: int = MOST_ZOOMS) -> tuple[Zoom, ...]:
     """Views that show the thin regions clearly, each as many of them as it happens to; at most so many views."""
     waiting = list(thin)
     found: list[Zoom] = []
@@ -65,7 +65,7 @@ def zooms(whole: Outline, thin: Sequence[int], most: int = MOST_ZOOMS) -> tuple[
     return tuple(found)
 
 
-def _zoom(whole: Outline, region: int) -> Outline:
+def _zoom(whole: Shapes, region: int) -> Shapes:
     """A view around the region, shortened until the region is clearly seen."""
     view, seen = whole.view, whole
     window = whole.view
@@ -74,18 +74,18 @@ def _zoom(whole: Outline, region: int) -> Outline:
         if box is None or min(box[1] - box[0], box[3] - box[2]) > 0.3:
             break
         view = View(_stretched(view.x, box[:2], window.x), _stretched(view.y, box[2:], window.y))
-        seen = outline(whole.result, view)
+        seen = whole.in_view(view)
     for _ in range(STEPS):
         depth, at = _thick(seen, region)
         if depth >= _CLEAR:
             break
         factor = Fraction(1, 16 if depth < 0 else 2)
         view = View(_shortened(view.x, at[0], window.x, factor), _shortened(view.y, at[1], window.y, factor))
-        seen = outline(whole.result, view)
+        seen = whole.in_view(view)
     return seen
 
 
-def _bounding_box(seen: Outline, region: int) -> tuple[float, float, float, float] | None:
+def _bounding_box(seen: Shapes, region: int) -> tuple[float, float, float, float] | None:
     """The visible part of the region: left, right, bottom, top in the view's coordinates."""
     parts = [np.clip(polygon, 0.0, 1.0) for polygon in seen.polygons(region)]
     if not parts:
@@ -115,7 +115,7 @@ def _shortened(shown: Interval, at: Fraction, window: Interval, factor: Fraction
     return low, low + width
 
 
-def _thick(seen: Outline, region: int) -> tuple[int, tuple[Fraction, Fraction]]:
+def _thick(seen: Shapes, region: int) -> tuple[int, tuple[Fraction, Fraction]]:
     """Half the side, in pixels, of the largest square within the region in the view (-1: none), and its centre."""
     mask = seen.raster(_PIXELS, _PIXELS) == region
     depth = -1
@@ -131,7 +131,7 @@ def _thick(seen: Outline, region: int) -> tuple[int, tuple[Fraction, Fraction]]:
     return depth, (view.x[0] + (view.x[1] - view.x[0]) * x, view.y[0] + (view.y[1] - view.y[0]) * y)
 
 
-def _inside(seen: Outline, region: int) -> tuple[Fraction, Fraction]:
+def _inside(seen: Shapes, region: int) -> tuple[Fraction, Fraction]:
     """A sample point of the region, one in the view if there is any."""
     (left, right), (bottom, top) = seen.view.x, seen.view.y
     result: RegionMap = seen.result

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from ptmcad.numerals import shortest_text
 from ptmcad.regionmap import RegionMap
 from ptmcad.render.colours import Fill, fill_of
-from ptmcad.render.outline import Outline
 from ptmcad.render.slivers import thin_regions, zooms
+from ptmcad.render.view import Shapes
 from ptmcad.report.frame import BOTTOM, LEFT, RIM, SIDE, frame
 from ptmcad.table import count_text
 
@@ -46,7 +46,7 @@ class Chart:
     hidden: int
 
 
-def chart(seen: Outline) -> Chart:
+def chart(seen: Shapes) -> Chart:
     """The pictures of a map."""
     result = seen.result
     thin = thin_regions(seen, SHOWN)
@@ -102,7 +102,7 @@ def _pattern(hatch: str) -> str:
     )
 
 
-def _picture(seen: Outline, name: str, marks: Sequence[Mark], labels: Sequence[Label]) -> str:
+def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[Label]) -> str:
     result = seen.result
     count = result.slice.count
     parts = [
@@ -143,7 +143,7 @@ def _picture(seen: Outline, name: str, marks: Sequence[Mark], labels: Sequence[L
     return "".join(parts)
 
 
-def _window_text(seen: Outline) -> str:
+def _window_text(seen: Shapes) -> str:
     axes = seen.result.slice.axes
     ends = (seen.view.x, seen.view.y)
     spans = (f"{a.name} from {_short(e[0])} to {_short(e[1])}" for a, e in zip(axes, ends, strict=True))
@@ -167,19 +167,13 @@ def _closed(polygon: NDArray[np.float64]) -> str:
     return _open(polygon) + "Z"
 
 
-def _cells(seen: Outline) -> Iterator[str]:
+def _cells(seen: Shapes) -> Iterator[str]:
     """The cells of the view, from the left and from below, as areas that take pointer and focus."""
-    result = seen.result
-    for stack in seen.stacks:
-        cells = result.stacks[stack.number].cells
-        for level, number in enumerate(cells):
-            bottom = seen.points(stack.along, stack.heights[level])
-            top = seen.points(stack.along, stack.heights[level + 1])
-            outline = _closed(np.concatenate([bottom, top[::-1]]))
-            yield (
-                f'<path class="cell" data-cell="{number}" tabindex="-1" role="button" aria-pressed="false" '
-                f'aria-label="{escape(cell_text(result, number))}" d="{outline}"/>'
-            )
+    for number, polygons in seen.cells():
+        yield (
+            f'<path class="cell" data-cell="{number}" tabindex="-1" role="button" aria-pressed="false" '
+            f'aria-label="{escape(cell_text(seen.result, number))}" d="{"".join(map(_closed, polygons))}"/>'
+        )
 
 
 def cell_text(result: RegionMap, number: int) -> str:
@@ -199,7 +193,7 @@ def counts_text(stable: int | None, total: int | None) -> str:
     return f"{total} {noun}" if stable is None else f"{stable} stable of {total} {noun}"
 
 
-def _region_labels(seen: Outline) -> list[Label]:
+def _region_labels(seen: Shapes) -> list[Label]:
     """For each region into which its count can be written, even in the larger type of phones, a point deep inside."""
     pixels = 60
     image = seen.raster(pixels, pixels)

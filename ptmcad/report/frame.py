@@ -11,7 +11,7 @@ from html import escape
 
 from ptmcad.numerals import magnitude, shortest_text
 from ptmcad.render.axes import Scale, scale_of, symbol, unit
-from ptmcad.render.outline import Outline
+from ptmcad.render.view import Shapes
 
 SIDE, LEFT, BOTTOM, RIM = 600, 110, 100, 24
 """In the picture's own units: the window's side, the room for the axes' numbers and names, the rim."""
@@ -19,7 +19,7 @@ _MOST_TICKS = 6
 _NAME = 24
 
 
-def frame(seen: Outline) -> Iterator[str]:
+def frame(seen: Shapes) -> Iterator[str]:
     """The frame with ticks, numbers and names, as elements of a group whose origin is its upper left corner."""
     yield f'<rect class="frame" width="{SIDE}" height="{SIDE}"/>'
     slice = seen.result.slice

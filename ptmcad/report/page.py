@@ -19,7 +19,7 @@ from ptmcad.numerals import text_of
 from ptmcad.regionmap import RegionMap
 from ptmcad.render.axes import symbol
 from ptmcad.render.colours import fill_of
-from ptmcad.render.outline import Outline, outline
+from ptmcad.render.view import Shapes, shapes
 from ptmcad.report import sections
 from ptmcad.report.chart import Chart, chart, counts_text, pattern_defs
 from ptmcad.report.consistency import check_numbers
@@ -74,9 +74,9 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
     )
 
 
-def _outline(result: RegionMap) -> Outline:
+def _outline(result: RegionMap) -> Shapes:
     try:
-        return outline(result)
+        return shapes(result)
     except (IndexError, ValueError, ArithmeticError) as error:
         raise ConfigError(f"the map contradicts itself ({error}); check it with ptmcad verify") from error
 

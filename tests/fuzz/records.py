@@ -88,7 +88,7 @@ def options(rng: Random) -> dict[str, object]:
     odd = rng.choice((0.02, 0.1, 0.3))
     names = rng.sample(PARAMETERS, 2)
     if rng.random() < 0.4:
-        found["config"] = rng.randrange(10)
+        found["config"] = rng.randrange(17)
     if rng.random() < 0.8:
         found["slice"] = nasty(rng) if rng.random() < odd else ",".join(names)
     found["sets"] = [

@@ -1,0 +1,95 @@
+"""Covers with less detail: small components given up, and the same area covered by fewer rectangles.
+
+Guarantee: `filled` covers what the cover covers and the chosen components, and no inner point of another component;
+`simplified` covers the same points as before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ptmcad.cover import Cover
+from ptmcad.cover.complement import Components
+from ptmcad.cover.rounding import cover_of
+from ptmcad.cover.subdivision import FREE, Integers, rectangle_array, subdivide
+
+
+def pockets(components: Components, least_area: int) -> tuple[int, ...]:
+    """The components of less than an area, in squares of a lattice step: those between the rectangles, mostly."""
+    return tuple(n for n, area in enumerate(components.areas) if area < least_area)
+
+
+def filled(components: Components, numbers: Iterable[int]) -> Cover:
+    """The cover with these components covered too, by as many rectangles as they have parts."""
+    tree = components.subdivision
+    chosen = (tree.state == FREE) & np.isin(components.owner, list(numbers))
+    array = rectangle_array(components.cover)
+    return cover_of(np.concatenate([array, _merged(tree.bounds[chosen])]), components.cover.steps)
+
+
+def simplified(cover: Cover) -> Cover:
+    """A cover of the same points by at most as many rectangles, mostly fewer.
+
+    Rectangles that the others cover are left out, the smallest ones first; and neighbours that together are a rectangle
+    are replaced by it.
+
+    Raises
+    ------
+    ValueError
+        When a rectangle is not one, or the lattice is too fine.
+    """
+    array = _merged(rectangle_array(cover))
+    if not len(array):
+        return cover
+    tree = subdivide(cover)
+    rectangle, leaf = tree.meeting(array, closed=False)
+    order = np.argsort(rectangle, kind="stable")
+    rectangle, leaf = rectangle[order], leaf[order]
+    own, part = array[rectangle], tree.bounds[leaf]
+    late, early = own[:, (0, 2)] > part[:, (0, 2)], own[:, (1, 3)] < part[:, (1, 3)]
+    whole = ~(late | early)
+    whole = whole[:, 0] & whole[:, 1]
+    covering = np.bincount(leaf[whole], minlength=len(tree.state))
+    number = np.bincount(rectangle, minlength=len(array))
+    ends = np.cumsum(number)
+    # a rectangle can be left out if others cover each leaf that it meets
+    fewest = np.minimum.reduceat(covering[leaf] - whole, ends - number)
+    candidates = np.flatnonzero(fewest > 0).tolist()
+    kept = np.ones(len(array), dtype=np.bool_)
+    width, tall = (array[:, 1] - array[:, 0]).astype(float), (array[:, 3] - array[:, 2]).astype(float)
+    for k in sorted(candidates, key=lambda k: (width[k] * tall[k], k)):
+        own_leaves = slice(ends[k] - number[k], ends[k])
+        left = covering[leaf[own_leaves]] - whole[own_leaves]
+        if left.min() > 0:
+            covering[leaf[own_leaves]] = left
+            kept[k] = False
+    return cover_of(_merged(array[kept]), cover.steps)
+
+
+def _merged(array: Integers) -> Integers:
+    """Rectangles of which none share two ends along one axis and meet along the other; the union stays."""
+    while True:
+        before = len(array)
+        for fixed, moving in (((2, 3), (0, 1)), ((0, 1), (2, 3))):
+            array = _merged_along(array, fixed, moving)
+        if len(array) == before:
+            return array
+
+
+def _merged_along(array: Integers, fixed: tuple[int, int], moving: tuple[int, int]) -> Integers:
+    """Rectangles with equal ends in the fixed columns joined where they overlap or touch in the moving ones."""
+    if not len(array):
+        return array
+    array = array[np.lexsort((array[:, moving[1]], array[:, moving[0]], array[:, fixed[1]], array[:, fixed[0]]))]
+    rows = (array[1:, fixed[0]] != array[:-1, fixed[0]]) | (array[1:, fixed[1]] != array[:-1, fixed[1]])
+    group = np.concatenate([[0], np.cumsum(rows)])
+    # the farthest end so far within the group: groups are lifted above each other, so that one running maximum does
+    ends, ranks = np.unique(array[:, moving[1]], return_inverse=True)
+    farthest = ends[np.maximum.accumulate(ranks + group * len(ends)) - group * len(ends)]
+    fresh = np.concatenate([[True], rows | (array[1:, moving[0]] > farthest[:-1])])
+    starts = np.flatnonzero(fresh)
+    joined = array[starts]
+    joined[:, moving[1]] = np.maximum.reduceat(array[:, moving[1]], starts)
+    return joined
