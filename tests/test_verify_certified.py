@@ -1,4 +1,4 @@
-"""The verification of certified maps: it accepts true ones, rejects false ones, and its parts agree with other methods."""
+"""The verification of certified maps accepts true ones and rejects false ones; its parts agree with other methods."""
 
 from __future__ import annotations
 
@@ -120,7 +120,9 @@ FALSE: dict[str, tuple[Change, str]] = {
     "a count that was not asked for": (lambda r: with_cell(r, 0, total=4), "form"),
     "counts of a region": (lambda r: with_region(r, 0, stable=2), "regions and areas"),
     "a rectangle removed": (lambda r: with_cover(r, rectangles(r)[1:]), "components"),
-    "a rectangle in the middle removed": (lambda r: with_cover(r, [*rectangles(r)[:50], *rectangles(r)[51:]]), "components"),
+    "a rectangle in the middle removed": (
+        lambda r: with_cover(r, [*rectangles(r)[:50], *rectangles(r)[51:]]), "components",
+    ),
     "a rectangle shifted": (
         lambda r: with_cover(r, sorted([*rectangles(r)[1:], tuple(x + 4096 for x in rectangles(r)[0])])),  # type: ignore[list-item]
         "components",
@@ -310,11 +312,11 @@ def values(rho: str, l1: str, l2: str, l0: str, f3: str, f4: str) -> dict[str, F
 @pytest.mark.parametrize("name", KNOWN)
 def test_known_counts(name: str) -> None:
     *text, index = KNOWN[name]
-    point = values(*text)  # type: ignore[arg-type]
+    point = values(*text)
     energy, found = all_equilibria(point, Count.TOTAL)
     assert counts_of(energy, point, found, Count.TOTAL).index == index
     _, minima = all_equilibria(point, Count.STABLE)
-    assert Counter(e.signs for e in minima)["++"] == index[0]  # type: ignore[index]
+    assert Counter(e.signs for e in minima)["++"] == index[0]
 
 
 @pytest.mark.slow

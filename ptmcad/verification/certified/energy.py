@@ -68,7 +68,8 @@ class Energy:
         zero = arb(0) if crease2 else self.rho - self.length1
         self.gap2 = zero * zero
         self.product1, self.product2 = 4 * self.rho * self.length2, 4 * self.rho * self.length1
-        self.free1, self.free2, self.free3 = (not p == 0 for p in (self.p1, self.p2, self.p3))
+        # a ball that is not exactly zero: != would ask for one without zero
+        self.free1, self.free2, self.free3 = (not (p == 0) for p in (self.p1, self.p2, self.p3))  # noqa: SIM201
 
     def __call__(self, th1: arb, th2: arb) -> Derivatives:
         """At all configurations in two balls."""
@@ -155,8 +156,8 @@ class Energy:
         """w1^2 + w2^2 + 2 w1 w2 c12 - (p3 s12)^2, zero at an equilibrium, whatever the direction of spring 3.
 
         With w1, w2 what e1, e2 are without the free length of spring 3, an equilibrium demands w_i = p3 t_i . u for a
-        unit vector u, with t1 . t2 = -c12; eliminating u: w1^2 + w2^2 + 2 w1 w2 c12 = p3^2 s12^2. Where l3 = 0, the cone
-        outweighs the slope of the rest when this is negative.
+        unit vector u, with t1 . t2 = -c12; eliminating u: w1^2 + w2^2 + 2 w1 w2 c12 = p3^2 s12^2. Where l3 = 0, the
+        cone outweighs the slope of the rest when this is negative.
         """
         derivatives = _without_third(self)(th1, th2)
         w1, w2 = derivatives.e1, derivatives.e2
@@ -192,9 +193,9 @@ class Energy:
     def bends_down(self, th1: arb, th2: arb, d: Derivatives) -> bool:
         """Whether the Hessian has a negative eigenvalue wherever l3 is not zero in balls in which it may be.
 
-        With G = J^T J, J being the derivative of A4 - A3 by the angles, tr(adj(G) Hess) of -p3 l3 is -p3 det G / l3 but for
-        a part of at most p3 L1^2 L2^2 (1/L1 + 1/L2); adj(G) is positive semidefinite, so a negative trace tells. All is
-        divided by L1 L2 here; d.e11 ... are those without the free length of spring 3.
+        With G = J^T J, J being the derivative of A4 - A3 by the angles, tr(adj(G) Hess) of -p3 l3 is -p3 det G / l3 but
+        for a part of at most p3 L1^2 L2^2 (1/L1 + 1/L2); adj(G) is positive semidefinite, so a negative trace tells. All
+        is divided by L1 L2 here; d.e11 ... are those without the free length of spring 3.
         """
         s12, c12 = (th1 + th2).sin_cos()
         l1, l2 = self.length1, self.length2

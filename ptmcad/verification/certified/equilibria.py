@@ -92,11 +92,10 @@ def equilibria(
                 if _off_middle(energy, square, d, inverse):
                     continue
                 new = _settled(energy, square, found)
-                if new is not None:
-                    if all(_apart(new, e) for e in found):
-                        found.append(new)
-                        if _inside(square, new):
-                            continue
+                if new is not None and all(_apart(new, e) for e in found):
+                    found.append(new)
+                    if _inside(square, new):
+                        continue
         if max(r1, r2) < smallest:
             raise Unproved(f"an equilibrium near ({m1:.6g}, {m2:.6g}) may be degenerate")
         if _first(d, r1, r2):

@@ -186,7 +186,8 @@ def _only(energy: Energy, solution: Solution, k: int) -> Equilibrium:
     with ctx.workprec(128):
         inside, _ = equilibria(energy, False, [start])
         held = [e for e in inside if _in(e, solution)]
-    if len(inside) != 1 or len(held) != 1:
+        open_ = [e for e in inside if e not in held and not _out(e, solution)]
+    if len(held) != 1 or open_:
         raise Violation(f"box {k} of the solutions, around ({x:.6g}, {y:.6g}), has {len(held)} equilibria, not one")
     return held[0]
 
@@ -195,6 +196,13 @@ def _in(e: Equilibrium, solution: Solution) -> bool:
     radius = exact(solution.radius)
     return all(
         bool(abs(angle - exact(center)) <= radius) for angle, center in zip(e.within, solution.center, strict=True)
+    )
+
+
+def _out(e: Equilibrium, solution: Solution) -> bool:
+    radius = exact(solution.radius)
+    return any(
+        bool(abs(angle - exact(center)) > radius) for angle, center in zip(e.within, solution.center, strict=True)
     )
 
 

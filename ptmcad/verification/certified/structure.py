@@ -12,7 +12,8 @@ from itertools import pairwise
 
 from ptmcad.numerals import text_of
 from ptmcad.regionmap import Status
-from ptmcad.slice import Count
+from ptmcad.slice import FREE_LENGTHS, Count
+from ptmcad.verification.certified.energy import NAMES
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
@@ -94,6 +95,10 @@ def check_form(claims: CertifiedClaims) -> str:
     r = claims.result
     if r.cover is None or r.status not in (Status.CERTIFIED, Status.PARTIAL):
         raise Violation(f"the status is {r.status.value!r}, and there is {'no' if r.cover is None else 'a'} cover")
+    if r.slice.mechanism != "ptm" or not set(NAMES) - set(FREE_LENGTHS) <= set(r.slice.parameters) <= {"k", *NAMES}:
+        raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
+    if any(axis.low >= axis.high for axis in r.slice.axes):
+        raise Violation("the window is empty")
     for name in ("components", "critical_values", "stacks", "adjacencies", "non_adjacencies"):
         if getattr(r, name):
             raise Violation(f"a certified map has {name}")

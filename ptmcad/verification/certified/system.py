@@ -35,8 +35,8 @@ def check_potential(claims: Claims, seed: str) -> str:
             point = {name: arb(rng.randrange(1, 2**20)) / 2**18 for name in (*NAMES, *UNKNOWNS)}
             stored, true = _value(expression, point), _energy(point)
             if not (stored - true).contains(0) or not (stored - true).rad() < 1e-25:
-                raise Violation(f"the stored potential differs from the mechanism's by {float((stored - true).mid()):.3g}"
-                                f" at a random point")  # fmt: skip
+                difference = float((stored - true).mid())
+                raise Violation(f"the stored potential differs from the mechanism's by {difference:.3g} somewhere")
     return f"the potential in {len(UNKNOWNS)} unknowns and {len(NAMES)} parameters"
 
 
