@@ -48,29 +48,58 @@ def newton(system: System, box: Box, precision: int) -> tuple[Box, bool] | None:
         if not all(entry.is_finite() for entry in entries):
             return box, False
         jacobian = arb_mat(size, size, entries)
-        try:
-            inverse = arb_mat(size, size, [entry.mid() for entry in entries]).inv()
-        except ZeroDivisionError:
-            return box, False
-        inverse = arb_mat(size, size, [entry.mid() for entry in inverse.entries()])
-        matrix = inverse * jacobian
-        residual = inverse * arb_mat(size, 1, [at[int(place)] for place in system.equations])
-        shrunk, proved = list(box), True
-        for i, k in enumerate(unknowns):
-            rest = residual[i, 0]
-            for j, other in enumerate(unknowns):
-                if j != i:
-                    rest += matrix[i, j] * (box[other] - middle[other])
-            pivot = matrix[i, i]
-            if not _nonzero(pivot):
-                proved = False
-                continue
-            found = middle[k] - rest / pivot
-            if not found.overlaps(box[k]):
-                return None
-            proved = proved and bool(box[k].contains_interior(found))
-            shrunk[k] = found.intersection(box[k])
+        residual = arb_mat(size, 1, [at[int(place)] for place in system.equations])
+        radii = [box[k].rad() for k in unknowns]
+        shrunk, proved = list(box), False
+        for complete in (True, False):
+            rows, pivots = _elimination(arb_mat(size, size, [entry.mid() for entry in entries]), radii, complete)
+            matrix, constant = rows * jacobian, rows * residual
+            inside = len(pivots) == size
+            for i, pivot in pivots.items():
+                rest = constant[i, 0]
+                for j, other in enumerate(unknowns):
+                    if j != pivot:
+                        rest += matrix[i, j] * (box[other] - middle[other])
+                factor, k = matrix[i, pivot], unknowns[pivot]
+                if not _nonzero(factor):
+                    inside = False
+                    if _nonzero(rest + factor * (box[k] - middle[k])):
+                        return None
+                    continue
+                found = middle[k] - rest / factor
+                if not found.overlaps(shrunk[k]):
+                    return None
+                inside = inside and bool(box[k].contains_interior(found))
+                shrunk[k] = found.intersection(shrunk[k])
+            if inside:
+                proved = True
+                break
         return tuple(shrunk), proved
+
+
+def _elimination(middle: arb_mat, radii: Sequence[arb], complete: bool) -> tuple[arb_mat, dict[int, int]]:
+    """Row operations that solve for one unknown in each row, and which; any are valid, rounding needs no care.
+
+    Gauss-Jordan elimination with full pivoting; when not ``complete``, without its steps upwards, so that next to a
+    singular matrix the rows that are regular stay useful.
+    """
+    size = middle.nrows()
+    rows = arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
+    pivots: dict[int, int] = {}
+    for _ in range(size):
+        current = rows * middle
+        free = [(i, j) for i in range(size) if i not in pivots for j in range(size) if j not in pivots.values()]
+        row, column = max(free, key=lambda place: float(abs(current[place].mid()) * radii[place[1]]))
+        factor = current[row, column].mid()
+        if not _nonzero(factor):
+            break
+        pivots[row] = column
+        for i in range(size):
+            if i != row and (complete or i not in pivots):
+                ratio = (current[i, column] / factor).mid()
+                for j in range(size):
+                    rows[i, j] = (rows[i, j] - ratio * rows[row, j]).mid()
+    return rows, pivots
 
 
 def _nonzero(value: arb) -> bool:

@@ -119,11 +119,9 @@ class PointCounter:
                 break
         else:
             return None
-        if len(left):
-            return self._by_arb(x, y, only_minima, unique, left)
-        kept = distinct(unique, narrow, TH1)
+        kept = None if len(left) else distinct(unique, narrow, TH1)
         if kept is None:
-            return None
+            return self._by_arb(x, y, only_minima, unique, left)
         return self._kinds(x, y, unique[kept], narrow[kept], only_minima)
 
     def _values(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
