@@ -6,6 +6,7 @@ tests/oracle.py for counts, Newton's method in floating point. Known answers: th
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import re
 from collections.abc import Callable, Mapping
@@ -228,8 +229,11 @@ FACTS: dict[str, dict[str, Any]] = {
     "4.3-curves": {"curves": 1, "degrees": (24, 12), "terms": 70},
     "4.3-fig5-degrees": {"terms": (115, 115)},
     "5.2-degree-28": {"total degrees": (28, 28), "in t1, t2": (16, 12, 12, 16)},
-    "5.2-degree-328": {"degree": 400, "exponent": 48, "left": 304, "factors": ("(256, 1)", "(2, 8)", "(2, 16)")},
-    "5.2-six": {"at least": 12, "stable": 2, "at least, second witness": 26, "stable, second witness": 8,
+    "5.2-degree-328": {"degree": 400, "exponent": 48, "left": 304, "factors": ("(256, 1)", "(2, 8)", "(2, 16)"),
+                       "multiplicity of l1 = 0": 8, "multiplicity of l3 = 0": 16, "complex solutions": 128,
+                       "real solutions": 48, "opposed": 128, "unsettled": 0},
+    "5.2-spurious": {"real roots": 94, "real, any signs": 48, "equilibria": 6, "proved": 6, "stable": 2},
+    "5.2-six": {"l0 = 0.2": (12, 12, 2, 2), "l0 = 1.01487": (26, 26, 8, 0), "l0 = 1.43487": (30, 30, 10, 0),
                 "at the eliminated design": 6},
     "c-four-unsymmetric": {"bound": 2, "not symmetric": 2, "unstable": 4, "totals": (4, 6)},
 }  # fmt: skip
@@ -379,7 +383,7 @@ def test_heights_by_descent(at: dict[str, float], signs: set[tuple[int, int]]) -
 
 def test_free_lengths_by_newton() -> None:
     """5.2-six: as many equilibria as a Newton search with difference quotients finds."""
-    for design in (extensions.TWELVE, extensions.TWENTY_SIX):
+    for design in extensions.WITNESSES:
         proved = extensions.equilibria_with(design)
         assert len(proved) == free_length_equilibria(*map(float, design))
 
@@ -476,8 +480,14 @@ def test_a_third_line_that_is_none_is_noticed(monkeypatch: pytest.MonkeyPatch) -
 
 def test_six_equilibria_would_not_refute(monkeypatch: pytest.MonkeyPatch) -> None:
     """A witness with six equilibria decides nothing: a lower bound can not confirm the claim either."""
-    monkeypatch.setattr(extensions, "TWELVE", ("0.7", "1", "1.5", "0.2", "-0.1", "-0.1"))
+    monkeypatch.setattr(extensions, "WITNESSES", (extensions.AT_ELIMINATED,))
     assert extensions.at_most_six().verdict is Verdict.UNDECIDED
+
+
+def test_an_elimination_without_spurious_roots_would_not_confirm(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = dataclasses.replace(extensions.elimination(), real_roots=6)
+    monkeypatch.setattr(extensions, "elimination", lambda: found)
+    assert extensions.spurious().verdict is Verdict.UNDECIDED
 
 
 def test_a_failed_derivation_confirms_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

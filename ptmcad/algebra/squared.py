@@ -29,6 +29,7 @@ class Elimination:
     degree : of the resultant in t2.
     circle : exponent of the factor 1 + t2^2.
     factors : (degree, multiplicity) of the other squarefree factors, by multiplicity.
+    quadratics : (coefficients of 1, t2 and t2^2, multiplicity) of those of degree 2, without common divisor.
     real_roots : number of different real t2.
     """
 
@@ -37,6 +38,7 @@ class Elimination:
     degree: int
     circle: int
     factors: tuple[tuple[int, int], ...]
+    quadratics: tuple[tuple[tuple[int, int, int], int], ...]
     real_roots: int
 
 
@@ -88,8 +90,15 @@ def eliminate(first: Coefficient, second: Coefficient) -> Elimination:
         degree=eliminated.degree(),
         circle=circle,
         factors=tuple((p.degree(), e) for p, e in parts),
+        quadratics=tuple((_three(p), e) for p, e in parts if p.degree() == 2),
         real_roots=real_root_number(whole),
     )
+
+
+def _three(p: fmpz_poly) -> tuple[int, int, int]:
+    constant, linear, leading = (int(c) for c in p // p.content())
+    sign = 1 if leading > 0 else -1
+    return sign * constant, sign * linear, sign * leading
 
 
 def squarefree_factors(p: fmpz_poly) -> tuple[tuple[fmpz_poly, int], ...]:

@@ -5,12 +5,14 @@ Guarantee: each point of the window at which the chosen count changes lies on th
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
-from ptmcad.interval.formula import Graph
-from ptmcad.interval.parameters import slice_mechanism
+from ptmcad.interval.formula import Formula, Graph
+from ptmcad.interval.parameters import parameter_formulas, slice_mechanism
 from ptmcad.interval.search import Boxes
 from ptmcad.interval.system import System, system
 from ptmcad.slice import Count, Slice
@@ -24,6 +26,7 @@ class Curve:
     """One curve: its name, the system that defines it, and the ranges of the variables beside x and y."""
 
     name: str
+    reason: str
     system: System
     ranges: tuple[tuple[float, float], ...]
 
@@ -36,14 +39,112 @@ class Curve:
 
 
 def curves(slice: Slice, count: Count) -> tuple[Curve, ...]:
-    """The curves at which ``count`` may change."""
-    graph = Graph()
-    m = slice_mechanism(graph, slice)
+    """The curves at which ``count`` may change; docs/free-lengths-curves.md proves that no other is needed."""
+    return tuple(_CURVES[count](slice))
+
+
+def _stable(slice: Slice) -> Iterator[Curve]:
+    m = slice_mechanism(Graph(), slice)
     there = m.at_equilibrium
-    fold = system(
-        [*m.equilibrium, m.hessian.determinant],
-        (0, 1, 2, 3),
-        (m.dependent, [there.determinant]),
-        [there.p11, there.p22],
+    yield Curve(
+        "fold of a stable equilibrium",
+        "a minimum meets a saddle: det H = 0 with nonnegative diagonal entries",
+        system(
+            [*m.equilibrium, m.hessian.determinant],
+            (0, 1, 2, 3),
+            (m.dependent, [there.determinant]),
+            [there.p11, there.p22],
+        ),
+        (TORUS, TORUS),
     )
-    return (Curve("fold of a stable equilibrium", fold, (TORUS, TORUS)),)
+
+
+def _all(slice: Slice) -> Iterator[Curve]:
+    yield from _folds(slice)
+    yield from _cone(slice)
+    yield from _creases(slice)
+
+
+def _folds(slice: Slice) -> Iterator[Curve]:
+    reason = "two equilibria meet: det H = 0"
+    m = slice_mechanism(Graph(), slice)
+    there = m.at_equilibrium
+    cheap, costly = [*m.dependent, *_present(m.unit)], [there.determinant, there.levelled]
+    equations = [*m.equilibrium, m.hessian.determinant]
+    if m.unit is None:
+        yield Curve("fold", reason, system(equations, (0, 1, 2, 3), (cheap, costly)), (TORUS, TORUS))
+        return
+    yield Curve(
+        "fold",
+        reason,
+        system(equations, (0, 1, 2, 3), (cheap, costly), [m.lengths[2] - SHORT]),
+        (TORUS, TORUS),
+    )
+    m = slice_mechanism(Graph(), slice, phi=True)
+    there = m.at_equilibrium
+    yield Curve(
+        "fold near the cone",
+        f"{reason}, where spring 3 is shorter than {SHORT}",
+        system(
+            [*_present(m.aligned), *m.equilibrium, m.hessian.blown_up],
+            (0, 1, 2, 3, 4),
+            ([*m.dependent, *_present(m.unit)], [there.blown_up, there.levelled]),
+            [m.lengths[2], SHORT - m.lengths[2]],
+        ),
+        (TORUS, TORUS, TORUS),
+    )
+
+
+def _cone(slice: Slice) -> Iterator[Curve]:
+    m = slice_mechanism(Graph(), slice, phi=True)
+    if m.unit is not None:
+        yield Curve(
+            "cone",
+            "an equilibrium is swallowed by the cone l3 = 0",
+            system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), ([*m.dependent, m.unit], [])),
+            (TORUS, TORUS, TORUS),
+        )
+
+
+def _creases(slice: Slice) -> Iterator[Curve]:
+    graph = Graph()
+    values = parameter_formulas(graph, slice)
+    for spring, bar in ((1, "L2"), (2, "L1")):
+        if values[f"l0_{spring}"].value != 0 and values[f"k{spring}"].value != 0:
+            line = values["rho"].squared() - values[bar].squared()
+            yield Curve(
+                f"crease l{spring} = 0", f"spring {spring} has no length on a circle", system([line], (0, 1)), ()
+            )
+
+
+def _admissible(slice: Slice) -> Iterator[Curve]:
+    yield from _stable(slice)
+    m = slice_mechanism(Graph(), slice)
+    there = m.at_equilibrium
+    for spring, (length, free, vector) in enumerate(zip(m.lengths, m.free, m.vectors, strict=True), start=1):
+        third, dependent = (vector[0], [vector[1]]) if free.value == 0 else (length - free, [])
+        yield Curve(
+            f"l{spring} = l0_{spring}",
+            f"spring {spring} of a stable equilibrium has its free length",
+            system(
+                [*m.equilibrium, third],
+                (0, 1, 2, 3),
+                ([*m.dependent, *dependent], []),
+                [there.p11, there.p22, there.determinant],
+            ),
+            (TORUS, TORUS),
+        )
+
+
+def _present(formula: Formula | None) -> list[Formula]:
+    return [] if formula is None else [formula]
+
+
+SHORT = Fraction(1, 10)
+"""Below this length of spring 3, in units of length, its direction is a variable of its own."""
+_CURVES: dict[Count, Callable[[Slice], Iterator[Curve]]] = {
+    Count.STABLE: _stable,
+    Count.TOTAL: _all,
+    Count.INDEX: _all,
+    Count.ADMISSIBLE: _admissible,
+}

@@ -36,6 +36,10 @@ class Hessian:
     p22: Formula
     q: Formula
     determinant: Formula
+    blown_up: Formula
+    """l3 D: finite also where spring 3 has no length."""
+    levelled: Formula
+    """l1 l2 l3 D: finite everywhere."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +53,8 @@ class Mechanism:
     at_equilibrium : formulas of the same numbers that hold, and are finite for shorter springs, only where E1 = E2 = 0;
         never to be differentiated.
     dependent : further formulas that vanish where E1 = E2 = 0; they stay narrow where spring 3 is short.
+    unit : vanishes where E1 = E2 = 0, without the direction of spring 3; at l3 = 0 it vanishes where the cone swallows an
+        equilibrium. None when spring 3 has no free length.
     lengths : l1, l2, l3.
     vectors : d1, d2, d3.
     free : the free lengths.
@@ -58,16 +64,25 @@ class Mechanism:
     hessian: Hessian
     at_equilibrium: Hessian
     dependent: tuple[Formula, ...]
+    unit: Formula | None
     lengths: tuple[Formula, Formula, Formula]
     vectors: tuple[Vector, Vector, Vector]
     free: tuple[Formula, Formula, Formula]
     residual: tuple[Formula, Formula]
     """E1 and E2 without the pull of spring 3's free length: E1 + k3 l0_3 u3.t1, E2 + k3 l0_3 u3.t2."""
     tangents: tuple[Vector, Vector]
+    aligned: Formula | None
+    """d3 x u, with u = (cos phi, sin phi); None without phi."""
 
 
-def mechanism(graph: Graph, values: Mapping[str, Formula], th1: Formula, th2: Formula) -> Mechanism:
-    """The mechanism with parameters ``values`` (all of `NAMES`, stiffness and loads in one unit of stiffness)."""
+def mechanism(
+    graph: Graph, values: Mapping[str, Formula], th1: Formula, th2: Formula, phi: Formula | None = None
+) -> Mechanism:
+    """The mechanism with parameters ``values`` (all of `NAMES`, stiffness and loads in one unit of stiffness).
+
+    With ``phi`` the direction of spring 3 is a variable of its own, u3 = (cos phi, sin phi) and l3 = d3.u3, which makes
+    every formula but 1/l3 smooth at l3 = 0; they mean the mechanism where `Mechanism.aligned` vanishes and l3 >= 0.
+    """
     p1, p2, rho = values["L1"], values["L2"], values["rho"]
     k1, k2, k3 = values["k1"], values["k2"], values["k3"]
     f1, f2, f3 = values["l0_1"], values["l0_2"], values["l0_3"]
@@ -79,6 +94,10 @@ def mechanism(graph: Graph, values: Mapping[str, Formula], th1: Formula, th2: Fo
     d3 = (rho - p1 * c1 - p2 * c2, p2 * s2 - p1 * s1)
     u1, u2, u3 = ((direction(x, y), direction(y, x)) for x, y in (d1, d2, d3))
     r1, r2, r3 = (inverse_length(x, y) for x, y in (d1, d2, d3))
+    l1, l2, l3 = (length(x, y) for x, y in (d1, d2, d3))
+    if phi is not None:
+        u3 = phi.cos(), phi.sin()
+        l3 = dot(d3, u3)
     # tangents: d(d2)/dth1 = d(d3)/dth1 = L1 t1, d(d1)/dth2 = d(d3)/dth2 = L2 t2; normals: dt1/dth1, dt2/dth2
     t1, t2 = (s1, -c1), (s2, c2)
     n1, n2 = (c1, s1), (c2, -s2)
@@ -91,26 +110,45 @@ def mechanism(graph: Graph, values: Mapping[str, Formula], th1: Formula, th2: Fo
     e1, e2 = residual1 - pull3 * along31, residual2 - pull3 * along32
     across31, across32 = cross(u3, t1), cross(u3, t2)
 
-    def hessian(q21: Formula, q31: Formula, q12: Formula, q32: Formula) -> Hessian:
-        """From the squared sines of the angles between springs and tangents; spring 3 enters D to the first power."""
-        rigid1 = (
+    def hessian(q21: Formula, q31: Formula, q12: Formula, q32: Formula, q33: Formula) -> Hessian:
+        """From the squared sines of the angles between springs and tangents; spring 3 enters D to the first power.
+
+        ``q33`` is the product of the two sines of spring 3.
+        """
+        bend1 = (
             k2 * (rho * c1) + k3 * (rho * c1 - p2 * c12) + x3 * c1 + y3 * s1
-            - pull2 * dot(u2, n1) - pull3 * dot(u3, n1) - p1 * (pull2 * (r2 * q21))
+            - pull2 * dot(u2, n1) - pull3 * dot(u3, n1)
         )  # fmt: skip
-        rigid2 = (
+        bend2 = (
             k1 * (rho * c2) + k3 * (rho * c2 - p1 * c12) - x4 * c2 + y4 * s2
-            - pull1 * dot(u1, n2) - pull3 * dot(u3, n2) - p2 * (pull1 * (r1 * q12))
+            - pull1 * dot(u1, n2) - pull3 * dot(u3, n2)
         )  # fmt: skip
+        sway1, sway2 = p1 * (pull2 * q21), p2 * (pull1 * q12)
+        rigid1, rigid2 = bend1 - r2 * sway1, bend2 - r1 * sway2
         tilt = pull3 * r3
         mixed = -(k3 * c12)
-        determinant = (
-            rigid1 * rigid2 - p1 * p2 * mixed.squared()
-            - tilt * (p1 * (q31 * rigid2) + p2 * (q32 * rigid1) - 2 * (p1 * p2 * (mixed * (across31 * across32))))
-        )  # fmt: skip
-        q = mixed - tilt * (across31 * across32)
-        return Hessian(rigid1 - p1 * (tilt * q31), rigid2 - p2 * (tilt * q32), q, determinant)
+        q = mixed - tilt * q33
 
-    everywhere = hessian(cross(u2, t1).squared(), across31.squared(), cross(u1, t2).squared(), across32.squared())
+        def determinant(a: Formula, b: Formula, c: Formula, row1: Formula, row2: Formula, pull: Formula) -> Formula:
+            """a b c D from a rigid1, b rigid2 and c tilt."""
+            both = p1 * p2 * (a * b)
+            return c * (row1 * row2 - both * mixed.squared()) - pull * (
+                p1 * (q31 * (a * row2)) + p2 * (q32 * (b * row1)) - 2 * (both * (mixed * q33))
+            )
+
+        one = graph.constant(1)
+        return Hessian(
+            rigid1 - p1 * (tilt * q31),
+            rigid2 - p2 * (tilt * q32),
+            q,
+            determinant(one, one, one, rigid1, rigid2, tilt),
+            determinant(one, one, l3, rigid1, rigid2, pull3),
+            determinant(l2, l1, l3, l2 * bend1 - sway1, l1 * bend2 - sway2, pull3),
+        )
+
+    everywhere = hessian(
+        cross(u2, t1).squared(), across31.squared(), cross(u1, t2).squared(), across32.squared(), across31 * across32
+    )
 
     def sine_squared(sine: Formula, cosine: Formula, others: Formula, pull: Formula) -> Formula:
         """sine^2 = 1 - cosine^2, where equilibrium demands pull * cosine = others."""
@@ -118,22 +156,35 @@ def mechanism(graph: Graph, values: Mapping[str, Formula], th1: Formula, th2: Fo
             return sine.squared()
         return meet(sine.squared(), 1 - meet(cosine, others / pull).squared())
 
+    def cosine(cosine: Formula, others: Formula, pull: Formula) -> Formula:
+        """The same, where equilibrium demands pull * cosine = others."""
+        return cosine if pull.value == 0 else meet(cosine, others / pull)
+
+    cosine31, cosine32 = cosine(along31, residual1, pull3), cosine(along32, residual2, pull3)
     at_equilibrium = hessian(
         sine_squared(cross(u2, t1), along21, linear1 - pull3 * along31, pull2),
         sine_squared(across31, along31, residual1, pull3),
         sine_squared(cross(u1, t2), along12, linear2 - pull3 * along32, pull1),
         sine_squared(across32, along32, residual2, pull3),
+        # t1.t2 = -c12 is the product of the cosines plus that of the sines
+        meet(across31 * across32, -c12 - cosine31 * cosine32),
     )
     # t2 = -c12 t1 + s12 n1: in E2 + c12 E1 the direction of spring 3 is multiplied by s12
     dependent = residual2 + c12 * residual1 - pull3 * (s12 * dot(u3, n1))
+    # the unit vector u3 with two given cosines to t1 and t2: its direction does not occur
+    unit = (
+        residual1.squared() + residual2.squared() + 2 * (residual1 * residual2 * c12) - pull3.squared() * s12.squared()
+    )  # fmt: skip
     return Mechanism(
         (e1, e2),
         everywhere,
         at_equilibrium,
         () if pull3.value == 0 else (dependent,),
-        (length(*d1), length(*d2), length(*d3)),
+        None if pull3.value == 0 else unit,
+        (l1, l2, l3),
         (d1, d2, d3),
         (f1, f2, f3),
         (residual1, residual2),
         (t1, t2),
+        None if phi is None else cross(d3, u3),
     )

@@ -43,6 +43,7 @@ def parameter_formulas(graph: Graph, slice: Slice) -> dict[str, Formula]:
     }
 
 
-def slice_mechanism(graph: Graph, slice: Slice) -> Mechanism:
-    """The slice's mechanism in variables x, y, th1, th2."""
-    return mechanism(graph, parameter_formulas(graph, slice), graph.variable(2), graph.variable(3))
+def slice_mechanism(graph: Graph, slice: Slice, *, phi: bool = False) -> Mechanism:
+    """The slice's mechanism in variables x, y, th1, th2 and, if asked for, the direction phi of spring 3."""
+    direction = graph.variable(4) if phi else None
+    return mechanism(graph, parameter_formulas(graph, slice), graph.variable(2), graph.variable(3), direction)

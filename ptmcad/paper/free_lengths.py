@@ -37,10 +37,17 @@ class FreeLengthDesign:
 
 @dataclass(frozen=True, slots=True)
 class ProvedEquilibrium:
-    """A zero of the gradient within 10^-9 of ``angles``; ``negative`` counts the Hessian's negative eigenvalues."""
+    """A zero of the gradient within 10^-9 of ``angles``.
+
+    Attributes
+    ----------
+    negative : number of the Hessian's negative eigenvalues.
+    tense : whether every spring is longer than its free length; None when the box does not show it.
+    """
 
     angles: tuple[Fraction, Fraction]
     negative: int
+    tense: bool | None
 
     @property
     def stable(self) -> bool:
@@ -53,6 +60,7 @@ class _Derivatives:
     h11: arb
     h12: arb
     h22: arb
+    lengths: tuple[arb, ...]
 
 
 def _derivatives(design: FreeLengthDesign, a: arb, b: arb) -> _Derivatives:
@@ -74,15 +82,15 @@ def _derivatives(design: FreeLengthDesign, a: arb, b: arb) -> _Derivatives:
     )  # fmt: skip
     g1, g2 = -f3 * p * ca, -f4 * q * cb
     h11, h12, h22 = f3 * p * sa, zero, f4 * q * sb
-    for d, da, db, daa, dbb in springs:
-        length = _dot(d, d).sqrt()
+    lengths = tuple(_dot(d, d).sqrt() for d, *_ in springs)
+    for (d, da, db, daa, dbb), length in zip(springs, lengths, strict=True):
         m, n = 1 - l0 / length, l0 / (length * length * length)
         along1, along2 = _dot(d, da), _dot(d, db)
         g1, g2 = g1 + m * along1, g2 + m * along2
         h11 += m * (_dot(da, da) + _dot(d, daa)) + n * along1 * along1
         h22 += m * (_dot(db, db) + _dot(d, dbb)) + n * along2 * along2
         h12 += m * _dot(da, db) + n * along1 * along2
-    return _Derivatives((g1, g2), h11, h12, h22)
+    return _Derivatives((g1, g2), h11, h12, h22, lengths)
 
 
 def _dot(u: Sequence[arb], v: Sequence[arb]) -> arb:
@@ -112,8 +120,15 @@ def proved_equilibrium(design: FreeLengthDesign, angles: tuple[float, float]) ->
             negative = 0 if over.h11 > 0 else 2
         else:
             return None
+        tense = _tense(over.lengths, arb(fmpq(design.free.numerator, design.free.denominator)))
     first, second = (Fraction(int(m.p), int(m.q)) for m in middle)
-    return ProvedEquilibrium((first, second), negative)
+    return ProvedEquilibrium((first, second), negative, tense)
+
+
+def _tense(lengths: Sequence[arb], free: arb) -> bool | None:
+    if any(length < free for length in lengths):
+        return False
+    return True if all(length > free for length in lengths) else None
 
 
 def _rough_inverse(at: _Derivatives) -> tuple[arb, arb, arb]:

@@ -1,19 +1,21 @@
 """The claims of section 5: horizontal forces, and springs with a free length.
 
-Guarantee: 5.1 by identities in all parameters; 5.2 by exact elimination at one design, and by boxes of ball arithmetic
-that contain one equilibrium each. What needs the fold curve of the free-length problem is not claimed.
+Guarantee: 5.1 by identities in all parameters; 5.2 by exact elimination at single designs, and by boxes of ball
+arithmetic that contain one equilibrium each. What needs the fold curve of the free-length problem is not claimed.
 """
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from functools import lru_cache
 
 import sympy as sp
 
+from ptmcad.algebra.signed import SignedSolutions, signed_solutions
 from ptmcad.algebra.squared import Elimination, eliminate, squared_equations
 from ptmcad.paper import printed
-from ptmcad.paper.claim import Claim, Outcome, judge, unchecked
+from ptmcad.paper.claim import Claim, Fact, Outcome, judge, unchecked
 from ptmcad.paper.free_lengths import FreeLengthDesign, ProvedEquilibrium, proved_equilibria
 from ptmcad.paper.slices import equilibria_at
 from ptmcad.paper.symbolic import F3, F4, F3x, F4x, half_angle_equations, k, quadratic_elimination, rho, t1, t2
@@ -21,8 +23,11 @@ from ptmcad.paper.symbolic import F3, F4, F3x, F4x, half_angle_equations, k, qua
 TWELVE = ("0.96859", "1", "1.00609", "0.2", "-0.1", "-0.1")
 """(rho, L1, L2, l0, F3/k, F4/k) of the witness against six solutions."""
 TWENTY_SIX = ("1.20609", "1", "1", "1.01487", "-0.1", "-0.1")
+THIRTY = ("0.75609", "1", "1", "1.43487", "0", "0")
 ELIMINATED = (Fraction(7, 10), (Fraction(1), Fraction(3, 2)), Fraction(1, 5), (Fraction(-1, 10), Fraction(-1, 10)))
 """rho, rods, l0 and loads over k at which the squared equations are eliminated; the paper does not give its values."""
+AT_ELIMINATED = ("0.7", "1", "1.5", "0.2", "-0.1", "-0.1")
+WITNESSES = (TWELVE, TWENTY_SIX, THIRTY)
 
 
 def horizontal_terms() -> Outcome:
@@ -88,6 +93,13 @@ def elimination() -> Elimination:
 
 
 @lru_cache(maxsize=4)
+def signed_solutions_with(design: tuple[str, ...]) -> SignedSolutions:
+    """All solutions with 1/l_i of either sign at a design given by decimals, exact."""
+    rho, length1, length2, free, f3, f4 = (Fraction(x) for x in design)
+    return signed_solutions((rho, (length1, length2), free, (f3, f4)))
+
+
+@lru_cache(maxsize=4)
 def equilibria_with(design: tuple[str, ...]) -> tuple[ProvedEquilibrium, ...]:
     """The equilibria that were proved at a design given by decimals."""
     rho, length1, length2, free, f3, f4 = (Fraction(x) for x in design)
@@ -110,10 +122,22 @@ def squared_degree() -> Outcome:
     )
 
 
+def _distance(other: Fraction) -> tuple[int, int, int]:
+    """Coefficients of (1 + t2^2)(l1^2 - other^2) at `ELIMINATED`, without common divisor."""
+    rho, (_, rod), _, _ = ELIMINATED
+    ends = (rho - rod) ** 2 - other**2, (rho + rod) ** 2 - other**2
+    scale = math.lcm(*(e.denominator for e in ends))
+    low, high = (int(e * scale) for e in ends)
+    common = math.gcd(low, high)
+    return low // common, 0, high // common
+
+
 def eliminated_degree() -> Outcome:
-    found = elimination()
+    found, solutions = elimination(), signed_solutions_with(AT_ELIMINATED)
     left = found.degree - 2 * found.circle
     simple = dict((e, d) for d, e in found.factors)
+    multiple = dict(found.quadratics)
+    spring1, spring3 = (multiple.get(_distance(other), 0) for other in (Fraction(0), ELIMINATED[1][0]))
     whole = sum(d * e for d, e in found.factors)
     agrees = (found.degree, found.circle, left) == (328, 56, 272)
     return judge(
@@ -121,14 +145,25 @@ def eliminated_degree() -> Outcome:
         (
             f"at {_WHERE}, exactly: degree {found.degree} = (1 + t2^2)^{found.circle} times degree {left}, which has "
             "squarefree factors (degree, multiplicity) " + ", ".join(map(str, found.factors)),
+            f"the multiple factors have no equilibrium: 121 t2^2 + 16, {spring1} times, is l1 = 0, and 32 t2^2 - 3, "
+            f"{spring3} times, is l1 = L1 and belongs to the two poses with l3 = 0",
             f"the printed numbers do not fit each other: (1 + t2^2)^56 has degree 112, and 328 - 112 = "
-            f"{328 - 112}, not 272",
+            f"{328 - 112}, not 272. They do if 56 is the degree of the power divided out; and 272 = "
+            f"{simple.get(1, 0)} + 2 * {spring1} is what is left without the poses with l3 = 0",
+            f"{len(solutions.solutions)} of the {simple.get(1, 0)} simple roots solve the two equations with lengths "
+            f"of either sign, the other {solutions.opposed} need opposite signs of l3 in the two: with 1/l_i as "
+            f"unknowns there are {solutions.total} complex solutions, {solutions.real} of them real",
         ),
-        {"degree": found.degree, "exponent": found.circle, "left": left, "factors": tuple(map(str, found.factors))},
+        {
+            "degree": found.degree, "exponent": found.circle, "left": left, "factors": tuple(map(str, found.factors)),
+            "multiplicity of l1 = 0": spring1, "multiplicity of l3 = 0": spring3,
+            "complex solutions": solutions.total, "real solutions": solutions.real, "opposed": solutions.opposed,
+            "unsettled": solutions.unsettled,
+        },
         corrected=(found.degree, found.circle, left) == (400, 48, 304) and simple.get(1) == 256 and whole == left,
         right="degree 400, divided by (1 + t2^2)^48: 304, of which 256 are simple (at the design named)",
         witness=_WHERE,
-    )
+    )  # fmt: skip
 
 
 def twelve_to_thirty() -> Outcome:
@@ -139,31 +174,52 @@ def twelve_to_thirty() -> Outcome:
     )()
 
 
-def at_most_six() -> Outcome:
-    twelve, many = equilibria_with(TWELVE), equilibria_with(TWENTY_SIX)
-    few = equilibria_with(("0.7", "1", "1.5", "0.2", "-0.1", "-0.1"))
-
-    def text(design: tuple[str, ...]) -> str:
-        return "(rho, L1, L2, l0, F3/k, F4/k) = (" + ", ".join(design) + ")"
-
+def spurious() -> Outcome:
+    found, solutions, proved = elimination(), signed_solutions_with(AT_ELIMINATED), equilibria_with(AT_ELIMINATED)
+    stable = sum(e.stable for e in proved)
     return judge(
-        False,  # a lower bound can refute the claim but never confirm it
+        solutions.equilibria < found.real_roots,
         (
-            f"at least {len(twelve)} equilibria, {sum(e.stable for e in twelve)} of them stable, at "
-            f"{text(TWELVE)}: each in "
-            "a box of width 2e-9 that Krawczyk's test shows to contain exactly one",
-            f"at least {len(many)}, {sum(e.stable for e in many)} stable, at {text(TWENTY_SIX)}; {len(few)} at "
-            f"{_WHERE}",
+            f"at {_WHERE} {solutions.equilibria} of the {found.real_roots} real roots are equilibria: {solutions.real} "
+            "solve the equations with lengths of some signs, the others belong to two different signs of l3 or to "
+            "l3 = 0",
+            f"{len(proved)} equilibria were proved one by one, so these are all; {stable} are stable",
         ),
         {
-            "at least": len(twelve),
-            "stable": sum(e.stable for e in twelve),
-            "at least, second witness": len(many),
-            "stable, second witness": sum(e.stable for e in many),
-            "at the eliminated design": len(few),
+            "real roots": found.real_roots, "real, any signs": solutions.real, "equilibria": solutions.equilibria,
+            "proved": len(proved), "stable": stable,
         },
-        witness=f"{text(TWELVE)} has at least {len(twelve)} equilibria" if len(twelve) > 6 else "",
+    )  # fmt: skip
+
+
+def at_most_six() -> Outcome:
+    evidence, facts = [], dict[str, Fact]()
+    most = 0
+    for design in WITNESSES:
+        proved, exact = equilibria_with(design), signed_solutions_with(design)
+        stable = [e for e in proved if e.stable]
+        tense = sum(e.tense is True for e in stable)
+        evidence.append(
+            f"at {_text(design)} {exact.equilibria} equilibria by elimination; {len(proved)} are each in a box of "
+            "width 2e-9 that Krawczyk's test shows to contain exactly one, "
+            f"{len(stable)} of them stable, {tense} of these with every spring longer than l0"
+        )
+        facts[f"l0 = {design[3]}"] = (exact.equilibria, len(proved), len(stable), tense)
+        most = max(most, len(proved))
+    few = equilibria_with(AT_ELIMINATED)
+    evidence.append(f"{len(few)} at {_WHERE}")
+    facts["at the eliminated design"] = len(few)
+    numbers = ", ".join(f"{len(equilibria_with(design))} at {_text(design)}" for design in WITNESSES)
+    return judge(
+        False,  # no number of designs can confirm the claim
+        tuple(evidence),
+        facts,
+        witness=f"equilibria proved: {numbers}" if most > 6 else "",
     )
+
+
+def _text(design: tuple[str, ...]) -> str:
+    return "(rho, L1, L2, l0, F3/k, F4/k) = (" + ", ".join(design) + ")"
 
 
 CLAIMS = (
@@ -183,6 +239,8 @@ CLAIMS = (
           eliminated_degree),
     Claim("5.2-real", "5.2", "12 to 30 real solutions", "The eliminated polynomial has 12 to 30 real roots.",
           twelve_to_thirty),
+    Claim("5.2-spurious", "5.2", "to eliminate all spurious solutions",
+          "Most real roots of the eliminated polynomial are no equilibria.", spurious),
     Claim("5.2-six", "5.2", "no more than 6 solutions remained", "With free lengths there are at most six equilibria.",
           at_most_six),
     Claim("5.2-acceptable", "5.2", "verified to be greater than l0", "In an acceptable solution all springs are tense.",
