@@ -33,13 +33,13 @@ from ptmcad.cad.curves import Curve, curve
 from ptmcad.cad.projection import predicted_cost, project
 from ptmcad.cad.stacks import lift
 from ptmcad.counting import DegeneratePoint, Equilibria, equilibria, solutions_at
-from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
+from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
 from ptmcad.models import ParametricSystem, system_of
 from ptmcad.models.elimination import elimination_system
 from ptmcad.models.text import system_text
 from ptmcad.plan import plan_of
 from ptmcad.regionmap import Component, RegionMap, Status
-from ptmcad.slice import Slice
+from ptmcad.slice import Slice, without_free_lengths
 from ptmcad.slicevariety import SliceVariety
 from ptmcad.variety import discriminant_variety
 from ptmcad.version import __version__
@@ -95,11 +95,14 @@ def exact_map(
 
     Raises
     ------
+    ConfigError
+        When springs have a free length.
     HypothesisError
         When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
     LimitReached
         At the deadline, with what there is of the map as ``partial``.
     """
+    without_free_lengths(slice.parameters, "an exact map is")
     now = perf_counter()
     clock = _Clock(progress, deadline, now, now, {})
     best: RegionMap | None = None
@@ -128,11 +131,7 @@ def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVari
     HypothesisError
         When the slice is degenerate or has infinitely many equilibria.
     """
-    if slice.has_free_lengths:
-        raise ConfigError(
-            "springs have a free length here, and their discriminant variety, of degree over 1000, is not computed; "
-            "ptmcad classify encloses it"
-        )
+    without_free_lengths(slice.parameters, "the discriminant variety is")
     now = perf_counter()
     first = next(_stages(slice, AREA_TOLERANCE, _Clock(None, None, now, now, {}), keep))
     system = system_of(slice.mechanism)

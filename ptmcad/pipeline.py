@@ -16,7 +16,7 @@ from time import perf_counter
 from ptmcad.errors import ConfigError
 from ptmcad.expressions import did_you_mean
 from ptmcad.regionmap import RegionMap
-from ptmcad.slice import Count, Slice
+from ptmcad.slice import Count, Slice, without_free_lengths
 
 ENGINES = ("auto", "exact", "certified")
 
@@ -75,8 +75,12 @@ def classify(
     _check_count(slice)
     deadline = None if timeout is None else started + timeout
     if engine == "certified" or (engine == "auto" and slice.has_free_lengths):
-        return _certified(slice, undetermined, relative, deadline, jobs, progress, keep, partial, resume)
-    _check_exact(slice)
+        result = _certified(slice, undetermined, relative, deadline, jobs, progress, keep, partial, resume)
+        return replace(result, timings={**result.timings, "total": perf_counter() - started})
+    try:
+        without_free_lengths(slice.parameters, "an exact map is")
+    except ConfigError as error:
+        raise ConfigError(f"{error.message}: choose certified or auto", key="engine") from error
     if resume is not None:
         raise ConfigError("only the certified engine can go on from an earlier map", key="resume")
     from ptmcad.exactmap import AREA_TOLERANCE, exact_map
@@ -135,15 +139,6 @@ def check_resumable(slice: Slice, earlier: RegionMap) -> None:
         raise ConfigError(
             f"this map is of another slice: {', '.join(different)} {'differs' if len(different) == 1 else 'differ'}",
             key="resume",
-        )
-
-
-def _check_exact(slice: Slice) -> None:
-    if slice.has_free_lengths:
-        raise ConfigError(
-            "springs have a free length here, which brings in square roots and a variety of degree over 1000 that "
-            "algebra can not compute: choose certified or auto",
-            key="engine",
         )
 
 

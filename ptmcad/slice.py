@@ -12,6 +12,7 @@ from enum import Enum
 from fractions import Fraction
 from typing import Any
 
+from ptmcad.errors import ConfigError
 from ptmcad.expressions import Expression
 
 
@@ -92,6 +93,26 @@ class Slice:
                 yield f"{name} = {shown if len(shown) <= LONGEST else shown[: LONGEST - 1] + '…'}"
         if loads and all(values[name] == "0" for name in loads):
             yield "no load"
+
+
+def without_free_lengths(parameters: Mapping[str, Expression], what: str) -> dict[str, Expression]:
+    """The parameters for algebra, which would leave free lengths out: they have to be zero.
+
+    Parameters
+    ----------
+    what : that is not computed otherwise, as the start of a sentence.
+
+    Raises
+    ------
+    ConfigError
+        When a spring has a free length.
+    """
+    if any(parameters[name].numerator for name in FREE_LENGTHS if name in parameters):
+        raise ConfigError(
+            f"{what} not computed for springs with a free length, which bring in square roots and curves of degree "
+            "over 1000; ptmcad classify encloses them"
+        )
+    return {name: value for name, value in parameters.items() if name not in FREE_LENGTHS}
 
 
 FREE_LENGTHS = ("l0_1", "l0_2", "l0_3")

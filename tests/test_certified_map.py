@@ -196,7 +196,7 @@ def test_locate_prints_what_is_admissible(tmp_path: Path, capsys: pytest.Capture
 @pytest.mark.parametrize(
     ("options", "key", "part"),
     [
-        ({"engine": "exact"}, "engine", "springs have a free length here"),
+        ({"engine": "exact"}, "engine", "an exact map is not computed for springs with a free length"),
         ({"engine": "certifed"}, "engine", "did you mean 'certified'?"),
         ({"tolerance": 0}, "tolerance", "0 is not between 0 and 1"),
         ({"tolerance": "x"}, "tolerance", "'x' is not a number"),
@@ -245,11 +245,40 @@ def test_the_exact_engine_does_not_resume() -> None:
         ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"), resume=certified_map())
 
 
-def test_the_variety_of_free_lengths_is_refused_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["variety", "--slice", "rho,L2", "--set", "l0=1/5"]) == 2
+@pytest.mark.parametrize(
+    ("words", "what"),
+    [
+        (["variety"], "the discriminant variety is"),
+        (["range", "--along", "rho", "--at", "L2=1"], "ranges are"),
+        (["range", "--along", "rho", "--over", "L2"], "ranges are"),
+        (["range", "--along", "rho", "--at", "L2=1", "--path", "1"], "ranges are"),
+    ],
+    ids=["variety", "range", "widths", "path"],
+)
+def test_what_algebra_alone_answers_is_refused_in_one_line(
+    words: list[str], what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It would leave the free lengths out, and answer for another mechanism."""
+    monkeypatch.chdir(tmp_path)
+    assert run([*words, "--slice", "rho,L2", "--set", "l0=1/5", "--range", "rho=0:2"]) == 2
     message = capsys.readouterr().err
-    assert message.startswith("error: springs have a free length here, and their discriminant variety")
+    assert message.startswith(f"error: {what} not computed for springs with a free length")
     assert message.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_line_on_which_the_free_lengths_are_zero_is_answered() -> None:
+    """F3 = F4 = -10, L1 = L2 = 1, l0 = 0: a line of fig. 4."""
+    free = ptmcad.intervals(ptmcad.slice_from_options(slice="rho,l0", sets=["F3=-10", "F4=-10"]), "rho", {"l0": 0})
+    fig4 = ptmcad.intervals(ptmcad.slice_from_options(slice="rho,L2", sets=["F3=-10", "F4=-10"]), "rho", {"L2": 1})
+    assert free.intervals == fig4.intervals
+
+
+def test_the_page_of_a_certified_map_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "map.json"
+    path.write_text(certified_map().to_json(), encoding="utf-8")
+    assert run(["report", str(path)]) == 2
+    assert "the page of a certified map is not made" in capsys.readouterr().err
 
 
 def test_resume_names_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -67,7 +67,10 @@ def cover_of(array: Integers, steps: int) -> Cover:
 
 
 def rounded_down(values: Floats, low: Fraction, high: Fraction, steps: int) -> Integers:
-    """floor((value - low) steps / (high - low)) exactly, but -1 and steps stand for all that is outside."""
+    """floor((value - low) steps / (high - low)), but -1 and steps stand for all that is outside.
+
+    A value that is so near above a line of the lattice that floats can not tell gets the step below that line.
+    """
     width = high - low
     if max(abs(low), 1 / width, width) > _USUAL:
         return np.array([_exactly(value, low, width, steps) for value in values.tolist()], dtype=np.int64)
@@ -75,9 +78,8 @@ def rounded_down(values: Floats, low: Fraction, high: Fraction, steps: int) -> I
     with np.errstate(over="ignore", invalid="ignore"):
         estimate = (values - start) * scale
         margin = (np.abs(values) + abs(start)) * scale * _ERROR + _LEAST_ERROR
-        below, above = np.floor(estimate - margin), np.floor(estimate + margin)
-    below, above = np.clip(below, -1, steps), np.clip(above, -1, steps)
-    unsure = ~(below == above)
+        below = np.clip(np.floor(estimate - margin), -1, steps)
+    unsure = np.isnan(below)
     result = np.where(unsure, 0.0, below).astype(np.int64)
     result[unsure] = [_exactly(value, low, width, steps) for value in values[unsure].tolist()]
     return result

@@ -25,12 +25,12 @@ from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.errors import ConfigError, DegenerateSliceError, ExpressionError, InfiniteSolutionsError
+from ptmcad.exactmap import count_at, domain_limits
 from ptmcad.expressions import Expression, axis, constant, rational
 from ptmcad.models import ParametricSystem, system_of
 from ptmcad.numerals import shortest_text
-from ptmcad.exactmap import count_at, domain_limits
 from ptmcad.regionmap import Kind, MorseIndex
-from ptmcad.slice import Axis, Slice
+from ptmcad.slice import Axis, Slice, without_free_lengths
 from ptmcad.variety import discriminant_variety
 
 End = AlgebraicNumber | Fraction
@@ -171,8 +171,8 @@ def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
     Raises
     ------
     ConfigError
-        When ``along`` is no axis, ``at`` does not name exactly the other one, its value is not an exact number, or a
-        parameter is not defined on the line.
+        When ``along`` is no axis, ``at`` does not name exactly the other one, its value is not an exact number, a
+        parameter is not defined on the line, or springs have a free length on it.
     """
     names = slice.axis_names
     if along not in names:
@@ -189,6 +189,7 @@ def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
         parameters = {n: _restricted(e, varying, value) for n, e in slice.parameters.items()}
     except ExpressionError as error:
         raise ConfigError(str(error), key=f"at {other}") from error
+    parameters = without_free_lengths(parameters, "ranges are")
     return Line(slice.axes[varying], {other: value}, parameters)
 
 

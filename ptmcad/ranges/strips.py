@@ -16,10 +16,10 @@ from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refin
 from ptmcad.cad.curves import Curve, curve
 from ptmcad.cad.projection import project
 from ptmcad.cad.stacks import BaseEnd, StackData, Wall, lift
-from ptmcad.models import system_of
 from ptmcad.exactmap import count_at, domain_limits
+from ptmcad.models import system_of
 from ptmcad.regionmap import MorseIndex
-from ptmcad.slice import Slice
+from ptmcad.slice import Slice, without_free_lengths
 from ptmcad.variety import discriminant_variety
 
 Interval = tuple[fmpq, fmpq]
@@ -58,10 +58,13 @@ def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
 
     Raises
     ------
+    ConfigError
+        When springs have a free length.
     HypothesisError
         When the slice is degenerate or leaves the domain of the geometry.
     """
     base = 1 - slice.axis_names.index(along)
+    without_free_lengths(slice.parameters, "ranges are")
     system = system_of(slice.mechanism)
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     x, y = ((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)

@@ -82,7 +82,9 @@ class CoverOutline:
             places.append(np.array([int(start + (k + Fraction(1, 2)) * step) for k in range(n)], dtype=np.int64))
         x, y = np.clip(places[0], 0, steps - 1), np.clip(places[1], 0, steps - 1)
         leaf = tree.leaves_right_above(np.tile(x, rows), np.repeat(y, columns))
-        image = np.where(tree.state[leaf] == FREE, self.region_at[self.complement.owner[leaf]], -1)
+        free = tree.state[leaf] == FREE
+        image = np.full(len(leaf), -1, dtype=np.int64)  # a covered leaf's owner is a cluster, not a component
+        image[free] = self.region_at[self.complement.owner[leaf[free]]]
         return image.reshape(rows, columns)
 
     def _of_cell(self, cell: int) -> Iterator[Floats]:
@@ -137,34 +139,35 @@ def simplified(points: Floats, tolerance: float) -> Floats:
 
     Method: Ramer, Douglas and Peucker; the two halves are those between the first corner and the one farthest from it.
     """
+    points = points[(points != np.roll(points, 1, axis=0)).any(axis=1)]
     n = len(points)
     if n < 4:
         return points
     closed = np.concatenate([points, points[:1]])
-    far = int(np.argmax(((points - points[0]) ** 2).sum(axis=1)))
     kept = np.zeros(n + 1, dtype=np.bool_)
-    kept[[0, far]] = True
-    waiting = [(0, far), (far, n)]
-    while waiting:
-        first, last = waiting.pop()
-        if last - first < 2:
-            continue
-        away = _distances(closed[first + 1 : last], closed[first], closed[last])
-        k = int(np.argmax(away))
-        if away[k] > tolerance:
-            middle = first + 1 + k
-            kept[middle] = True
-            waiting += [(first, middle), (middle, last)]
+    kept[[0, int(np.argmax(((points - points[0]) ** 2).sum(axis=1))), n]] = True
+    # all pieces are halved at once: `inner` are the corners whose piece may still depart too far
+    inner = np.flatnonzero(~kept)
+    while len(inner):
+        ends = np.flatnonzero(kept)
+        piece = np.searchsorted(ends, inner) - 1
+        away = _distances(closed[inner], closed[ends[piece]], closed[ends[piece + 1]])
+        starts = np.flatnonzero(np.diff(piece, prepend=-1))
+        group = np.cumsum(np.diff(piece, prepend=-1) != 0) - 1
+        farthest = np.maximum.reduceat(away, starts)
+        halved = farthest > tolerance
+        at = np.flatnonzero((away == farthest[group]) & halved[group])
+        kept[inner[at[np.diff(group[at], prepend=-1) != 0]]] = True  # one of them, where several are farthest
+        inner = inner[halved[group]]
+        inner = inner[~kept[inner]]
     return closed[:-1][kept[:-1]]
 
 
 def _distances(points: Floats, a: Floats, b: Floats) -> Floats:
-    """From the points to the segment from a to b."""
-    along = b - a
-    square = float(along @ along)
-    offset = points - a
-    if square > 0:
-        share = np.clip(offset @ along / square, 0.0, 1.0)
-        offset = offset - share[:, None] * along
+    """From each point to its own segment, from a to b; all of shape (k, 2)."""
+    along, offset = b - a, points - a
+    square = (along * along).sum(axis=1)
+    share = np.divide((offset * along).sum(axis=1), square, out=np.zeros(len(points)), where=square > 0)
+    offset = offset - np.clip(share, 0.0, 1.0)[:, None] * along
     distances: Floats = np.hypot(offset[:, 0], offset[:, 1])
     return distances

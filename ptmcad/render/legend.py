@@ -19,8 +19,8 @@ from ptmcad.table import certified_digits, count_text
 
 STRONG, THIN, INK = 1.3, 0.5, "#111111"
 """Widths in points of walls that separate regions and of others, and the colour of both."""
-HAIRLINE = 0.4
-"""Width of the rim of what is undetermined: under a pixel at 150 dpi, as half of it lies on each side."""
+RIM, RIM_INK = 0.35, "#404040"
+"""The line around what is undetermined: less than a pixel at 150 dpi, so that a narrow strip is seen as a hairline."""
 
 LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
 """Inches between lines, width of a swatch, characters in a line."""

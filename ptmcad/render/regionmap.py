@@ -21,7 +21,7 @@ from ptmcad.regionmap import RegionMap
 from ptmcad.render.axes import dress
 from ptmcad.render.colours import UNDETERMINED, fill_of
 from ptmcad.render.labels import Placement, place
-from ptmcad.render.legend import HAIRLINE, INK, STRONG, THIN, draw_legend, entries, height
+from ptmcad.render.legend import INK, RIM, RIM_INK, STRONG, THIN, draw_legend, entries, height
 from ptmcad.render.printing import printed, settings, suffix_of
 from ptmcad.render.slivers import Sliver, Zoom, thin_regions, zooms
 from ptmcad.render.view import Shapes, shapes
@@ -167,7 +167,7 @@ def _paint(axes: Any, seen: Shapes, prefix: str) -> None:
     if edges:
         axes.add_artist(
             LineCollection(
-                edges, transform=axes.transAxes, colors=INK, linewidths=HAIRLINE, joinstyle="round", zorder=2,
+                edges, transform=axes.transAxes, colors=RIM_INK, linewidths=RIM, joinstyle="round", zorder=2,
                 gid=f"{prefix}edges",
             )
         )  # fmt: skip

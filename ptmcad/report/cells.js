@@ -102,7 +102,9 @@ function fillPanel(number, cell) {
   panel.replaceChildren(head, html("p", "hint", `At the sample: ${given.join(", ")}.`));
   cells.redraw = null;
   if (!cell.equilibria.length) {
-    const why = DATA.drawable ? "The result stores no poses for this cell." : "The poses of this mechanism can not be drawn.";
+    const noPoses = cell.stack === null ? "Poses of springs with free lengths are not drawn here: ptmcad solve draws them."
+      : "The result stores no poses for this cell.";
+    const why = DATA.drawable ? noPoses : "The poses of this mechanism can not be drawn.";
     panel.append(html("p", "", why));
     return;
   }
@@ -136,8 +138,18 @@ function fillPanel(number, cell) {
 theme.changed.push(() => { if (cells.redraw) cells.redraw(); });
 
 // The next cell in a direction: along a stack, or in the neighbouring stack the one whose sample is nearest in height.
+// Without stacks, the one whose sample is nearest in that direction; what lies aside counts double.
 function neighbour(number, key) {
   const cell = DATA.cells[number];
+  if (cell.stack === null) {
+    const [axis, sign] = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, -1], ArrowDown: [1, 1] }[key];
+    const cost = (n) => {
+      const ahead = sign * (DATA.cells[n].at[axis] - cell.at[axis]);
+      return ahead > 0 ? ahead + 2 * Math.abs(DATA.cells[n].at[1 - axis] - cell.at[1 - axis]) : Infinity;
+    };
+    const ahead = DATA.cells.map((_, n) => n).filter((n) => cells.areas.has(n) && cost(n) < Infinity);
+    return ahead.length ? ahead.reduce((best, n) => (cost(n) < cost(best) ? n : best)) : undefined;
+  }
   const along = DATA.base === 0 ? { ArrowLeft: -1, ArrowRight: 1 } : { ArrowDown: -1, ArrowUp: 1 };
   const across = DATA.base === 0 ? { ArrowDown: -1, ArrowUp: 1 } : { ArrowLeft: -1, ArrowRight: 1 };
   if (key in across) return DATA.stacks[cell.stack][cell.level + across[key]];

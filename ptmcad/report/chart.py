@@ -7,7 +7,7 @@ policy forbids. The same map gives the same text.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from html import escape
 from math import ceil
@@ -17,7 +17,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from ptmcad.numerals import shortest_text
-from ptmcad.regionmap import RegionMap
+from ptmcad.regionmap import Cell, Region, RegionMap
 from ptmcad.render.colours import Fill, fill_of
 from ptmcad.render.slivers import thin_regions, zooms
 from ptmcad.render.view import Shapes
@@ -105,12 +105,13 @@ def _pattern(hatch: str) -> str:
 def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[Label]) -> str:
     result = seen.result
     count = result.slice.count
+    plate = "plate" if result.cover is None else "undetermined"
     parts = [
         f'<svg id="{name}" class="map" viewBox="0 0 {LEFT + SIDE + RIM} {RIM + SIDE + BOTTOM}" role="group" '
         f'aria-label="{escape(_window_text(seen))}">',
         f'<clipPath id="{name}-window"><rect width="{SIDE}" height="{SIDE}"/></clipPath>',
         f'<g transform="translate({LEFT} {RIM})">',
-        f'<rect class="plate" width="{SIDE}" height="{SIDE}"/><g clip-path="url(#{name}-window)">',
+        f'<rect class="{plate}" width="{SIDE}" height="{SIDE}"/><g clip-path="url(#{name}-window)">',
     ]
     for number, region in enumerate(result.regions):
         outline = "".join(_closed(p) for p in seen.polygons(number))
@@ -120,6 +121,9 @@ def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[La
         parts.append(f'<path class="fill" fill="{fill.face}" d="{outline}"/>')
         if fill.hatch:
             parts.append(f'<path class="fill" fill="url(#{hatch_id(fill.hatch)})" d="{outline}"/>')
+    rim = "".join(_open(line) for line in seen.edges())
+    if rim:
+        parts.append(f'<path class="rim" d="{rim}"/>')
     lines: dict[tuple[bool, int], list[str]] = {}
     for component, separates, line in seen.walls():
         lines.setdefault((separates, component), []).append(_open(line))
@@ -180,11 +184,16 @@ def cell_text(result: RegionMap, number: int) -> str:
     """What a cell is, in words: its region, its counts, its sample."""
     cell = result.cells[number]
     at = ", ".join(f"{name} = {_short(cell.sample[name])}" for name in cell.sample.names)
-    return f"Cell {number} of region {cell.region}: {counts_text(cell.stable, cell.total)}; sample {at}"
+    return f"Cell {number} of region {cell.region}: {counts_text(cell)}; sample {at}"
 
 
-def counts_text(stable: int | None, total: int | None) -> str:
-    """Both counts in words, as far as they are known."""
+def counts_text(part: Cell | Region) -> str:
+    """The counts in words, as far as they are known."""
+    stable, total = part.stable, part.total
+    if part.admissible is not None:
+        known = replace(part, admissible=None)
+        more = f", {counts_text(known)}" if (stable, total) != (None, None) else ""
+        return f"{part.admissible} admissible{more}"
     if stable is None and total is None:
         return "counts not known"
     if total is None:

@@ -39,12 +39,17 @@ def check_numbers(result: RegionMap) -> None:
         for level, number in enumerate(stack.cells):
             if (result.cells[number].stack, result.cells[number].level) != (s, level):
                 raise _fault(f"cell {number} is not at level {level} of stack {s}")
-    if sum(len(stack.cells) for stack in result.stacks) != len(result.cells):
+    if result.cover is not None:
+        if result.stacks or result.components or any(cell.stack is not None for cell in result.cells):
+            raise _fault("it has a cover, as certified maps have, and stacks or curves, as exact ones")
+    elif sum(len(stack.cells) for stack in result.stacks) != len(result.cells):
         raise _fault("not every cell is in one stack")
     for n, cell in enumerate(result.cells):
         _within((cell.region,), len(result.regions), f"cell {n}", "region")
         _check_counts(cell, f"cell {n}")
-        if cell.solutions and len(cell.solutions) != cell.total:
+        # where only stable equilibria are counted, a certified map has no boxes of the others
+        expected = (cell.total, cell.stable) if result.cover is not None and cell.total is None else (cell.total,)
+        if cell.solutions and len(cell.solutions) not in expected:
             raise _fault(f"cell {n} has {cell.total} equilibria and {len(cell.solutions)} boxes")
         region = result.regions[cell.region]
         if n not in region.cells:
@@ -55,7 +60,7 @@ def check_numbers(result: RegionMap) -> None:
         if not all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, cell.sample, strict=True)):
             raise _fault(f"the sample of cell {n} is not in the window")
     for n, region in enumerate(result.regions):
-        most = max((count for count in (region.stable, region.total, *(region.index or ())) if count), default=0)
+        most = max((n for n in (region.stable, region.total, region.admissible, *(region.index or ())) if n), default=0)
         if region.area[0] > region.area[1]:
             raise _fault(f"region {n} has an area below its own lower bound")
         if most > MOST:
@@ -79,7 +84,12 @@ def _check_counts(part: Cell | Region, place: str) -> None:
 
 def _told_by(count: Count) -> tuple[str, ...]:
     """The counts that are the same in all cells of a region."""
-    return {Count.STABLE: ("stable",), Count.TOTAL: ("total",), Count.INDEX: ("stable", "total", "index")}[count]
+    return {
+        Count.STABLE: ("stable",),
+        Count.TOTAL: ("total",),
+        Count.INDEX: ("stable", "total", "index"),
+        Count.ADMISSIBLE: ("admissible",),
+    }[count]
 
 
 def _within(numbers: Iterable[int], length: int, place: str, what: str) -> None:

@@ -46,6 +46,8 @@ Value = TypeVar("Value")
 def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     """All that the page tells and draws for a cell's sample: parameters, loads, potential and equilibria, as JSON data.
 
+    In a certified map, whose unknowns are angles, poses and potential are left out.
+
     Raises
     ------
     ConfigError
@@ -55,9 +57,10 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
         values = {n: e.evaluate(cell.sample[0], cell.sample[1]) for n, e in result.slice.parameters.items()}
     except PoleError as error:
         raise ConfigError(f"a parameter has no value at a sample: {error}") from error
-    potential = potential_at(result.system, values)
+    polynomial = result.system.unknowns == UNKNOWNS  # springs with free lengths have square roots in their potential
+    potential = potential_at(result.system, values) if polynomial else {}
     drawn = (
-        result.system.unknowns == UNKNOWNS
+        polynomial
         and all(name in values for name in NEEDED)
         and all(abs(v) < LARGEST for v in (*values.values(), *potential.values()))
     )

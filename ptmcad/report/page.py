@@ -45,8 +45,13 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
     Raises
     ------
     ConfigError
-        When the map contradicts itself so that it can not be drawn.
+        When the map is a certified one, or contradicts itself so that it can not be drawn.
     """
+    if result.cover is not None:
+        raise ConfigError(
+            "the page of a certified map is not made, because its poses and energies are drawn for springs without "
+            "free lengths; ptmcad classify draws the map"
+        )
     check_numbers(result)
     seen = _outline(result)
     drawn = chart(seen)
@@ -62,7 +67,7 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
         details=_details(drawn),
         legend=sections.legend(result, drawn),
         regions=sections.regions(result),
-        curves=curves(result),
+        curves=_curves(result),
         plan=sections.left_out(result),
         times=sections.times_and_precision(result, timings),
         errors=error_section(errors) if errors else "",
@@ -79,6 +84,13 @@ def _outline(result: RegionMap) -> Shapes:
         return shapes(result)
     except (IndexError, ValueError, ArithmeticError) as error:
         raise ConfigError(f"the map contradicts itself ({error}); check it with ptmcad verify") from error
+
+
+def _curves(result: RegionMap) -> str:
+    """The section of the boundary curves; a certified map knows only rectangles that hold them."""
+    if result.cover is not None:
+        return ""
+    return '<section aria-labelledby="h-curves"><h2 id="h-curves">Boundary curves</h2>' + curves(result) + "</section>"
 
 
 def _details(drawn: Chart) -> str:
@@ -123,9 +135,7 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "base": result.base,
         "axes": [symbol(name) for name in names],
         "drawable": result.slice.mechanism == "ptm",
-        "regions": [
-            {"area": certified_digits(r.area), "counts": counts_text(r.stable, r.total)} for r in result.regions
-        ],
+        "regions": [{"area": certified_digits(r.area), "counts": counts_text(r)} for r in result.regions],
         "stacks": [list(s.cells) for s in result.stacks],
         "cells": [
             {
@@ -133,7 +143,7 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
                 "stack": cell.stack,
                 "level": cell.level,
                 "region": cell.region,
-                "counts": counts_text(cell.stable, cell.total),
+                "counts": counts_text(cell),
                 "index": list(cell.index) if cell.index else None,
                 "sample": [[name, both(cell.sample[name]), text_of(cell.sample[name])] for name in names],
                 **at_sample(result, cell),

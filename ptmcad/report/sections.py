@@ -11,7 +11,7 @@ from html import escape
 from ptmcad.numerals import text_of
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.render.colours import Fill, fill_of
-from ptmcad.render.legend import entries
+from ptmcad.render.legend import entries, percent
 from ptmcad.report.bounds import exactly
 from ptmcad.report.chart import Chart, counts_text, hatch_id
 from ptmcad.report.equilibria import both, told
@@ -23,6 +23,8 @@ _COUNTED = {
     Count.STABLE: "regions are told apart by the number of stable equilibria",
     Count.TOTAL: "regions are told apart by the number of equilibria",
     Count.INDEX: "regions are told apart by the numbers of minima, saddles and maxima",
+    Count.ADMISSIBLE: "regions are told apart by the number of stable equilibria with every spring longer than its "
+    "free length",
 }
 _STATUS = {
     Status.EXACT: "Exact: every point of the window off the boundary curves is in a region, and the counts are proved.",
@@ -72,7 +74,9 @@ def banner(result: RegionMap) -> str:
     if result.status is Status.EXACT and result.undetermined == 0:
         return ""
     text = _STATUS.get(result.status, "The result is of an unusual kind.")
-    if result.undetermined:
+    if result.cover is not None:
+        text += f" Undetermined: {percent(result.undetermined)} of the window, drawn in grey."
+    elif result.undetermined:
         text += f" The undecided fraction of the window is {both(result.undetermined)}."
     if result.status is Status.PARTIAL:
         text += " What is missing below was not computed; what is there is proved, but areas may not be known yet."
@@ -104,6 +108,11 @@ def answer(result: RegionMap) -> str:
     cells, regions = len(result.cells), len(result.regions)
     if not cells:
         return f"no cells were computed; {result.status.value}"
+    if result.cover is not None:
+        return (
+            f"{regions} region{'s' * (regions != 1)}, {percent(result.undetermined)} of the window undetermined; "
+            f"{result.status.value}"
+        )
     curves = sum(c.separates for c in result.components)
     return (
         f"{regions} region{'s' * (regions != 1)} in {cells} cell{'s' * (cells != 1)}, parted by {curves} "
@@ -149,7 +158,7 @@ def regions(result: RegionMap) -> str:
         rows.append(
             (
                 f"{swatch(fill_of(region, result.slice.count))} {number}",
-                escape(counts_text(region.stable, region.total)) + (f" ({escape(index)})" if index else ""),
+                escape(counts_text(region)) + (f" ({escape(index)})" if index else ""),
                 f"{middle}<br><small>{bounds}</small>",
                 sample,
                 f'<span class="chips">{buttons}</span>',
@@ -212,11 +221,18 @@ def _again(result: RegionMap) -> Iterator[str]:
     if found.command is not None:
         yield "<p>Without a record, the same slice under another name:</p>"
         yield copied(found.command, "the whole command")
-    yield (
-        "<p>Two runs give the same result, times apart. Only the bounds of areas depend on a further option, "
-        "<code>--area-tolerance</code>.</p><h3>Check it</h3><p>The result carries its proof. This checks it by methods "
-        "that share no code with those that made it:</p>"
-    )
+    if result.cover is None:
+        yield (
+            "<p>Two runs give the same result, times apart. Only the bounds of areas depend on a further option, "
+            "<code>--area-tolerance</code>.</p><h3>Check it</h3><p>The result carries its proof. This checks it by "
+            "methods that share no code with those that made it:</p>"
+        )
+    else:
+        yield (
+            "<p>The option <code>--tolerance</code> says how much may stay undetermined; a longer run goes on from "
+            "this result with <code>--resume</code>.</p><h3>Check it</h3><p>This proves the counts again, and a random "
+            "sample of what encloses the curves, by other interval methods:</p>"
+        )
     yield copied(f"ptmcad verify {name}.json", "the check")
     yield "<p>For one point:</p>"
     sample = result.regions[0].sample if result.regions else None

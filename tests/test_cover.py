@@ -1,0 +1,330 @@
+"""The plane geometry of covers, against a flood fill on a grid whose pixels are squares, lines and points."""
+
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from ptmcad.cover import MOST_STEPS, Cover, Rectangle, components, from_boxes, union_area
+from ptmcad.cover.borders import area_bounds, borders
+from ptmcad.cover.filling import filled, pockets, simplified
+from ptmcad.cover.outlines import outlines
+from ptmcad.cover.samples import rectangle_of, sample, simplest_between
+
+UNIT = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))
+WINDOW = ((Fraction(1, 20), Fraction(2)), (Fraction(-7, 3), Fraction(5)))
+
+
+@st.composite
+def rectangles(draw: st.DrawFn, steps: int) -> Rectangle:
+    left, bottom = draw(st.integers(0, steps - 1)), draw(st.integers(0, steps - 1))
+    # short ones mostly, so that they leave something open between them
+    width, tall = (draw(st.integers(1, max(1, steps // draw(st.sampled_from((1, 2, 4)))))) for _ in range(2))
+    return left, min(left + width, steps), bottom, min(bottom + tall, steps)
+
+
+@st.composite
+def covers(draw: st.DrawFn) -> Cover:
+    steps = 2 ** draw(st.integers(0, 4))
+    return Cover(steps, tuple(sorted(set(draw(st.lists(rectangles(steps), max_size=14))))))
+
+
+@dataclass(frozen=True)
+class Flood:
+    """Pixel (2i+1, 2j+1) is a lattice square, pixels with an even coordinate are lines and points between them.
+
+    ``closed`` tells what lies in a rectangle; ``label`` numbers the connected parts of both kinds, -1 on the rim.
+    """
+
+    closed: NDArray[np.bool_]
+    label: NDArray[np.int64]
+
+    def areas(self, closed: bool) -> dict[int, int]:
+        squares = self.label[1::2, 1::2][self.closed[1::2, 1::2] == closed]
+        numbers, areas = np.unique(squares, return_counts=True)
+        return dict(zip(numbers.tolist(), areas.tolist(), strict=True))
+
+
+def flood(cover: Cover) -> Flood:
+    n = 2 * cover.steps + 1
+    closed = np.zeros((n, n), dtype=np.bool_)
+    for left, right, bottom, top in cover.rectangles:
+        closed[2 * left : 2 * right + 1, 2 * bottom : 2 * top + 1] = True
+    rim = np.ones_like(closed)
+    rim[1:-1, 1:-1] = False
+    label = np.full((n, n), -1, dtype=np.int64)
+    fresh = 0
+    for start in zip(*np.nonzero(label < 0), strict=True):
+        if label[start] >= 0 or (rim[start] and not closed[start]):
+            continue
+        label[start], waiting = fresh, [start]
+        while waiting:
+            i, j = waiting.pop()
+            for p, q in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
+                if not (0 <= p < n and 0 <= q < n) or label[p, q] >= 0 or closed[p, q] != closed[start]:
+                    continue
+                if closed[p, q] or not rim[p, q]:
+                    label[p, q] = fresh
+                    waiting.append((p, q))
+        fresh += 1
+    return Flood(closed, label)
+
+
+def check_against_flood(cover: Cover) -> None:
+    found, grid = components(cover), flood(cover)
+    assert sorted(grid.areas(False).values(), reverse=True) == list(found.areas)
+    assert sorted(grid.areas(True).values(), reverse=True) == list(found.cluster_areas)
+    assert union_area(cover) == sum(found.cluster_areas) == cover.steps**2 - sum(found.areas)
+
+    label_of: dict[int, int] = {}
+    for i in range(1, 2 * cover.steps):
+        for j in range(1, 2 * cover.steps):
+            number = found.locate(Fraction(i, 2), Fraction(j, 2))
+            assert (number is None) == grid.closed[i, j]
+            if number is not None:
+                assert label_of.setdefault(number, grid.label[i, j]) == grid.label[i, j]
+    assert len(set(label_of.values())) == len(label_of) == len(found.areas)
+    cluster_label: dict[int, int] = {}
+    for cluster, (left, _, bottom, _) in zip(found.cluster_of, cover.rectangles, strict=True):
+        label = int(grid.label[2 * left + 1, 2 * bottom + 1])
+        assert cluster_label.setdefault(cluster, label) == label
+    assert len(set(cluster_label.values())) == len(cluster_label) == len(found.cluster_areas)
+
+    near: set[tuple[int, int]] = set()
+    n = len(grid.closed)
+    for di in (-1, 0, 1):
+        for dj in (-1, 0, 1):
+            a = (slice(max(0, -di), n - max(0, di)), slice(max(0, -dj), n - max(0, dj)))
+            b = (slice(max(0, di), n - max(0, -di)), slice(max(0, dj), n - max(0, -dj)))
+            meet = ~grid.closed[a] & grid.closed[b] & (grid.label[a] >= 0)
+            near |= set(zip(grid.label[a][meet].tolist(), grid.label[b][meet].tolist(), strict=True))
+    assert {(label_of[c], cluster_label[k]) for c, k in found.touching} == near
+    by_rectangle = borders(found)
+    for number, touched in enumerate(by_rectangle):
+        assert {found.cluster_of[k] for k in touched} == set(found.clusters_at[number])
+
+
+@settings(deadline=None, max_examples=80)
+@given(covers())
+def test_components_and_clusters_are_those_of_a_flood_fill(cover: Cover) -> None:
+    check_against_flood(cover)
+
+
+@pytest.mark.slow
+@settings(deadline=None, max_examples=3000)
+@given(covers())
+def test_components_and_clusters_are_those_of_a_flood_fill_often(cover: Cover) -> None:
+    check_against_flood(cover)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_components_of_many_rectangles_are_those_of_a_flood_fill(seed: int) -> None:
+    source = random.Random(seed)
+    steps, longest = 256, (4, 8, 40, 12)[seed]
+    found = set()
+    for _ in range((6000, 2500, 300, 1500)[seed]):
+        left, bottom = source.randrange(steps), source.randrange(steps)
+        found.add(
+            (left, min(steps, left + source.randint(1, longest)), bottom, min(steps, bottom + source.randint(1, 4)))
+        )
+    check_against_flood(Cover(steps, tuple(sorted(found))))
+
+
+@settings(deadline=None, max_examples=50)
+@given(covers(), st.integers(1, 2**20))
+def test_a_finer_lattice_scales_everything(cover: Cover, factor: int) -> None:
+    """Coordinates of forty bits, and areas of eighty, are as exact as small ones."""
+    finer = Cover(
+        cover.steps * factor, tuple((factor * a, factor * b, factor * c, factor * d) for a, b, c, d in cover.rectangles)
+    )
+    first, second = components(cover), components(finer)
+    assert second.areas == tuple(factor**2 * area for area in first.areas)
+    assert second.rectangles == tuple(
+        (factor * a, factor * b, factor * c, factor * d) for a, b, c, d in first.rectangles
+    )
+    assert second.clusters_at == first.clusters_at
+    assert union_area(finer) == factor**2 * union_area(cover)
+
+
+@settings(deadline=None, max_examples=50)
+@given(covers())
+def test_samples_are_in_their_components_and_rectangles_can_not_grow(cover: Cover) -> None:
+    found, grid = components(cover), flood(cover)
+    for number, (left, right, bottom, top) in enumerate(found.rectangles):
+        inside = (slice(2 * left + 1, 2 * right), slice(2 * bottom + 1, 2 * top))
+        assert not grid.closed[inside].any()
+        for grown in ((left - 1, right, bottom, top), (left, right + 1, bottom, top),
+                      (left, right, bottom - 1, top), (left, right, bottom, top + 1)):  # fmt: skip
+            a, b, c, d = grown
+            assert min(grown) < 0 or max(grown) > cover.steps or grid.closed[2 * a + 1 : 2 * b, 2 * c + 1 : 2 * d].any()
+        x, y = sample(found, number, WINDOW)
+        (x0, x1), (y0, y1) = WINDOW
+        assert found.locate((x - x0) / (x1 - x0) * cover.steps, (y - y0) / (y1 - y0) * cover.steps) == number
+        at = rectangle_of((left, right, bottom, top), cover.steps, WINDOW)
+        assert at[0] < x < at[1] and at[2] < y < at[3]
+
+
+@settings(deadline=None, max_examples=50)
+@given(covers(), st.integers(0, 300))
+def test_filling_removes_the_chosen_components_only(cover: Cover, least: int) -> None:
+    found = components(cover)
+    small = pockets(found, least)
+    after = filled(found, small)
+    assert components(after).areas == tuple(area for area in found.areas if area >= least)
+    assert union_area(after) == union_area(cover) + sum(found.areas[n] for n in small)
+
+
+@settings(deadline=None, max_examples=80)
+@given(covers())
+def test_a_simplified_cover_covers_the_same_with_no_more_rectangles(cover: Cover) -> None:
+    after = simplified(cover)
+    assert len(after.rectangles) <= len(cover.rectangles)
+    assert (flood(after).closed == flood(cover).closed).all()
+    assert list(after.rectangles) == sorted(set(after.rectangles))
+
+
+@settings(deadline=None, max_examples=80)
+@given(covers())
+def test_outlines_go_around_their_components(cover: Cover) -> None:
+    """Their signed areas add up to the component's, and every corner turns by a right angle."""
+    found = components(cover)
+    for number, polygons in enumerate(outlines(found, range(len(found.areas)))):
+        twice = 0
+        for corners in polygons:
+            x, y = corners.T.tolist()
+            after = [*range(1, len(x)), 0]
+            twice += sum(x[k] * y[a] - x[a] * y[k] for k, a in enumerate(after))
+            for k, a in enumerate(after):
+                assert (x[k] == x[a]) != (y[k] == y[a])
+                assert (x[k] == x[a]) != (x[a] == x[after[a]])
+        assert twice == 2 * found.areas[number]
+
+
+def test_area_bounds_count_a_shared_cluster_once() -> None:
+    ring = Cover(8, ((2, 6, 2, 3), (2, 6, 5, 6), (2, 3, 2, 6), (5, 6, 2, 6)))
+    found = components(ring)
+    assert found.areas == (48, 4)
+    assert area_bounds(found, [0]) == (48, 60)
+    assert area_bounds(found, [0, 1]) == (52, 64)
+
+
+def test_two_rectangles_that_touch_in_a_corner_part_the_window() -> None:
+    """The corner is in both closed rectangles, so no path goes through it."""
+    found = components(Cover(4, ((0, 2, 0, 2), (2, 4, 2, 4))))
+    assert found.areas == (4, 4)
+    assert found.cluster_areas == (8,)
+    assert found.locate(Fraction(2), Fraction(2)) is None
+    assert found.rectangles == ((0, 2, 2, 4), (2, 4, 0, 2))
+
+
+@pytest.mark.parametrize("steps", [1, 8, MOST_STEPS])
+def test_an_empty_cover_leaves_the_whole_window(steps: int) -> None:
+    found = components(Cover(steps, ()))
+    assert found.areas == (steps**2,)
+    assert found.rectangles == ((0, steps, 0, steps),)
+    assert found.locate(Fraction(steps, 2), Fraction(steps, 3)) == 0
+
+
+def test_a_full_cover_leaves_nothing() -> None:
+    found = components(Cover(4, ((0, 4, 0, 4),)))
+    assert found.areas == found.rectangles == ()
+    assert found.locate(Fraction(1), Fraction(1)) is None
+
+
+@pytest.mark.parametrize(
+    "rectangle", [(1, 1, 0, 2), (2, 1, 0, 2), (-1, 1, 0, 2), (0, 5, 0, 2), (0, 2, 3, 3), (0, 2, 0, 2**70), (0, 2, 0)]
+)
+def test_what_is_no_rectangle_of_the_window_is_refused(rectangle: tuple[int, ...]) -> None:
+    with pytest.raises(ValueError, match="rectangle"):
+        components(Cover(4, (rectangle,)))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("steps", [0, 2 * MOST_STEPS])
+def test_a_lattice_without_steps_or_too_fine_is_refused(steps: int) -> None:
+    with pytest.raises(ValueError, match="steps"):
+        components(Cover(steps, ()))
+
+
+@pytest.mark.parametrize("at", [(0, 1), (1, 0), (4, 1), (1, 4), (-1, 1)])
+def test_a_point_outside_the_open_window_has_no_component(at: tuple[int, int]) -> None:
+    with pytest.raises(ValueError, match="open window"):
+        components(Cover(4, ())).locate(Fraction(at[0]), Fraction(at[1]))
+
+
+def near_a_line(k: int, towards: float) -> float:
+    """The float next to a line of WINDOW's first axis, or a plain fraction."""
+    line = float(WINDOW[0][0] + (WINDOW[0][1] - WINDOW[0][0]) * k / 64)
+    return math.nextafter(line, towards) if towards else k / 64
+
+
+ends = st.one_of(
+    st.floats(allow_nan=False),
+    st.floats(-8, 8),
+    st.builds(near_a_line, st.integers(-1, 65), st.sampled_from((-math.inf, 0, math.inf))),
+)
+
+
+@settings(max_examples=300)
+@given(st.lists(st.tuples(ends, ends, ends, ends), max_size=6), st.sampled_from((1, 64, 2**24, MOST_STEPS)))
+def test_boxes_are_rounded_outward_by_less_than_a_step(boxes: list[tuple[float, ...]], steps: int) -> None:
+    low = np.array([[min(a, b), min(c, d)] for a, b, c, d in boxes]).reshape(-1, 2)
+    high = np.array([[max(a, b), max(c, d)] for a, b, c, d in boxes]).reshape(-1, 2)
+    expected = set()
+    for (a, c), (b, d) in zip(low.tolist(), high.tolist(), strict=True):
+        sides: list[int] = []
+        for first, last, (start, end) in ((a, b, WINDOW[0]), (c, d, WINDOW[1])):
+            u, v = ((Fraction(min(max(x, -1e300), 1e300)) - start) / (end - start) * steps for x in (first, last))
+            if u >= steps or v <= 0:
+                break
+            left, right = max(0, math.floor(u)), min(steps, math.ceil(v))
+            sides += [left, right if right > left else right + 1]
+        else:
+            expected.add(tuple(sides))
+    assert from_boxes(WINDOW, low, high, steps) == Cover(steps, tuple(sorted(expected)))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("scale", [Fraction(10) ** 400, Fraction(1, 10**400)], ids=["1e400", "1e-400"])
+def test_a_window_beyond_the_range_of_floats_is_rounded_exactly(scale: Fraction) -> None:
+    window = ((-scale, scale), (Fraction(-1), Fraction(1)))
+    found = from_boxes(window, [[0.0, 0.0]], [[5e-324, 0.5]], 8)
+    right = 5 if scale > 1 else 8
+    assert found.rectangles == ((4, right, 4, 6),)
+
+
+@pytest.mark.parametrize("box", [((0.0, math.nan), (1.0, 1.0)), ((0.5, 0.0), (0.25, 1.0))])
+def test_boxes_that_are_none_are_refused(box: tuple[tuple[float, float], tuple[float, float]]) -> None:
+    with pytest.raises(ValueError, match="low end"):
+        from_boxes(UNIT, [box[0]], [box[1]], 8)
+
+
+@given(st.fractions(), st.fractions())
+def test_the_simplest_fraction_has_the_least_denominator(a: Fraction, b: Fraction) -> None:
+    low, high = min(a, b), max(a, b)
+    found = simplest_between(low, high)
+    assert low <= found <= high
+    for denominator in range(1, min(found.denominator, 200)):
+        assert math.floor(high * denominator) < math.ceil(low * denominator)
+
+
+@pytest.mark.slow
+def test_two_hundred_thousand_overlapping_rectangles() -> None:
+    """A chain of overlapping squares along a circle, on the finest lattice: two components, whose areas are known."""
+    number, half = 200_000, 2**23
+    steps, radius = MOST_STEPS, MOST_STEPS // 4
+    angles = [2 * math.pi * k / number for k in range(number)]
+    centres = [(steps // 2 + round(radius * math.cos(a)), steps // 2 + round(radius * math.sin(a))) for a in angles]
+    found = components(Cover(steps, tuple(sorted({(x - half, x + half, y - half, y + half) for x, y in centres}))))
+    assert len(found.areas) == 2
+    assert len(found.cluster_areas) == 1
+    inner = found.areas[found.locate(Fraction(steps, 2), Fraction(steps, 2)) or 0]
+    assert math.pi * (radius - 1.5 * half) ** 2 < inner < math.pi * (radius - half / 2) ** 2
+    assert sum(found.areas) + found.cluster_areas[0] == steps**2
