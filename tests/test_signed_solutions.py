@@ -2,7 +2,7 @@
 
 Known answers: the reference values of the project for section 5.2 of the paper (128 complex solutions, 124 unloaded;
 6, 12, 26 and 30 equilibria). Other ways: msolve on the system in cosines, sines and 1/l_i, derived by SymPy from the
-energy; Newton's method from a grid; the symmetries of the mechanism.
+energy; Krawczyk's test and Newton's method; the symmetries of the mechanism.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from fractions import Fraction
 from functools import lru_cache
+from math import atan
 from random import Random
 
 import pytest
@@ -19,6 +20,7 @@ from test_model_paper import free_length_equilibria
 
 from ptmcad.algebra import simple_roots
 from ptmcad.algebra.signed import SignedSolutions, SpecialDesignError, signed_solutions
+from ptmcad.paper.free_lengths import FreeLengthDesign, proved_equilibrium
 
 Numbers = tuple[str, str, str, str, str, str]
 """rho, L1, L2, l0, f3, f4."""
@@ -72,15 +74,23 @@ def random_design(seed: int) -> Numbers:
     while True:
         rho, length2, free = (Fraction(random.randint(1, 40), 20) for _ in range(3))
         f3, f4 = (Fraction(random.randint(-6, 6), 20) for _ in range(2))
-        if rho not in (1, length2) and f3 and f4:
+        if rho not in (1, length2) and 1 not in (rho + length2, abs(rho - length2)) and f3 and f4:
             return str(rho), "1", str(length2), str(free), str(f3), str(f4)
 
 
-@pytest.mark.parametrize("seed", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in range(1, 25))])
-def test_equilibria_by_newton(seed: int) -> None:
-    """As many poses as Newton's method finds from a grid; it may miss some, which has not been seen."""
+@pytest.mark.parametrize("seed", [9, *(pytest.param(n, marks=pytest.mark.slow) for n in range(9))])
+def test_equilibria_one_by_one(seed: int) -> None:
+    """Krawczyk's test proves each pose from its angles, and Newton's method from a grid finds no others.
+
+    It finds 11 of the 12 poses at seed 9.
+    """
     numbers = random_design(seed)
-    assert solutions(numbers).equilibria == free_length_equilibria(*(float(Fraction(x)) for x in numbers)), numbers
+    design = FreeLengthDesign(*map(Fraction, numbers))
+    poses = [s for s in solutions(numbers).solutions if s.equilibrium]
+    proved = [proved_equilibrium(design, (2 * atan(float(s.t1.real)), 2 * atan(float(s.t2.real)))) for s in poses]
+    assert None not in proved
+    assert len({p.angles for p in proved if p is not None}) == len(poses)
+    assert free_length_equilibria(*(float(Fraction(x)) for x in numbers)) <= len(poses)
 
 
 def system(numbers: Numbers) -> tuple[list[str], list[str]]:
@@ -106,7 +116,7 @@ def system(numbers: Numbers) -> tuple[list[str], list[str]]:
 
 @needs_msolve
 @pytest.mark.parametrize("numbers", [
-    PAPER, UNLOADED, *(pytest.param(random_design(n), marks=pytest.mark.slow) for n in range(8)),
+    PAPER, UNLOADED, *(pytest.param(random_design(n), marks=pytest.mark.slow) for n in range(4)),
 ])  # fmt: skip
 def test_real_solutions_by_msolve(numbers: Numbers) -> None:
     """Real solutions over all signs: a Groebner basis and a rational parametrisation instead of a resultant."""

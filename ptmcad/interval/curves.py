@@ -23,7 +23,10 @@ TORUS = (-3.0, -3.0 + 6.2832)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
-    """One curve: its name, the system that defines it, and the ranges of the variables beside x and y."""
+    """One curve: its name, why counts change there, and the system that defines it.
+
+    The variables of its boxes are x, y and those that ``ranges`` gives.
+    """
 
     name: str
     reason: str
@@ -52,8 +55,8 @@ def _stable(slice: Slice) -> Iterator[Curve]:
         system(
             [*m.equilibrium, m.hessian.determinant],
             (0, 1, 2, 3),
-            (m.dependent, [there.determinant]),
-            [there.p11, there.p22],
+            (m.dependent, [there.determinant, m.turned]),
+            [there.p11, there.p22, m.turn],
         ),
         (TORUS, TORUS),
     )
@@ -69,7 +72,7 @@ def _folds(slice: Slice) -> Iterator[Curve]:
     reason = "two equilibria meet: det H = 0"
     m = slice_mechanism(Graph(), slice)
     there = m.at_equilibrium
-    cheap, costly = [*m.dependent, *_present(m.unit)], [there.determinant, there.levelled]
+    cheap, costly = [*m.dependent, *_present(m.unit)], [there.determinant, m.turned, there.levelled]
     equations = [*m.equilibrium, m.hessian.determinant]
     if m.unit is None:
         yield Curve("fold", reason, system(equations, (0, 1, 2, 3), (cheap, costly)), (TORUS, TORUS))
@@ -130,7 +133,7 @@ def _admissible(slice: Slice) -> Iterator[Curve]:
                 [*m.equilibrium, third],
                 (0, 1, 2, 3),
                 ([*m.dependent, *dependent], []),
-                [there.p11, there.p22, there.determinant],
+                [there.p11, there.p22, m.turn, there.determinant, m.turned],
             ),
             (TORUS, TORUS),
         )

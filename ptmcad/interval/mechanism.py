@@ -30,7 +30,10 @@ def cross(p: Vector, q: Vector) -> Formula:
 
 @dataclass(frozen=True, slots=True)
 class Hessian:
-    """The Hessian H of U, scaled: P11 = H11/L1, P22 = H22/L2, q = H12/(L1 L2), D = det H/(L1 L2)."""
+    """The Hessian H of U, scaled: P11 = H11/L1, P22 = H22/L2, q = H12/(L1 L2).
+
+    D = P11 P22 - L1 L2 q^2 = det H/(L1 L2).
+    """
 
     p11: Formula
     p22: Formula
@@ -52,9 +55,10 @@ class Mechanism:
     hessian : formulas of the Hessian everywhere.
     at_equilibrium : formulas of the same numbers that hold, and are finite for shorter springs, only where E1 = E2 = 0;
         never to be differentiated.
-    dependent : further formulas that vanish where E1 = E2 = 0; they stay narrow where spring 3 is short.
-    unit : vanishes where E1 = E2 = 0, without the direction of spring 3; at l3 = 0 it vanishes where the cone swallows an
-        equilibrium. None when spring 3 has no free length.
+    dependent : further formulas that vanish where E1 = E2 = 0: L1 E1 - L2 E2, the moment on both bars turned by one
+        angle, which stays narrow for small rho; and one that stays narrow where spring 3 is short.
+    unit : vanishes where E1 = E2 = 0, without the direction of spring 3; at l3 = 0 it vanishes where the cone swallows
+        an equilibrium. None when spring 3 has no free length.
     lengths : l1, l2, l3.
     vectors : d1, d2, d3.
     free : the free lengths.
@@ -73,6 +77,10 @@ class Mechanism:
     tangents: tuple[Vector, Vector]
     aligned: Formula | None
     """d3 x u, with u = (cos phi, sin phi); None without phi."""
+    turn: Formula
+    """The second derivative of U when both bars turn by the same angle, H11 - 2 H12 + H22; narrow for small rho."""
+    turned: Formula
+    """L2 D from the entries of H for the first bar alone and for both bars; holds where E1 = E2 = 0."""
 
 
 def mechanism(
@@ -175,11 +183,19 @@ def mechanism(
     unit = (
         residual1.squared() + residual2.squared() + 2 * (residual1 * residual2 * c12) - pull3.squared() * s12.squared()
     )  # fmt: skip
+    # both bars turned by the same angle: spring i feels only that rho turns the other way
+    lift, give = graph.constant(0), graph.constant(0)
+    for pull, k, d, u, r in ((pull1, k1, d1, u1, r1), (pull2, k2, d2, u2, r2), (pull3, k3, d3, u3, r3)):
+        lift = lift + (pull * u[1] - k * d[1])
+        give = give + (pull * (u[0] * (1 - rho * (u[0] * r))) - k * (d[0] - rho))
+    moment = rho * lift + p1 * (x3 * s1 - y3 * c1) + p2 * (x4 * s2 + y4 * c2)
+    turn = rho * give + p1 * (x3 * c1 + y3 * s1) - p2 * (x4 * c2 - y4 * s2)
+    there = at_equilibrium
     return Mechanism(
         (e1, e2),
         everywhere,
         at_equilibrium,
-        () if pull3.value == 0 else (dependent,),
+        (moment,) if pull3.value == 0 else (moment, dependent),
         None if pull3.value == 0 else unit,
         (l1, l2, l3),
         (d1, d2, d3),
@@ -187,4 +203,6 @@ def mechanism(
         (residual1, residual2),
         (t1, t2),
         None if phi is None else cross(d3, u3),
+        turn,
+        there.p11 * turn - p1 * (there.p11 - p2 * there.q).squared(),
     )
