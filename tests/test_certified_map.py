@@ -188,7 +188,7 @@ def test_locate_prints_what_is_admissible(tmp_path: Path, capsys: pytest.Capture
     assert run(["locate", str(path), "--csv", str(points)]) == 0
     assert capsys.readouterr().out.splitlines() == [
         "rho,L2,status,region,cell,total,stable,index,admissible",
-        "1/2,5/2,certified,0,0,6,2,2-3-0,1",
+        "1/2,5/2,certified,0,0,5,2,2-3-0,1",
         "1,15/8,undecided,,,,,,",
     ]
 
@@ -290,13 +290,6 @@ def test_a_line_on_which_the_free_lengths_are_zero_is_answered() -> None:
     free = ptmcad.intervals(ptmcad.slice_from_options(slice="rho,l0", sets=["F3=-10", "F4=-10"]), "rho", {"l0": 0})
     fig4 = ptmcad.intervals(ptmcad.slice_from_options(slice="rho,L2", sets=["F3=-10", "F4=-10"]), "rho", {"L2": 1})
     assert free.intervals == fig4.intervals
-
-
-def test_the_page_of_a_certified_map_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "map.json"
-    path.write_text(certified_map().to_json(), encoding="utf-8")
-    assert run(["report", str(path)]) == 2
-    assert "the page of a certified map is not made" in capsys.readouterr().err
 
 
 def test_resume_names_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
