@@ -28,6 +28,7 @@ EXACT = (
     "regions",
     "regionmap",
     "exactmap",
+    "interval",
     "assembly",
     "locate",
     "ranges",
