@@ -31,8 +31,9 @@ class Enclosure:
     small: list[Boxes] = field(default_factory=list)
 
     def boxes(self) -> Boxes:
-        """All of them."""
-        return np.concatenate([*self.waiting, *self.small])
+        """All of them, perhaps none."""
+        none = np.empty((0, 2 * (2 + len(self.curve.ranges))))
+        return np.concatenate([none, *self.waiting, *self.small])
 
 
 def begin(curves: Sequence[Curve], rectangles: Boxes) -> list[Enclosure]:
