@@ -38,6 +38,7 @@ class Assembler:
         complement = components(cover)
         counted = self._counts(complement)
         kept = [n for n in counted if not _is_pocket(n, complement, counted, self.slice.count)]
+        known = frozenset(kept)
         cells, regions = [], []
         for region, n in enumerate(kept):
             sample, count = counted[n]
@@ -45,7 +46,7 @@ class Assembler:
             cells.append(
                 Cell(None, n, sample, region, count.total, count.stable, count.index, count.solutions, admissible)
             )
-            area = self._area_bounds(complement, n)
+            area = self._area_bounds(complement, n, known)
             regions.append(Region(count.stable, count.total, count.index, area, (region,), sample, admissible))
         open_area = cover.steps**2 - sum(complement.areas[n] for n in kept)
         return RegionMap(
@@ -90,12 +91,23 @@ class Assembler:
             values.append(simplest_between(axis.low + low * step, axis.low + high * step))
         return Point((names[0], names[1]), values[0], values[1])
 
-    def _area_bounds(self, complement: Components, n: int) -> tuple[Fraction, Fraction]:
-        """The component's area, and with the undetermined clusters that touch it."""
+    def _area_bounds(self, complement: Components, n: int, known: frozenset[int]) -> tuple[Fraction, Fraction]:
+        """The component's area; and with all that is undetermined beside it, components without a cell included."""
         horizontal, vertical = self.slice.axes
         square = (horizontal.high - horizontal.low) * (vertical.high - vertical.low) / complement.cover.steps**2
-        low = complement.areas[n]
-        high = low + sum(complement.cluster_areas[cluster] for cluster in complement.clusters_at[n])
+        around: dict[int, list[int]] = {}
+        for component, cluster in complement.touching:
+            around.setdefault(cluster, []).append(component)
+        components, clusters, waiting = {n}, set[int](), [n]
+        while waiting:
+            for cluster in complement.clusters_at[waiting.pop()]:
+                if cluster not in clusters:
+                    clusters.add(cluster)
+                    more = {m for m in around[cluster] if m not in known} - components
+                    components |= more
+                    waiting += more
+        low, high = complement.areas[n], sum(complement.areas[m] for m in components)
+        high += sum(complement.cluster_areas[cluster] for cluster in clusters)
         return low * square, high * square
 
 

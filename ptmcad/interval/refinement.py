@@ -31,8 +31,8 @@ class Enclosure:
     small: list[Boxes] = field(default_factory=list)
 
     def boxes(self) -> Boxes:
-        """All of them, perhaps none."""
-        none = np.empty((0, 2 * (2 + len(self.curve.ranges))))
+        """All of them; none where the curve does not enter the window."""
+        none = self.curve.start(np.empty((0, 4)))
         return np.concatenate([none, *self.waiting, *self.small])
 
 

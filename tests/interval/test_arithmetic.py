@@ -177,6 +177,13 @@ def random_angles(count: int, seed: int) -> tuple[Floats, Floats]:
     return low, high
 
 
+def whole(x: arb) -> int:
+    """The only whole number in a ball."""
+    number = x.unique_fmpz()
+    assert number is not None
+    return int(number)
+
+
 def check_sines(low: Floats, high: Floats) -> None:
     """Against Arb with 110 bits, and to within 2^-109: ends, extrema, and how much is given away."""
     out = np.empty((len(low), 4))
@@ -193,7 +200,7 @@ def check_sines(low: Floats, high: Floats) -> None:
                 # the numbers of the last extrema below the ends tell how many lie between
                 first = ((x / pi) - (arb(1) - quarter) / 2).floor()
                 last = ((y / pi) - (arb(1) - quarter) / 2).floor()
-                n, m = int(first.unique_fmpz()), int(last.unique_fmpz())
+                n, m = whole(first), whole(last)
                 inside = range(n + 1, m + 1)
                 top = any(k % 2 == 0 for k in inside) or (a == 0 and quarter == 1)
                 bottom = any(k % 2 == 1 for k in inside)
@@ -239,4 +246,3 @@ def test_error_of_sine_and_cosine_is_a_quarter_of_what_is_claimed() -> None:
         worst = max(float(e.upper()) for x in places.tolist() for e in _error(x))
     assert worst < arithmetic.SINE_ERROR / 4
     assert worst > arithmetic.SINE_ERROR / 64, "a bound this loose, or a test this blind, is a mistake"
-

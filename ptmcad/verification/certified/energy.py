@@ -33,6 +33,7 @@ class Derivatives:
     ----------
     short : the number (1, 2, 3) of a spring that may have length zero, else 0; then second derivatives are meaningless.
     rest : e1 and e2 without the free length of spring 3, when spring 3 may have length zero.
+    bare : e2 or e1 without the free length of spring 1 or 2, when ``short`` is its number.
     """
 
     e1: arb
@@ -43,6 +44,7 @@ class Derivatives:
     e22: arb
     short: int
     rest: Pair | None = None
+    bare: arb | None = None
 
 
 class Energy:
@@ -66,7 +68,8 @@ class Energy:
         zero = arb(0) if crease2 else self.rho - self.length1
         self.gap2 = zero * zero
         self.product1, self.product2 = 4 * self.rho * self.length2, 4 * self.rho * self.length1
-        self.free1, self.free2, self.free3 = (not p == 0 for p in (self.p1, self.p2, self.p3))
+        # a ball that is not exactly zero: != would ask for one without zero
+        self.free1, self.free2, self.free3 = (not (p == 0) for p in (self.p1, self.p2, self.p3))  # noqa: SIM201
 
     def __call__(self, th1: arb, th2: arb) -> Derivatives:
         """At all configurations in two balls."""
@@ -86,23 +89,27 @@ class Energy:
         short = 0
         if self.free2:
             slope, bend = self._turning(th1, rs1, rc1, length1, self.gap2, self.product2, self.crease2)
-            e1 -= self.p2 * slope
             if bend is None:
                 short = 2
             else:
+                e1 -= self.p2 * slope
                 e11 -= self.p2 * bend
         if self.free1:
             slope, bend = self._turning(th2, rs2, rc2, length2, self.gap1, self.product1, self.crease1)
-            e2 -= self.p1 * slope
             if bend is None:
+                e1 -= self.p2 * (_ANY if short == 2 else 0)
                 short = 1
             else:
+                e2 -= self.p1 * slope
                 e22 -= self.p1 * bend
         if not self.free3:
-            return Derivatives(e1, e2, e11, e12, e21, e22, short)
+            return self._finished(e1, e2, e11, e12, e21, e22, short)
         x, y = rho - length1 * c1 - length2 * c2, length2 * s2 - length1 * s1
         q3 = x * x + y * y
         if not q3 > 0:
+            if short:
+                d = self._finished(e1, e2, e11, e12, e21, e22, short)
+                e1, e2 = d.e1, d.e2
             pull = self.p3 * _ANY
             return Derivatives(e1 - pull, e2 - pull, e11, e12, e21, e22, short or 3, (e1, e2))
         inverse = q3.rsqrt()
@@ -115,6 +122,14 @@ class Energy:
         e22 -= pull * (bc - length2 * (v * v))
         e12 += length2 * (pull * mixed)
         e21 += length1 * (pull * mixed)
+        return self._finished(e1, e2, e11, e12, e21, e22, short)
+
+    def _finished(self, e1: arb, e2: arb, e11: arb, e12: arb, e21: arb, e22: arb, short: int) -> Derivatives:
+        """With any pull of a spring that may have length zero."""
+        if short == 1:
+            return Derivatives(e1, e2 - self.p1 * _ANY, e11, e12, e21, e22, short, None, e2)
+        if short == 2:
+            return Derivatives(e1 - self.p2 * _ANY, e2, e11, e12, e21, e22, short, None, e1)
         return Derivatives(e1, e2, e11, e12, e21, e22, short)
 
     def _turning(
@@ -141,8 +156,8 @@ class Energy:
         """w1^2 + w2^2 + 2 w1 w2 c12 - (p3 s12)^2, zero at an equilibrium, whatever the direction of spring 3.
 
         With w1, w2 what e1, e2 are without the free length of spring 3, an equilibrium demands w_i = p3 t_i . u for a
-        unit vector u, with t1 . t2 = -c12; eliminating u: w1^2 + w2^2 + 2 w1 w2 c12 = p3^2 s12^2. Where l3 = 0, the cone
-        outweighs the slope of the rest when this is negative.
+        unit vector u, with t1 . t2 = -c12; eliminating u: w1^2 + w2^2 + 2 w1 w2 c12 = p3^2 s12^2. Where l3 = 0, the
+        cone outweighs the slope of the rest when this is negative.
         """
         derivatives = _without_third(self)(th1, th2)
         w1, w2 = derivatives.e1, derivatives.e2
@@ -159,12 +174,28 @@ class Energy:
         y = self.length2 * s2 - self.length1 * s1
         return self.gap1 + self.product1 * h2 * h2, self.gap2 + self.product2 * h1 * h1, x * x + y * y
 
+    def peaks(self, th1: arb, th2: arb, d: Derivatives) -> bool:
+        """Whether no equilibrium in the balls is a minimum, because spring 1 or 2, being short, bends the energy down.
+
+        An equilibrium has slope w = S/p1 of spring 1, S being e2 without its free length; p1 adds
+        -p1 (rho c2 - L2 w^2)/l1 to e22, where l1 may be zero but has an upper bound.
+        """
+        if d.bare is None:
+            return False
+        first = d.short == 1
+        angle, pull, bar = (th2, self.p1, self.length2) if first else (th1, self.p2, self.length1)
+        q1, q2, _ = self.lengths_squared(th1, th2)
+        longest = (q1 if first else q2).abs_upper().sqrt()
+        slope = d.bare / pull
+        bend = self.rho * angle.cos() - bar * (slope * slope)
+        return bool(bend > 0 and (d.e22 if first else d.e11) - pull * bend / longest < 0)
+
     def bends_down(self, th1: arb, th2: arb, d: Derivatives) -> bool:
         """Whether the Hessian has a negative eigenvalue wherever l3 is not zero in balls in which it may be.
 
-        With G = J^T J, J being the derivative of A4 - A3 by the angles, tr(adj(G) Hess) of -p3 l3 is -p3 det G / l3 but for
-        a part of at most p3 L1^2 L2^2 (1/L1 + 1/L2); adj(G) is positive semidefinite, so a negative trace tells. All is
-        divided by L1 L2 here; d.e11 ... are those without the free length of spring 3.
+        With G = J^T J, J being the derivative of A4 - A3 by the angles, tr(adj(G) Hess) of -p3 l3 is -p3 det G / l3 but
+        for a part of at most p3 L1^2 L2^2 (1/L1 + 1/L2); adj(G) is positive semidefinite, so a negative trace tells.
+        All is divided by L1 L2; d.e11 ... are those without the free length of spring 3.
         """
         s12, c12 = (th1 + th2).sin_cos()
         l1, l2 = self.length1, self.length2

@@ -28,6 +28,9 @@ TORUS: Square = (0.0, _HALF, 0.0, _HALF)
 _SMALLEST = 2.0**-34
 _SIZES = tuple(2.0**-k for k in (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 18, 21, 25, 30))
 _NEAR = 2.0**-48
+"""Steps of Newton's method below it are not worth another one ..."""
+_ROUGH = 2.0**-20
+"""... and above it there is nothing to be proved; rounding may keep them between."""
 
 
 class Unproved(Exception):
@@ -53,7 +56,11 @@ class Equilibrium:
 
 
 def equilibria(
-    energy: Energy, minima: bool, start: Iterable[Square] = (TORUS,), budget: int = 20_000
+    energy: Energy,
+    minima: bool,
+    start: Iterable[Square] = (TORUS,),
+    budget: int = 60_000,
+    smallest: float = _SMALLEST,
 ) -> tuple[list[Equilibrium], int]:
     """The equilibria in the squares, and how many squares were looked at.
 
@@ -61,6 +68,7 @@ def equilibria(
     ----------
     minima : whether only stable equilibria are asked for; others may then be missing.
     budget : number of squares after which the search gives up.
+    smallest : half width of a square that is not halved again.
 
     Raises
     ------
@@ -84,12 +92,11 @@ def equilibria(
                 if _off_middle(energy, square, d, inverse):
                     continue
                 new = _settled(energy, square, found)
-                if new is not None:
-                    if all(_apart(new, e) for e in found):
-                        found.append(new)
-                        if _inside(square, new):
-                            continue
-        if max(r1, r2) < _SMALLEST:
+                if new is not None and all(_apart(new, e) for e in found):
+                    found.append(new)
+                    if _inside(square, new):
+                        continue
+        if max(r1, r2) < smallest:
             raise Unproved(f"an equilibrium near ({m1:.6g}, {m2:.6g}) may be degenerate")
         if _first(d, r1, r2):
             waiting += [(m1 - r1 / 2, r1 / 2, m2, r2), (m1 + r1 / 2, r1 / 2, m2, r2)]
@@ -102,14 +109,14 @@ def _excluded(energy: Energy, square: Square, d: Derivatives, minima: bool) -> b
     """Whether no equilibrium that is asked for lies in the square."""
     if d.e1 > 0 or d.e1 < 0 or d.e2 > 0 or d.e2 < 0:
         return True
+    m1, r1, m2, r2 = square
     if minima:
         if d.short == 0 and (d.e11 < 0 or d.e22 < 0 or d.e11 * d.e22 - d.e12 * d.e21 < 0):
             return True
-        if (d.short == 1 and d.rest is None and d.e11 < 0) or (d.short == 2 and d.rest is None and d.e22 < 0):
+        if d.bare is not None and energy.peaks(arb(m1, r1), arb(m2, r2), d):
             return True
     if not energy.free3:
         return False
-    m1, r1, m2, r2 = square
     if d.rest is None and r1 + r2 > 0.25:
         return False
     th1, th2 = arb(m1, r1), arb(m2, r2)
@@ -151,8 +158,8 @@ def _off_middle(energy: Energy, square: Square, d: Derivatives, inverse: tuple[f
 def _settled(energy: Energy, square: Square, found: list[Equilibrium]) -> Equilibrium | None:
     """An equilibrium that Newton's method reaches from the square's middle, proved to be one; None when none is."""
     m1, r1, m2, r2 = square
-    x, y = m1, m2
-    for _ in range(12):
+    x, y, step = m1, m2, 1.0
+    for _ in range(10):
         d = energy(arb(x), arb(y))
         inverse = None if d.short else _inverse(d)
         if inverse is None:
@@ -163,9 +170,10 @@ def _settled(energy: Energy, square: Square, found: list[Equilibrium]) -> Equili
         x, y = x - step1, y - step2
         if max(abs(x - m1) - r1, abs(y - m2) - r2) > max(r1, r2):
             return None
-        if max(abs(step1), abs(step2)) < _NEAR:
+        step = max(abs(step1), abs(step2))
+        if step < _NEAR:
             break
-    else:
+    if step > _ROUGH:
         return None
     if any(_within(x, y, e.th1, e.th2, e.alone) for e in found):
         return None

@@ -13,6 +13,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
 from ptmcad.cover import Cover, Rectangle
 
@@ -76,13 +77,30 @@ class Sweep:
             return found if self._gap(k - 1, u) is not None else None
         return found
 
+    def free_around(self, u: int, v: int, half: int) -> bool:
+        """Whether the closed square of this half width around a lattice point is in one gap after the other."""
+        if min(u, v) < half or max(u, v) + half > self.steps:
+            return False
+        first, last = bisect_left(self.lines, v - half), bisect_right(self.lines, v + half)
+        # strips that the closed square meets, also along a line only
+        for strip in range(max(first - 1, 0), min(last, len(self.gaps))):
+            gaps = self.gaps[strip]
+            k = bisect_left(gaps, Fraction(u), key=_left) - 1
+            if k < 0 or not (gaps[k][0] < u - half and u + half < gaps[k][1]):
+                return False
+        return True
+
     def _gap(self, strip: int, u: Fraction) -> int | None:
         gaps = self.gaps[strip]
-        k = bisect_left(gaps, (u,), key=lambda gap: (gap[0],)) - 1
+        k = bisect_left(gaps, u, key=_left) - 1
         if k < 0:
             return None
         left, right, number = gaps[k]
         return number if left < u < right else None
+
+
+def _left(gap: tuple[int, int, int]) -> Fraction:
+    return Fraction(gap[0])
 
 
 def sweep(cover: Cover) -> Sweep:
@@ -106,7 +124,7 @@ def sweep(cover: Cover) -> Sweep:
     gap_rows: list[list[tuple[int, int, int]]] = []
     block_rows: list[list[tuple[int, int, int]]] = []
     active: list[Interval] = []
-    for low, high in zip(lines, lines[1:], strict=False):
+    for low, high in pairwise(lines):
         for left, right, _, _ in end[low]:
             del active[bisect_left(active, (left, right))]
         for left, right, _, _ in begin[low]:
