@@ -23,7 +23,7 @@ help:
 # A stamp is touched last, so an interrupted set-up is begun again.
 $(VENV)/.installed: pyproject.toml scripts/setup-venv
 	scripts/setup-venv $(VENV)
-	$(PIP) --editable .
+	$(PIP) --editable '.[certified]'
 	@touch $@
 
 $(VENV)/.installed-test: $(VENV)/.installed

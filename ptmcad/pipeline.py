@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from importlib import import_module
 from time import perf_counter
 
 from ptmcad.errors import ConfigError
@@ -108,6 +109,7 @@ def _certified(
         raise ConfigError("the certified engine has no savings to switch off", key="keep")
     if resume is not None:
         check_resumable(slice, resume)
+    import_module("ptmcad.interval.compiled")  # first: where numba is missing, it says so
     from ptmcad.interval.engine import certified_map
 
     cover = None if resume is None else resume.cover
