@@ -14,9 +14,13 @@ from ptmcad.memory import Bound
 @click.command("verify")
 @click.argument("result", type=click.Path(path_type=Path))
 @click.option("--seed", type=click.IntRange(min=0), metavar="N",
-              help="Seed of the random points for the variety.  [default: a hash of the claims]")  # fmt: skip
+              help="Seed of the random points for the variety, and of random boxes.  [default: a hash of the claims]")  # fmt: skip
+@click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
+              help="Random boxes of the free area of a certified map.  [default: 40]")  # fmt: skip
 @limit_options
-def command(*, result: Path, seed: int | None, timeout: float | None, max_memory: Bound | None) -> int:
+def command(
+    *, result: Path, seed: int | None, boxes: int | None, timeout: float | None, max_memory: Bound | None
+) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
 
     Prints what was checked, and how. The exit status is 0 when every check passed, 1 when one failed (the first
@@ -31,7 +35,7 @@ def command(*, result: Path, seed: int | None, timeout: float | None, max_memory
         stored = read_result(result)
         from ptmcad.verification import verify
 
-        report = verify(stored, seed=seed)
+        report = verify(stored, seed=seed, boxes=boxes)
     click.echo(report.table())
     if report.ok:
         return 0

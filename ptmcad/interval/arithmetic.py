@@ -45,6 +45,13 @@ def mignitude(low: float, high: float) -> float:
     return low if low > 0 else (-high if high < 0 else 0.0)
 
 
+@inlined
+def magnitude(low: float, high: float) -> float:
+    """The largest absolute value in an interval; NaN or infinite when nothing is known on a side."""
+    # max() alone would pass over a NaN in its second argument
+    return max(abs(low), abs(high)) + 0.0 * (low + high)
+
+
 @compiled
 def multiply(a: float, b: float, c: float, d: float) -> tuple[float, float]:
     """[a, b] [c, d]"""
@@ -128,20 +135,20 @@ def _slope(x: float, y: float) -> float:
 @compiled
 def direction(a: float, b: float, c: float, d: float) -> tuple[float, float]:
     """x/|(x, y)| for x in [a, b], y in [c, d]: increasing in x, and nearer to zero for larger |y|."""
-    near, far = mignitude(c, d), max(abs(c), abs(d))
-    if not (max(abs(a), abs(b)) < _LARGE and far < _LARGE):
+    near, far = mignitude(c, d), magnitude(c, d)
+    if not (magnitude(a, b) < _LARGE and far < _LARGE):
         return -1.0, 1.0
     low, high = -1.0, 1.0
     if b < 0:
         high = up(up(up(_slope(b, far)))) if -b > _SMALL or far > _SMALL else 0.0
     elif b == 0:
-        high = 0.0 if near > 0 or a < 0 else 1.0
+        high = 0.0 if near > 0 else 1.0
     elif b > _SMALL or near > _SMALL:
         high = up(up(up(_slope(b, near))))
     if a > 0:
         low = down(down(down(_slope(a, far)))) if a > _SMALL or far > _SMALL else 0.0
     elif a == 0:
-        low = 0.0 if near > 0 or b > 0 else -1.0
+        low = 0.0 if near > 0 else -1.0
     elif -a > _SMALL or near > _SMALL:
         low = down(down(down(_slope(a, near))))
     return max(low, -1.0), min(high, 1.0)
@@ -152,7 +159,7 @@ def length(a: float, b: float, c: float, d: float) -> tuple[float, float]:
     """|(x, y)| for x in [a, b], y in [c, d]."""
     x, y = mignitude(a, b), mignitude(c, d)
     near = max(0.0, down(down(sqrt(x * x + y * y)))) if x > _SMALL or y > _SMALL else 0.0
-    x, y = max(abs(a), abs(b)), max(abs(c), abs(d))
+    x, y = magnitude(a, b), magnitude(c, d)
     if not (x < _LARGE and y < _LARGE):
         return (near, inf) if near < inf else (0.0, inf)
     if x > _SMALL or y > _SMALL:

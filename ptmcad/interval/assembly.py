@@ -21,7 +21,8 @@ from ptmcad.slice import Count, Point, Slice
 MOST_COUNTED = 2000
 """Components whose counts are computed; smaller ones are undetermined."""
 POCKET = Fraction(1, 10_000)
-"""Share of the window below which a component beside a larger one with equal counts is taken for an artefact."""
+"""Share of the window, or a tenth of the cover's if that is more: smaller components with the counts of a larger one
+beside them are taken for artefacts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +38,9 @@ class Assembler:
         """The map of the window outside the cover."""
         complement = components(cover)
         counted = self._counts(complement)
-        kept = [n for n in counted if not _is_pocket(n, complement, counted, self.slice.count)]
+        pocket = max(POCKET * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
+        kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)]
+        known = frozenset(kept)
         cells, regions = [], []
         for region, n in enumerate(kept):
             sample, count = counted[n]
@@ -45,7 +48,7 @@ class Assembler:
             cells.append(
                 Cell(None, n, sample, region, count.total, count.stable, count.index, count.solutions, admissible)
             )
-            area = self._area_bounds(complement, n)
+            area = self._area_bounds(complement, n, known)
             regions.append(Region(count.stable, count.total, count.index, area, (region,), sample, admissible))
         open_area = cover.steps**2 - sum(complement.areas[n] for n in kept)
         return RegionMap(
@@ -90,12 +93,23 @@ class Assembler:
             values.append(simplest_between(axis.low + low * step, axis.low + high * step))
         return Point((names[0], names[1]), values[0], values[1])
 
-    def _area_bounds(self, complement: Components, n: int) -> tuple[Fraction, Fraction]:
-        """The component's area, and with the undetermined clusters that touch it."""
+    def _area_bounds(self, complement: Components, n: int, known: frozenset[int]) -> tuple[Fraction, Fraction]:
+        """The component's area; and with all that is undetermined beside it, components without a cell included."""
         horizontal, vertical = self.slice.axes
         square = (horizontal.high - horizontal.low) * (vertical.high - vertical.low) / complement.cover.steps**2
-        low = complement.areas[n]
-        high = low + sum(complement.cluster_areas[cluster] for cluster in complement.clusters_at[n])
+        around: dict[int, list[int]] = {}
+        for component, cluster in complement.touching:
+            around.setdefault(cluster, []).append(component)
+        components, clusters, waiting = {n}, set[int](), [n]
+        while waiting:
+            for cluster in complement.clusters_at[waiting.pop()]:
+                if cluster not in clusters:
+                    clusters.add(cluster)
+                    more = {m for m in around[cluster] if m not in known} - components
+                    components |= more
+                    waiting += more
+        low, high = complement.areas[n], sum(complement.areas[m] for m in components)
+        high += sum(complement.cluster_areas[cluster] for cluster in clusters)
         return low * square, high * square
 
 
@@ -108,9 +122,15 @@ def _key(count: PointCount, which: Count) -> object:
     return count.index if which is Count.INDEX else count.admissible
 
 
-def _is_pocket(n: int, complement: Components, counted: Mapping[int, tuple[Point, PointCount]], which: Count) -> bool:
-    """Whether a component is small and a larger one at the same cluster has the same count."""
-    if complement.areas[n] >= POCKET * complement.cover.steps**2:
+def _is_pocket(
+    n: int,
+    least: Fraction,
+    complement: Components,
+    counted: Mapping[int, tuple[Point, PointCount]],
+    which: Count,
+) -> bool:
+    """Whether a component is smaller than ``least`` and a larger one at the same cluster has the same count."""
+    if complement.areas[n] >= least:
         return False
     near = set(complement.clusters_at[n])
     mine = _key(counted[n][1], which)

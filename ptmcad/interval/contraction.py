@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.interval.arithmetic import down, multiply, reciprocal, up
+from ptmcad.interval.arithmetic import down, magnitude, multiply, reciprocal, up
 from ptmcad.interval.compiled import compiled
 from ptmcad.interval.evaluation import run
 from ptmcad.interval.system import Arguments
@@ -122,7 +122,7 @@ def contract(system: Arguments, box_low: Floats, box_high: Floats, work: Workspa
                 j_low[i, j], j_high[i, j] = low[place], high[place]
                 matrix[i, j] = 0.5 * (low[place] + high[place])
                 usable = usable and abs(matrix[i, j]) < 1e150
-                change = up(max(abs(low[place]), abs(high[place])) * radius[j])
+                change = up(magnitude(low[place], high[place]) * radius[j])
                 u, v = down(u - change), up(v + change)
             if u > 0 or v < 0:
                 return False
@@ -169,7 +169,7 @@ def solve_row(system: Arguments, i: int, pivot: int, box_low: Floats, box_high: 
         c_low, c_high = down(c_low + u), up(c_high + v)
     # c + p (x - middle) = 0 for the pivot's unknown x
     if not (p_low > 0 or p_high < 0):
-        reach = up(max(abs(p_low), abs(p_high)) * radius[pivot])
+        reach = up(magnitude(p_low, p_high) * radius[pivot])
         return -1 if down(c_low - reach) > 0 or up(c_high + reach) < 0 else 0
     u, v = reciprocal(p_low, p_high)
     u, v = multiply(-c_high, -c_low, u, v)

@@ -12,7 +12,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.interval.arithmetic import direction, down, length, mignitude, multiply, reciprocal, sine, up
+from ptmcad.interval.arithmetic import direction, down, length, magnitude, mignitude, multiply, reciprocal, sine, up
 from ptmcad.interval.compiled import compiled
 from ptmcad.interval.formula import Operation
 from ptmcad.interval.tape import Tape
@@ -52,7 +52,7 @@ def run(
         elif operation == _NEGATE:
             u, v = -high[a], -low[a]
         elif operation == _SQUARE:
-            near, far = mignitude(low[a], high[a]), max(abs(low[a]), abs(high[a]))
+            near, far = mignitude(low[a], high[a]), magnitude(low[a], high[a])
             u, v = max(down(near * near), 0.0), up(far * far)
             if not far < inf:
                 u, v = 0.0, inf

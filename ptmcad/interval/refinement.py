@@ -31,8 +31,9 @@ class Enclosure:
     small: list[Boxes] = field(default_factory=list)
 
     def boxes(self) -> Boxes:
-        """All of them."""
-        return np.concatenate([*self.waiting, *self.small])
+        """All of them; none where the curve does not enter the window."""
+        none = self.curve.start(np.empty((0, 4)))
+        return np.concatenate([none, *self.waiting, *self.small])
 
 
 def begin(curves: Sequence[Curve], rectangles: Boxes) -> list[Enclosure]:

@@ -29,11 +29,12 @@ def check_adjacencies(claims: Claims) -> str:
             raise Violation(f"adjacency {number} is stored twice: cells {a.first} and {a.second}")
         pairs.add(pair)
         first, second = result.cells[a.first], result.cells[a.second]
+        stack_number = _stack(first)
         if a.segment is None:
-            if (second.stack, second.level) != (first.stack, first.level + 1):
+            if (second.stack, second.level) != (stack_number, first.level + 1):
                 raise Violation(f"adjacency {number} has no segment, but cells {a.first} and {a.second} are not "
                                 "neighbours in one stack")  # fmt: skip
-            wall = result.stacks[first.stack].walls[first.level]
+            wall = result.stacks[stack_number].walls[first.level]
             if wall.component != a.component:
                 raise Violation(f"adjacency {number}: the wall between the cells is on component {wall.component}, "
                                 f"not {a.component}")  # fmt: skip
@@ -48,14 +49,20 @@ def check_adjacencies(claims: Claims) -> str:
     return f"{len(vertical)} inside stacks, {len(across)} segments"
 
 
+def _stack(cell: Cell) -> int:
+    if cell.stack is None:
+        raise Violation("a cell of an exact map is in no stack")
+    return cell.stack
+
+
 def _check_segment(claims: Claims, number: int, a: Adjacency) -> None:
     result = claims.result
     assert a.segment is not None
     first, second = result.cells[a.first], result.cells[a.second]
-    if second.stack != first.stack + 1:
+    if _stack(second) != _stack(first) + 1:
         raise Violation(f"adjacency {number}: cells {a.first} and {a.second} are not in neighbouring stacks")
     _check_free(claims, f"adjacency {number}", a.segment, (a.first, first), (a.second, second))
-    value = result.critical_values[first.stack]
+    value = result.critical_values[_stack(first)]
     line = next((c.number for c in claims.lines if is_root(c.in_v[0], value)), None)
     if line != a.component:
         raise Violation(
@@ -66,7 +73,7 @@ def _check_segment(claims: Claims, number: int, a: Adjacency) -> None:
 def _check_free(claims: Claims, what: str, segment: Segment, first: tuple[int, Cell], second: tuple[int, Cell]) -> None:
     """A segment joins two cells of neighbouring stacks and meets no curve."""
     low, high, v = (rational(q) for q in segment)
-    if not (inside_stack(claims, low, first[1].stack) and inside_stack(claims, high, second[1].stack)):
+    if not (inside_stack(claims, low, _stack(first[1])) and inside_stack(claims, high, _stack(second[1]))):
         raise Violation(f"{what}: the segment from {short(low)} to {short(high)} does not join the cells' stacks")
     if not claims.height[0] < v < claims.height[1]:
         raise Violation(f"{what}: the segment's height {short(v)} is outside the window")

@@ -29,6 +29,8 @@ def check_shape(claims: Claims) -> str:
         raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
     if any(a.low >= a.high for a in r.slice.axes) or r.base not in (0, 1):
         raise Violation("the window is empty")
+    if any(c.admissible is not None for c in r.cells) or any(g.admissible is not None for g in r.regions):
+        raise Violation("an exact map has counts of admissible equilibria")
     if not r.stacks:
         if r.status is Status.EXACT or r.critical_values or r.cells or r.adjacencies or r.non_adjacencies or r.regions:
             raise Violation("there are no stacks")

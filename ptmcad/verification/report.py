@@ -5,7 +5,13 @@ Guarantee: `VerifyReport.ok` is True only when no check failed; a claim that was
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
+
+from ptmcad.errors import shown
+
+C = TypeVar("C")
 
 
 class Violation(Exception):
@@ -54,3 +60,21 @@ class VerifyReport:
         rows += [(words[c.passed], c.name, c.method, c.detail) for c in self.checks]
         widths = [max(len(row[k]) for row in rows) for k in range(3)]
         return "\n".join("  ".join([*(row[k].ljust(widths[k]) for k in range(3)), row[3]]).rstrip() for row in rows)
+
+
+def checked(
+    claims: C, steps: Sequence[tuple[str, str, Callable[[C], str]]], missing: Collection[str] = ()
+) -> list[Check]:
+    """Run checks, given as name, method and function, in their order; none after a failed one, none of the missing."""
+    checks: list[Check] = []
+    failed = False
+    for name, method, check in steps:
+        if failed or name in missing:
+            checks.append(Check(name, method, None, "not reached" if failed else "not complete in this partial result"))
+            continue
+        try:
+            checks.append(Check(name, method, True, check(claims)))
+        except Violation as violation:
+            failed = True
+            checks.append(Check(name, method, False, shown(str(violation))))
+    return checks

@@ -6,17 +6,17 @@ from collections.abc import Callable
 from functools import partial
 from hashlib import sha256
 
-from ptmcad.errors import shown
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
+from ptmcad.verification.certified.verify import verify_certified
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
 from ptmcad.verification.plan import check_plan
-from ptmcad.verification.report import Check, VerifyReport, Violation
+from ptmcad.verification.report import Check, VerifyReport, checked
 from ptmcad.verification.solutions import check_solutions
 from ptmcad.verification.structure import check_critical_values, check_stacks
 from ptmcad.verification.variety import check_irreducible, check_norm
@@ -38,13 +38,14 @@ _SINCE_VARIETY: tuple[tuple[str, str, Callable[[Claims], str]], ...] = (
 )
 
 
-def verify(result: RegionMap, seed: int | None = None) -> VerifyReport:
+def verify(result: RegionMap, seed: int | None = None, boxes: int | None = None) -> VerifyReport:
     """Check a result without the code that made it.
 
     Parameters
     ----------
-    seed : of the random points at which the variety is compared with the norm of det H; drawn from a hash of the
-        claims when None, so that nobody can fit claims to the points.
+    seed : of the random points at which the variety is compared with the norm of det H, or of the random boxes of a
+        certified map; drawn from a hash of the claims when None, so that nobody can fit claims to the points.
+    boxes : number of random boxes of a certified map, `ptmcad.verification.certified.verify.BOXES` when None.
 
     Guarantee
     ---------
@@ -55,6 +56,8 @@ def verify(result: RegionMap, seed: int | None = None) -> VerifyReport:
     --------------
     What the table lists as not checked.
     """
+    if result.cover is not None or result.status is Status.CERTIFIED:
+        return verify_certified(result, seed, boxes)
     claims = Claims(result)
     drawn = fingerprint(result) if seed is None else str(seed)
     steps: tuple[tuple[str, str, Callable[[Claims], str]], ...] = (
@@ -71,17 +74,7 @@ def verify(result: RegionMap, seed: int | None = None) -> VerifyReport:
     missing: set[str] = set()
     if result.status is Status.PARTIAL:
         missing = set() if result.stacks else {name for name, _, _ in _SINCE_VARIETY}
-    checks: list[Check] = []
-    failed = False
-    for name, method, check in steps:
-        if failed or name in missing:
-            checks.append(Check(name, method, None, "not reached" if failed else "not complete in this partial result"))
-            continue
-        try:
-            checks.append(Check(name, method, True, check(claims)))
-        except Violation as violation:
-            failed = True
-            checks.append(Check(name, method, False, shown(str(violation))))
+    checks = checked(claims, steps, missing)
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
     return VerifyReport(tuple(checks))
 

@@ -1,0 +1,198 @@
+"""Checks of a certified map's form: cover, cells and regions, and what there must not be.
+
+Guarantee: exact; the components of the cover's complement are found by `ptmcad.verification.certified.sweep`.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+
+from ptmcad.numerals import text_of
+from ptmcad.regionmap import Status
+from ptmcad.slice import FREE_LENGTHS, Count
+from ptmcad.verification.certified.energy import NAMES
+from ptmcad.verification.certified.sweep import Sweep, sweep
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.report import Violation
+
+MOST_STEPS = 2**40
+_NEEDED = {
+    Count.STABLE: {"stable"},
+    Count.ADMISSIBLE: {"stable", "admissible"},
+    Count.TOTAL: {"total", "stable", "index"},
+    Count.INDEX: {"total", "stable", "index"},
+}
+_COUNTS = ("total", "stable", "index", "admissible")
+
+
+class CertifiedClaims(Claims):
+    """The result, and what follows from its cover."""
+
+    @cached_property
+    def sweep(self) -> Sweep:
+        assert self.result.cover is not None
+        return sweep(self.result.cover)
+
+    @cached_property
+    def square(self) -> Fraction:
+        """The area of a square of the lattice."""
+        assert self.result.cover is not None
+        one, two = self.result.slice.axes
+        return (one.high - one.low) * (two.high - two.low) / self.result.cover.steps**2
+
+    def on_lattice(self, x: Fraction, y: Fraction) -> tuple[Fraction, Fraction]:
+        """A point of the plane in lattice steps."""
+        assert self.result.cover is not None
+        one, two = self.result.slice.axes
+        steps = self.result.cover.steps
+        return (x - one.low) * steps / (one.high - one.low), (y - two.low) * steps / (two.high - two.low)
+
+    def off_lattice(self, u: Fraction, v: Fraction) -> tuple[Fraction, Fraction]:
+        """The inverse."""
+        assert self.result.cover is not None
+        one, two = self.result.slice.axes
+        steps = self.result.cover.steps
+        return one.low + u * (one.high - one.low) / steps, two.low + v * (two.high - two.low) / steps
+
+    @cached_property
+    def neighbours(self) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
+        """The clusters beside each component, and the components around each cluster."""
+        beside: dict[int, list[int]] = {}
+        around: dict[int, list[int]] = {}
+        for component, cluster in sorted(self.sweep.touching):
+            beside.setdefault(component, []).append(cluster)
+            around.setdefault(cluster, []).append(component)
+        return beside, around
+
+    @cached_property
+    def cell_of(self) -> dict[int, int]:
+        """The cell of each component that has one.
+
+        Raises
+        ------
+        Violation
+            When a sample is not in the free part of the window, or two are in one component.
+        """
+        found: dict[int, int] = {}
+        for n, cell in enumerate(self.result.cells):
+            u, v = self.on_lattice(*cell.sample)
+            if not (0 < u < self.sweep.steps and 0 < v < self.sweep.steps):
+                raise Violation(f"the sample of cell {n} is not in the window")
+            component = self.sweep.locate(u, v)
+            if component is None:
+                raise Violation(f"the sample of cell {n} is in a rectangle of the cover")
+            if component in found:
+                raise Violation(f"the samples of cells {found[component]} and {n} are not parted by the cover")
+            found[component] = n
+        return found
+
+
+def check_form(claims: CertifiedClaims) -> str:
+    """The entries that a certified map has, and those that it has not."""
+    r = claims.result
+    if r.cover is None or r.status not in (Status.CERTIFIED, Status.PARTIAL):
+        raise Violation(f"the status is {r.status.value!r}, and there is {'no' if r.cover is None else 'a'} cover")
+    if r.slice.mechanism != "ptm" or not set(NAMES) - set(FREE_LENGTHS) <= set(r.slice.parameters) <= {"k", *NAMES}:
+        raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
+    if any(axis.low >= axis.high for axis in r.slice.axes):
+        raise Violation("the window is empty")
+    for name in ("components", "critical_values", "stacks", "adjacencies", "non_adjacencies"):
+        if getattr(r, name):
+            raise Violation(f"a certified map has {name}")
+    if r.base != 0 or r.complex_solutions != 0:
+        raise Violation("a certified map has a base axis or a number of complex solutions")
+    steps = r.cover.steps
+    if not 0 < steps <= MOST_STEPS or steps & (steps - 1):
+        raise Violation(f"the lattice has {steps} steps, which is not a power of two up to 2^40")
+    for left, right, bottom, top in r.cover.rectangles:
+        if not (0 <= left < right <= steps and 0 <= bottom < top <= steps):
+            raise Violation(f"{(left, right, bottom, top)} is not a rectangle of the lattice")
+    for one, two in pairwise(r.cover.rectangles):
+        if not one < two:
+            raise Violation(f"the rectangles {one} and {two} are not sorted")
+    needed = _NEEDED[r.slice.count]
+    for what, items in (("cell", r.cells), ("region", r.regions)):
+        for n, item in enumerate(items):
+            present = {name for name in _COUNTS if getattr(item, name) is not None}
+            if present != needed:
+                raise Violation(f"{what} {n} has the counts {sorted(present)}, not {sorted(needed)}")
+    for n, cell in enumerate(r.cells):
+        if cell.stack is not None:
+            raise Violation(f"cell {n} of a certified map has a stack")
+        for name in (*needed - {"index"},):
+            if getattr(cell, name) < 0:
+                raise Violation(f"cell {n} has a negative count")
+    return f"{len(r.cover.rectangles)} rectangles, {len(r.cells)} cells, {len(r.regions)} regions"
+
+
+def check_components(claims: CertifiedClaims) -> str:
+    """Every cell is a component of the cover's complement; the undetermined share is what the cells leave."""
+    r, found = claims.result, claims.sweep
+    cells = claims.cell_of
+    larger = Counter(found.areas.values())
+    for component, n in cells.items():
+        area, level = found.areas[component], r.cells[n].level
+        before = sum(number for other, number in larger.items() if other > area)
+        if not before <= level < before + larger[area]:
+            raise Violation(f"cell {n} is said to be component {level} by area, but {before} are larger")
+    levels = [cell.level for cell in r.cells]
+    if len(set(levels)) != len(levels):
+        raise Violation("two cells are said to be the same component")
+    known = sum(found.areas[component] for component in cells)
+    true = 1 - Fraction(known, found.steps**2)
+    if true != r.undetermined:
+        raise Violation(f"the undetermined share of the window is {float(true):.12g}, not {float(r.undetermined):.12g}")
+    return f"{len(found.areas)} components, {len(found.areas) - len(cells)} of them undetermined"
+
+
+def check_regions(claims: CertifiedClaims) -> str:
+    """Regions part the cells; each has its cells' counts, a cell's sample, and area bounds that hold."""
+    r, found = claims.result, claims.sweep
+    component_of = {n: component for component, n in claims.cell_of.items()}
+    for number, region in enumerate(r.regions):
+        members = tuple(n for n, cell in enumerate(r.cells) if cell.region == number)
+        if not members or members != region.cells:
+            raise Violation(f"region {number} is said to have cells {region.cells}, not {members}")
+        for name in _COUNTS:
+            values = {getattr(r.cells[n], name) for n in members}
+            if values != {getattr(region, name)}:
+                raise Violation(f"region {number}: {name} is {getattr(region, name)}, in its cells {values}")
+        if tuple(region.sample) not in {tuple(r.cells[n].sample) for n in members}:
+            raise Violation(f"the sample of region {number} is not the sample of one of its cells")
+        reach = _reach(claims, {component_of[n] for n in members})
+        least = sum(found.areas[component_of[n]] for n in members)
+        low, high = region.area
+        if not (0 <= low <= least * claims.square):
+            raise Violation(f"region {number} is said to have at least the area {text_of(low)}, but only "
+                            f"{float(least * claims.square):.9g} is proved")  # fmt: skip
+        if high < reach * claims.square:
+            raise Violation(f"region {number} is said to have at most the area {float(high):.9g}, but with what is "
+                            f"undetermined beside it, it may have {float(reach * claims.square):.9g}")  # fmt: skip
+    if sorted(n for region in r.regions for n in region.cells) != list(range(len(r.cells))):
+        raise Violation("a cell is in no region")
+    return f"{len(r.regions)} regions"
+
+
+def _reach(claims: CertifiedClaims, members: set[int]) -> int:
+    """The area that a region has if all that is undetermined beside it belongs to it, in squares of the lattice.
+
+    Not its neighbours' cells, but components without a cell that only undetermined rectangles part from it.
+    """
+    found, cells = claims.sweep, claims.cell_of
+    beside, around = claims.neighbours
+    first = next(iter(members))
+    components, clusters, waiting = {first}, set[int](), [first]
+    while waiting:
+        for cluster in beside.get(waiting.pop(), ()):
+            if cluster in clusters:
+                continue
+            clusters.add(cluster)
+            more = {c for c in around[cluster] if c in members or c not in cells} - components
+            components |= more
+            waiting += more
+    if not members <= components:
+        raise Violation("cells of a region are not joined by what is undetermined")
+    return sum(found.areas[c] for c in components) + sum(found.cluster_areas[c] for c in clusters)

@@ -1,0 +1,91 @@
+"""Check of the stored potential of a certified map, by values at random points.
+
+Guarantee: at three random points of all parameters and angles the text's value and that of the energy, from the four
+nodes' coordinates, are in balls of width below 1e-25 that overlap.
+"""
+
+from __future__ import annotations
+
+import ast
+import random
+from collections.abc import Mapping
+
+from flint import arb, ctx
+
+from ptmcad.verification.certified.energy import NAMES
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.report import Violation
+
+UNKNOWNS = ("th1", "th2")
+_LONGEST = 5_000
+_POINTS = 3
+
+
+def check_potential(claims: Claims, seed: str) -> str:
+    """The unknowns, and the potential in them."""
+    system = claims.result.system
+    if system.unknowns != UNKNOWNS:
+        raise Violation(f"the unknowns are {system.unknowns}, not {UNKNOWNS}")
+    if system.relations or system.gradient or system.hessian:
+        raise Violation("a certified map has no relations, and its gradient and Hessian follow from the potential")
+    expression = _parsed(system.potential)
+    rng = random.Random(seed)
+    with ctx.workprec(128):
+        for _ in range(_POINTS):
+            point = {name: arb(rng.randrange(1, 2**20)) / 2**18 for name in (*NAMES, *UNKNOWNS)}
+            stored, true = _value(expression, point), _energy(point)
+            if not (stored - true).contains(0) or not (stored - true).rad() < 1e-25:
+                difference = float((stored - true).mid())
+                raise Violation(f"the stored potential differs from the mechanism's by {difference:.3g} somewhere")
+    return f"the potential in {len(UNKNOWNS)} unknowns and {len(NAMES)} parameters"
+
+
+def _energy(v: Mapping[str, arb]) -> arb:
+    nodes = (
+        (arb(0), arb(0)), (v["rho"], arb(0)),
+        (v["L1"] * v["th1"].cos(), v["L1"] * v["th1"].sin()),
+        (v["rho"] - v["L2"] * v["th2"].cos(), v["L2"] * v["th2"].sin()),
+    )  # fmt: skip
+    energy = -v["F3x"] * nodes[2][0] - v["F3"] * nodes[2][1] - v["F4x"] * nodes[3][0] - v["F4"] * nodes[3][1]
+    for number, (one, two) in enumerate(((0, 3), (1, 2), (2, 3)), 1):
+        across, up = nodes[two][0] - nodes[one][0], nodes[two][1] - nodes[one][1]
+        stretch = (across * across + up * up).sqrt() - v[f"l0_{number}"]
+        energy += v[f"k{number}"] * stretch * stretch / 2
+    return energy
+
+
+def _parsed(text: str) -> ast.expr:
+    if len(text) > _LONGEST or "**" in text or not text.isascii():
+        raise Violation("the stored potential is not a formula in the names of problem records")
+    try:
+        return ast.parse(text.replace("^", "**"), mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise Violation(f"the stored potential can not be read: {text[:60]!r}") from None
+
+
+def _value(node: ast.expr, point: Mapping[str, arb]) -> arb:
+    """The value of sums, products, quotients, small powers, square roots, sines and cosines."""
+    match node:
+        case ast.Constant(value=int(number)) if not isinstance(number, bool):
+            return arb(number)
+        case ast.Name(id=name) if name in point:
+            return point[name]
+        case ast.UnaryOp(op=ast.USub(), operand=inner):
+            return -_value(inner, point)
+        case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int(exponent))) if 0 <= exponent <= 9:
+            return _value(base, point) ** exponent
+        case ast.BinOp(left=one, op=operator, right=two):
+            a, b = _value(one, point), _value(two, point)
+            match operator:
+                case ast.Add():
+                    return a + b
+                case ast.Sub():
+                    return a - b
+                case ast.Mult():
+                    return a * b
+                case ast.Div():
+                    return a / b
+        case ast.Call(func=ast.Name(id="sqrt" | "sin" | "cos" as name), args=[inner], keywords=[]):
+            value = _value(inner, point)
+            return value.sqrt() if name == "sqrt" else value.sin() if name == "sin" else value.cos()
+    raise Violation(f"the stored potential has a part that is no formula: {ast.unparse(node)[:60]!r}")

@@ -1,0 +1,418 @@
+"""The verification of certified maps accepts true ones and rejects false ones; its parts agree with other methods."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from flint import arb, ctx
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import ptmcad
+from ptmcad.config import slice_from_mapping
+from ptmcad.cover import Cover, Rectangle, components
+from ptmcad.regionmap import Cell, RegionMap, Solution, Status, System
+from ptmcad.slice import Count, Point
+from ptmcad.verification.certified.energy import NAMES, Energy
+from ptmcad.verification.certified.equilibria import TORUS, Unproved, equilibria
+from ptmcad.verification.certified.parameters import energy_at, energy_over, exact
+from ptmcad.verification.certified.points import all_equilibria, counts_of
+from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified.sweep import sweep
+from ptmcad.verification.certified.system import _energy as potential
+
+pytest.importorskip("numba")
+
+Change = Callable[[RegionMap], RegionMap]
+BOXES = 4
+
+
+def made(count: str) -> RegionMap:
+    slice = slice_from_mapping({
+        "name": "small", "mechanism": "ptm",
+        "parameters": {"L1": "1", "k": "100", "F3": "-10", "F4": "-10", "l0": "1/5"},
+        "axes": {"rho": ["1", "3/2"], "L2": ["3/4", "5/4"]}, "count": count,
+    })  # fmt: skip
+    from ptmcad.interval.engine import certified_map
+
+    return certified_map(slice, tolerance=Fraction(1, 50), jobs=1)
+
+
+@pytest.fixture(scope="module")
+def stable() -> RegionMap:
+    return made("stable")
+
+
+@pytest.fixture(scope="module")
+def total() -> RegionMap:
+    return made("total")
+
+
+def test_a_map_of_stable_counts_is_accepted(stable: RegionMap) -> None:
+    report = ptmcad.verify(stable, boxes=BOXES)
+    assert report.ok, report.violation
+    assert f"{BOXES} boxes" in report.table()
+    assert "not checked  the whole free area" in report.table()
+
+
+def test_a_map_of_all_counts_is_accepted(total: RegionMap) -> None:
+    report = ptmcad.verify(total, boxes=BOXES)
+    assert report.ok, report.violation
+
+
+def test_a_partial_map_is_checked_like_a_whole_one(stable: RegionMap) -> None:
+    assert ptmcad.verify(replace(stable, status=Status.PARTIAL), boxes=1).ok
+
+
+def with_cell(r: RegionMap, n: int, **changes: object) -> RegionMap:
+    cells = list(r.cells)
+    cells[n] = replace(cells[n], **changes)  # type: ignore[arg-type]
+    return replace(r, cells=tuple(cells))
+
+
+def with_region(r: RegionMap, n: int, **changes: object) -> RegionMap:
+    regions = list(r.regions)
+    regions[n] = replace(regions[n], **changes)  # type: ignore[arg-type]
+    return replace(r, regions=tuple(regions))
+
+
+def with_solution(r: RegionMap, **changes: object) -> RegionMap:
+    solutions = list(r.cells[1].solutions)
+    solutions[0] = replace(solutions[0], **changes)  # type: ignore[arg-type]
+    return with_cell(r, 1, solutions=tuple(solutions))
+
+
+def with_cover(r: RegionMap, rectangles: list[Rectangle], steps: int | None = None) -> RegionMap:
+    assert r.cover is not None
+    return replace(r, cover=Cover(steps or r.cover.steps, tuple(rectangles)))
+
+
+def rectangles(r: RegionMap) -> list[Rectangle]:
+    assert r.cover is not None
+    return list(r.cover.rectangles)
+
+
+def recount(r: RegionMap, n: int, stable: int) -> RegionMap:
+    return with_region(with_cell(r, n, stable=stable), n, stable=stable)
+
+
+def moved(r: RegionMap) -> Point:
+    """A sample in a rectangle."""
+    assert r.cover is not None
+    left, right, bottom, top = r.cover.rectangles[0]
+    x, y = CertifiedClaims(r).off_lattice(Fraction(left + right, 2), Fraction(bottom + top, 2))
+    return Point(("rho", "L2"), x, y)
+
+
+def at(x: str, y: str) -> Point:
+    return Point(("rho", "L2"), Fraction(x), Fraction(y))
+
+
+FALSE: dict[str, tuple[Change, str]] = {
+    "one stable equilibrium more": (lambda r: recount(r, 0, 2), "counts and solutions"),
+    "one stable equilibrium less": (lambda r: recount(r, 1, 1), "counts and solutions"),
+    "no count": (lambda r: with_cell(r, 0, stable=None), "form"),
+    "a count that was not asked for": (lambda r: with_cell(r, 0, total=4), "form"),
+    "counts of a region": (lambda r: with_region(r, 0, stable=2), "regions and areas"),
+    "a rectangle removed": (lambda r: with_cover(r, rectangles(r)[1:]), "components"),
+    "a rectangle in the middle removed": (
+        lambda r: with_cover(r, [*rectangles(r)[:50], *rectangles(r)[51:]]), "components",
+    ),
+    "a rectangle shifted": (
+        lambda r: with_cover(r, sorted([*rectangles(r)[1:], tuple(x + 4096 for x in rectangles(r)[0])])),  # type: ignore[list-item]
+        "components",
+    ),
+    "a rectangle twice": (lambda r: with_cover(r, [rectangles(r)[0], *rectangles(r)]), "form"),
+    "rectangles not sorted": (lambda r: with_cover(r, rectangles(r)[::-1]), "form"),
+    "a rectangle outside": (lambda r: with_cover(r, [*rectangles(r), (2**24 - 1, 2**24 + 1, 0, 1)]), "form"),
+    "steps no power of two": (lambda r: with_cover(r, rectangles(r), 2**24 + 1), "form"),
+    "a finer lattice": (lambda r: with_cover(r, rectangles(r), 2**25), "components"),
+    "a sample in a rectangle": (lambda r: with_cell(r, 0, sample=moved(r)), "components"),
+    "a sample in another cell": (lambda r: with_cell(r, 0, sample=r.cells[1].sample), "components"),
+    "a sample outside": (lambda r: with_cell(r, 0, sample=at("1/2", "1")), "components"),
+    "a sample elsewhere in the cell": (lambda r: with_cell(r, 0, sample=at("7/5", "1")), "regions and areas"),
+    "a region's sample": (lambda r: with_region(r, 0, sample=r.cells[1].sample), "regions and areas"),
+    "level": (lambda r: with_cell(r, 0, level=1), "components"),
+    "undetermined": (lambda r: replace(r, undetermined=r.undetermined * Fraction(999, 1000)), "components"),
+    "nothing undetermined": (lambda r: replace(r, undetermined=Fraction(0)), "components"),
+    "too large a lower bound": (
+        lambda r: with_region(r, 0, area=(r.regions[0].area[0] + Fraction(1, 2**60), r.regions[0].area[1])),
+        "regions and areas",
+    ),
+    "too small an upper bound": (
+        lambda r: with_region(r, 1, area=(r.regions[1].area[0], r.regions[1].area[1] - Fraction(1, 2**60))),
+        "regions and areas",
+    ),
+    "cells of a region": (lambda r: with_region(r, 0, cells=(0, 1)), "regions and areas"),
+    "a cell removed": (lambda r: replace(r, cells=r.cells[:1], regions=r.regions[:1]), "components"),
+    "a solution removed": (lambda r: with_cell(r, 1, solutions=r.cells[1].solutions[1:]), "counts and solutions"),
+    "a solution twice": (
+        lambda r: with_cell(r, 1, solutions=(r.cells[1].solutions[0],) * 2), "counts and solutions",
+    ),
+    "a solution's signs": (lambda r: with_solution(r, signs="+-"), "counts and solutions"),
+    "a solution's center": (lambda r: with_solution(r, center=(Fraction(3), Fraction(3))), "counts and solutions"),
+    "a solution's box too small": (lambda r: with_solution(r, radius=Fraction(1, 2**60)), "counts and solutions"),
+    "a solution's box too large": (lambda r: with_solution(r, radius=Fraction(1)), "counts and solutions"),
+    "a solution's radius zero": (lambda r: with_solution(r, radius=Fraction(0)), "counts and solutions"),
+    "potential": (lambda r: with_potential(r, "1/2*k1*", "1/2*k2*"), "equations"),
+    "sign of a load": (lambda r: with_potential(r, "- F3*", "+ F3*"), "equations"),
+    "a potential that is a program": (lambda r: with_potential(r, "1/2*k1*", "exit()*k1*"), "equations"),
+    "unknowns": (lambda r: replace(r, system=replace(r.system, unknowns=("th2", "th1"))), "equations"),
+    "another load": (lambda r: with_text(r, "F3", "-11"), "parameters as written"),
+    "status": (lambda r: replace(r, status=Status.EXACT), "form"),
+    "no cover": (lambda r: replace(r, cover=None), "form"),
+    "complex solutions": (lambda r: replace(r, complex_solutions=6), "form"),
+}  # fmt: skip
+
+
+def with_potential(r: RegionMap, old: str, new: str) -> RegionMap:
+    assert old in r.system.potential
+    system: System = replace(r.system, potential=r.system.potential.replace(old, new))
+    return replace(r, system=system)
+
+
+def with_text(r: RegionMap, name: str, text: str) -> RegionMap:
+    return replace(r, slice=replace(r.slice, text={**r.slice.text, name: text}))
+
+
+@pytest.mark.parametrize("name", FALSE)
+def test_a_false_map_is_rejected(name: str, stable: RegionMap) -> None:
+    change, by = FALSE[name]
+    report = ptmcad.verify(change(stable), boxes=0)
+    assert not report.ok
+    assert report.violation is not None
+    assert report.violation.startswith(by + ":"), report.violation
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda c: {"total": c.total + 2, "index": (c.index[0], c.index[1] + 1, c.index[2] + 1)},
+        lambda c: {"index": (c.index[0] - 1, c.index[1], c.index[2] + 1)},
+        lambda c: {"solutions": c.solutions[:-1]},
+        lambda c: {"stable": c.stable + 1},
+    ],
+    ids=["two more", "a maximum for a minimum", "a solution removed", "stable"],
+)
+def test_a_false_index_is_rejected(change: Callable[[Cell], dict[str, object]], total: RegionMap) -> None:
+    changes = change(total.cells[1])
+    false = with_cell(total, 1, **changes)
+    counts = {k: v for k, v in changes.items() if k != "solutions"}
+    report = ptmcad.verify(with_region(false, 1, **counts), boxes=0)
+    assert report.violation is not None
+    assert report.violation.startswith("counts and solutions:")
+
+
+def consistent(r: RegionMap, cover: Cover, cells: tuple[Cell, ...]) -> RegionMap:
+    """A map with another cover, false but with areas and samples that agree with it."""
+    changed = replace(r, cover=cover, cells=cells, regions=tuple(r.regions[c.region] for c in cells))
+    claims = CertifiedClaims(changed)
+    component = {n: k for k, n in claims.cell_of.items()}
+    areas = [claims.sweep.areas[component[n]] for n in range(len(cells))]
+    levels = [sum(a > area for a in claims.sweep.areas.values()) for area in areas]
+    window = claims.square * cover.steps**2
+    return replace(
+        changed,
+        cells=tuple(replace(c, level=level, region=n) for n, (c, level) in enumerate(zip(cells, levels, strict=True))),
+        regions=tuple(
+            replace(g, area=(area * claims.square, window), cells=(n,))
+            for n, (g, area) in enumerate(zip(changed.regions, areas, strict=True))
+        ),
+        undetermined=1 - Fraction(sum(areas), cover.steps**2),
+    )
+
+
+def test_random_places_find_that_a_curve_was_left_out(stable: RegionMap) -> None:
+    """All else agrees: only the points and boxes in the free area can tell."""
+    assert stable.cover is not None
+    false = consistent(stable, Cover(stable.cover.steps, ()), stable.cells[:1])
+    assert ptmcad.verify(false, boxes=0).ok
+    report = ptmcad.verify(false, seed=1, boxes=20)
+    assert report.violation is not None
+    assert report.violation.startswith("random boxes:")
+
+
+def test_random_places_beside_rectangles_find_a_shifted_cover(stable: RegionMap) -> None:
+    assert stable.cover is not None
+    steps, by = stable.cover.steps, stable.cover.steps // 64
+    shifted = [(left, right, bottom + by, min(top + by, steps)) for left, right, bottom, top in stable.cover.rectangles]
+    kept = sorted(r for r in shifted if r[2] < r[3])
+    # the curve's end at the window's edge has moved away from it
+    kept = sorted({*kept, *((a, b, 0, by + 1) for a, b, c, _ in stable.cover.rectangles if c == 0)})
+    false = consistent(stable, Cover(steps, tuple(kept)), stable.cells)
+    assert ptmcad.verify(false, boxes=0).ok
+    report = ptmcad.verify(false, seed=3, boxes=24)
+    assert report.violation is not None
+    assert report.violation.startswith("random boxes:")
+
+
+@st.composite
+def covers(draw: st.DrawFn) -> Cover:
+    """Rectangles on a small lattice, so that they touch, overlap and enclose; corners and the window's edges."""
+    steps = draw(st.sampled_from([4, 8, 16]))
+    side = st.integers(0, steps)
+    found = set()
+    for _ in range(draw(st.integers(0, 14))):
+        a, b, c, d = draw(side), draw(side), draw(side), draw(side)
+        if a != b and c != d:
+            found.add((min(a, b), max(a, b), min(c, d), max(c, d)))
+    return Cover(steps, tuple(sorted(found)))
+
+
+@given(covers())
+@settings(max_examples=60, deadline=None)
+def test_sweep_and_subdivision_agree(cover: Cover) -> None:
+    """Components, clusters, areas, who touches whom, and where points lie, by two methods without common code."""
+    one, two = sweep(cover), components(cover)
+    assert sorted(one.areas.values()) == sorted(two.areas)
+    assert sorted(one.cluster_areas.values()) == sorted(two.cluster_areas)
+    assert len(one.touching) == len(two.touching)
+    names: dict[int | None, int | None] = {}
+    for i in range(1, 2 * cover.steps):
+        for j in range(1, 2 * cover.steps):
+            u, v = Fraction(i, 2), Fraction(j, 2)
+            assert names.setdefault(one.locate(u, v), two.locate(u, v)) == two.locate(u, v)
+    assert len(set(names.values())) == len(names)
+
+
+@given(covers(), st.integers(1, 15), st.integers(1, 15), st.integers(0, 5))
+@settings(max_examples=100, deadline=None)
+def test_a_free_square_meets_no_rectangle(cover: Cover, u: int, v: int, half: int) -> None:
+    if not (u < cover.steps and v < cover.steps):
+        return
+    meets = any(
+        left <= u + half and u - half <= right and bottom <= v + half and v - half <= top
+        for left, right, bottom, top in cover.rectangles
+    )
+    # one that only touches the window's edge may be refused
+    inside = half < u < cover.steps - half and half < v < cover.steps - half
+    free = sweep(cover).free_around(u, v, half)
+    assert not (free and (meets or u < half or v < half or max(u, v) + half > cover.steps))
+    if inside and not meets:
+        assert free
+
+
+KNOWN = {
+    "REFERENCE, reproduction: 6, 2 stable": ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10", (2, 3, 1)),
+    "REFERENCE: 12": ("96859/100000", "1", "100609/100000", "1/5", "-1/10", "-1/10", (2, 6, 4)),
+    "REFERENCE: 26, 8 stable": ("120609/100000", "1", "1", "101487/100000", "-1/10", "-1/10", (8, 14, 4)),
+}
+
+
+def values(rho: str, l1: str, l2: str, l0: str, f3: str, f4: str) -> dict[str, Fraction]:
+    given = {"rho": rho, "L1": l1, "L2": l2, "F3": f3, "F4": f4, "l0_1": l0, "l0_2": l0, "l0_3": l0}
+    return {name: Fraction(given.get(name, "1" if name[0] == "k" else "0")) for name in NAMES}
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_known_counts(name: str) -> None:
+    *text, index = KNOWN[name]
+    point = values(*text)
+    energy, found = all_equilibria(point, Count.TOTAL)
+    assert counts_of(energy, point, found, Count.TOTAL).index == index
+    _, minima = all_equilibria(point, Count.STABLE)
+    assert Counter(e.signs for e in minima)["++"] == index[0]
+
+
+@pytest.mark.slow
+def test_thirty_equilibria() -> None:
+    """REFERENCE: (.75609, 1, 1, 1.43487, 0, 0) has 30, 10 of them stable."""
+    point = values("75609/100000", "1", "1", "143487/100000", "0", "0")
+    energy, found = all_equilibria(point, Count.TOTAL)
+    assert counts_of(energy, point, found, Count.TOTAL).index == (10, 16, 4)
+
+
+@pytest.mark.parametrize("rho", ["1", "3/2"])
+def test_minima_where_a_spring_has_length_zero_on_a_circle(rho: str) -> None:
+    """rho = L1 and rho = L2: as many as on both sides nearby."""
+    _, on = all_equilibria(values(rho, "1", "3/2", "1/5", "-1/10", "-1/10"), Count.STABLE)
+    counts = {sum(e.signs == "++" for e in on)}
+    for nearby in (Fraction(rho) - Fraction(1, 500), Fraction(rho) + Fraction(1, 500)):
+        _, found = all_equilibria(values(str(nearby), "1", "3/2", "1/5", "-1/10", "-1/10"), Count.STABLE)
+        counts.add(sum(e.signs == "++" for e in found))
+    assert len(counts) == 1
+    with pytest.raises(Unproved, match="crease"):
+        all_equilibria(values(rho, "1", "3/2", "1/5", "-1/10", "-1/10"), Count.TOTAL)
+
+
+def random_values(rng: random.Random) -> dict[str, Fraction]:
+    def positive() -> Fraction:
+        return Fraction(rng.randint(1, 300), 100)
+
+    found = {name: positive() for name in NAMES}
+    return found | {name: Fraction(rng.randint(-300, 300), 100) for name in ("F3", "F4", "F3x", "F4x")}
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_derivatives_are_those_of_the_potential(seed: int) -> None:
+    """Divided differences of the potential from the nodes' coordinates, with 400 bits and a step of 2^-60."""
+    rng = random.Random(seed)
+    v = random_values(rng)
+    th1, th2 = Fraction(rng.randint(-300, 300), 100), Fraction(rng.randint(-300, 300), 100)
+    with ctx.workprec(400):
+        h = arb(2) ** -60
+        point = {name: exact(value) for name, value in v.items()}
+
+        def u(i: int, j: int) -> arb:
+            return potential({**point, "th1": exact(th1) + i * h, "th2": exact(th2) + j * h})
+
+        d = energy_at(v)(exact(th1), exact(th2))
+        l1, l2 = point["L1"], point["L2"]
+        pairs = [
+            (l1 * d.e1, (u(1, 0) - u(-1, 0)) / (2 * h)),
+            (l2 * d.e2, (u(0, 1) - u(0, -1)) / (2 * h)),
+            (l1 * d.e11, (u(1, 0) - 2 * u(0, 0) + u(-1, 0)) / h**2),
+            (l2 * d.e22, (u(0, 1) - 2 * u(0, 0) + u(0, -1)) / h**2),
+            (l1 * d.e12, (u(1, 1) - u(1, -1) - u(-1, 1) + u(-1, -1)) / (4 * h**2)),
+            (l2 * d.e21, (u(1, 1) - u(1, -1) - u(-1, 1) + u(-1, -1)) / (4 * h**2)),
+        ]
+        for formula, difference in pairs:
+            assert abs(formula - difference) < 1e-25
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_box_of_parameters_has_the_count_of_its_points(seed: int, stable: RegionMap) -> None:
+    rng = random.Random(seed)
+    x, y = Fraction(rng.randint(1050, 1450), 1000), Fraction(rng.randint(800, 1200), 1000)
+    half = Fraction(1, 4000)
+    energy = energy_over(stable.slice, exact(x).union(exact(x + half)), exact(y).union(exact(y + half)))
+    found, _ = equilibria(energy, True)
+    for _ in range(4):
+        a, b = x + half * Fraction(rng.random()), y + half * Fraction(rng.random())
+        point = {n: e.evaluate(a, b) for n, e in stable.slice.parameters.items()}
+        _, there = all_equilibria(point, Count.STABLE)
+        for e in there:
+            assert e.signs != "++" or sum(abs(e.th1 - f.th1) + abs(e.th2 - f.th2) < 0.05 for f in found) == 1
+        assert sum(e.signs == "++" for e in there) == sum(f.signs == "++" for f in found)
+
+
+def test_nothing_is_proved_over_a_fold(stable: RegionMap) -> None:
+    claims = CertifiedClaims(stable)
+    assert stable.cover is not None
+    left, right, bottom, top = stable.cover.rectangles[40]
+    (x0, y0), (x1, y1) = (claims.off_lattice(Fraction(u), Fraction(v)) for u, v in ((left, bottom), (right, top)))
+    energy: Energy = energy_over(stable.slice, exact(x0).union(exact(x1)), exact(y0).union(exact(y1)))
+    with pytest.raises(Unproved):
+        equilibria(energy, True, [TORUS], budget=8000)
+
+
+def test_solutions_of_a_cell_are_where_the_check_finds_them(total: RegionMap) -> None:
+    """Center by center: the engine's boxes and the check's."""
+    for cell in total.cells:
+        point = {n: e.evaluate(*cell.sample) for n, e in total.slice.parameters.items()}
+        _, found = all_equilibria(point, Count.TOTAL)
+        assert len(found) == len(cell.solutions)
+        for solution in cell.solutions:
+            assert isinstance(solution, Solution)
+            assert any(
+                all(
+                    min(abs(float(c) - a + k * 6.283185307179586) for k in (-1, 0, 1)) < 1e-9
+                    for c, a in zip(solution.center, (e.th1, e.th2), strict=True)
+                )
+                for e in found
+            )
