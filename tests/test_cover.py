@@ -140,7 +140,7 @@ def test_components_of_many_rectangles_are_those_of_a_flood_fill(seed: int) -> N
 
 
 @settings(deadline=None, max_examples=50)
-@given(covers(), st.integers(1, 2**20))
+@given(covers(), st.sampled_from((1, 3, 2**20, 2**36 - 5, 2**36)))
 def test_a_finer_lattice_scales_everything(cover: Cover, factor: int) -> None:
     """Coordinates of forty bits, and areas of eighty, are as exact as small ones."""
     finer = Cover(
@@ -190,6 +190,14 @@ def test_a_simplified_cover_covers_the_same_with_no_more_rectangles(cover: Cover
     assert len(after.rectangles) <= len(cover.rectangles)
     assert (flood(after).closed == flood(cover).closed).all()
     assert list(after.rectangles) == sorted(set(after.rectangles))
+
+
+def test_of_two_rectangles_that_cover_for_each_other_one_stays() -> None:
+    bars = ((0, 1, 0, 4), (2, 3, 0, 4), (0, 4, 0, 1), (0, 4, 2, 3))
+    cross = ((0, 3, 1, 2), (1, 2, 0, 3))
+    after = simplified(Cover(4, tuple(sorted(bars + cross))))
+    assert set(bars) < set(after.rectangles)
+    assert len(after.rectangles) == 5
 
 
 @settings(deadline=None, max_examples=80)
@@ -302,6 +310,7 @@ def test_a_window_beyond_the_range_of_floats_is_rounded_exactly(scale: Fraction)
     found = from_boxes(window, [[0.0, 0.1]], [[5e-324, 0.4]], 8)
     right = 5 if scale > 1 else 8
     assert found.rectangles == ((4, right, 4, 6),)
+    assert from_boxes(window, [[0.0, 0.1]], [[0.0, 0.4]], 8).rectangles == ((4, 5, 4, 6),)
 
 
 @pytest.mark.parametrize("box", [((0.0, math.nan), (1.0, 1.0)), ((0.5, 0.0), (0.25, 1.0))])
