@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from importlib import import_module
 from time import perf_counter
 
 from ptmcad.errors import ConfigError
@@ -108,6 +109,7 @@ def _certified(
         raise ConfigError("the certified engine has no savings to switch off", key="keep")
     if resume is not None:
         check_resumable(slice, resume)
+    import_module("ptmcad.interval.compiled")  # first: where numba is missing, it says so
     from ptmcad.interval.engine import certified_map
 
     cover = None if resume is None else resume.cover
@@ -143,7 +145,7 @@ def check_resumable(slice: Slice, earlier: RegionMap) -> None:
 
 
 def _check_count(slice: Slice) -> None:
-    """No spring of length zero is shorter than its free length when that is zero: then the two counts say the same."""
+    """Without free lengths every spring that is not of length zero is longer than its own: stable says it all."""
     if slice.count is Count.ADMISSIBLE and not slice.has_free_lengths:
         raise ConfigError(
             "admissible asks that every spring is longer than its free length, and none has a free length here: "

@@ -18,8 +18,8 @@ Vector = tuple[Enclosure, Enclosure]
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """A spring in a pose: ``name`` of its stiffness, nodes ``start`` and ``end``; ``force`` = stiffness * length is its
-    tension."""
+    """A spring in a pose: ``name`` of its stiffness, nodes ``start`` and ``end``; ``force`` = stiffness * (length -
+    free_length) is its tension, negative when the spring is pushed."""
 
     name: str
     start: str
@@ -27,6 +27,7 @@ class Spring:
     stiffness: Fraction
     length: Enclosure
     force: Enclosure
+    free_length: Fraction = Fraction(0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,8 @@ class Pose:
     index : number of negative eigenvalues when the Hessian is nonsingular, else None.
     stable : whether the Hessian is positive definite; None when it is singular.
     flat : whether all four nodes lie on one line with A1A2 (both sines are exactly zero).
+    admissible : whether it is stable with every spring longer than its free length, as cables demand; None when the
+        springs have no free lengths.
     """
 
     angles: tuple[Enclosure, Enclosure]
@@ -58,6 +61,7 @@ class Pose:
     index: int | None
     stable: bool | None
     flat: bool
+    admissible: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +72,8 @@ class Poses:
     ----------
     parameters : every parameter of the mechanism to its value.
     equilibria : stable ones first, then by energy.
-    status : EXACT; ON_VARIETY when an equilibrium is degenerate; UNDECIDED with no equilibria when there are infinitely
-        many, as ``remark`` then says.
+    status : EXACT; CERTIFIED with free lengths, none degenerate; ON_VARIETY when an equilibrium is degenerate; UNDECIDED
+        with no equilibria when there are infinitely many or they could not be told, as ``remark`` then says.
     digits : significant digits that each enclosure settles.
     bits : the precision that was needed.
     """
@@ -130,8 +134,9 @@ def solve(digits: int = DIGITS, **parameters: object) -> Poses:
     Parameters
     ----------
     digits : significant digits that every number settles, 1 to `MOST_DIGITS`; more digits cost more time.
-    parameters : by the names of a problem record (L1, L2, rho, k or k1, k2, k3, F3, F4, F3x, F4x), with its defaults:
-        lengths 1, stiffness 100, no load. Text, int, Fraction or Decimal; no float.
+    parameters : by the names of a problem record (L1, L2, rho, k or k1, k2, k3, F3, F4, F3x, F4x, l0 or l0_1, l0_2,
+        l0_3), with its defaults: lengths 1, stiffness 100, no load, free lengths 0. Text, int, Fraction or Decimal; no
+        float.
 
     Raises
     ------

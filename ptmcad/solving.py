@@ -21,6 +21,7 @@ from ptmcad.models.ptm import ptm_nodes, ptm_system
 from ptmcad.models.system import polynomial_at
 from ptmcad.poses import Pose, Poses
 from ptmcad.regionmap import Status
+from ptmcad.slice import FREE_LENGTHS
 from ptmcad.statics import Model, State, pose_of, state_at
 
 INFINITELY_MANY = "infinitely many equilibria"
@@ -32,7 +33,8 @@ def poses_at(parameters: Mapping[str, Fraction], digits: int) -> Poses:
 
     Parameters
     ----------
-    parameters : all of `ptmcad.models.ptm.PARAMETERS`.
+    parameters : all of `ptmcad.models.ptm.PARAMETERS`, and the free lengths if some is not zero: then the answer comes
+        from `ptmcad.interval.poses`.
     digits : significant digits that every enclosure settles.
 
     Raises
@@ -40,6 +42,10 @@ def poses_at(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     ArithmeticError
         When two ways to the same fact disagree, which would be a fault of this program.
     """
+    if any(parameters.get(name) for name in FREE_LENGTHS):
+        from ptmcad.interval.poses import certified_poses
+
+        return certified_poses(parameters, digits)
     system = ptm_system()
     values = {name: fmpq(v.numerator, v.denominator) for name, v in parameters.items()}
     try:

@@ -48,6 +48,25 @@ def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
     return f"{decimal(low, up=False, digits=2)} to {decimal(high, up=True, digits=2)}"
 
 
+def interval_text(bounds: tuple[Fraction, Fraction]) -> str:
+    """Both bounds, rounded outwards by a hundredth of their distance at most.
+
+    >>> interval_text((Fraction("1.69822"), Fraction("1.75450"))), interval_text((Fraction(0), Fraction(2)))
+    ('1.6982 to 1.7545', '0 to 2')
+    """
+    low, high = bounds
+    if low >= high:
+        return certified_digits(bounds)
+    digits = max(2, magnitude(high) - magnitude(high - low) + 3)
+    return f"{_down_to(low, digits, high)} to {decimal(high, up=True, digits=digits)}"
+
+
+def _down_to(value: Fraction, digits: int, largest: Fraction) -> str:
+    """The value rounded down to the decimal place that ``digits`` digits of the largest end in."""
+    unit = Fraction(10) ** (magnitude(largest) + 1 - digits)
+    return decimal(value // unit * unit, up=False)
+
+
 def _short(value: Fraction) -> str:
     """A number, not negative, in two digits, of any size."""
     return (
@@ -97,7 +116,8 @@ def table(result: RegionMap) -> str:
     bounds = [(count_text(r, count), r.area) for r in result.regions]
     if result.cover is not None:
         bounds = _by_count(bounds, result)
-    areas = "; ".join(f"{text}: {certified_digits(area)}" for text, area in bounds)
+    told = certified_digits if result.cover is None else interval_text
+    areas = "; ".join(f"{text}: {told(area)}" for text, area in bounds)
     widths = [(high - low) / low for _, (low, high) in bounds if low]
     known = widths and len(widths) == len(bounds) and min(widths) >= 0  # a damaged file may say anything
     error = _short(max(widths)) if known else "unknown"

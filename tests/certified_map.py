@@ -29,7 +29,7 @@ def certified_map(count: Count = Count.STABLE, status: Status = Status.CERTIFIED
     # upper left, lower left, lower right, in the order of their areas in squares of a step
     samples = [("1/2", "5/2"), ("1/2", "3/2"), ("3/2", "3/2")]
     squares = [80, 70, 35]
-    counts = [(6, 2, (2, 3, 0), 1), (4, 1, (1, 2, 0), 1), (8, 2, (2, 4, 1), 2)]
+    counts = [(5, 2, (2, 3, 0), 1), (3, 1, (1, 2, 0), 1), (7, 2, (2, 4, 1), 2)]
     solution = Solution((Fraction(3, 2**30), Fraction(-5, 2**7)), Fraction(1, 2**40), "++")
     cells, regions = [], []
     for n, ((x, y), area, (total, stable, index, admissible)) in enumerate(zip(samples, squares, counts, strict=True)):

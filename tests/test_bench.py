@@ -9,12 +9,20 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from shipped_records import EXACT
 
 from ptmcad import config
 from ptmcad.bench import qepcad, report, suite
+from ptmcad.bench.__main__ import _exact_records
 from ptmcad.bench.process import Outcome, Usage, run
 
 CONFIGS = Path(__file__).resolve().parents[1] / "configs"
+
+
+def test_maps_with_free_lengths_are_not_timed_by_default() -> None:
+    """They take as long as they are given."""
+    assert _exact_records(CONFIGS) == list(EXACT)
+    assert "fig4" in {path.stem for path in EXACT}
 
 
 def value(terms: qepcad.Terms, x: float, y: float, t: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -18,8 +19,10 @@ import ptmcad
 from ptmcad.cli import run
 from ptmcad.cover import Cover, union_area
 from ptmcad.errors import ConfigError
+from ptmcad.exactmap import exact_map
+from ptmcad.ranges.strips import strips
 from ptmcad.regionmap import Location, RegionMap, Status
-from ptmcad.slice import Count
+from ptmcad.slice import Count, Slice
 
 SCHEMA = json.loads((Path(__file__).parent.parent / "docs" / "region-map.schema.json").read_text(encoding="utf-8"))
 
@@ -164,7 +167,7 @@ def test_the_table_tells_what_is_open() -> None:
     assert result.table().splitlines() == [
         "regions   3 of 3 cells, certified",
         "counts    1 stable: 1 region; 2 stable: 2 regions",
-        "areas     1: 2; 2: 2",
+        "areas     1: 1.09 to 2.21; 2: 1.79 to 2.91",
         "cover     3 rectangles around the curves where counts change",
         "time      1.50 s; undetermined 0.28; area bounds within 1.0e+00",
     ]
@@ -185,7 +188,7 @@ def test_locate_prints_what_is_admissible(tmp_path: Path, capsys: pytest.Capture
     assert run(["locate", str(path), "--csv", str(points)]) == 0
     assert capsys.readouterr().out.splitlines() == [
         "rho,L2,status,region,cell,total,stable,index,admissible",
-        "1/2,5/2,certified,0,0,6,2,2-3-0,1",
+        "1/2,5/2,certified,0,0,5,2,2-3-0,1",
         "1,15/8,undecided,,,,,,",
     ]
 
@@ -267,18 +270,26 @@ def test_what_algebra_alone_answers_is_refused_in_one_line(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(
+    "ask",
+    [
+        exact_map,
+        ptmcad.slice_variety,
+        lambda slice: strips(slice, "rho"),
+        lambda slice: ptmcad.operation_widths(slice, "rho"),
+    ],
+    ids=["exact map", "variety", "strips", "widths"],
+)
+def test_no_function_of_the_exact_engine_leaves_free_lengths_out(ask: Callable[[Slice], object]) -> None:
+    with pytest.raises(ConfigError, match="not computed for springs with a free length"):
+        ask(free_slice())
+
+
 def test_a_line_on_which_the_free_lengths_are_zero_is_answered() -> None:
     """F3 = F4 = -10, L1 = L2 = 1, l0 = 0: a line of fig. 4."""
     free = ptmcad.intervals(ptmcad.slice_from_options(slice="rho,l0", sets=["F3=-10", "F4=-10"]), "rho", {"l0": 0})
     fig4 = ptmcad.intervals(ptmcad.slice_from_options(slice="rho,L2", sets=["F3=-10", "F4=-10"]), "rho", {"L2": 1})
     assert free.intervals == fig4.intervals
-
-
-def test_the_page_of_a_certified_map_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "map.json"
-    path.write_text(certified_map().to_json(), encoding="utf-8")
-    assert run(["report", str(path)]) == 2
-    assert "the page of a certified map is not made" in capsys.readouterr().err
 
 
 def test_resume_names_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -185,7 +185,8 @@ def test_a_limit_saves_the_partial_result(
     assert run(["classify", str(FIG4), "--out", str(tmp_path)]) == 3
     assert names(tmp_path) == ["fig4.json"]
     assert json.loads((tmp_path / "fig4.json").read_text())["name"] == "partial"
-    assert capfd.readouterr().err == "stopped: 5 s are over\n"
+    place = tmp_path / "fig4.json"
+    assert capfd.readouterr().err == f"stopped: 5 s are over; the partial result is in {place}\n"
     engine["raise"] = LimitReached("at once")
     assert run(["classify", str(FIG4), "--out", str(tmp_path / "empty")]) == 3
     assert names(tmp_path / "empty") == []

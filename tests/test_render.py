@@ -27,9 +27,10 @@ from ptmcad.render import draw
 from ptmcad.render.axes import scale_of, symbol, unit
 from ptmcad.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of
 from ptmcad.render.labels import place
-from ptmcad.render.outline import View, outline
+from ptmcad.render.outline import outline
 from ptmcad.render.regionmap import figure_of
 from ptmcad.render.slivers import thin_regions, zooms
+from ptmcad.render.view import View
 from ptmcad.slice import Axis, Count, Point, Slice
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -28,6 +28,7 @@ COMMANDS = {
     "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",
     "paper": "ptmcad.cli.paper",
+    "plot": "ptmcad.cli.plot",
     "range": "ptmcad.cli.range",
     "report": "ptmcad.cli.report",
     "variety": "ptmcad.cli.variety",

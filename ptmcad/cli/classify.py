@@ -78,10 +78,8 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
             if stopped.partial is None or "json" not in request.formats:
                 raise
             place = save_stopped(target, _text(stopped.partial, request))
-            why = where_saved(target, place)
-            raise LimitReached(
-                f"{stopped}; the partial result is in {place}{why}" if why else str(stopped)
-            ) from stopped
+            where = f"the partial result is in {place}{where_saved(target, place)}"
+            raise LimitReached(f"{stopped}; {where}") from stopped
         _save(result, slice.name, request.formats, request)
     return result
 

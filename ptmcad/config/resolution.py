@@ -74,18 +74,14 @@ def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fracti
     for name, expression in resolved.items():
         place = _place_of(name, record)
         value = expression.constant()
-        if PARAMETERS[name].kind is Kind.FREE_LENGTH:
-            if value:
-                raise place.error(_NO_FREE_LENGTHS)
-            continue
         _check_number(name, value, place)
         values[name] = value
     _check_stiffness_is_used(record, all(spring in record.values for spring in _SPRINGS))
-    del values["k"]  # what k1, k2 and k3 have by default
+    del values["k"], values["l0"]  # what k1, k2 and k3, or l0_1, l0_2 and l0_3 have by default
+    if not any(values[name] for name in FREE_LENGTHS):
+        for name in FREE_LENGTHS:
+            del values[name]
     return values
-
-
-_NO_FREE_LENGTHS = "free lengths other than 0 are not supported yet: the certified engine they need is not built"
 
 
 def _written(name: str, record: Record) -> str:

@@ -117,11 +117,13 @@ def width(system: System, box: Box) -> arb:
 
 def refined(equations: System, box: Box, precision: int) -> Box:
     """The zero in a box that holds exactly one, as narrow as the precision allows."""
+    finest = arb(fmpq(1, 4**precision))  # zeros that are dyadic have ever smaller boxes
     while True:
         step = newton(equations, box, precision)
         if step is None:
             raise ArithmeticError("a zero that was proved to exist is not there")
-        if not 2 * width(equations, step[0]) < width(equations, box):
+        size = width(equations, step[0])
+        if not 100 * size < 99 * width(equations, box) or size < finest:
             return step[0]
         box = step[0]
 

@@ -21,7 +21,8 @@ from ptmcad.slice import Count, Point, Slice
 MOST_COUNTED = 2000
 """Components whose counts are computed; smaller ones are undetermined."""
 POCKET = Fraction(1, 10_000)
-"""Share of the window below which a component beside a larger one with equal counts is taken for an artefact."""
+"""Share of the window, or a tenth of the cover's if that is more: smaller components with the counts of a larger one
+beside them are taken for artefacts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +38,8 @@ class Assembler:
         """The map of the window outside the cover."""
         complement = components(cover)
         counted = self._counts(complement)
-        kept = [n for n in counted if not _is_pocket(n, complement, counted, self.slice.count)]
+        pocket = max(POCKET * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
+        kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)]
         known = frozenset(kept)
         cells, regions = [], []
         for region, n in enumerate(kept):
@@ -120,9 +122,15 @@ def _key(count: PointCount, which: Count) -> object:
     return count.index if which is Count.INDEX else count.admissible
 
 
-def _is_pocket(n: int, complement: Components, counted: Mapping[int, tuple[Point, PointCount]], which: Count) -> bool:
-    """Whether a component is small and a larger one at the same cluster has the same count."""
-    if complement.areas[n] >= POCKET * complement.cover.steps**2:
+def _is_pocket(
+    n: int,
+    least: Fraction,
+    complement: Components,
+    counted: Mapping[int, tuple[Point, PointCount]],
+    which: Count,
+) -> bool:
+    """Whether a component is smaller than ``least`` and a larger one at the same cluster has the same count."""
+    if complement.areas[n] >= least:
         return False
     near = set(complement.clusters_at[n])
     mine = _key(counted[n][1], which)

@@ -7,7 +7,7 @@ by zero gives an infinity. Nothing that depends on a slice is compiled in, so a 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from ptmcad.errors import ConfigError
 
@@ -23,11 +23,9 @@ except ImportError as missing:
 
 def compiled(function: F) -> F:
     """Compile for the machine; the global interpreter lock is released while the function runs."""
-    decorated: F = njit(cache=True, nogil=True, error_model="numpy", fastmath=False)(function)
-    return decorated
+    return cast("F", njit(cache=True, nogil=True, error_model="numpy", fastmath=False)(function))
 
 
 def inlined(function: F) -> F:
     """The same for a function of a few operations, which is written out where it is used."""
-    decorated: F = njit(nogil=True, error_model="numpy", fastmath=False, inline="always")(function)
-    return decorated
+    return cast("F", njit(nogil=True, error_model="numpy", fastmath=False, inline="always")(function))

@@ -11,14 +11,16 @@ from fractions import Fraction
 
 import numpy as np
 
-from ptmcad.interval.formula import Formula, Graph
-from ptmcad.interval.parameters import parameter_formulas, slice_mechanism
+from ptmcad.interval.formula import Formula, Graph, length
+from ptmcad.interval.mechanism import Mechanism
+from ptmcad.interval.parameters import PHI_UNIT, parameter_formulas, slice_mechanism
 from ptmcad.interval.search import Boxes
 from ptmcad.interval.system import System, system
 from ptmcad.slice import Count, Slice
 
 TORUS = (-3.0, -3.0 + 6.2832)
 """A little more than a full turn, cut where no symmetric solution lies."""
+PHI = (TORUS[0] / PHI_UNIT, TORUS[1] / PHI_UNIT)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,55 +49,59 @@ def curves(slice: Slice, count: Count) -> tuple[Curve, ...]:
 
 
 def _stable(slice: Slice) -> Iterator[Curve]:
-    m = slice_mechanism(Graph(), slice)
-    there = m.at_equilibrium
-    yield Curve(
-        "fold of a stable equilibrium",
-        "a minimum meets a saddle: det H = 0 with nonnegative diagonal entries",
-        system(
-            [*m.equilibrium, m.hessian.determinant],
-            (0, 1, 2, 3),
-            (m.dependent, [there.determinant, m.turned]),
-            [there.p11, there.p22, m.turn],
-        ),
-        (TORUS, TORUS),
-    )
+    yield from _folds(slice, stable=True)
 
 
 def _all(slice: Slice) -> Iterator[Curve]:
-    yield from _folds(slice)
+    yield from _folds(slice, stable=False)
     yield from _cone(slice)
     yield from _creases(slice)
 
 
-def _folds(slice: Slice) -> Iterator[Curve]:
-    reason = "two equilibria meet: det H = 0"
-    m = slice_mechanism(Graph(), slice)
+def _folds(slice: Slice, *, stable: bool) -> Iterator[Curve]:
+    """Where D = 0; with spring 3 short and long apart, since D and the derivatives of E1, E2 have a pole at l3 = 0."""
+    name = "fold of a stable equilibrium" if stable else "fold"
+    reason = "a minimum meets a saddle: det H = 0 with nonnegative diagonal" if stable else "equilibria meet: det H = 0"
+    graph = Graph()
+    m = slice_mechanism(graph, slice)
     there = m.at_equilibrium
-    cheap, costly = [*m.dependent, *_present(m.unit)], [there.determinant, m.turned, there.levelled]
-    equations = [*m.equilibrium, m.hessian.determinant]
-    if m.unit is None:
-        yield Curve("fold", reason, system(equations, (0, 1, 2, 3), (cheap, costly)), (TORUS, TORUS))
-        return
+    short = SHORT * parameter_formulas(graph, slice)["L1"]
     yield Curve(
-        "fold",
+        name,
         reason,
-        system(equations, (0, 1, 2, 3), (cheap, costly), [m.lengths[2] - SHORT]),
+        system(
+            [*m.equilibrium, m.hessian.determinant],
+            (0, 1, 2, 3),
+            ([*m.dependent, *_present(m.unit)], [there.determinant, m.turned, *([] if stable else [there.levelled])]),
+            [*([] if m.unit is None else [m.lengths[2] - short]), *(_semidefinite(m) if stable else [])],
+        ),
         (TORUS, TORUS),
     )
-    m = slice_mechanism(Graph(), slice, phi=True)
+    if m.unit is None:
+        return
+    graph = Graph()
+    m = slice_mechanism(graph, slice, phi=True)
     there = m.at_equilibrium
+    short = SHORT * parameter_formulas(graph, slice)["L1"]
     yield Curve(
-        "fold near the cone",
-        f"{reason}, where spring 3 is shorter than {SHORT}",
+        f"{name}, spring 3 short",
+        f"{reason}; l3 is at most {SHORT} L1",
         system(
             [*_present(m.aligned), *m.equilibrium, m.hessian.blown_up],
             (0, 1, 2, 3, 4),
-            ([*m.dependent, *_present(m.unit)], [there.blown_up, there.levelled]),
-            [m.lengths[2], SHORT - m.lengths[2]],
+            (
+                [*m.dependent, *_present(m.unit)],
+                [there.blown_up, *([m.turned] if stable else [there.levelled])],
+            ),
+            [m.lengths[2], short - length(*m.vectors[2]), *(_semidefinite(m) if stable else [])],
         ),
-        (TORUS, TORUS, TORUS),
+        (TORUS, TORUS, PHI),
     )
+
+
+def _semidefinite(m: Mechanism) -> list[Formula]:
+    """What is at least zero where the Hessian is positive semidefinite, besides D."""
+    return [m.at_equilibrium.p11, m.at_equilibrium.p22, m.turn]
 
 
 def _cone(slice: Slice) -> Iterator[Curve]:
@@ -105,7 +111,7 @@ def _cone(slice: Slice) -> Iterator[Curve]:
             "cone",
             "an equilibrium is swallowed by the cone l3 = 0",
             system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), ([*m.dependent, m.unit], [])),
-            (TORUS, TORUS, TORUS),
+            (TORUS, TORUS, PHI),
         )
 
 
@@ -123,9 +129,8 @@ def _creases(slice: Slice) -> Iterator[Curve]:
 def _admissible(slice: Slice) -> Iterator[Curve]:
     yield from _stable(slice)
     m = slice_mechanism(Graph(), slice)
-    there = m.at_equilibrium
-    for spring, (length, free, vector) in enumerate(zip(m.lengths, m.free, m.vectors, strict=True), start=1):
-        third, dependent = (vector[0], [vector[1]]) if free.value == 0 else (length - free, [])
+    for spring, (extent, free, vector) in enumerate(zip(m.lengths, m.free, m.vectors, strict=True), start=1):
+        third, dependent = (vector[0], [vector[1]]) if free.value == 0 else (extent - free, [])
         yield Curve(
             f"l{spring} = l0_{spring}",
             f"spring {spring} of a stable equilibrium has its free length",
@@ -133,7 +138,7 @@ def _admissible(slice: Slice) -> Iterator[Curve]:
                 [*m.equilibrium, third],
                 (0, 1, 2, 3),
                 ([*m.dependent, *dependent], []),
-                [there.p11, there.p22, m.turn, there.determinant, m.turned],
+                [*_semidefinite(m), m.at_equilibrium.determinant, m.turned],
             ),
             (TORUS, TORUS),
         )
@@ -143,8 +148,8 @@ def _present(formula: Formula | None) -> list[Formula]:
     return [] if formula is None else [formula]
 
 
-SHORT = Fraction(1, 10)
-"""Below this length of spring 3, in units of length, its direction is a variable of its own."""
+SHORT = Fraction(1, 8)
+"""Below this length of spring 3, as a part of L1, its direction is a variable of its own."""
 _CURVES: dict[Count, Callable[[Slice], Iterator[Curve]]] = {
     Count.STABLE: _stable,
     Count.TOTAL: _all,

@@ -58,7 +58,9 @@ def slice_equilibria(slice: Slice) -> Equilibria:
         system(m.equilibrium, (TH1, TH2), (vanishing, ()), (), jacobian),
         system(m.equilibrium, (TH1, TH2), (vanishing, ()), (there.p11, there.p22, there.determinant), jacobian),
         system(m.equilibrium, (TH1, TH2), jacobian=jacobian),
-        record([[h.p11, h.p22, h.determinant, *(length - free for length, free in zip(m.lengths, m.free, strict=True))]]),
+        record(
+            [[h.p11, h.p22, h.determinant, *(length - free for length, free in zip(m.lengths, m.free, strict=True))]]
+        ),
     )
 
 

@@ -56,7 +56,8 @@ class Mechanism:
     at_equilibrium : formulas of the same numbers that hold, and are finite for shorter springs, only where E1 = E2 = 0;
         never to be differentiated.
     dependent : further formulas that vanish where E1 = E2 = 0: L1 E1 - L2 E2, the moment on both bars turned by one
-        angle, which stays narrow for small rho; and one that stays narrow where spring 3 is short.
+        angle, which stays narrow for small rho; one that stays narrow where spring 3 is short; and with phi also
+        d3 - l3 (cos phi, sin phi).
     unit : vanishes where E1 = E2 = 0, without the direction of spring 3; at l3 = 0 it vanishes where the cone swallows
         an equilibrium. None when spring 3 has no free length.
     lengths : l1, l2, l3.
@@ -191,11 +192,12 @@ def mechanism(
     moment = rho * lift + p1 * (x3 * s1 - y3 * c1) + p2 * (x4 * s2 + y4 * c2)
     turn = rho * give + p1 * (x3 * c1 + y3 * s1) - p2 * (x4 * c2 - y4 * s2)
     there = at_equilibrium
+    along = () if phi is None else tuple(x - length(*d3) * u for x, u in zip(d3, u3, strict=True))
     return Mechanism(
         (e1, e2),
         everywhere,
         at_equilibrium,
-        (moment,) if pull3.value == 0 else (moment, dependent),
+        (*((moment,) if pull3.value == 0 else (moment, dependent)), *along),
         None if pull3.value == 0 else unit,
         (l1, l2, l3),
         (d1, d2, d3),

@@ -13,6 +13,9 @@ from ptmcad.interval.formula import Formula, Graph
 from ptmcad.interval.mechanism import NAMES, Mechanism, mechanism
 from ptmcad.slice import Slice
 
+PHI_UNIT = 4
+"""The search bisects the widest variable; with this factor it bisects phi, which follows from th1 and th2, later."""
+
 
 def expression_formula(graph: Graph, expression: Expression) -> Formula:
     """A rational function of the axes, by Horner's rule in the first axis over polynomials in the second."""
@@ -44,6 +47,6 @@ def parameter_formulas(graph: Graph, slice: Slice) -> dict[str, Formula]:
 
 
 def slice_mechanism(graph: Graph, slice: Slice, *, phi: bool = False) -> Mechanism:
-    """The slice's mechanism in variables x, y, th1, th2 and, if asked for, the direction phi of spring 3."""
-    direction = graph.variable(4) if phi else None
+    """The slice's mechanism in variables x, y, th1, th2 and, if asked for, v, which is phi / PHI_UNIT."""
+    direction = PHI_UNIT * graph.variable(4) if phi else None
     return mechanism(graph, parameter_formulas(graph, slice), graph.variable(2), graph.variable(3), direction)

@@ -37,7 +37,7 @@ FINEST = (1e-8, 1e-4)
 OPEN = 40
 """Boxes that floating point may leave to Arb."""
 PRECISIONS = (128, 320)
-ARB_BUDGET = 3_000
+ARB_BUDGET = 800
 
 
 @dataclass(frozen=True, slots=True)

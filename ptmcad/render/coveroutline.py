@@ -72,7 +72,7 @@ class CoverOutline:
                 yield np.concatenate([polygon, polygon[:1]])
 
     def raster(self, columns: int, rows: int) -> NDArray[np.int64]:
-        """The region at the centre of every pixel, shape (rows, columns), from the bottom; -1 where there is none."""
+        """The region just right of and above each pixel's centre, shape (rows, columns), from the bottom; -1: none."""
         tree = self.complement.subdivision
         steps = tree.steps
         places = []

@@ -47,11 +47,6 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
     ConfigError
         When the map is a certified one, or contradicts itself so that it can not be drawn.
     """
-    if result.cover is not None:
-        raise ConfigError(
-            "the page of a certified map is not made, because its poses and energies are drawn for springs without "
-            "free lengths; ptmcad classify draws the map"
-        )
     check_numbers(result)
     seen = _outline(result)
     drawn = chart(seen)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from html import escape
 
-from ptmcad.numerals import text_of
+from ptmcad.numerals import decimal, text_of
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.render.colours import Fill, fill_of
 from ptmcad.render.legend import entries, percent
@@ -149,7 +149,9 @@ def regions(result: RegionMap) -> str:
         buttons = "".join(f'<button type="button" class="chip" data-cell="{n}">{n}</button>' for n in region.cells)
         low, high = region.area
         middle = certified_digits(region.area)
-        if low == high:
+        if result.cover is not None:
+            bounds = f"proved: {decimal(low, up=False, digits=7)} to {decimal(high, up=True, digits=7)}"
+        elif low == high:
             bounds = f"exactly {text_of(low)}"
         else:
             width = certified_digits(exactly(high - low), 1)

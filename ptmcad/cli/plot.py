@@ -1,0 +1,61 @@
+"""``ptmcad plot``: pictures of a stored result, drawn again without computing anything."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import click
+
+from ptmcad.cli.formats import formats_of
+from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.stored import read_result
+from ptmcad.errors import ConfigError
+from ptmcad.memory import Bound
+from ptmcad.output import Writer, check_writable, write_files
+
+FORMATS = ("png", "svg", "pdf")
+
+
+@click.command("plot")
+@click.argument("result", type=click.Path(path_type=Path))
+@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="png", show_default=True,
+              metavar="LIST", help=f"What to draw, of {', '.join(FORMATS)}.")  # fmt: skip
+@click.option("--out", type=click.Path(path_type=Path), help="Folder for the pictures.  [default: that of RESULT]")
+@click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
+              help="Resolution of a PNG; regions that it hides are shown zoomed, in every format.")  # fmt: skip
+@click.option("--samples", is_flag=True, help="Draw the cells' sample points.")
+@limit_options
+def command(
+    *,
+    result: Path,
+    formats: tuple[str, ...],
+    out: Path | None,
+    dpi: int,
+    samples: bool,
+    timeout: float | None,
+    max_memory: Bound | None,
+) -> None:
+    """Draw RESULT, a JSON file of `ptmcad classify`.
+
+    \b
+    Example:
+        ptmcad classify --slice L2,rho --format json
+        ptmcad plot slice-L2-rho.json --format png,svg --dpi 300
+    """
+    with limits(timeout, max_memory):
+        stored = read_result(result)
+        folder = result.parent if out is None else out
+        check_writable(folder, tuple(f"{result.stem}.{suffix}" for suffix in formats))
+        from ptmcad.render import draw  # brings matplotlib
+
+        writers: dict[str, Writer] = {
+            f"{result.stem}.{suffix}": partial(draw, stored, samples=samples, dpi=dpi) for suffix in formats
+        }
+        try:
+            written = write_files(folder, writers)
+        except (ValueError, IndexError, ArithmeticError) as error:
+            reason = f"the map contradicts itself ({error}); check it with ptmcad verify"
+            raise ConfigError(reason, file=str(result)) from error
+    for path in written:
+        click.echo(path)

@@ -1,0 +1,174 @@
+"""``ptmcad classify`` with the certified engine: a stand-in that gives a map made by hand, and, slowly, the engine."""
+
+from __future__ import annotations
+
+import io
+import json
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from time import perf_counter
+from types import ModuleType
+from typing import Any
+
+import jsonschema
+import pytest
+from certified_map import certified_map, free_slice
+
+import ptmcad
+from ptmcad.cli import run
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.regionmap import RegionMap, Status
+
+ROOT = Path(__file__).resolve().parents[1]
+SCHEMA = json.loads((ROOT / "docs" / "region-map.schema.json").read_text(encoding="utf-8"))
+HAND = ["--slice", "rho,L2", "--range", "rho=0:2", "--range", "L2=1:3", "--set", "l0=1/5", "--set", "F3=-10",
+        "--set", "F4=-10", "--format", "json"]  # fmt: skip
+"""The options of `free_slice`."""
+SAVED = "slice-rho-L2.json"
+
+
+@pytest.fixture
+def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Replace the engine by one that gives `certified_map`; the dictionary receives the arguments."""
+    calls: dict[str, Any] = {}
+
+    def stand_in(slice: ptmcad.Slice, **options: Any) -> RegionMap:
+        calls.update(slice=slice, **options)
+        if options["progress"] is not None:
+            options["progress"]("undetermined 28 %", 1, 2)
+        if "stop" in calls:
+            raise LimitReached("the time limit was reached", partial=certified_map(slice.count, Status.PARTIAL))
+        return replace(certified_map(slice.count), slice=slice, timings={"curves": 1.0})
+
+    compiled, module = ModuleType("ptmcad.interval.compiled"), ModuleType("ptmcad.interval.engine")
+    module.certified_map = stand_in  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "ptmcad.interval.compiled", compiled)
+    monkeypatch.setitem(sys.modules, "ptmcad.interval.engine", module)
+    return calls
+
+
+def test_auto_gives_free_lengths_to_the_certified_engine(engine: dict[str, Any]) -> None:
+    before = perf_counter()
+    result = ptmcad.classify(free_slice(), tolerance="1/50", timeout=100, jobs=2, count="total")
+    assert (engine["tolerance"], engine["jobs"], engine["resume"]) == (Fraction(1, 50), 2, None)
+    assert before + 100 <= engine["deadline"] <= perf_counter() + 100
+    assert engine["slice"].count is ptmcad.Count.TOTAL
+    assert result.timings.keys() == {"curves", "total"}
+    engine.clear()
+    ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho", ranges=["L2=1:2", "rho=0:1/2"]))
+    assert not engine
+    ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"), engine="certified")
+    assert not engine["slice"].has_free_lengths
+
+
+def test_a_result_to_files_and_on_from_it(
+    engine: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["classify", *HAND, "--out", str(tmp_path), "--tolerance", "0.3", "--explain"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("computed: fold of a stable equilibrium")
+    assert lines[1] == "regions   3 of 3 cells, certified"
+    assert lines[-1].endswith("undetermined 0.28; area bounds within 1.0e+00")
+    stored = RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8"))
+    assert stored == replace(certified_map(), slice=stored.slice)
+    assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED), "--jobs", "1"]) == 0
+    assert engine["resume"] == certified_map().cover
+    assert engine["jobs"] == 1
+
+
+def test_the_time_limit_saves_the_map_so_far(
+    engine: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    engine["stop"] = True
+    assert run(["classify", *HAND, "--out", str(tmp_path), "--timeout", "5"]) == 3
+    place = tmp_path / SAVED
+    assert capsys.readouterr().err == f"stopped: the time limit was reached; the partial result is in {place}\n"
+    assert RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8")).status is Status.PARTIAL
+    del engine["stop"]
+    assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED)]) == 0
+    assert RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8")).status is Status.CERTIFIED
+    engine["stop"] = True
+    assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED)]) == 3
+    assert "slice-rho-L2.partial.json, because" in capsys.readouterr().err
+
+
+def test_without_numba_there_is_one_clear_message(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in [name for name in sys.modules if name.startswith("ptmcad.interval.")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "numba", None)
+    assert run(["classify", *HAND, "--out", str(tmp_path)]) == 2
+    message = capsys.readouterr().err
+    assert "need the package numba" in message
+    assert message.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_tolerances_are_checked_by_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for option in ("--tolerance", "--area-tolerance"):
+        assert run(["classify", *HAND, "--out", str(tmp_path), option, "2"]) == 2
+        assert f"error: {option}: 2 is not between 0 and 1" in capsys.readouterr().err
+    assert run(["classify", *HAND, "--out", str(tmp_path), "--area-tolerance", "0.1"]) == 2
+    assert "give tolerance instead" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("stage", "shown"), [("undetermined 1.3 %", "] undetermined 1.3 %, "), ("counts", "] counts 6/24, ")]
+)
+def test_the_progress_bar_shows_the_undetermined_share(stage: str, shown: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = io.StringIO()
+    monkeypatch.setattr(terminal, "isatty", lambda: True)
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setattr("ptmcad.cli.progress.PATIENCE", 0)
+    with ProgressBar() as progress:
+        progress(stage, 6, 24)
+    assert f"[######..................{shown}" in terminal.getvalue()
+
+
+# ---------------------------------------------------------------------------------------------------- the real engine
+
+WINDOW = ["--slice", "rho,L2", "--range", "rho=1/2:1", "--range", "L2=5/4:7/4", "--set", "l0=1/5", "--set", "F3=-10",
+          "--set", "F4=-10", "--format", "json"]  # fmt: skip
+
+
+def _command(folder: Path, *options: str) -> list[str]:
+    return [sys.executable, "-m", "ptmcad", "classify", *WINDOW, "--out", str(folder), *options]
+
+
+def _done(folder: Path, *options: str) -> str:
+    """Run to the end; the text of the result."""
+    done = subprocess.run(_command(folder, *options), cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    return (folder / SAVED).read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_the_engine_stopped_by_ctrl_c_and_gone_on_with(tmp_path: Path) -> None:
+    coarse = RegionMap.from_json(_done(tmp_path, "--tolerance", "0.1"))
+    assert coarse.status is Status.CERTIFIED
+    assert coarse.undetermined <= Fraction(1, 10)
+    text = _done(tmp_path, "--tolerance", "0.02", "--resume", str(tmp_path / SAVED))
+    jsonschema.validate(json.loads(text), SCHEMA, cls=jsonschema.Draft202012Validator)
+    finer = RegionMap.from_json(text)
+    assert finer.undetermined <= Fraction(1, 50)
+    for cell in coarse.cells:
+        found = finer.locate(**cell.sample)
+        assert found.status is Status.UNDECIDED or found.stable == cell.stable
+    command = _command(tmp_path, "--tolerance", "1e-7", "--resume", str(tmp_path / SAVED))
+    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE) as stopped:
+        with pytest.raises(subprocess.TimeoutExpired):
+            stopped.wait(timeout=30)
+        stopped.send_signal(signal.SIGINT)
+        _, errors = stopped.communicate()
+    assert stopped.returncode == 130
+    assert errors.decode().startswith("stopped: by SIGINT; the partial result is in ")
+    partial = RegionMap.from_json((tmp_path / "slice-rho-L2.partial.json").read_text(encoding="utf-8"))
+    assert partial.status is Status.PARTIAL
+    with pytest.raises(ConfigError, match="axes differs"):
+        ptmcad.classify(free_slice(), resume=partial)
