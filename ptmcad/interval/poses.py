@@ -54,7 +54,7 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
         return Poses("ptm", parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
     poses, most = [], 0
     for solution in counts.solutions:
-        pose, bits = _pose(parameters, counter.equilibria.equations, solution, digits)
+        pose, bits = _pose(parameters, counter.equilibria_at(Fraction(0), Fraction(0)).equations, solution, digits)
         most = max(most, bits)
         if pose is None:
             return Poses("ptm", parameters, (), Status.UNDECIDED, digits, most, ZERO)
