@@ -30,8 +30,8 @@ SPRINGS = (("A1", "A4", "1"), ("A2", "A3", "2"), ("A3", "A4", "3"))
 MORE_BITS = 3000
 """A number that so many bits beyond the digits asked for do not tell from zero stays undecided."""
 NOT_TOLD = (
-    "the equilibria could not be told apart: there are infinitely many, one is nearly degenerate, or a spring has nearly "
-    "no length there"
+    "the equilibria could not be told apart: there are infinitely many, one is nearly degenerate, or a spring has "
+    "nearly no length there"
 )
 _PEAKS = {
     1: "the energy has a peak where spring A3A4 has no length too",
@@ -71,7 +71,7 @@ def _point_slice(parameters: Mapping[str, Fraction]) -> Slice:
 
 
 def _ordered(poses: Sequence[Pose]) -> list[Pose]:
-    """Stable ones first, then by energy; of energies that are not told apart the pose with larger angles comes first."""
+    """Stable ones first, then by energy; of energies not told apart the pose with larger angles comes first."""
     by_energy = sorted(poses, key=lambda pose: pose.energy.center)
     groups: list[list[Pose]] = []
     for pose in by_energy:
