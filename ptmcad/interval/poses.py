@@ -171,9 +171,11 @@ def _numbers(parameters: Mapping[str, Fraction], box: Box, flat: tuple[int, int]
         whole = Fraction(above, below)
         root = _Number(_arb(spread.exact).sqrt(), whole if whole * whole == spread.exact else None)
     for name, sign in (("low", -1), ("high", 1)):
-        known = trace.exact is not None and root.exact is not None
-        exact_value = (trace.exact + sign * root.exact) / 2 if known else None  # type: ignore[operator]
-        numbers[name] = _Number((trace.ball + sign * root.ball) / 2, exact_value)
+        half_sum = (trace.ball + sign * root.ball) / 2
+        if trace.exact is None or root.exact is None:
+            numbers[name] = _Number(half_sum)
+        else:
+            numbers[name] = _Number(half_sum, (trace.exact + sign * root.exact) / Fraction(2))
     return numbers
 
 
