@@ -111,6 +111,6 @@ def dense_search(values: Mapping[str, float], grid: int = 160) -> dict[str, Any]
         "stable": index[0],
         "index": index,
         "admissible": int((minima & long_enough).sum()),
-        "margin": float(np.min(np.abs(det) / (1 + trace**2))) if len(found) else 0.0,
+        "margin": float(np.min(np.abs(det) / (1 + trace**2))) if found else 0.0,
         "lengths": lengths,
     }

@@ -252,11 +252,10 @@ def test_the_exact_engine_does_not_resume() -> None:
     ("words", "what"),
     [
         (["variety"], "the discriminant variety is"),
-        (["range", "--along", "rho", "--at", "L2=1"], "ranges are"),
         (["range", "--along", "rho", "--over", "L2"], "ranges are"),
         (["range", "--along", "rho", "--at", "L2=1", "--path", "1"], "ranges are"),
     ],
-    ids=["variety", "range", "widths", "path"],
+    ids=["variety", "widths", "path"],
 )
 def test_what_algebra_alone_answers_is_refused_in_one_line(
     words: list[str], what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -85,7 +85,7 @@ def test_special_points_are_answers(at: str, tmp_path: Path, capsys: pytest.Capt
         (["--at", "L1=0"], "L1 is 0, but a length must be positive"),
         (["--at", "rho=1", "--set", "rho=2"], "error: --at rho: is given with --set too"),
         (["--at", "rho=1", "--set", "k"], "is not NAME=VALUE"),
-        (["--at", "l0=1/5"], "error: --at l0: free lengths other than 0 are not supported yet"),
+        (["--at", "l0=-1/5"], "l0 is -1/5, but a free length must be not negative"),
         (["--at", "rho=1", "--digits", "0"], "'--digits'"),
         (["--at", "rho=1", "--digits", "1001"], "'--digits'"),
         (["--at", "rho=1", "--format", "gif"], "gif is not among table, json, png, svg, pdf"),

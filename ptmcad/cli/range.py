@@ -115,11 +115,10 @@ def answer(slice: Slice, request: Request) -> Answer:
         Of any kind.
     """
     from ptmcad import ranges
-    from ptmcad.ranges import document, table
+    from ptmcad.ranges import certified, document, table
 
-    if slice.has_free_lengths and request.at and not request.over and request.start is None:
-        from ptmcad.ranges import certified
-
+    only_line = not request.over and request.start is None
+    if only_line and certified.has_free_lengths(slice, request.along, request.at):
         line = certified.certified_intervals(slice, request.along, request.at, request.digits)
         return Answer(f"{slice.heading}\n\n{certified.table(line, request.digits)}", {}, {})
     texts, parts = [slice.heading], {}
@@ -211,10 +210,13 @@ def command(
         raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
     if pose is not None and start is None:
         raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
-    if formats and slice.has_free_lengths:
-        raise ConfigError("with a free length there is only the table for the terminal", key="--format")
     stem = name or f"{slice.name}-range"
     with limits(timeout, max_memory):
+        if formats and slice.has_free_lengths:
+            from ptmcad.ranges.certified import has_free_lengths
+
+            if has_free_lengths(slice, along, other):
+                raise ConfigError("with a free length there is only the table for the terminal", key="--format")
         pictures = [suffix for suffix in formats if suffix != "json"]
         names = [f"{stem}{part}.{suffix}" for part in _parts(request) for suffix in pictures]
         names += [f"{stem}.json"] * ("json" in formats)

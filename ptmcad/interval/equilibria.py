@@ -46,11 +46,11 @@ def unit_stiffness(values: Mapping[str, Formula]) -> dict[str, Formula]:
     return {name: value / unit if name in _STIFFNESS_AND_LOADS else value for name, value in values.items()}
 
 
-def slice_equilibria(slice: Slice) -> Equilibria:
-    """The equilibria of a slice."""
+def slice_equilibria(slice: Slice, creases: tuple[bool, bool] = (False, False)) -> Equilibria:
+    """The equilibria of a slice, or of its points with rho = L2, rho = L1: see `ptmcad.interval.mechanism.mechanism`."""
     graph = Graph()
     values = unit_stiffness(parameter_formulas(graph, slice))
-    m = mechanism(graph, values, graph.variable(TH1), graph.variable(TH2))
+    m = mechanism(graph, values, graph.variable(TH1), graph.variable(TH2), creases=creases)
     h, there = m.hessian, m.at_equilibrium
     jacobian = ((h.p11, values["L2"] * h.q), (values["L1"] * h.q, h.p22))
     vanishing = (*m.dependent, *cone_test(m, values["k3"] * values["l0_3"]))

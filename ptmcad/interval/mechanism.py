@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
 from ptmcad.interval.formula import Formula, Graph, direction, inverse_length, length, meet
 
@@ -87,12 +88,20 @@ class Mechanism:
 
 
 def mechanism(
-    graph: Graph, values: Mapping[str, Formula], th1: Formula, th2: Formula, phi: Formula | None = None
+    graph: Graph,
+    values: Mapping[str, Formula],
+    th1: Formula,
+    th2: Formula,
+    phi: Formula | None = None,
+    creases: tuple[bool, bool] = (False, False),
 ) -> Mechanism:
     """The mechanism with parameters ``values`` (all of `NAMES`, stiffness and loads in one unit of stiffness).
 
     With ``phi`` the direction of spring 3 is a variable of its own, u3 = (cos phi, sin phi) and l3 = d3.u3, which makes
     every formula but 1/l3 smooth at l3 = 0; they mean the mechanism where `Mechanism.aligned` vanishes and l3 >= 0.
+
+    ``creases`` tells whether rho = L2, so that d1 = 2 L2 sin(th2/2) (sin(th2/2), cos(th2/2)), and whether rho = L1, so
+    that d2 = 2 L1 sin(th1/2) (sin(th1/2), -cos(th1/2)). The formulas then hold for 0 < th2 < 2 pi, or 0 < th1 < 2 pi.
     """
     p1, p2, rho = values["L1"], values["L2"], values["rho"]
     k1, k2, k3 = values["k1"], values["k2"], values["k3"]
@@ -109,6 +118,14 @@ def mechanism(
     if phi is not None:
         u3 = phi.cos(), phi.sin()
         l3 = dot(d3, u3)
+    if creases[0]:
+        half = th2 * Fraction(1, 2)
+        u1, l1 = (half.sin(), half.cos()), 2 * p2 * half.sin()
+        r1 = 1 / l1
+    if creases[1]:
+        half = th1 * Fraction(1, 2)
+        u2, l2 = (half.sin(), -half.cos()), 2 * p1 * half.sin()
+        r2 = 1 / l2
     # tangents: d(d2)/dth1 = d(d3)/dth1 = L1 t1, d(d1)/dth2 = d(d3)/dth2 = L2 t2; normals: dt1/dth1, dt2/dth2
     t1, t2 = (s1, -c1), (s2, c2)
     n1, n2 = (c1, s1), (c2, -s2)

@@ -7,7 +7,7 @@ its own box, proved to hold exactly one, and it is proved that there are no othe
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import frexp, inf
 
@@ -23,13 +23,16 @@ from ptmcad.interval.evaluation import program, run
 from ptmcad.interval.isolation import isolate
 from ptmcad.interval.mechanism import NAMES
 from ptmcad.interval.search import Boxes
-from ptmcad.interval.system import Arguments
 from ptmcad.interval.tape import enclosing_floats
 from ptmcad.regionmap import MorseIndex, Solution
 from ptmcad.slice import Count, Slice
 
-START, END = -3.0, -3.0 + 6.2832
+TURN = (-3.0, -3.0 + 6.2832)
 """A little more than a full turn, cut where no symmetric solution lies."""
+CREASED = (-1e-9, 6.2831853081)
+"""The same for an angle whose formulas hold between 0 and a full turn."""
+CREASED_END = (Fraction(6.283185307179586), Fraction(6.283185307179587))
+"""Below and above a full turn."""
 BUDGET = 60_000
 """Boxes in floating point for one point."""
 FINEST = (1e-8, 1e-4)
@@ -74,9 +77,23 @@ class PointCounter:
 
     slice: Slice
     equilibria: Equilibria
-    _all: Arguments
-    _minima: Arguments
-    _equations: Arguments
+    _on_creases: dict[tuple[bool, bool], Equilibria] = field(default_factory=dict)
+
+    def equilibria_at(self, x: Fraction, y: Fraction) -> Equilibria:
+        """The formulas for a point: others where rho = L2 or rho = L1, where spring 1 or 2 may have no length."""
+        creases = self._creases(x, y)
+        if not any(creases):
+            return self.equilibria
+        if creases not in self._on_creases:
+            self._on_creases[creases] = slice_equilibria(self.slice, creases)
+        return self._on_creases[creases]
+
+    def _creases(self, x: Fraction, y: Fraction) -> tuple[bool, bool]:
+        p = self._values(x, y)
+        return (
+            p["rho"] == p["L2"] and bool(p["k1"] * p["l0_1"]),
+            p["rho"] == p["L1"] and bool(p["k2"] * p["l0_2"]),
+        )
 
     def at(self, x: Fraction, y: Fraction, count: Count) -> PointCount:
         """What ``count`` needs at the point (x, y) of the two axes.
@@ -110,81 +127,108 @@ class PointCounter:
     def zeros(self, x: Fraction, y: Fraction, count: Count) -> list[_Zero] | None:
         """The equilibria that ``count`` needs, each once; None when they can not be told."""
         only_minima = count in (Count.STABLE, Count.ADMISSIBLE)
+        written, creases = self.equilibria_at(x, y), self._creases(x, y)
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
-        start = np.array([[x_low, y_low, START, START, x_high, y_high, END, END]])
-        system = self._minima if only_minima else self._all
+        second, first = (CREASED if crease else TURN for crease in creases)
+        start = np.array([[x_low, y_low, first[0], second[0], x_high, y_high, first[1], second[1]]])
+        system, equations = (written.minima if only_minima else written.all).arguments(), written.equations.arguments()
         for finest in FINEST:
-            unique, narrow, left, used = isolate(system, self._equations, start, finest, BUDGET, OPEN)
+            unique, narrow, left, used = isolate(system, equations, start, finest, BUDGET, OPEN)
             if used < BUDGET and len(left) <= OPEN:
                 break
         else:
             return None
         kept = None if len(left) else distinct(unique, narrow, TH1)
         if kept is None:
-            return self._by_arb(x, y, only_minima, unique, left)
-        return self._kinds(x, y, unique[kept], narrow[kept], only_minima)
+            found = _by_arb(written, x, y, only_minima, unique, left)
+        else:
+            found = _kinds(written, x, y, unique[kept], narrow[kept], only_minima)
+        return None if found is None else _off_creases(found, creases)
 
     def _values(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
         given = self.slice.parameters
         return {name: given[name].evaluate(x, y) if name in given else Fraction(0) for name in NAMES}
 
-    def _kinds(self, x: Fraction, y: Fraction, unique: Boxes, narrow: Boxes, only_minima: bool) -> list[_Zero] | None:
-        tape = self.equilibria.decisive
-        low, high = np.empty(len(tape)), np.empty(len(tape))
-        outputs = tape.outputs[0]
-        zeros = []
-        for wide, box in zip(unique, narrow, strict=True):
-            run(program(tape), box[:4], box[4:], low, high, 0, len(tape))
-            signs = [int(low[k] > 0) - int(high[k] < 0) for k in outputs]
-            kind = _kind(signs)
-            if kind is None or (only_minima and kind == "++" and 0 in signs[3:]):
-                exact = Isolated(_balls(x, y, wide, 128), _balls(x, y, box, 128))
-                zero = self._kind_by_arb(exact)
-                if zero is None:
-                    return None
-                zeros.append(zero)
-            else:
-                zeros.append(_Zero(_solution(wide, box, kind), (signs[3], signs[4], signs[5])))
-        return [zero for zero in zeros if not only_minima or zero.solution.signs == "++"]
-
-    def _by_arb(self, x: Fraction, y: Fraction, only_minima: bool, unique: Boxes, left: Boxes) -> list[_Zero] | None:
-        """The same with Arb, for the boxes that floating point left open."""
-        system = self.equilibria.minima if only_minima else self.equilibria.all
-        equations = self.equilibria.equations
-        for precision in PRECISIONS:
-            more = isolate_arb(system, equations, [_balls(x, y, box, precision) for box in left], precision, ARB_BUDGET)
-            if more is None:
-                continue
-            for wide in unique:
-                box = _balls(x, y, wide, precision)
-                more.append(Isolated(box, refined(equations, box, precision)))
-            kept = _distinct_balls(more, precision)
-            if kept is None:
-                continue
-            zeros = [self._kind_by_arb(zero) for zero in kept]
-            if any(zero is None for zero in zeros):
-                continue
-            return [z for z in zeros if z is not None and (not only_minima or z.solution.signs == "++")]
-        return None
-
-    def _kind_by_arb(self, zero: Isolated) -> _Zero | None:
-        tape = self.equilibria.decisive
-        for precision in PRECISIONS:
-            narrow = refined(self.equilibria.equations, zero.narrow, precision)
-            values = run_arb(tape, narrow, precision)
-            signs = [int(values[int(k)] > 0) - int(values[int(k)] < 0) for k in tape.outputs[0]]
-            kind = _kind(signs)
-            if kind is not None:
-                return _Zero(_solution_of_balls(Isolated(zero.unique, narrow), kind), (signs[3], signs[4], signs[5]))
-        return None
-
 
 def point_counter(slice: Slice) -> PointCounter:
     """Write the equilibria of a slice out, to count them at its points."""
-    equilibria = slice_equilibria(slice)
-    return PointCounter(
-        slice, equilibria, equilibria.all.arguments(), equilibria.minima.arguments(), equilibria.equations.arguments()
-    )
+    return PointCounter(slice, slice_equilibria(slice))
+
+
+def _off_creases(zeros: Sequence[_Zero], creases: tuple[bool, bool]) -> list[_Zero] | None:
+    """The zeros at which the formulas for rho = L2, rho = L1 hold; None when that can not be told for some."""
+    kept = []
+    for zero in zeros:
+        inside = True
+        for (low, high), crease in zip(_reach(zero.solution), reversed(creases), strict=True):
+            if crease and not (low > 0 and high < CREASED_END[0]):
+                if not (high < 0 or low > CREASED_END[1]):
+                    return None
+                inside = False
+        if inside:
+            kept.append(zero)
+    return kept
+
+
+def _reach(solution: Solution) -> list[tuple[Fraction, Fraction]]:
+    return [(center - solution.radius, center + solution.radius) for center in solution.center]
+
+
+def _kinds(
+    written: Equilibria, x: Fraction, y: Fraction, unique: Boxes, narrow: Boxes, only_minima: bool
+) -> list[_Zero] | None:
+    tape = written.decisive
+    low, high = np.empty(len(tape)), np.empty(len(tape))
+    outputs = tape.outputs[0]
+    zeros = []
+    for wide, box in zip(unique, narrow, strict=True):
+        run(program(tape), box[:4], box[4:], low, high, 0, len(tape))
+        signs = [int(low[k] > 0) - int(high[k] < 0) for k in outputs]
+        kind = _kind(signs)
+        if kind is None or (only_minima and kind == "++" and 0 in signs[3:]):
+            exact = Isolated(_balls(x, y, wide, 128), _balls(x, y, box, 128))
+            zero = _kind_by_arb(written, exact)
+            if zero is None:
+                return None
+            zeros.append(zero)
+        else:
+            zeros.append(_Zero(_solution(wide, box, kind), (signs[3], signs[4], signs[5])))
+    return [zero for zero in zeros if not only_minima or zero.solution.signs == "++"]
+
+
+def _by_arb(
+    written: Equilibria, x: Fraction, y: Fraction, only_minima: bool, unique: Boxes, left: Boxes
+) -> list[_Zero] | None:
+    """The same with Arb, for the boxes that floating point left open."""
+    system = written.minima if only_minima else written.all
+    equations = written.equations
+    for precision in PRECISIONS:
+        more = isolate_arb(system, equations, [_balls(x, y, box, precision) for box in left], precision, ARB_BUDGET)
+        if more is None:
+            continue
+        for wide in unique:
+            box = _balls(x, y, wide, precision)
+            more.append(Isolated(box, refined(equations, box, precision)))
+        kept = _distinct_balls(more, precision)
+        if kept is None:
+            continue
+        zeros = [_kind_by_arb(written, zero) for zero in kept]
+        if any(zero is None for zero in zeros):
+            continue
+        return [z for z in zeros if z is not None and (not only_minima or z.solution.signs == "++")]
+    return None
+
+
+def _kind_by_arb(written: Equilibria, zero: Isolated) -> _Zero | None:
+    tape = written.decisive
+    for precision in PRECISIONS:
+        narrow = refined(written.equations, zero.narrow, precision)
+        values = run_arb(tape, narrow, precision)
+        signs = [int(values[int(k)] > 0) - int(values[int(k)] < 0) for k in tape.outputs[0]]
+        kind = _kind(signs)
+        if kind is not None:
+            return _Zero(_solution_of_balls(Isolated(zero.unique, narrow), kind), (signs[3], signs[4], signs[5]))
+    return None
 
 
 def _kind(signs: Sequence[int]) -> str | None:

@@ -30,8 +30,8 @@ SPRINGS = (("A1", "A4", "1"), ("A2", "A3", "2"), ("A3", "A4", "3"))
 MORE_BITS = 3000
 """A number that so many bits beyond the digits asked for do not tell from zero stays undecided."""
 NOT_TOLD = (
-    "the equilibria could not be told apart: there are infinitely many, one is nearly degenerate, or a spring has nearly "
-    "no length there"
+    "the equilibria could not be told apart: there are infinitely many, one is nearly degenerate, or a spring has "
+    "nearly no length there"
 )
 _PEAKS = {
     1: "the energy has a peak where spring A3A4 has no length too",
@@ -54,7 +54,7 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
         return Poses("ptm", parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
     poses, most = [], 0
     for solution in counts.solutions:
-        pose, bits = _pose(parameters, counter.equilibria.equations, solution, digits)
+        pose, bits = _pose(parameters, counter.equilibria_at(Fraction(0), Fraction(0)).equations, solution, digits)
         most = max(most, bits)
         if pose is None:
             return Poses("ptm", parameters, (), Status.UNDECIDED, digits, most, ZERO)
@@ -71,7 +71,7 @@ def _point_slice(parameters: Mapping[str, Fraction]) -> Slice:
 
 
 def _ordered(poses: Sequence[Pose]) -> list[Pose]:
-    """Stable ones first, then by energy; of energies that are not told apart the pose with larger angles comes first."""
+    """Stable ones first, then by energy; of energies not told apart the pose with larger angles comes first."""
     by_energy = sorted(poses, key=lambda pose: pose.energy.center)
     groups: list[list[Pose]] = []
     for pose in by_energy:
@@ -171,9 +171,11 @@ def _numbers(parameters: Mapping[str, Fraction], box: Box, flat: tuple[int, int]
         whole = Fraction(above, below)
         root = _Number(_arb(spread.exact).sqrt(), whole if whole * whole == spread.exact else None)
     for name, sign in (("low", -1), ("high", 1)):
-        known = trace.exact is not None and root.exact is not None
-        exact_value = (trace.exact + sign * root.exact) / 2 if known else None  # type: ignore[operator]
-        numbers[name] = _Number((trace.ball + sign * root.ball) / 2, exact_value)
+        half_sum = (trace.ball + sign * root.ball) / 2
+        if trace.exact is None or root.exact is None:
+            numbers[name] = _Number(half_sum)
+        else:
+            numbers[name] = _Number(half_sum, (trace.exact + sign * root.exact) / Fraction(2))
     return numbers
 
 

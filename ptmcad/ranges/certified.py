@@ -14,9 +14,10 @@ from ptmcad.enclosure import Enclosure
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.expressions import rational
 from ptmcad.numerals import shortest_text
+from ptmcad.ranges.line import restricted
 from ptmcad.ranges.table import aligned
 from ptmcad.regionmap import MorseIndex
-from ptmcad.slice import Axis, Slice
+from ptmcad.slice import FREE_LENGTHS, Axis, Slice
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +51,25 @@ class CertifiedIntervals:
     at: Mapping[str, Fraction]
     intervals: tuple[CertifiedInterval, ...]
     changes: tuple[CertifiedChange, ...]
+
+
+def has_free_lengths(slice: Slice, along: str, at: Mapping[str, Any]) -> bool:
+    """Whether a spring has a free length on the line; where none has, algebra answers, or refuses the line."""
+    if along not in slice.axis_names:
+        return False
+    varying = slice.axis_names.index(along)
+    other = slice.axis_names[1 - varying]
+    if other not in at:
+        return False
+    try:
+        value = rational(at[other])
+        return any(
+            restricted(slice.parameters[name], varying, value).numerator
+            for name in FREE_LENGTHS
+            if name in slice.parameters
+        )
+    except ExpressionError:
+        return False
 
 
 def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits: int) -> CertifiedIntervals:

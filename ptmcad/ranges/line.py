@@ -186,14 +186,16 @@ def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
         )
     try:
         value = rational(at[other])
-        parameters = {n: _restricted(e, varying, value) for n, e in slice.parameters.items()}
+        parameters = {n: restricted(e, varying, value) for n, e in slice.parameters.items()}
     except ExpressionError as error:
         raise ConfigError(str(error), key=f"at {other}") from error
     parameters = without_free_lengths(parameters, "ranges are")
     return Line(slice.axes[varying], {other: value}, parameters)
 
 
-def _restricted(expression: Expression, varying: int, value: Fraction) -> Expression:
+def restricted(expression: Expression, varying: int, value: Fraction) -> Expression:
+    """A rational function of the slice on the line where the other axis has a value, in the first axis."""
+
     def on_line(terms: tuple[tuple[int, int, Fraction], ...]) -> Expression:
         total = constant(0)
         for term in terms:
