@@ -11,6 +11,7 @@ from itertools import pairwise
 from ptmcad.enclosure import Enclosure, exact_text
 from ptmcad.poses import Pose, Poses
 from ptmcad.regionmap import Status
+from ptmcad.slice import FREE_LENGTHS
 
 WIDTH = 100
 _KINDS = {0: "stable", 1: "saddle", 2: "maximum"}
@@ -39,6 +40,7 @@ def table(poses: Poses, digits: int | None = None) -> str:
         lines += [
             "",
             *_wrapped("units", _UNITS),
+            *(_wrapped("tense", [_TENSE]) if poses.equilibria[0].admissible is not None else []),
         ]
     return "\n".join(lines)
 
@@ -51,11 +53,17 @@ _UNITS = [
 ]
 
 
+_TENSE = "stable, and every spring longer than its free length; a negative force pushes"
+
+
 def _point(poses: Poses) -> list[str]:
     values = {name: exact_text(value) for name, value in poses.parameters.items()}
     springs = {values[name] for name in ("k1", "k2", "k3")}
     if len(springs) == 1:
         values = {n: v for n, v in values.items() if n not in ("k1", "k2", "k3")} | {"k": springs.pop()}
+    free = {values[name] for name in FREE_LENGTHS if name in values}
+    if len(free) == 1:
+        values = {n: v for n, v in values.items() if n not in FREE_LENGTHS} | {"l0": free.pop()}
     loads = [name for name in values if name.startswith("F")]
     parts = [f"{name} = {value}" for name, value in values.items() if name not in loads]
     return parts + ([f"{n} = {values[n]}" for n in loads if values[n] != "0"] or ["no load"])
@@ -70,6 +78,9 @@ def _summary(poses: Poses) -> list[str]:
         f"{kinds.count(kind)} {several[kind] if kinds.count(kind) > 1 else kind}" for kind in several if kind in kinds
     ]
     parts = [f"{len(kinds)} equilibria: {', '.join(tally)}", poses.status.value]
+    if any(pose.admissible is not None for pose in poses.equilibria):
+        tense = sum(pose.admissible is True for pose in poses.equilibria)
+        parts.insert(1, f"{tense} stable with every spring longer than its free length")
     return parts + ([poses.remark] if poses.remark else [])
 
 
@@ -97,6 +108,7 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
     states: list[Column] = [
         ("state", "", [kind_of(p) for p in found]),
         ("flat", "", ["yes" if p.flat else "no" for p in found]),
+        *([("tense", "", ["yes" if p.admissible else "no" for p in found])] if found[0].admissible is not None else []),
         ("index", "", ["-" if p.index is None else str(p.index) for p in found]),
         ("mult.", "", [str(p.multiplicity) for p in found]),
         column("energy", "", [p.energy for p in found]),

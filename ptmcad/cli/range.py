@@ -117,6 +117,11 @@ def answer(slice: Slice, request: Request) -> Answer:
     from ptmcad import ranges
     from ptmcad.ranges import document, table
 
+    if slice.has_free_lengths and request.at and not request.over and request.start is None:
+        from ptmcad.ranges import certified
+
+        line = certified.certified_intervals(slice, request.along, request.at, request.digits)
+        return Answer(f"{slice.heading}\n\n{certified.table(line, request.digits)}", {}, {})
     texts, parts = [slice.heading], {}
     pictures: dict[str, Callable[[Path], None]] = {}
     if request.at:
@@ -189,8 +194,8 @@ def command(
 ) -> None:
     """Find the intervals of constant count along one axis; the operation range is where two equilibria are stable.
 
-    Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. All digits of the
-    tables are right. With --over the widest operation range is found and proved; with --path stable poses are followed
+    Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. With free lengths
+    they are enclosed by interval arithmetic, and what could not be decided is told. All digits of the tables are right. With --over the widest operation range is found and proved; with --path stable poses are followed
     until they vanish, and the pose to which the mechanism snaps is told.
 
     \b
@@ -206,6 +211,8 @@ def command(
         raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
     if pose is not None and start is None:
         raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
+    if formats and slice.has_free_lengths:
+        raise ConfigError("with a free length there is only the table for the terminal", key="--format")
     stem = name or f"{slice.name}-range"
     with limits(timeout, max_memory):
         pictures = [suffix for suffix in formats if suffix != "json"]

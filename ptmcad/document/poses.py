@@ -10,6 +10,7 @@ The schema is published as docs/poses.schema.json; its version is part of `FORMA
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from typing import Any
 
 from ptmcad.document.node import Node, opened
@@ -43,6 +44,7 @@ def _encode(poses: Poses) -> dict[str, Any]:
         "equilibria": [
             {
                 "stable": p.stable,
+                **({} if p.admissible is None else {"admissible": p.admissible}),
                 "index": p.index,
                 "multiplicity": p.multiplicity,
                 "flat": p.flat,
@@ -58,6 +60,7 @@ def _encode(poses: Poses) -> dict[str, Any]:
                         "stiffness": exact_text(s.stiffness),
                         "length": number(s.length),
                         "force": number(s.force),
+                        **({} if p.admissible is None else {"free_length": exact_text(s.free_length)}),
                     }
                     for s in p.springs
                 ],
@@ -103,8 +106,9 @@ def _name(node: Node, key: str) -> str:
 def _pose(node: Node, digits: int) -> Pose:
     p = node.record(
         "stable", "index", "multiplicity", "flat", "angles", "degrees", "cosines_sines", "nodes", "springs", "energy",
-        "eigenvalues",
+        "eigenvalues", "admissible?",
     )  # fmt: skip
+    admissible = p["admissible"].truth() if "admissible" in p else None
 
     def number(place: Node) -> Enclosure:
         return _number(place, digits)
@@ -119,21 +123,28 @@ def _pose(node: Node, digits: int) -> Pose:
         degrees=pair(p["degrees"]),
         cosines_sines=(c1, s1, c2, s2),
         nodes={_name(place, name): pair(place) for name, place in p["nodes"].mapping().items()},
-        springs=p["springs"].each(lambda place: _spring(place, digits)),
+        springs=p["springs"].each(lambda place: _spring(place, digits, admissible is not None)),
         energy=number(p["energy"]),
         eigenvalues=pair(p["eigenvalues"]),
         multiplicity=p["multiplicity"].natural(),
         index=p["index"].optional(Node.natural),
         stable=p["stable"].optional(Node.truth),
         flat=p["flat"].truth(),
+        admissible=admissible,
     )
 
 
-def _spring(node: Node, digits: int) -> Spring:
-    s = node.record("name", "start", "end", "stiffness", "length", "force")
+def _spring(node: Node, digits: int, free: bool) -> Spring:
+    s = node.record("name", "start", "end", "stiffness", "length", "force", *(["free_length"] if free else []))
     name, start, end = (s[key].line(MAX_NAME) for key in ("name", "start", "end"))
     return Spring(
-        name, start, end, s["stiffness"].fraction(), _number(s["length"], digits), _number(s["force"], digits)
+        name,
+        start,
+        end,
+        s["stiffness"].fraction(),
+        _number(s["length"], digits),
+        _number(s["force"], digits),
+        s["free_length"].fraction() if free else Fraction(0),
     )
 
 

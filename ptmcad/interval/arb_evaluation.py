@@ -29,13 +29,13 @@ def ball(low: Fraction, high: Fraction) -> arb:
 
 
 def lower(value: arb) -> Fraction:
-    """A rational number that is at most every number in a finite ball."""
-    return _exact(value.lower(), -1)
+    """The exact lower end of a finite ball."""
+    return _exact(value.mid()) - _exact(value.rad())
 
 
 def upper(value: arb) -> Fraction:
-    """A rational number that is at least every number in a finite ball."""
-    return _exact(value.upper(), 1)
+    """The exact upper end of a finite ball."""
+    return _exact(value.mid()) + _exact(value.rad())
 
 
 def run_arb(tape: Tape, box: Sequence[arb], precision: int, stages: int | None = None) -> list[arb]:
@@ -138,9 +138,7 @@ def _fmpq(value: Fraction) -> fmpq:
     return fmpq(value.numerator, value.denominator)
 
 
-def _exact(end: arb, sign: int) -> Fraction:
-    """The rational end of a ball that is itself given as a ball, on the side of ``sign``."""
-    mantissa, exponent = end.mid().man_exp()
-    radius, power = end.rad().man_exp()
-    middle = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-    return middle + sign * Fraction(int(radius)) * Fraction(2) ** int(power)
+def _exact(value: arb) -> Fraction:
+    """The number that a ball of radius zero is."""
+    mantissa, exponent = value.man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

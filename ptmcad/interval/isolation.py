@@ -38,7 +38,8 @@ def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
     program, stages, unknowns, equations, jacobian, _, _, _, _ = system
     low, high, low_at, high_at, middle_low, middle_high, radius, _, _, matrix, inverse = work
     m, n = jacobian.shape
-    run(program, box_low, box_high, low, high, 0, stages[3])
+    if not run(program, box_low, box_high, low, high, 0, stages[3]):
+        return False
     for k in range(box_low.shape[0]):
         middle_low[k], middle_high[k] = box_low[k], box_high[k]
     for j in range(n):

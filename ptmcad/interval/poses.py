@@ -33,6 +33,10 @@ NOT_TOLD = (
     "the equilibria could not be told apart: there are infinitely many, one is nearly degenerate, or a spring has nearly "
     "no length there"
 )
+_PEAKS = {
+    1: "the energy has a peak where spring A3A4 has no length too",
+    2: "the energy has two peaks where spring A3A4 has no length too",
+}
 ZERO = "a number of an equilibrium could not be told from zero"
 
 
@@ -55,7 +59,8 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
         if pose is None:
             return Poses("ptm", parameters, (), Status.UNDECIDED, digits, most, ZERO)
         poses.append(pose)
-    return Poses("ptm", parameters, tuple(_ordered(poses)), Status.CERTIFIED, digits, most)
+    peaks = _PEAKS.get(counts.cones or 0, "")
+    return Poses("ptm", parameters, tuple(_ordered(poses)), Status.CERTIFIED, digits, most, peaks)
 
 
 def _point_slice(parameters: Mapping[str, Fraction]) -> Slice:

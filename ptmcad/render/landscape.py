@@ -55,23 +55,36 @@ _RING = 5.0
 Floats = NDArray[np.float64]
 
 
+Terms = tuple[tuple[tuple[int, ...], float], ...]
+
+
+def _sum(terms: Terms, bases: Sequence[Floats], shape: tuple[int, ...]) -> Floats:
+    total = np.zeros(shape)
+    for powers, coefficient in terms:
+        term = np.full_like(total, coefficient)
+        for base, power in zip(bases, powers, strict=True):
+            term = term * base**power
+        total += term
+    return total
+
+
 @dataclass(frozen=True, slots=True)
 class Energy:
-    """The energy as (U - offset) / unit: coefficients of cosines and sines, exponents of c1, s1, c2, s2."""
+    """The energy as (U - offset) / unit: coefficients of cosines and sines, exponents of c1, s1, c2, s2; and for each
+    spring with a free length -k l0 with the terms of its length squared, whose root it multiplies."""
 
     offset: Fraction
     unit: Fraction
-    terms: tuple[tuple[tuple[int, ...], float], ...]
+    terms: Terms
+    roots: tuple[tuple[float, Terms], ...] = ()
 
     def __call__(self, th1: Floats, th2: Floats) -> Floats:
         """Over arrays of angles in radians."""
         bases = (np.cos(th1), np.sin(th1), np.cos(th2), np.sin(th2))
-        total = np.zeros(np.broadcast(th1, th2).shape)
-        for powers, coefficient in self.terms:
-            term = np.full_like(total, coefficient)
-            for base, power in zip(bases, powers, strict=True):
-                term = term * base**power
-            total += term
+        shape = np.broadcast(th1, th2).shape
+        total = _sum(self.terms, bases, shape)
+        for factor, square in self.roots:
+            total += factor * np.sqrt(np.maximum(_sum(square, bases, shape), 0.0))
         return total
 
     def scaled(self, value: Fraction) -> float:
@@ -86,7 +99,27 @@ def energy_of(parameters: Mapping[str, Fraction]) -> Energy:
     exact = {m: to_fraction(c) for m, c in polynomial_at(system, potential(system.ring), values).items()}
     offset = exact.pop((0, 0, 0, 0), Fraction(0))
     unit = Fraction(10) ** magnitude(max(map(abs, exact.values()), default=Fraction(1)))
-    return Energy(offset, unit, tuple((m, float(c / unit)) for m, c in sorted(exact.items())))
+    roots = []
+    for number, square in enumerate(_squared_lengths(parameters), 1):
+        pull = parameters[f"k{number}"] * parameters.get(f"l0_{number}", Fraction(0))
+        if pull:
+            offset += pull * parameters[f"l0_{number}"] / 2
+            roots.append((float(-pull / unit), tuple((m, float(c)) for m, c in square.items())))
+    return Energy(offset, unit, tuple((m, float(c / unit)) for m, c in sorted(exact.items())), tuple(roots))
+
+
+def _squared_lengths(p: Mapping[str, Fraction]) -> tuple[dict[tuple[int, ...], Fraction], ...]:
+    """Of the springs A1A4, A2A3 and A3A4, by exponents of c1, s1, c2, s2."""
+    rho, p1, p2 = p["rho"], p["L1"], p["L2"]
+    one, c1, c2 = (0, 0, 0, 0), (1, 0, 0, 0), (0, 0, 1, 0)
+    return (
+        {one: rho**2 + p2**2, c2: -2 * rho * p2},
+        {one: rho**2 + p1**2, c1: -2 * rho * p1},
+        {
+            one: rho**2 + p1**2 + p2**2, c1: -2 * rho * p1, c2: -2 * rho * p2,
+            (1, 0, 1, 0): 2 * p1 * p2, (0, 1, 0, 1): -2 * p1 * p2,
+        },
+    )  # fmt: skip
 
 
 def draw_landscape(poses: Poses) -> Figure:
