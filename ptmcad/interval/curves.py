@@ -66,18 +66,25 @@ def _folds(slice: Slice, *, stable: bool) -> Iterator[Curve]:
     m = slice_mechanism(graph, slice)
     there = m.at_equilibrium
     short = SHORT * parameter_formulas(graph, slice)["L1"]
+    # unloaded, a stable configuration with spring 3 short is told from the multiples without phi
+    apart = m.unit is not None and not (stable and m.unloaded)
+    e1, e2 = m.equilibrium
+    balance, singular = m.unloaded or (e2, m.hessian.determinant)
     yield Curve(
         name,
         reason,
         system(
-            [*m.equilibrium, m.hessian.determinant],
+            [e1, balance, singular],
             (0, 1, 2, 3),
-            ([*m.dependent, *_present(m.unit)], [there.determinant, m.turned, *([] if stable else [there.levelled])]),
-            [*([] if m.unit is None else [m.lengths[2] - short]), *(_semidefinite(m) if stable else [])],
+            (
+                [e2, *m.dependent, *_present(m.unit)],
+                [there.determinant, m.turned, *([] if stable else [there.levelled])],
+            ),
+            [*([m.lengths[2] - short] if apart else []), *(_semidefinite(m) if stable else [])],
         ),
         (TORUS, TORUS),
     )
-    if m.unit is None:
+    if not apart:
         return
     graph = Graph()
     m = slice_mechanism(graph, slice, phi=True)

@@ -82,9 +82,15 @@ class Mechanism:
     turn: Formula
     """The second derivative of U when both bars turn by the same angle, H11 - 2 H12 + H22; narrow for small rho."""
     turned: Formula
-    lift: Formula
-    give: Formula
-    """L2 D from the entries of H for the first bar alone and for both bars; holds where E1 = E2 = 0."""
+    """L2 D from the entries of H for the first bar alone and for both bars; holds where E1 = E2 = 0.
+
+    Without loads, on a positive base, ``turn`` and ``turned`` have no factor rho.
+    """
+    unloaded: tuple[Formula, Formula] | None
+    """Without loads, and with a base that is certainly positive: what L1 E1 - L2 E2 and L2 D are multiples of by rho.
+
+    They may replace E2 and D: for small rho, where the whole mechanism hardly resists turning, they stay definite.
+    """
 
 
 def mechanism(
@@ -94,11 +100,14 @@ def mechanism(
     th2: Formula,
     phi: Formula | None = None,
     creases: tuple[bool, bool] = (False, False),
+    positive_base: bool = False,
 ) -> Mechanism:
     """The mechanism with parameters ``values`` (all of `NAMES`, stiffness and loads in one unit of stiffness).
 
     With ``phi`` the direction of spring 3 is a variable of its own, u3 = (cos phi, sin phi) and l3 = d3.u3, which makes
     every formula but 1/l3 smooth at l3 = 0; they mean the mechanism where `Mechanism.aligned` vanishes and l3 >= 0.
+
+    ``positive_base`` says that rho is zero nowhere in the open window.
 
     ``creases`` tells whether rho = L2, so that d1 = 2 L2 sin(th2/2) (sin(th2/2), cos(th2/2)), and whether rho = L1, so
     that d2 = 2 L1 sin(th1/2) (sin(th1/2), -cos(th1/2)). The formulas then hold for 0 < th2 < 2 pi, or 0 < th1 < 2 pi.
@@ -208,9 +217,15 @@ def mechanism(
     for pull, k, d, u, r in ((pull1, k1, d1, u1, r1), (pull2, k2, d2, u2, r2), (pull3, k3, d3, u3, r3)):
         lift = lift + (pull * u[1] - k * d[1])
         give = give + (pull * (u[0] * (1 - rho * (u[0] * r))) - k * (d[0] - rho))
-    moment = rho * lift + p1 * (x3 * s1 - y3 * c1) + p2 * (x4 * s2 + y4 * c2)
-    turn = rho * give + p1 * (x3 * c1 + y3 * s1) - p2 * (x4 * c2 - y4 * s2)
     there = at_equilibrium
+    if positive_base and all(load.value == 0 for load in (x3, x4, y3, y4)):
+        # L1 (P11 - L2 q) = H11 - H12 is the derivative of rho times lift by th1
+        moment, turn = lift, give
+        slip = (rho / p1) * graph.derivative(lift, th1.variable).squared()
+    else:
+        moment = rho * lift + p1 * (x3 * s1 - y3 * c1) + p2 * (x4 * s2 + y4 * c2)
+        turn = rho * give + p1 * (x3 * c1 + y3 * s1) - p2 * (x4 * c2 - y4 * s2)
+        slip = p1 * (there.p11 - p2 * there.q).squared()
     along = () if phi is None else tuple(x - length(*d3) * u for x, u in zip(d3, u3, strict=True))
     return Mechanism(
         (e1, e2),
@@ -225,7 +240,6 @@ def mechanism(
         (t1, t2),
         None if phi is None else cross(d3, u3),
         turn,
-        there.p11 * turn - p1 * (there.p11 - p2 * there.q).squared(),
-        lift,
-        give,
+        there.p11 * turn - slip,
+        None if moment is not lift else (lift, everywhere.p11 * turn - slip),
     )

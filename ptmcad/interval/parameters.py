@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.expressions import Expression, Term
+from ptmcad.expressions import Expression, Term, axis
 from ptmcad.interval.formula import Formula, Graph
 from ptmcad.interval.mechanism import NAMES, Mechanism, mechanism
 from ptmcad.slice import Slice
@@ -49,4 +49,8 @@ def parameter_formulas(graph: Graph, slice: Slice) -> dict[str, Formula]:
 def slice_mechanism(graph: Graph, slice: Slice, *, phi: bool = False) -> Mechanism:
     """The slice's mechanism in variables x, y, th1, th2 and, if asked for, v, which is phi / PHI_UNIT."""
     direction = PHI_UNIT * graph.variable(4) if phi else None
-    return mechanism(graph, parameter_formulas(graph, slice), graph.variable(2), graph.variable(3), direction)
+    rho = slice.parameters["rho"]
+    # an axis is positive in the open window; of other expressions only constants are known to be
+    positive = rho in (axis(0), axis(1)) or (rho.is_constant and rho.constant() > 0)
+    values = parameter_formulas(graph, slice)
+    return mechanism(graph, values, graph.variable(2), graph.variable(3), direction, positive_base=positive)
