@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 JOBS ?= 2
 
-.PHONY: help demo test test-slow fuzz check bench docs clean distclean
+.PHONY: help demo test test-slow fuzz check bench docs free-maps clean distclean
 
 help:
 	@echo "make demo       the map of the paper's fig. 4, as out/fig4.png and out/fig4.svg"
@@ -16,6 +16,7 @@ help:
 	@echo "make check      ruff, its formatter and mypy in strict mode"
 	@echo "make bench      run time and memory of every slice in configs/, into docs/benchmarks/"
 	@echo "make docs       the manual, as out/docs/html/index.html, and the README's picture, into docs/img/"
+	@echo "make free-maps  the manual's maps of springs with free lengths, into docs/img/: some minutes each"
 	@echo "make clean      removes what the targets made, except the environment"
 	@echo "make distclean  removes the environment too"
 
@@ -23,7 +24,7 @@ help:
 # A stamp is touched last, so an interrupted set-up is begun again.
 $(VENV)/.installed: pyproject.toml scripts/setup-venv
 	scripts/setup-venv $(VENV)
-	$(PIP) --editable .
+	$(PIP) --editable '.[certified]'
 	@touch $@
 
 $(VENV)/.installed-test: $(VENV)/.installed
@@ -67,6 +68,9 @@ docs: $(VENV)/.installed-docs
 	$(BIN)/ptmcad classify configs/fig4.yaml --format png --out docs/img
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet -b html -d out/docs/doctrees docs out/docs/html
 	@echo "the manual is out/docs/html/index.html"
+
+free-maps: $(VENV)/.installed-test
+	for record in configs/free*.yaml; do $(BIN)/ptmcad classify $$record --tolerance 1/200 --format png --out docs/img || exit; done
 
 clean:
 	rm -rf out build dist docs/generated .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info

@@ -145,7 +145,7 @@ def check_resumable(slice: Slice, earlier: RegionMap) -> None:
 
 
 def _check_count(slice: Slice) -> None:
-    """No spring of length zero is shorter than its free length when that is zero: then the two counts say the same."""
+    """Without free lengths every spring that is not of length zero is longer than its own: stable says it all."""
     if slice.count is Count.ADMISSIBLE and not slice.has_free_lengths:
         raise ConfigError(
             "admissible asks that every spring is longer than its free length, and none has a free length here: "

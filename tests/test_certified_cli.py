@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import signal
 import subprocess
@@ -19,6 +20,7 @@ from certified_map import certified_map, free_slice
 
 import ptmcad
 from ptmcad.cli import run
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.regionmap import RegionMap, Status
 
@@ -116,41 +118,57 @@ def test_tolerances_are_checked_by_name(tmp_path: Path, capsys: pytest.CaptureFi
     assert "give tolerance instead" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("stage", "shown"), [("undetermined 1.3 %", "] undetermined 1.3 %, "), ("counts", "] counts 6/24, ")]
+)
+def test_the_progress_bar_shows_the_undetermined_share(stage: str, shown: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = io.StringIO()
+    monkeypatch.setattr(terminal, "isatty", lambda: True)
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setattr("ptmcad.cli.progress.PATIENCE", 0)
+    with ProgressBar() as progress:
+        progress(stage, 6, 24)
+    assert f"[######..................{shown}" in terminal.getvalue()
+
+
 # ---------------------------------------------------------------------------------------------------- the real engine
 
 WINDOW = ["--slice", "rho,L2", "--range", "rho=1/2:1", "--range", "L2=5/4:7/4", "--set", "l0=1/5", "--set", "F3=-10",
           "--set", "F4=-10", "--format", "json"]  # fmt: skip
 
 
-def _classify(folder: Path, *options: str) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "ptmcad", "classify", *WINDOW, "--out", str(folder), *options]
-    return subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+def _command(folder: Path, *options: str) -> list[str]:
+    return [sys.executable, "-m", "ptmcad", "classify", *WINDOW, "--out", str(folder), *options]
+
+
+def _done(folder: Path, *options: str) -> str:
+    """Run to the end; the text of the result."""
+    done = subprocess.run(_command(folder, *options), cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    return (folder / SAVED).read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
 def test_the_engine_stopped_by_ctrl_c_and_gone_on_with(tmp_path: Path) -> None:
-    first = _classify(tmp_path, "--tolerance", "0.1")
-    assert first.wait() == 0, first.stderr
-    coarse = RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8"))
+    coarse = RegionMap.from_json(_done(tmp_path, "--tolerance", "0.1"))
     assert coarse.status is Status.CERTIFIED
-    assert float(coarse.undetermined) <= 0.1
-    fine = _classify(tmp_path, "--tolerance", "0.02", "--resume", str(tmp_path / SAVED))
-    assert fine.wait() == 0, fine.stderr
-    text = (tmp_path / SAVED).read_text(encoding="utf-8")
+    assert coarse.undetermined <= Fraction(1, 10)
+    text = _done(tmp_path, "--tolerance", "0.02", "--resume", str(tmp_path / SAVED))
     jsonschema.validate(json.loads(text), SCHEMA, cls=jsonschema.Draft202012Validator)
     finer = RegionMap.from_json(text)
-    assert float(finer.undetermined) <= 0.02
+    assert finer.undetermined <= Fraction(1, 50)
     for cell in coarse.cells:
         found = finer.locate(**cell.sample)
         assert found.status is Status.UNDECIDED or found.stable == cell.stable
-    stopped = _classify(tmp_path, "--tolerance", "1e-7")
-    with pytest.raises(subprocess.TimeoutExpired):
-        stopped.wait(timeout=30)
-    stopped.send_signal(signal.SIGINT)
-    _, errors = stopped.communicate()
+    command = _command(tmp_path, "--tolerance", "1e-7", "--resume", str(tmp_path / SAVED))
+    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE) as stopped:
+        with pytest.raises(subprocess.TimeoutExpired):
+            stopped.wait(timeout=30)
+        stopped.send_signal(signal.SIGINT)
+        _, errors = stopped.communicate()
     assert stopped.returncode == 130
     assert errors.decode().startswith("stopped: by SIGINT; the partial result is in ")
     partial = RegionMap.from_json((tmp_path / "slice-rho-L2.partial.json").read_text(encoding="utf-8"))
     assert partial.status is Status.PARTIAL
-    with pytest.raises(ConfigError, match="axes differ"):
+    with pytest.raises(ConfigError, match="axes differs"):
         ptmcad.classify(free_slice(), resume=partial)

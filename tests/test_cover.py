@@ -140,7 +140,7 @@ def test_components_of_many_rectangles_are_those_of_a_flood_fill(seed: int) -> N
 
 
 @settings(deadline=None, max_examples=50)
-@given(covers(), st.integers(1, 2**20))
+@given(covers(), st.sampled_from((1, 3, 2**20, 2**36 - 5, 2**36)))
 def test_a_finer_lattice_scales_everything(cover: Cover, factor: int) -> None:
     """Coordinates of forty bits, and areas of eighty, are as exact as small ones."""
     finer = Cover(
@@ -190,6 +190,14 @@ def test_a_simplified_cover_covers_the_same_with_no_more_rectangles(cover: Cover
     assert len(after.rectangles) <= len(cover.rectangles)
     assert (flood(after).closed == flood(cover).closed).all()
     assert list(after.rectangles) == sorted(set(after.rectangles))
+
+
+def test_of_two_rectangles_that_cover_for_each_other_one_stays() -> None:
+    bars = ((0, 1, 0, 4), (2, 3, 0, 4), (0, 4, 0, 1), (0, 4, 2, 3))
+    cross = ((0, 3, 1, 2), (1, 2, 0, 3))
+    after = simplified(Cover(4, tuple(sorted(bars + cross))))
+    assert set(bars) < set(after.rectangles)
+    assert len(after.rectangles) == 5
 
 
 @settings(deadline=None, max_examples=80)
@@ -275,29 +283,34 @@ ends = st.one_of(
 
 @settings(max_examples=300)
 @given(st.lists(st.tuples(ends, ends, ends, ends), max_size=6), st.sampled_from((1, 64, 2**24, MOST_STEPS)))
-def test_boxes_are_rounded_outward_by_less_than_a_step(boxes: list[tuple[float, ...]], steps: int) -> None:
-    low = np.array([[min(a, b), min(c, d)] for a, b, c, d in boxes]).reshape(-1, 2)
-    high = np.array([[max(a, b), max(c, d)] for a, b, c, d in boxes]).reshape(-1, 2)
-    expected = set()
-    for (a, c), (b, d) in zip(low.tolist(), high.tolist(), strict=True):
-        sides: list[int] = []
-        for first, last, (start, end) in ((a, b, WINDOW[0]), (c, d, WINDOW[1])):
+def test_boxes_are_rounded_outward_by_less_than_two_steps(boxes: list[tuple[float, ...]], steps: int) -> None:
+    for a, b, c, d in boxes:
+        low, high = (min(a, b), min(c, d)), (max(a, b), max(c, d))
+        found = from_boxes(WINDOW, [low], [high], steps).rectangles
+        sides: list[tuple[Fraction, Fraction]] = []
+        for first, last, (start, end) in zip(low, high, WINDOW, strict=True):
             u, v = ((Fraction(min(max(x, -1e300), 1e300)) - start) / (end - start) * steps for x in (first, last))
-            if u >= steps or v <= 0:
-                break
-            left, right = max(0, math.floor(u)), min(steps, math.ceil(v))
-            sides += [left, right if right > left else right + 1]
-        else:
-            expected.add(tuple(sides))
-    assert from_boxes(WINDOW, low, high, steps) == Cover(steps, tuple(sorted(expected)))  # type: ignore[arg-type]
+            sides.append((u, v))
+        if not found:
+            assert any(u >= steps or v <= 0 for u, v in sides)
+            continue
+        for (u, v), (left, right) in zip(sides, (found[0][:2], found[0][2:]), strict=True):
+            assert max(u - 2, -1) < left <= max(u, 0)
+            assert min(v, steps) <= right < min(v + 2, steps + 1)
+
+
+def test_boxes_are_sorted_and_each_rectangle_is_kept_once() -> None:
+    low, high = [[0.6, 0.1], [0.1, 0.6], [0.6, 0.1], [2.0, 0.1]], [[0.7, 0.2], [0.2, 0.7], [0.7, 0.2], [3.0, 0.2]]
+    assert from_boxes(UNIT, low, high, 4).rectangles == ((0, 1, 2, 3), (2, 3, 0, 1))
 
 
 @pytest.mark.parametrize("scale", [Fraction(10) ** 400, Fraction(1, 10**400)], ids=["1e400", "1e-400"])
 def test_a_window_beyond_the_range_of_floats_is_rounded_exactly(scale: Fraction) -> None:
     window = ((-scale, scale), (Fraction(-1), Fraction(1)))
-    found = from_boxes(window, [[0.0, 0.0]], [[5e-324, 0.5]], 8)
+    found = from_boxes(window, [[0.0, 0.1]], [[5e-324, 0.4]], 8)
     right = 5 if scale > 1 else 8
     assert found.rectangles == ((4, right, 4, 6),)
+    assert from_boxes(window, [[0.0, 0.1]], [[0.0, 0.4]], 8).rectangles == ((4, 5, 4, 6),)
 
 
 @pytest.mark.parametrize("box", [((0.0, math.nan), (1.0, 1.0)), ((0.5, 0.0), (0.25, 1.0))])

@@ -59,7 +59,7 @@ def test_number_of_regions_by_index(name: str, regions: str) -> None:
 
 
 @pytest.mark.parametrize("name", SLICES)
-@pytest.mark.parametrize("count", [c.value for c in Count])
+@pytest.mark.parametrize("count", ["stable", "total", "index"])
 def test_structure(name: str, count: str) -> None:
     check_structure(shipped(name, count, "1/10") if count != "stable" else shipped(name))
 

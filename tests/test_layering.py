@@ -16,6 +16,7 @@ PACKAGE = ROOT / "ptmcad"
 MODULES = sorted(PACKAGE.rglob("*.py"))
 
 EXACT = (
+    "interval",
     "algebra",
     "models",
     "cad",
@@ -28,6 +29,7 @@ EXACT = (
     "regions",
     "regionmap",
     "exactmap",
+    "interval",
     "assembly",
     "locate",
     "ranges",
@@ -105,6 +107,13 @@ def test_the_engines_are_independent(path: Path) -> None:
     """A check of one engine by the other proves something only while they share no mathematics."""
     if part(path) == "interval":
         assert not imported_parts(path) & {"algebra", "cad", "variety", "counting", "area"}
+
+
+@pytest.mark.parametrize("path", MODULES, ids=relative)
+def test_plane_geometry_is_of_no_engine(path: Path) -> None:
+    """What is connected outside of rectangles is a question about integers."""
+    if part(path) == "cover":
+        assert imported_parts(path) <= {"cover"}
 
 
 @pytest.mark.parametrize("path", MODULES, ids=relative)

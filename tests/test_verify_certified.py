@@ -7,13 +7,16 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ptmcad
+from ptmcad.cli.verify import command
 from ptmcad.config import slice_from_mapping
 from ptmcad.cover import Cover, Rectangle, components
 from ptmcad.regionmap import Cell, RegionMap, Solution, Status, System
@@ -67,6 +70,21 @@ def test_a_map_of_all_counts_is_accepted(total: RegionMap) -> None:
 
 def test_a_partial_map_is_checked_like_a_whole_one(stable: RegionMap) -> None:
     assert ptmcad.verify(replace(stable, status=Status.PARTIAL), boxes=1).ok
+
+
+def test_the_command_checks_a_stored_map(stable: RegionMap, tmp_path: Path) -> None:
+    """Exit status 0, and 1 for a false one, whose violated claim is named."""
+    good, bad = tmp_path / "good.json", tmp_path / "bad.json"
+    good.write_text(stable.to_json(), encoding="utf-8")
+    bad.write_text(recount(stable, 0, 2).to_json(), encoding="utf-8")
+    runner = CliRunner()
+    one = runner.invoke(command, [str(good), "--boxes", "2", "--seed", "7"], standalone_mode=False)
+    assert (one.exception, one.return_value) == (None, 0)
+    assert "2 boxes" in one.output
+    assert "seed 7" in one.output
+    two = runner.invoke(command, [str(bad), "--boxes", "0"], standalone_mode=False)
+    assert (two.exception, two.return_value) == (None, 1)
+    assert "violated: counts and solutions: cell 0, at rho=" in two.output
 
 
 def with_cell(r: RegionMap, n: int, **changes: object) -> RegionMap:

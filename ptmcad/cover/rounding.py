@@ -1,7 +1,7 @@
 """Boxes of floats rounded outward to a cover's lattice.
 
-Guarantee: each end is rounded exactly. A float estimate with a bound on its error finds the lattice step; where the
-bound leaves two of them open, rational arithmetic decides.
+Guarantee: a rectangle holds its box and is less than two lattice steps longer on each side. A float estimate with a
+bound on its error finds the step; only where floats overflow does rational arithmetic.
 """
 
 from __future__ import annotations

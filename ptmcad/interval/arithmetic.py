@@ -2,7 +2,7 @@
 
 Guarantee: the result of each function encloses every value that its exact counterpart takes on the arguments. An
 infinite end, or a NaN, means that nothing is known on that side; no test that is written as a comparison succeeds on
-it. Proofs are in docs/soundness.md, in the order of the functions here.
+it. Proofs are in docs/soundness-arithmetic.md, in the order of the functions here.
 """
 
 from __future__ import annotations

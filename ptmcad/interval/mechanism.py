@@ -82,6 +82,8 @@ class Mechanism:
     turn: Formula
     """The second derivative of U when both bars turn by the same angle, H11 - 2 H12 + H22; narrow for small rho."""
     turned: Formula
+    lift: Formula
+    give: Formula
     """L2 D from the entries of H for the first bar alone and for both bars; holds where E1 = E2 = 0."""
 
 
@@ -224,4 +226,6 @@ def mechanism(
         None if phi is None else cross(d3, u3),
         turn,
         there.p11 * turn - p1 * (there.p11 - p2 * there.q).squared(),
+        lift,
+        give,
     )

@@ -1,6 +1,7 @@
 """Branch and prune: boxes that may hold solutions of a system, contracted and bisected until they are small.
 
 Guarantee: every solution in the boxes at the start lies in one of the boxes at the end, those still waiting included.
+(Lemma 11 of docs/soundness.md.)
 
 The search knows no mathematics: `ptmcad.interval.contraction` discards and shrinks.
 """

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from fractions import Fraction
 from math import inf, nan
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 pytest.importorskip("numba")
 
 from ptmcad.interval import arithmetic
+from ptmcad.interval import compiled as compilation
 from ptmcad.interval.compiled import compiled
 
 Floats = NDArray[np.float64]
@@ -246,3 +248,14 @@ def test_error_of_sine_and_cosine_is_a_quarter_of_what_is_claimed() -> None:
         worst = max(float(e.upper()) for x in places.tolist() for e in _error(x))
     assert worst < arithmetic.SINE_ERROR / 4
     assert worst > arithmetic.SINE_ERROR / 64, "a bound this loose, or a test this blind, is a mistake"
+
+
+def test_compiled_code_belongs_to_the_sources(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Another text of any module of the package is another folder: callers do not keep what they called before."""
+    folders = []
+    for text in ("UNIT = 1", "UNIT = 2"):
+        (tmp_path / "arithmetic.py").write_text(text)
+        monkeypatch.setattr(compilation, "__file__", str(tmp_path / "compiled.py"))
+        folders.append(compilation._folder())
+    assert folders[0] != folders[1]
+    assert compilation._FOLDER.is_dir()

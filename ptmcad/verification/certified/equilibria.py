@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import combinations
 from math import isfinite, pi
 
 from flint import arb
@@ -61,6 +62,7 @@ def equilibria(
     start: Iterable[Square] = (TORUS,),
     budget: int = 60_000,
     smallest: float = _SMALLEST,
+    near: Iterable[Equilibrium] = (),
 ) -> tuple[list[Equilibrium], int]:
     """The equilibria in the squares, and how many squares were looked at.
 
@@ -69,6 +71,7 @@ def equilibria(
     minima : whether only stable equilibria are asked for; others may then be missing.
     budget : number of squares after which the search gives up.
     smallest : half width of a square that is not halved again.
+    near : equilibria for one choice of the parameters; those near them are proved first, which saves a hopeless search.
 
     Raises
     ------
@@ -76,7 +79,9 @@ def equilibria(
         When an equilibrium is degenerate or nearly so for some parameters, or the budget was spent.
     """
     waiting = list(start)
-    found: list[Equilibrium] = []
+    found = [_persisting(energy, e) for e in near]
+    if not all(_apart(one, two) for one, two in combinations(found, 2)):
+        raise Unproved("two equilibria may meet")
     used = 0
     while waiting:
         m1, r1, m2, r2 = square = waiting.pop()
@@ -178,6 +183,14 @@ def _settled(energy: Energy, square: Square, found: list[Equilibrium]) -> Equili
     if any(_within(x, y, e.th1, e.th2, e.alone) for e in found):
         return None
     return _proved(energy, x, y)
+
+
+def _persisting(energy: Energy, e: Equilibrium) -> Equilibrium:
+    """The equilibrium for all parameters that one for some parameters belongs to."""
+    persisting = _proved(energy, e.th1, e.th2)
+    if persisting is None:
+        raise Unproved(f"the equilibrium near ({e.th1:.6g}, {e.th2:.6g}) may not persist")
+    return persisting
 
 
 def _proved(energy: Energy, x: float, y: float) -> Equilibrium | None:

@@ -16,7 +16,7 @@ from fractions import Fraction
 from ptmcad.cover import Rectangle
 from ptmcad.numerals import text_of
 from ptmcad.slice import Count
-from ptmcad.verification.certified.equilibria import Unproved, equilibria
+from ptmcad.verification.certified.equilibria import Equilibrium, Unproved, equilibria
 from ptmcad.verification.certified.parameters import energy_over, exact, values_at
 from ptmcad.verification.certified.points import MINIMA, Counts, admissible, all_equilibria, counts_of, differs, stored
 from ptmcad.verification.certified.structure import CertifiedClaims
@@ -24,7 +24,7 @@ from ptmcad.verification.report import Violation
 
 WIDEST = 512
 """The first box tried has at most this part of the window's width on each side of its middle."""
-ATTEMPTS = 7
+ATTEMPTS = 9
 BUDGET = 12_000
 """Squares of the torus for one box."""
 _LOOKS = 400
@@ -53,9 +53,9 @@ def check_boxes(claims: CertifiedClaims, seed: str, number: int) -> str:
         if place is None:
             missing += 1
             continue
-        _check_point(claims, place, place.u, place.v)
+        there = _check_point(claims, place, place.u, place.v)
         points += 1
-        half = _constant_over(claims, place)
+        half = _constant_over(claims, place, there)
         if half is not None:
             proved += 1
             area += Fraction((2 * half) ** 2, claims.sweep.steps**2)
@@ -101,8 +101,8 @@ def _outside(rectangle: Rectangle, rng: random.Random) -> tuple[int, int]:
     return rng.choice([(left - away, v), (right + away, v), (u, bottom - away), (u, top + away)])
 
 
-def _check_point(claims: CertifiedClaims, place: Place, u: int, v: int) -> None:
-    """The counts at a lattice point are those of the cell."""
+def _check_point(claims: CertifiedClaims, place: Place, u: int, v: int) -> list[Equilibrium]:
+    """The counts at a lattice point are those of the cell; its equilibria, none if they were not proved."""
     x, y = claims.off_lattice(Fraction(u), Fraction(v))
     values = values_at(claims, x, y)
     cell = claims.result.cells[place.cell]
@@ -110,21 +110,22 @@ def _check_point(claims: CertifiedClaims, place: Place, u: int, v: int) -> None:
         energy, found = all_equilibria(values, claims.result.slice.count)
         true = counts_of(energy, values, found, claims.result.slice.count)
     except Unproved:
-        return
+        return []
     if differs(cell, true):
         one, two = claims.result.slice.axis_names
         raise Violation(f"at {one}={text_of(x)}, {two}={text_of(y)} in cell {place.cell}, which is said to have "
                         f"{stored(cell)}, there are {true}")  # fmt: skip
+    return found
 
 
-def _constant_over(claims: CertifiedClaims, place: Place) -> int | None:
+def _constant_over(claims: CertifiedClaims, place: Place, there: list[Equilibrium]) -> int | None:
     """Half the width of the box over which the counts were proved; None when none was small enough."""
     half = place.half
     for _ in range(ATTEMPTS):
         if half == 0:
             return None
         try:
-            _prove(claims, place, half)
+            _prove(claims, place, half, there)
         except Unproved:
             half //= 4
             continue
@@ -132,7 +133,7 @@ def _constant_over(claims: CertifiedClaims, place: Place) -> int | None:
     return None
 
 
-def _prove(claims: CertifiedClaims, place: Place, half: int) -> None:
+def _prove(claims: CertifiedClaims, place: Place, half: int, there: list[Equilibrium]) -> None:
     """Prove the cell's counts for every point of the box.
 
     Raises
@@ -148,7 +149,7 @@ def _prove(claims: CertifiedClaims, place: Place, half: int) -> None:
     energy = energy_over(slice, x, y)
     # squares much smaller than the box of parameters are excluded no better than larger ones
     smallest = float(max(x.rad(), y.rad())) / 64
-    found, _ = equilibria(energy, slice.count in MINIMA, budget=BUDGET, smallest=max(smallest, 2.0**-30))
+    found, _ = equilibria(energy, slice.count in MINIMA, budget=BUDGET, smallest=max(smallest, 2.0**-30), near=there)
     kinds = [e.signs for e in found]
     stable = kinds.count("++")
     cell = claims.result.cells[place.cell]

@@ -1,0 +1,189 @@
+"""The curves of slices with free lengths: no true fold, cone or free-length point may lie outside their enclosures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ptmcad.expressions import axis, constant
+from ptmcad.interval.curves import Curve, curves
+from ptmcad.interval.evaluation import program, run
+from ptmcad.interval.formula import Graph
+from ptmcad.interval.parameters import slice_mechanism
+from ptmcad.interval.search import search_curve
+from ptmcad.interval.tape import record
+from ptmcad.slice import Axis, Count, Slice
+
+Vector = NDArray[np.float64]
+LOADED = {"F3": "-1/10", "F4": "-1/10"}
+
+
+def slice_of(free: str, x: str = "rho", y: str = "L2", **values: str) -> Slice:
+    """The paper's mechanism in unit stiffness, axes ``x`` and ``y``, all free lengths the same."""
+    names = ("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x")
+    parameters = {name: constant(Fraction(values.get(name, "1" if name[0] != "F" else "0"))) for name in names}
+    parameters |= {f"l0_{i}": constant(Fraction(free)) for i in (1, 2, 3)}
+    parameters |= {x: axis(0), y: axis(1)}
+    return Slice("test", "ptm", (Axis(x, Fraction(1, 20), Fraction(2)), Axis(y, Fraction(0), Fraction(2))), parameters)
+
+
+def derivatives(z: Vector, free: float, load: float) -> tuple[Vector, Vector]:
+    """Gradient and Hessian of the energy in (th1, th2), spring by spring; z = (rho, L2, th1, th2), L1 = k = 1."""
+    rho, bar, th1, th2 = z
+    a3, da3 = np.array([np.cos(th1), np.sin(th1)]), np.array([-np.sin(th1), np.cos(th1)])
+    arm, darm = bar * np.array([-np.cos(th2), np.sin(th2)]), bar * np.array([np.sin(th2), np.cos(th2)])
+    zero, base = np.zeros(2), np.array([rho, 0.0])
+    slope, curvature = -load * np.array([da3[1], darm[1]]), -load * np.diag([-a3[1], -arm[1]])
+    for d, first, second in (
+        (base + arm, (zero, darm), (zero, -arm)),
+        (base - a3, (-da3, zero), (a3, zero)),
+        (base + arm - a3, (-da3, darm), (a3, -arm)),
+    ):
+        j, length = np.array(first), np.hypot(*d)
+        part = j @ d
+        slope = slope + (1 - free / length) * part
+        curvature = curvature + (1 - free / length) * (j @ j.T + np.diag([s @ d for s in second]))
+        curvature = curvature + free / length**3 * np.outer(part, part)
+    return slope, curvature
+
+
+def refine(f: Callable[[Vector], Vector], z: Vector) -> Vector | None:
+    """Newton's least change to a zero of f, the Jacobian by differences; None when it does not get there."""
+    for _ in range(40):
+        value = f(z)
+        columns = [(f(z + e) - f(z - e)) / 2e-6 for e in 1e-6 * np.eye(len(z))]
+        if not np.all(np.isfinite(columns)):
+            return None
+        step = np.linalg.lstsq(np.array(columns).T, -value, rcond=None)[0]
+        size = float(np.linalg.norm(step))
+        z = z + step * min(1.0, 0.2 / max(size, 1e-300))
+        if size < 1e-10:
+            return z if np.abs(f(z)).max() < 1e-9 else None
+    return None
+
+
+def fold_points(free: float, load: float, seed: int, number: int) -> list[Vector]:
+    """Points (rho, L2, th1, th2) of fold curves, found without the engine."""
+    rng = np.random.default_rng(seed)
+
+    def equations(z: Vector) -> Vector:
+        slope, curvature = derivatives(z, free, load)
+        return np.array([*slope, np.linalg.det(curvature)])
+
+    found: list[Vector] = []
+    while len(found) < number:
+        z = refine(equations, rng.uniform([0.1, 0.1, -3, -3], [1.9, 1.9, 3.2, 3.2]))
+        if z is not None and 0.1 < z[0] < 1.9 and 0.1 < z[1] < 1.9:
+            found.append(z)
+    return found
+
+
+def rectangles(all_curves: tuple[Curve, ...], centre: Vector, half: float, area: float) -> Vector:
+    """The enclosure over a small square of the plane: rows low x, low y, high x, high y."""
+    window = np.array([[*(centre - half), *(centre + half)]])
+    parts = []
+    for curve in all_curves:
+        small, waiting, _ = search_curve(curve.system.arguments(), curve.start(window), area, 20_000)
+        boxes = np.concatenate([small, waiting])
+        v = boxes.shape[1] // 2
+        parts.append(boxes[:, [0, 1, v, v + 1]])
+    return np.concatenate(parts)
+
+
+def covers(found: Vector, p: Vector, slack: float) -> bool:
+    return bool(np.any(np.all((found[:, :2] <= p + slack) & (p - slack <= found[:, 2:]), axis=1)))
+
+
+@pytest.mark.parametrize(("free", "load", "number"), [("1/5", "-1/10", 10), ("1/2", "-1/10", 8), ("1/5", "0", 2)])
+def test_true_folds_lie_in_the_enclosures(free: str, load: str, number: int) -> None:
+    """Folds found by Newton's method on derivatives that share no code with the engine; they err by less than 1e-8."""
+    s = slice_of(free, F3=load, F4=load)
+    every, stable = curves(s, Count.TOTAL), curves(s, Count.STABLE)
+    for z in fold_points(float(Fraction(free)), float(Fraction(load)), 5, number):
+        assert covers(rectangles(every, z[:2], 0.013, 1e-7), z[:2], 1e-8)
+        h = derivatives(z, float(Fraction(free)), float(Fraction(load)))[1]
+        if np.trace(h) > 1e-2:
+            assert covers(rectangles(stable, z[:2], 0.013, 1e-7), z[:2], 1e-8)
+
+
+def test_absorption_by_the_cone_lies_in_the_enclosure() -> None:
+    """At l3 = 0 the pull of springs 1 and 2 and the loads on A3 and A4 has the size of the free length."""
+    free, load = 0.2, -0.1
+
+    def defect(rho: float, bar: float, side: float) -> float:
+        c1 = (rho * rho + 1 - bar * bar) / (2 * rho)
+        joint = np.array([c1, side * np.sqrt(1 - c1 * c1)])
+        base = np.array([rho, 0.0])
+        t1, t2 = np.array([-joint[1], joint[0]]), np.array([-joint[1], joint[0] - rho]) / bar
+        forces = []
+        for anchor, t in ((base, t1), (np.zeros(2), t2)):  # spring 2 pulls A3 to A2, spring 1 pulls A4 to A1
+            d = anchor - joint
+            forces.append(((1 - free / np.hypot(*d)) * d + [0, load]) @ t)
+        # spring 3 pulls A3 by free * u and A4 by -free * u
+        return float(np.linalg.norm(np.linalg.solve(np.array([t1, -t2]), -np.array(forces))) - free)
+
+    cone = tuple(c for c in curves(slice_of("1/5", **LOADED), Count.TOTAL) if c.name == "cone")
+    rng, seen = np.random.default_rng(3), 0
+    while seen < 12:
+        bar, side = rng.uniform(0.3, 1.8), float(rng.choice([-1.0, 1.0]))
+        steps = [float(r) for r in np.linspace(0.1, 1.9, 60) if abs(1 - bar) + 0.02 < r < 1 + bar - 0.02]
+        for start, end in pairwise(steps):
+            low, high = start, end
+            if defect(low, bar, side) * defect(high, bar, side) < 0:
+                for _ in range(50):
+                    middle = (low + high) / 2
+                    below = defect(start, bar, side) * defect(middle, bar, side) > 0
+                    low, high = (middle, high) if below else (low, middle)
+                p = np.array([low, bar])
+                assert covers(rectangles(cone, p, 0.013, 1e-7), p, 1e-8)
+                seen += 1
+
+
+def test_enclosures_are_thin() -> None:
+    """A fold's enclosure over a square is a small part of it, so the tests above are not passed by covering all."""
+    z = fold_points(0.2, -0.1, 5, 1)[0]
+    found = rectangles(curves(slice_of("1/5", **LOADED), Count.TOTAL), z[:2], 0.013, 1e-9)
+    assert np.prod(found[:, 2:] - found[:, :2], axis=1).sum() < 0.1 * 0.026**2
+
+
+def test_creases_are_the_lines_where_a_spring_can_have_no_length() -> None:
+    total = {c.name: c for c in curves(slice_of("1/5", **LOADED), Count.TOTAL)}
+    for name, p in (("crease l1 = 0", (0.7, 0.7)), ("crease l2 = 0", (1.0, 0.7))):
+        assert covers(rectangles((total[name],), np.array(p), 0.01, 1e-7), np.array(p), 0.0)
+    assert not len(rectangles((total["crease l2 = 0"],), np.array([0.9, 0.7]), 0.01, 1e-7))
+
+
+def test_curves_of_each_count() -> None:
+    s = slice_of("1/5", **LOADED)
+    names = {count: [c.name for c in curves(s, count)] for count in Count}
+    assert names[Count.TOTAL] == names[Count.INDEX]
+    assert "cone" in names[Count.TOTAL] and "cone" not in names[Count.STABLE]
+    assert names[Count.ADMISSIBLE] == [*names[Count.STABLE], "l1 = l0_1", "l2 = l0_2", "l3 = l0_3"]
+    assert [c.name for c in curves(slice_of("0", **LOADED), Count.TOTAL)] == ["fold"]
+
+
+def test_formulas_of_the_fold_agree_with_the_energy() -> None:
+    """Moment, turn, D and its multiples, and E1, E2, against derivatives that share no code with the engine."""
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        z = rng.uniform([0.2, 0.2, -3, -3], [1.9, 1.9, 3, 3])
+        slope, h = derivatives(z, 0.2, -0.1)
+        graph = Graph()
+        m = slice_mechanism(graph, slice_of("1/5", **LOADED))
+        l1, l2, l3 = m.lengths
+        d = m.hessian
+        tape = record([[*m.equilibrium, m.dependent[0], m.turn, d.p11, d.p22, d.determinant, d.blown_up / l3,
+                        d.levelled / (l1 * l2 * l3)]])  # fmt: skip
+        low, high = np.empty(len(tape)), np.empty(len(tape))
+        assert run(program(tape), z, z, low, high, 0, len(tape))
+        det = np.linalg.det(h) / z[1]
+        expected = [
+            slope[0], slope[1] / z[1], slope[0] - slope[1], h[0, 0] - 2 * h[0, 1] + h[1, 1], h[0, 0], h[1, 1] / z[1],
+            det, det, det,
+        ]  # fmt: skip
+        np.testing.assert_allclose(low[tape.outputs[0]], expected, rtol=1e-9, atol=1e-9)
