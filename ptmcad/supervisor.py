@@ -6,7 +6,8 @@ can stop or save anything there. So the computation runs in a forked child, and 
 Guarantee: a signal, or the time limit, ends the child within a second whatever it does: it is asked to leave first and
 killed after `GRACE`. No temporary file that it has told of stays. When a limit ends it (time; memory, also where a
 library aborts on a failed allocation or the system kills the child), the last result that it handed over is saved and
-the status is 3. When a signal ends it, such a result is saved if one can go on from it. A parent that is killed takes the child with it.
+the status is 3. When a signal ends it, such a result is saved if one can go on from it. A parent that is killed takes
+the child with it.
 
 Not guaranteed: the last sentence on a system whose pipes send no signal (it is tested on Linux).
 """

@@ -126,7 +126,7 @@ def test_critical_free_lengths_enclosed() -> None:
 
 
 def test_the_cone_s_critical_length_by_hand() -> None:
-    """The first critical length solves A1^2 + A2^2 + 2 A1 A2 c12 = s12^2 l0^2 (REFERENCE) at the triangle rho, L1, L2."""
+    """It solves A1^2 + A2^2 + 2 A1 A2 c12 = s12^2 l0^2 (REFERENCE) at the triangle rho, L1, L2."""
     slice = slice_from_options(None, "l0,rho", ("L2=3/2", "F3=-10", "F4=-10"), ("l0=1/3:1/2", "rho=0:2"))
     found = certified_intervals(slice, "l0", {"rho": "7/10"}, 10)
     (cone,) = found.changes

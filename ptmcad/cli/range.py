@@ -194,7 +194,8 @@ def command(
     """Find the intervals of constant count along one axis; the operation range is where two equilibria are stable.
 
     Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. With free lengths
-    they are enclosed by interval arithmetic, and what could not be decided is told. All digits of the tables are right. With --over the widest operation range is found and proved; with --path stable poses are followed
+    they are enclosed by interval arithmetic, and what could not be decided is told. All digits of the
+    tables are right. With --over the widest operation range is found and proved; with --path stable poses are followed
     until they vanish, and the pose to which the mechanism snaps is told.
 
     \b

@@ -14,7 +14,7 @@ from ptmcad.memory import Bound
 @click.command("verify")
 @click.argument("result", type=click.Path(path_type=Path))
 @click.option("--seed", type=click.IntRange(min=0), metavar="N",
-              help="Seed of the random points for the variety, and of random boxes.  [default: a hash of the claims]")  # fmt: skip
+              help="Seed of the random points and of the random boxes.  [default: a hash of the claims]")  # fmt: skip
 @click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
               help="Random boxes of the free area of a certified map.  [default: 40]")  # fmt: skip
 @limit_options

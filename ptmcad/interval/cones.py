@@ -3,8 +3,8 @@
 Guarantee: rational arithmetic in Q(sqrt(W)) only, so that no sign is rounded.
 
 With |L1 - L2| < rho < L1 + L2 there are two, mirror images: A3 and A4 meet at the corner of the triangle with sides
-rho, L1, L2, at height H = +-sqrt(W). Springs 1 and 2 are as long as the bars there. Near such a point U = k3 l0_3 (-l3) + a
-smooth function whose slope along d3 is g: a peak where |g| < k3 l0_3, and a regular point where |g| is larger.
+rho, L1, L2, at height H = +-sqrt(W). Springs 1 and 2 are as long as the bars there. Near such a point U is -k3 l0_3 l3
+plus a smooth function whose slope along d3 is g: a peak where |g| < k3 l0_3, and a regular point where |g| is larger.
 """
 
 from __future__ import annotations

@@ -19,6 +19,7 @@ import numba
 import numpy as np
 
 from ptmcad.cover import Cover, from_boxes, union_area
+from ptmcad.cover.filling import simplified
 from ptmcad.errors import LimitReached
 from ptmcad.interval.assembly import Assembler
 from ptmcad.interval.curves import curves
@@ -38,6 +39,8 @@ TILES = 8
 FIRST_LEVEL, LAST_LEVEL = 4, 40
 """At level n, boxes are bisected until their projection has at most 4^-n of the window's area."""
 MOST_BOXES = 6_000_000
+MANY = 40_000
+"""Rectangles from which on it pays to look for fewer that cover the same."""
 STEPS = 2**24
 """Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
 
@@ -96,10 +99,13 @@ class _Run:
         self.steps = STEPS
         while self.steps * options.tolerance < 64:
             self.steps *= 2
+        if resume is not None and len(resume.rectangles) > TILES**2:
+            resume = simplified(resume)  # disjoint rectangles: nothing is searched twice
         wanted = curves(slice, slice.count)
         self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, resume))
         self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted), _versions())
         self.handed_over = perf_counter()
+        self.slowest = 0.0
         self.seconds["plan"] = perf_counter() - self.started
 
     def run(self) -> RegionMap:
@@ -146,8 +152,13 @@ class _Run:
 
     def map(self, cover: Cover, status: Status) -> RegionMap:
         start = perf_counter()
-        result = self.assembler.map(cover, status, self.seconds)
+        if len(cover.rectangles) > MANY:
+            fewer = simplified(cover)
+            cover = fewer if len(fewer.rectangles) < len(cover.rectangles) else cover
+        times = self.seconds | {"total": start - self.started}
+        result = self.assembler.map(cover, status, times)
         self.seconds["regions"] += perf_counter() - start
+        self.slowest = max(self.slowest, perf_counter() - start)
         return result
 
     def _search_until(self) -> float | None:
@@ -155,7 +166,8 @@ class _Run:
         deadline = self.options.deadline
         if deadline is None:
             return None
-        return deadline - max(0.5, 0.05 * (deadline - self.started), 1.5 * self.seconds["regions"])
+        boxes = sum(len(e.boxes()) for e in self.enclosures)
+        return deadline - max(1.0, 0.08 * (deadline - self.started), 2 * self.slowest, 2e-5 * boxes)
 
     def _report(self, level: int, undetermined: Fraction) -> Callable[[int, int], None] | None:
         progress = self.options.progress

@@ -47,7 +47,7 @@ def unit_stiffness(values: Mapping[str, Formula]) -> dict[str, Formula]:
 
 
 def slice_equilibria(slice: Slice, creases: tuple[bool, bool] = (False, False)) -> Equilibria:
-    """The equilibria of a slice, or of its points with rho = L2, rho = L1: see `ptmcad.interval.mechanism.mechanism`."""
+    """The equilibria of a slice, or of its points with rho = L2, rho = L1; see `ptmcad.interval.mechanism`."""
     graph = Graph()
     values = unit_stiffness(parameter_formulas(graph, slice))
     m = mechanism(graph, values, graph.variable(TH1), graph.variable(TH2), creases=creases)

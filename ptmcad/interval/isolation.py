@@ -32,8 +32,8 @@ def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
     """Whether it is proved that the equations have exactly one zero in the box, and that it is an inner point.
 
     With Y the preconditioner, A = Y J(box), c = Y f(middle) and r the half-widths, |c_i| + sum_{j not i} |A_ij| r_j <
-    |A_ii| r_i for each i. So (Y f)_i has opposite signs on opposite faces, which proves existence (Miranda), and no matrix
-    in A is singular, which proves uniqueness.
+    |A_ii| r_i for each i. So (Y f)_i has opposite signs on opposite faces, which proves existence (Miranda), and no
+    matrix in A is singular, which proves uniqueness.
     """
     program, stages, unknowns, equations, jacobian, _, _, _, _ = system
     low, high, low_at, high_at, middle_low, middle_high, radius, _, _, matrix, inverse = work

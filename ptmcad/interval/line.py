@@ -1,6 +1,6 @@
 """The values along a line of a slice at which counts change, enclosed, and the counts between them, proved.
 
-Guarantee: on each interval of the result the numbers of minima, saddles, maxima and cones are constant. Whatever was not
+Guarantee: on each interval of the result the numbers of minima, saddles, maxima and cones are constant. What was not
 decided lies in one of the gaps between them; a gap that is `proved` holds nothing but critical values that were told.
 """
 
@@ -25,8 +25,13 @@ from ptmcad.interval.tape import enclosing_floats
 from ptmcad.slice import Count, Slice
 
 FINEST = 1e-8
-BUDGET = 1_000_000
-OPEN = 4_000
+BUDGET, OPEN = 20_000, 400
+"""Boxes to treat, and boxes to leave open, before a part of the line is halved."""
+MOST = 600_000
+"""Boxes for one curve after which nothing is halved any more."""
+PARTS = 16
+SMALLEST = Fraction(1, 2**16)
+"""Parts of the line of this share are not halved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,24 +86,35 @@ def line_counts(slice: Slice, varying: int, value: Fraction, bits: int) -> LineC
 
 
 def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) -> Iterator[Gap]:
+    """Where the line meets a curve; parts of it that are too hard as a whole are halved while the budget lasts."""
     system = _on_line(curve.system, varying)
     equations = replace(system, vanishing=(_NONE, _NONE, _NONE), nonnegative=_NONE)
     axis = slice.axes[varying]
-    along = (enclosing_floats(axis.low)[0], enclosing_floats(axis.high)[1])
-    fixed = enclosing_floats(value)
-    ranges = (along, fixed) if varying == 0 else (fixed, along)
-    window = np.array([[ranges[0][0], ranges[1][0], ranges[0][1], ranges[1][1]]])
-    start = curve.start(window)
-    unique, narrow, left, _ = isolate(system.arguments(), equations.arguments(), start, FINEST, BUDGET, OPEN)
-    variables = start.shape[1] // 2
-    for box in left:
-        yield Gap(Fraction(float(box[varying])), Fraction(float(box[variables + varying])), (curve.name,), False)
-    # ``narrow`` was contracted with the equations alone; its number can be told to any precision
-    for row in narrow if len(unique) else ():
-        with ctx.workprec(bits):
-            box = _balls(row, varying, value)
-        exact = refined(equations, box, bits)[varying]
-        yield Gap(lower(exact), upper(exact), (curve.name,), True)
+    step = (axis.high - axis.low) / PARTS
+    waiting = [(axis.low + k * step, axis.low + (k + 1) * step) for k in range(PARTS)]
+    smallest = (axis.high - axis.low) * SMALLEST
+    total = 0
+    while waiting:
+        low, high = waiting.pop()
+        along, fixed = (enclosing_floats(low)[0], enclosing_floats(high)[1]), enclosing_floats(value)
+        ranges = (along, fixed) if varying == 0 else (fixed, along)
+        start = curve.start(np.array([[ranges[0][0], ranges[1][0], ranges[0][1], ranges[1][1]]]))
+        arguments = system.arguments(), equations.arguments(), start
+        unique, narrow, left, used = isolate(*arguments, FINEST, BUDGET, OPEN)
+        variables = start.shape[1] // 2
+        total += used
+        if (used >= BUDGET or len(left) > OPEN) and high - low > smallest and total < MOST:
+            middle = (low + high) / 2
+            waiting += [(low, middle), (middle, high)]
+            continue
+        for box in left:
+            yield Gap(Fraction(float(box[varying])), Fraction(float(box[variables + varying])), (curve.name,), False)
+        # ``narrow`` was contracted with the equations alone; its number can be told to any precision
+        for row in narrow if len(unique) else ():
+            with ctx.workprec(bits):
+                box = _balls(row, varying, value)
+            exact = refined(equations, box, bits)[varying]
+            yield Gap(lower(exact), upper(exact), (curve.name,), True)
 
 
 _NONE = np.empty(0, np.int64)
@@ -121,11 +137,12 @@ def _joined(gaps: list[Gap]) -> list[Gap]:
     """Gaps that touch become one."""
     joined: list[Gap] = []
     for gap in sorted(gaps, key=lambda g: (g.low, g.high)):
-        if joined and gap.low <= joined[-1].high:
-            last = joined.pop()
-            names = tuple(dict.fromkeys((*last.names, *gap.names)))
-            gap = Gap(last.low, max(last.high, gap.high), names, last.proved and gap.proved)
-        joined.append(gap)
+        if not joined or gap.low > joined[-1].high:
+            joined.append(gap)
+            continue
+        last = joined.pop()
+        names = tuple(dict.fromkeys((*last.names, *gap.names)))
+        joined.append(Gap(last.low, max(last.high, gap.high), names, last.proved and gap.proved))
     return joined
 
 
