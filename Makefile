@@ -70,7 +70,7 @@ docs: $(VENV)/.installed-docs
 	@echo "the manual is out/docs/html/index.html"
 
 free-maps: $(VENV)/.installed-test
-	for record in configs/free*.yaml; do $(BIN)/ptmcad classify $$record --tolerance 1/200 --format png --out docs/img || exit; done
+	$(BIN)/python scripts/free-maps
 
 clean:
 	rm -rf out build dist docs/generated .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info
