@@ -6,14 +6,16 @@ Guarantee: each point of the window at which the chosen count changes lies on th
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptmcad.interval.formula import Formula, Graph, length
 from ptmcad.interval.mechanism import Mechanism
 from ptmcad.interval.parameters import PHI_UNIT, parameter_formulas, slice_mechanism
+from ptmcad.interval.scales import axis_weights
 from ptmcad.interval.search import Boxes
 from ptmcad.interval.system import System, system
 from ptmcad.slice import Count, Slice
@@ -34,6 +36,12 @@ class Curve:
     reason: str
     system: System
     ranges: tuple[tuple[float, float], ...]
+    weights: NDArray[np.float64] | None = None
+    """Of the variables' widths in the choice which one to bisect; equal ones when None."""
+
+    def importance(self) -> NDArray[np.float64]:
+        """The weights of all variables."""
+        return np.ones(2 + len(self.ranges)) if self.weights is None else self.weights
 
     def start(self, window: Boxes) -> Boxes:
         """Boxes over rectangles (low x, low y, high x, high y) of the window that hold the whole curve over them."""
@@ -45,7 +53,10 @@ class Curve:
 
 def curves(slice: Slice, count: Count) -> tuple[Curve, ...]:
     """The curves at which ``count`` may change; docs/free-lengths-curves.md proves that no other is needed."""
-    return tuple(_CURVES[count](slice))
+    scale = np.array(axis_weights(slice))
+    return tuple(
+        replace(curve, weights=np.concatenate([scale, np.ones(len(curve.ranges))])) for curve in _CURVES[count](slice)
+    )
 
 
 def _stable(slice: Slice) -> Iterator[Curve]:

@@ -138,6 +138,12 @@ class PointCounter:
                 break
         else:
             return None
+        # outside its turn a crease's formulas have zeros of their own, which are no equilibria a turn away either
+        inside = np.ones(len(narrow), np.bool_)
+        for angle, crease in zip((TH1, TH2), reversed(creases), strict=True):
+            if crease:
+                inside &= (narrow[:, 4 + angle] >= 0) & (narrow[:, angle] <= float(CREASED_END[1]))
+        unique, narrow = unique[inside], narrow[inside]
         kept = None if len(left) else distinct(unique, narrow, TH1)
         if kept is None:
             found = _by_arb(written, x, y, only_minima, unique, left)

@@ -73,7 +73,7 @@ def _refine_one(
     deadline: float | None,
     report: Callable[[int, int], None] | None,
 ) -> bool:
-    arguments = enclosure.curve.system.arguments()
+    arguments, weights = enclosure.curve.system.arguments(), enclosure.curve.importance()
     queue = list(_batches(enclosure.waiting))
     running: dict[Future[tuple[Boxes, Boxes, int]], Boxes] = {}
     treated = 0
@@ -82,16 +82,16 @@ def _refine_one(
             late = deadline is not None and perf_counter() > deadline
             while queue and len(running) < jobs and not late:
                 batch = queue.pop()
-                running[pool.submit(search_curve, arguments, batch, area, BUDGET)] = batch
+                running[pool.submit(search_curve, arguments, batch, area, BUDGET, weights)] = batch
             if not running:
                 return False
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 small, waiting, used = future.result()
-                del running[future]
                 treated += used
                 if len(small):
                     enclosure.small.append(small)
                 queue.extend(_batches([waiting]))
+                del running[future]  # last: an interruption before it leaves a box twice, after it never out
             if report is not None:
                 report(treated, sum(len(batch) for batch in queue))
         return True

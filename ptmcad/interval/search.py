@@ -21,13 +21,16 @@ CUT = 0.5
 
 
 @compiled
-def search_curve(system: Arguments, start: Boxes, area: float, budget: int) -> tuple[Boxes, Boxes, int]:
+def search_curve(
+    system: Arguments, start: Boxes, area: float, budget: int, weights: NDArray[np.float64]
+) -> tuple[Boxes, Boxes, int]:
     """Enclose a curve in the plane of variables 0 and 1 (the first two unknowns).
 
     Parameters
     ----------
     area : boxes whose projection to the plane has at most this area are not bisected further.
     budget : number of boxes after which the search stops.
+    weights : shape (v,): the variable whose width times its weight is largest is bisected.
 
     Returns
     -------
@@ -55,8 +58,9 @@ def search_curve(system: Arguments, start: Boxes, area: float, budget: int) -> t
         widest, width = -1, -1.0
         for x in unknowns:
             middle = low[x] + CUT * (high[x] - low[x])
-            if high[x] - low[x] > width and low[x] < middle < high[x]:
-                widest, width = x, high[x] - low[x]
+            size = (high[x] - low[x]) * weights[x]
+            if size > width and low[x] < middle < high[x]:
+                widest, width = x, size
         if widest < 0 or (high[0] - low[0]) * (high[1] - low[1]) <= area:
             if found == small.shape[0]:
                 larger = np.empty((2 * found, 2 * variables))

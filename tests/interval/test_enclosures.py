@@ -235,7 +235,9 @@ def test_search_keeps_known_folds(folds: list[Floats]) -> None:
     curve = fold_curves()[0]
     for point in folds:
         window = np.array([[point[0] - 0.02, point[1] - 0.013, point[0] + 0.011, point[1] + 0.017]])
-        small, waiting, _ = search_curve(curve.system.arguments(), curve.start(window), 1e-6, 20_000)
+        small, waiting, _ = search_curve(
+            curve.system.arguments(), curve.start(window), 1e-6, 20_000, curve.importance()
+        )
         boxes = np.concatenate([small, waiting])
         inside = (boxes[:, :4] <= point + 1e-9).all(axis=1) & (boxes[:, 4:] >= point - 1e-9).all(axis=1)
         assert inside.any()
