@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf
@@ -18,7 +18,7 @@ import flint
 import numba
 import numpy as np
 
-from ptmcad.cover import Cover, from_boxes, union_area
+from ptmcad.cover import Cover, Rectangle, from_boxes, union_area
 from ptmcad.cover.filling import simplified
 from ptmcad.errors import LimitReached
 from ptmcad.interval.assembly import Assembler
@@ -188,7 +188,7 @@ def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
     """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards."""
     steps, rectangles = (resume.steps, resume.rectangles) if resume is not None else (TILES, ())
     if resume is None:
-        rectangles = tuple((i, i + 1, j, j + 1) for i in range(TILES) for j in range(TILES))
+        rectangles = tuple(sorted(_tiles(), key=lambda tile: _ease(slice, tile), reverse=True))
     horizontal, vertical = slice.axes
 
     def value(axis_low: Fraction, axis_high: Fraction, step: int, towards: float) -> float:
@@ -204,6 +204,21 @@ def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
             value(vertical.low, vertical.high, top, inf),
         )
     return result
+
+
+def _tiles() -> Iterator[Rectangle]:
+    return ((i, i + 1, j, j + 1) for i in range(TILES) for j in range(TILES))
+
+
+def _ease(slice: Slice, tile: Rectangle) -> Fraction:
+    """Small where the search takes long, which is best begun first: for small rho and bars of equal length."""
+    left, _, bottom, _ = tile
+    x, y = (
+        axis.low + (axis.high - axis.low) * Fraction(2 * step + 1, 2 * TILES)
+        for axis, step in zip(slice.axes, (left, bottom), strict=True)
+    )
+    rho, bar1, bar2 = (slice.parameters[name].evaluate(x, y) for name in ("rho", "L1", "L2"))
+    return rho + abs(bar1 - bar2)
 
 
 def _percent(share: Fraction) -> str:
