@@ -121,6 +121,10 @@ def table(result: RegionMap) -> str:
     widths = [(high - low) / low for _, (low, high) in bounds if low]
     known = widths and len(widths) == len(bounds) and min(widths) >= 0  # a damaged file may say anything
     error = _short(max(widths)) if known else "unknown"
+    bound = f"area bounds within {error}"
+    if result.cover is not None and bounds:
+        # relative to a region that is hardly larger than its border a width says nothing
+        bound = f"area bounds at most {_short(max(high - low for _, (low, high) in bounds))} apart"
     seconds = result.timings.get("total")
     time = "not recorded" if seconds is None else f"{seconds:.2f} s"
     undetermined = "0" if result.undetermined == 0 else f"{float(result.undetermined):.2g}"
@@ -130,6 +134,6 @@ def table(result: RegionMap) -> str:
             f"counts    {counts or 'none yet'}",
             f"areas     {areas or 'none yet'}",
             _curves(result) if result.cover is None else _covered(result.cover),
-            f"time      {time}; undetermined {undetermined}; area bounds within {error}",
+            f"time      {time}; undetermined {undetermined}; {bound}",
         ]
     )

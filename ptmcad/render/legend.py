@@ -67,7 +67,7 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> Itera
         yield Entry((_with_total(text, regions, count), *_areas(regions)), fill_of(regions[0], count))
     yield Entry(())
     if result.cover is not None and result.undetermined:
-        note = ("the count changes within it",) if len(result.regions) > 1 else ()
+        note = ("the count may change within it",) if len(result.regions) > 1 else ()
         yield Entry((f"undetermined {percent(result.undetermined)}", *note), UNDETERMINED)
     elif len(result.regions) > 1:
         yield Entry(("the count changes",), STRONG)
