@@ -56,6 +56,7 @@ class Options:
     jobs: int = 1
     progress: Progress | None = None
     partial: Callable[[RegionMap], None] | None = None
+    reached: Callable[[Fraction], None] | None = None
 
 
 def certified_map(
@@ -67,6 +68,7 @@ def certified_map(
     progress: Progress | None = None,
     partial: Callable[[RegionMap], None] | None = None,
     resume: Cover | None = None,
+    reached: Callable[[Fraction], None] | None = None,
 ) -> RegionMap:
     """The region map of a slice by interval methods.
 
@@ -77,6 +79,7 @@ def certified_map(
     jobs : number of threads, all processors when None. The map does not depend on it.
     progress : called as progress(what, done, total).
     partial : called with maps on the way, each complete but for a larger undetermined area.
+    reached : called after each level with the share of the window that the boxes still cover.
     resume : cover of an earlier map of the same slice and count: what was outside it stays decided.
 
     Raises
@@ -84,7 +87,7 @@ def certified_map(
     LimitReached
         At the deadline, or when doubles are exhausted, with the map so far as ``partial``.
     """
-    options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial)
+    options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial, reached)
     return _Run(slice, options, resume).run()
 
 
@@ -122,6 +125,8 @@ class _Run:
             self.seconds["curves"] += perf_counter() - start
             cover = self.cover()
             undetermined = Fraction(union_area(cover), cover.steps**2)
+            if self.options.reached is not None:
+                self.options.reached(undetermined)
             if not in_time:
                 raise LimitReached(
                     f"the time limit was reached with {_percent(undetermined)} undetermined, "
