@@ -37,7 +37,9 @@ def measure(record: Path, tolerance: Fraction, timeout: float, jobs: int) -> dic
     wall, processor = perf_counter(), process_time()
 
     def reached(share: Fraction) -> None:
-        points.append([round(perf_counter() - wall, 2), round(process_time() - processor, 2), float(f"{float(share):.3g}")])
+        points.append(
+            [round(perf_counter() - wall, 2), round(process_time() - processor, 2), float(f"{float(share):.3g}")]
+        )
 
     try:
         result = certified_map(slice, tolerance=tolerance, deadline=wall + timeout, jobs=jobs, reached=reached)

@@ -18,11 +18,11 @@ from ptmcad.interval.statement import system_text
 from ptmcad.regionmap import Cell, PlanStep, Region, RegionMap, Status
 from ptmcad.slice import Count, Point, Slice
 
-MOST_COUNTED = 2000
+MOST_COUNTED = 500
 """Components whose counts are computed; smaller ones are undetermined."""
-POCKET = Fraction(1, 10_000)
-"""Share of the window, or a tenth of the cover's if that is more: smaller components with the counts of a larger one
-beside them are taken for artefacts."""
+POCKET = Fraction(1, 4000)
+"""Share of the window, or a tenth of the cover's if that is less: smaller components with the counts of a larger one
+beside them are taken for artefacts. So a region that is there in truth appears as the cover shrinks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +37,8 @@ class Assembler:
     def map(self, cover: Cover, status: Status, seconds: Mapping[str, float]) -> RegionMap:
         """The map of the window outside the cover."""
         complement = components(cover)
-        counted = self._counts(complement)
-        pocket = max(POCKET * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
+        pocket = min(POCKET * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
+        counted = self._counts(complement, pocket)
         kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)]
         known = frozenset(kept)
         cells, regions = [], []
@@ -72,13 +72,14 @@ class Assembler:
             cover=cover,
         )
 
-    def _counts(self, complement: Components) -> dict[int, tuple[Point, PointCount]]:
-        """Samples and counts of the components, largest first, as far as they are decided."""
+    def _counts(self, complement: Components, pocket: Fraction) -> dict[int, tuple[Point, PointCount]]:
+        """Samples and counts of the components, largest first, as far as they are decided; small ones only easily."""
         counted = {}
         for n in range(min(len(complement.areas), MOST_COUNTED)):
-            for part in _parts(complement.rectangles[n]):
+            large = complement.areas[n] >= pocket
+            for part in _parts(complement.rectangles[n])[: 3 if large else 1]:
                 sample = self._sample(complement.cover, part)
-                count = self.counter.at(sample[0], sample[1], self.slice.count)
+                count = self.counter.at(sample[0], sample[1], self.slice.count, thorough=large)
                 if count.decided:
                     counted[n] = (sample, count)
                     break

@@ -33,6 +33,7 @@ CREASED = (-1e-9, 6.2831853081)
 """The same for an angle whose formulas hold between 0 and a full turn."""
 CREASED_END = (Fraction(6.283185307179586), Fraction(6.283185307179587))
 """Below and above a full turn."""
+QUICK = 6_000
 BUDGET = 60_000
 """Boxes in floating point for one point."""
 FINEST = (1e-8, 1e-4)
@@ -95,15 +96,17 @@ class PointCounter:
             p["rho"] == p["L1"] and bool(p["k2"] * p["l0_2"]),
         )
 
-    def at(self, x: Fraction, y: Fraction, count: Count) -> PointCount:
+    def at(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> PointCount:
         """What ``count`` needs at the point (x, y) of the two axes.
+
+        ``thorough`` is False where it is better not to decide a hard point than to take seconds for it in Arb.
 
         Raises
         ------
         ArithmeticError
             When the counts contradict Euler's sum, which would be a fault of this program.
         """
-        zeros = self.zeros(x, y, count)
+        zeros = self.zeros(x, y, count, thorough=thorough)
         if zeros is None:
             return PointCount()
         minima = [zero for zero in zeros if zero.solution.signs == "++"]
@@ -124,7 +127,7 @@ class PointCounter:
             raise ArithmeticError(f"minima, saddles and maxima {index} with {peaks.count} cones at ({x}, {y})")
         return PointCount(len(zeros), len(minima), None, index, peaks.count, solutions, True)
 
-    def zeros(self, x: Fraction, y: Fraction, count: Count) -> list[_Zero] | None:
+    def zeros(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> list[_Zero] | None:
         """The equilibria that ``count`` needs, each once; None when they can not be told."""
         only_minima = count in (Count.STABLE, Count.ADMISSIBLE)
         written, creases = self.equilibria_at(x, y), self._creases(x, y)
@@ -133,9 +136,12 @@ class PointCounter:
         start = np.array([[x_low, y_low, first[0], second[0], x_high, y_high, first[1], second[1]]])
         system, equations = (written.minima if only_minima else written.all).arguments(), written.equations.arguments()
         for finest in FINEST:
-            unique, narrow, left, used = isolate(system, equations, start, finest, BUDGET, OPEN)
-            if used < BUDGET and len(left) <= OPEN:
+            budget = BUDGET if thorough else QUICK
+            unique, narrow, left, used = isolate(system, equations, start, finest, budget, OPEN)
+            if used < budget and len(left) <= OPEN:
                 break
+            if not thorough:
+                return None
         else:
             return None
         # outside its turn a crease's formulas have zeros of their own, which are no equilibria a turn away either
@@ -145,6 +151,8 @@ class PointCounter:
                 inside &= (narrow[:, 4 + angle] >= 0) & (narrow[:, angle] <= float(CREASED_END[1]))
         unique, narrow = unique[inside], narrow[inside]
         kept = None if len(left) else distinct(unique, narrow, TH1)
+        if kept is None and not thorough:
+            return None
         if kept is None:
             found = _by_arb(written, x, y, only_minima, unique, left)
         else:
