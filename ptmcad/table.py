@@ -33,14 +33,14 @@ def count_text(region: Region, count: Count) -> str:
 def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
     """The longest decimal, of at most ``most`` digits, that is within one unit of its last digit of both bounds.
 
-    Two decimals, joined by "to", when not even one digit is certain.
+    Two decimals, joined by "to", when not even two digits are certain (or the one that is asked for).
     """
     low, high = bounds
     middle = (low + high) / 2
     if high == 0:
         return "0"
     top = magnitude(middle)
-    for exponent in range(top - most, top + 1):
+    for exponent in range(top - most, top + (most == 1)):
         unit = Fraction(10) ** exponent
         digits = round(middle / unit)
         if len(str(digits)) <= most and digits > 0 and high - digits * unit <= unit and digits * unit - low <= unit:

@@ -264,7 +264,7 @@ def test_random_places_beside_rectangles_find_a_shifted_cover(stable: RegionMap)
     kept = sorted({*kept, *((a, b, 0, by + 1) for a, b, c, _ in stable.cover.rectangles if c == 0)})
     false = consistent(stable, Cover(steps, tuple(kept)), stable.cells)
     assert ptmcad.verify(false, boxes=0).ok
-    report = ptmcad.verify(false, seed=3, boxes=24)
+    report = ptmcad.verify(false, seed=3, boxes=60)
     assert report.violation is not None
     assert report.violation.startswith("random boxes:")
 

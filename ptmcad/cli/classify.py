@@ -140,6 +140,12 @@ def _resumed(slice: Slice, path: Path) -> Any:
         check_resumable(slice, earlier)
     except ConfigError as error:
         raise ConfigError(error.message, key="--resume", file=str(path)) from error
+    # what lies outside its cover is taken as decided: a file that contradicts itself must not be
+    from ptmcad.verification.certified.verify import contradiction
+
+    found = contradiction(earlier)
+    if found:
+        raise ConfigError(f"this map contradicts itself: {found}", key="--resume", file=str(path))
     return earlier
 
 

@@ -22,7 +22,8 @@ try:
     from numba import config, njit
 except ImportError as missing:
     raise ConfigError(
-        "springs with a free length need the package numba, which is not installed: pip install 'ptmcad[certified]'"
+        "the certified engine, which springs with a free length need, runs on the package numba, "
+        "which is not installed: pip install 'ptmcad[certified]'"
     ) from missing
 
 

@@ -18,9 +18,9 @@ import flint
 import numba
 import numpy as np
 
-from ptmcad.cover import Cover, Rectangle, from_boxes, union_area
+from ptmcad.cover import MOST_STEPS, Cover, Rectangle, from_boxes, union_area
 from ptmcad.cover.filling import simplified
-from ptmcad.errors import LimitReached
+from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.interval.assembly import Assembler
 from ptmcad.interval.curves import curves
 from ptmcad.interval.points import point_counter
@@ -38,6 +38,8 @@ TILES = 8
 """Rectangles along each axis that the search begins with."""
 FIRST_LEVEL, LAST_LEVEL = 4, 40
 """At level n, boxes are bisected until their projection has at most 4^-n of the window's area."""
+LARGEST = Fraction(10**100)
+"""Ends of axes; areas and squares of such numbers are floats still."""
 MOST_BOXES = 6_000_000
 MANY = 40_000
 """Rectangles from which on it pays to look for fewer that cover the same."""
@@ -87,6 +89,8 @@ def certified_map(
     LimitReached
         At the deadline, or when doubles are exhausted, with the map so far as ``partial``.
     """
+    if any(max(abs(axis.low), abs(axis.high)) > LARGEST for axis in slice.axes):
+        raise ConfigError(f"the certified engine computes in floats: an axis may reach {float(LARGEST):g}, no more")
     options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial, reached)
     return _Run(slice, options, resume).run()
 
@@ -100,7 +104,7 @@ class _Run:
         self.seconds = {"plan": 0.0, "curves": 0.0, "regions": 0.0}
         self.area = float((slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low))
         self.steps = STEPS
-        while self.steps * options.tolerance < 64:
+        while self.steps * options.tolerance < 64 and self.steps < MOST_STEPS:
             self.steps *= 2
         if resume is not None and len(resume.rectangles) > TILES**2:
             resume = simplified(resume)  # disjoint rectangles: nothing is searched twice
@@ -128,10 +132,11 @@ class _Run:
             if self.options.reached is not None:
                 self.options.reached(undetermined)
             if not in_time:
+                so_far = self.map(cover, Status.PARTIAL)
                 raise LimitReached(
-                    f"the time limit was reached with {_percent(undetermined)} undetermined, "
+                    f"the time limit was reached with {_percent(so_far.undetermined)} undetermined, "
                     f"more than the tolerance of {_percent(self.options.tolerance)}",
-                    partial=self.map(cover, Status.PARTIAL),
+                    partial=so_far,
                 )
             if undetermined <= self.options.tolerance:
                 result = self.map(cover, Status.CERTIFIED)
@@ -141,10 +146,11 @@ class _Run:
             self._hand_over(cover)
             if sum(len(e.boxes()) for e in self.enclosures) > MOST_BOXES:
                 break
+        so_far = self.map(self.cover(), Status.PARTIAL)
         raise LimitReached(
-            f"the search ended with {_percent(undetermined)} undetermined, more than the tolerance of "
+            f"the search ended with {_percent(so_far.undetermined)} undetermined, more than the tolerance of "
             f"{_percent(self.options.tolerance)}: smaller boxes did not help",
-            partial=self.map(self.cover(), Status.PARTIAL),
+            partial=so_far,
         )
 
     def cover(self) -> Cover:
@@ -227,7 +233,8 @@ def _ease(slice: Slice, tile: Rectangle) -> Fraction:
 
 
 def _percent(share: Fraction) -> str:
-    return f"{100 * float(share):.2g} %"
+    percent = 100 * float(share)
+    return f"{percent:.0f} %" if percent >= 10 else f"{percent:.2g} %"
 
 
 def _versions() -> dict[str, str]:

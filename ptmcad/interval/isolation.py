@@ -12,6 +12,7 @@ Miranda, Boll. Un. Mat. Ital. 3 (1940); Neumaier, Interval Methods for Systems o
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptmcad.interval.arithmetic import down, mignitude, multiply, up
 from ptmcad.interval.compiled import compiled
@@ -93,7 +94,13 @@ def _enlarged(store: Boxes, count: int) -> Boxes:
 
 @compiled
 def isolate(
-    system: Arguments, narrowing: Arguments, start: Boxes, finest: float, budget: int, allowed: int
+    system: Arguments,
+    narrowing: Arguments,
+    start: Boxes,
+    finest: float,
+    budget: int,
+    allowed: int,
+    weights: NDArray[np.float64],
 ) -> tuple[Boxes, Boxes, Boxes, int]:
     """Isolate the solutions of a square system.
 
@@ -101,9 +108,10 @@ def isolate(
     ----------
     system : with what discards boxes that hold no solution looked for.
     narrowing : the same equations alone, for the proofs.
-    finest : boxes at most this wide are not bisected further.
+    finest : boxes at most this wide are not bisected further; widths count by their weights.
     budget : number of boxes after which the search stops.
     allowed : number of boxes that may stay open; the search stops beyond.
+    weights : shape (v,), positive: of the variables' widths.
 
     Returns
     -------
@@ -131,14 +139,15 @@ def isolate(
             continue
         widest, width = 0, -1.0
         for x in unknowns:
-            if high[x] - low[x] > width:
-                widest, width = x, high[x] - low[x]
+            size = (high[x] - low[x]) * weights[x]
+            if size > width:
+                widest, width = x, size
         if width <= NARROW:
             inflation, proved = INFLATION, False
             for _ in range(ATTEMPTS):
                 wide_low[:], wide_high[:] = low, high
                 for x in unknowns:
-                    wide_low[x], wide_high[x] = low[x] - inflation, high[x] + inflation
+                    wide_low[x], wide_high[x] = low[x] - inflation / weights[x], high[x] + inflation / weights[x]
                 proved = holds_one(narrowing, wide_low, wide_high, work)
                 if proved or inflation * 8 < width:
                     break

@@ -100,7 +100,7 @@ def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) 
         ranges = (along, fixed) if varying == 0 else (fixed, along)
         start = curve.start(np.array([[ranges[0][0], ranges[1][0], ranges[0][1], ranges[1][1]]]))
         arguments = system.arguments(), equations.arguments(), start
-        unique, narrow, left, used = isolate(*arguments, FINEST, BUDGET, OPEN)
+        unique, narrow, left, used = isolate(*arguments, FINEST, BUDGET, OPEN, curve.importance())
         variables = start.shape[1] // 2
         total += used
         if (used >= BUDGET or len(left) > OPEN) and high - low > smallest and total < MOST:

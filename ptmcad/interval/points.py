@@ -33,6 +33,8 @@ CREASED = (-1e-9, 6.2831853081)
 """The same for an angle whose formulas hold between 0 and a full turn."""
 CREASED_END = (Fraction(6.283185307179586), Fraction(6.283185307179587))
 """Below and above a full turn."""
+EQUAL = np.ones(4)
+"""Weights of the variables' widths."""
 QUICK = 6_000
 BUDGET = 60_000
 """Boxes in floating point for one point."""
@@ -137,7 +139,7 @@ class PointCounter:
         system, equations = (written.minima if only_minima else written.all).arguments(), written.equations.arguments()
         for finest in FINEST:
             budget = BUDGET if thorough else QUICK
-            unique, narrow, left, used = isolate(system, equations, start, finest, budget, OPEN)
+            unique, narrow, left, used = isolate(system, equations, start, finest, budget, OPEN, EQUAL)
             if used < budget and len(left) <= OPEN:
                 break
             if not thorough:

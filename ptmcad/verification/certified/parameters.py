@@ -1,6 +1,6 @@
 """The mechanism's parameters at a point of the window, exactly, or over a box of it, in balls.
 
-Guarantee: lengths and stiffnesses are positive and free lengths are not negative for everything that is returned.
+Guarantee: bars and stiffnesses are positive, base and free lengths are not negative, for everything that is returned.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
 
-POSITIVE = ("L1", "L2", "k1", "k2", "k3", "rho")
+POSITIVE = ("L1", "L2", "k1", "k2", "k3")
+NOT_NEGATIVE = ("rho", *FREE_LENGTHS)
 Values = dict[str, Fraction]
 
 
@@ -38,7 +39,7 @@ def values_at(claims: Claims, x: Fraction, y: Fraction) -> Values:
     for name in POSITIVE:
         if values[name] <= 0:
             raise Violation(f"{name} is {float(values[name]):g}, not positive")
-    for name in FREE_LENGTHS:
+    for name in NOT_NEGATIVE:
         if values[name] < 0:
             raise Violation(f"{name} is negative")
     return values
@@ -64,7 +65,7 @@ def energy_over(slice: Slice, x: arb, y: arb) -> Energy:
         values[name] = _over(expression, x, y)
         if name in POSITIVE and not values[name] > 0:
             raise Unproved(f"{name} may be zero")
-        if name in FREE_LENGTHS and not (values[name] >= 0):
+        if name in NOT_NEGATIVE and not (values[name] >= 0):
             raise Unproved(f"{name} may be negative")
     return Energy({name: values[name] for name in NAMES})
 

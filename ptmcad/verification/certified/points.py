@@ -163,6 +163,8 @@ def cones(energy: Energy, values: Mapping[str, Fraction]) -> int:
     rho, l1, l2 = values["rho"], values["L1"], values["L2"]
     if values["l0_3"] == 0 or not abs(l1 - l2) <= rho <= l1 + l2:
         return 0
+    if rho == 0:
+        raise Unproved("rho is zero and the bars are equally long, where spring 3 has no length on a circle")
     c1, c2 = (rho**2 + l1**2 - l2**2) / (2 * rho * l1), (rho**2 + l2**2 - l1**2) / (2 * rho * l2)
     th1, th2 = exact(c1).acos(), exact(c2).acos()
     peaks = 0

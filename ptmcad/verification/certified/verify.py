@@ -12,7 +12,7 @@ from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
 from ptmcad.verification.certified.system import check_potential
 from ptmcad.verification.parameters import check_text
-from ptmcad.verification.report import Check, VerifyReport, checked
+from ptmcad.verification.report import Check, VerifyReport, Violation, checked
 
 BOXES = 40
 NOT_CHECKED = (
@@ -39,6 +39,20 @@ def verify_certified(result: RegionMap, seed: int | None, boxes: int | None) -> 
     checks = checked(claims, steps)
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
     return VerifyReport(tuple(checks))
+
+
+def contradiction(result: RegionMap) -> str:
+    """What in a stored map contradicts the rest of it, by checks that take no time; empty when nothing does.
+
+    It does not tell whether the counts are right, nor whether rectangles are missing that no other entry tells of.
+    """
+    claims = CertifiedClaims(result)
+    for check in (check_form, check_components, check_regions):
+        try:
+            check(claims)
+        except Violation as violation:
+            return str(violation)
+    return ""
 
 
 def fingerprint(result: RegionMap) -> str:
