@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from ptmcad.cover import Cover, Rectangle, components
 from ptmcad.cover.complement import Components
+from ptmcad.cover.samples import simplest_between
 from ptmcad.interval.points import PointCount, PointCounter
 from ptmcad.interval.statement import system_text
 from ptmcad.regionmap import Cell, PlanStep, Region, RegionMap, Status
@@ -151,18 +152,3 @@ def _parts(rectangle: Rectangle) -> Sequence[tuple[Fraction, Fraction, Fraction,
 
     places = [(Fraction(1, 2), Fraction(1, 2)), (Fraction(1, 3), Fraction(3, 7)), (Fraction(3, 5), Fraction(2, 7))]
     return [(*span(left, right, u), *span(bottom, top, v)) for u, v in places]
-
-
-def simplest_between(low: Fraction, high: Fraction) -> Fraction:
-    """The fraction with the least denominator strictly between two numbers, by continued fractions."""
-    if low < 0 < high:
-        return Fraction(0)
-    if high <= 0:
-        return -simplest_between(-high, -low)
-    whole = low.numerator // low.denominator
-    if whole + 1 < high:
-        return Fraction(whole + 1)
-    if low == whole:
-        # whole + 1/n with the least n that is small enough
-        return whole + Fraction(1, int(1 / (high - whole)) + 1)
-    return whole + 1 / simplest_between(1 / (high - whole), 1 / (low - whole))
