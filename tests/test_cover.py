@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ptmcad.cover import MOST_STEPS, Cover, Rectangle, components, from_boxes, union_area
 from ptmcad.cover.borders import area_bounds, borders
-from ptmcad.cover.filling import filled, pockets, simplified
+from ptmcad.cover.filling import filled, gathered, pockets, simplified
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.samples import rectangle_of, sample, simplest_between
 
@@ -190,6 +190,22 @@ def test_a_simplified_cover_covers_the_same_with_no_more_rectangles(cover: Cover
     assert len(after.rectangles) <= len(cover.rectangles)
     assert (flood(after).closed == flood(cover).closed).all()
     assert list(after.rectangles) == sorted(set(after.rectangles))
+
+
+@settings(deadline=None, max_examples=80)
+@given(covers(), st.integers(1, 20))
+def test_gathered_rectangles_are_few_and_cover_at_least_the_same(cover: Cover, most: int) -> None:
+    after = gathered(cover, most)
+    assert len(after.rectangles) <= most
+    assert (flood(after).closed >= flood(cover).closed).all()
+    if len(cover.rectangles) <= most:
+        assert after == cover
+
+
+def test_gathered_rectangles_stay_close_to_a_line() -> None:
+    diagonal = Cover(1024, tuple((k, k + 1, k, k + 1) for k in range(1024)))
+    after = gathered(diagonal, 64)
+    assert after.rectangles == tuple((k, k + 16, k, k + 16) for k in range(0, 1024, 16))
 
 
 def test_of_two_rectangles_that_cover_for_each_other_one_stays() -> None:

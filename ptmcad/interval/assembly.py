@@ -16,6 +16,7 @@ from ptmcad.cover.complement import Components
 from ptmcad.cover.samples import simplest_between
 from ptmcad.interval.points import PointCount, PointCounter
 from ptmcad.interval.statement import system_text
+from ptmcad.interval.tiling import COMPILED
 from ptmcad.regionmap import Cell, PlanStep, Region, RegionMap, Status
 from ptmcad.slice import Count, Point, Slice
 
@@ -37,7 +38,7 @@ class Assembler:
 
     def map(self, cover: Cover, status: Status, seconds: Mapping[str, float]) -> RegionMap:
         """The map of the window outside the cover."""
-        complement = components(cover)
+        complement = components(cover, COMPILED)
         pocket = min(POCKET * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
         counted = self._counts(complement, pocket)
         kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)]
