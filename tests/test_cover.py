@@ -17,7 +17,7 @@ from ptmcad.cover import MOST_STEPS, Cover, Rectangle, components, from_boxes, u
 from ptmcad.cover.borders import area_bounds, borders
 from ptmcad.cover.filling import filled, gathered, pockets, simplified
 from ptmcad.cover.outlines import outlines
-from ptmcad.cover.samples import rectangle_of, sample, simplest_between
+from ptmcad.cover.samples import rectangle_of, samples, simplest_between
 
 UNIT = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))
 WINDOW = ((Fraction(1, 20), Fraction(2)), (Fraction(-7, 3), Fraction(5)))
@@ -166,11 +166,11 @@ def test_samples_are_in_their_components_and_rectangles_can_not_grow(cover: Cove
                       (left, right, bottom - 1, top), (left, right, bottom, top + 1)):  # fmt: skip
             a, b, c, d = grown
             assert min(grown) < 0 or max(grown) > cover.steps or grid.closed[2 * a + 1 : 2 * b, 2 * c + 1 : 2 * d].any()
-        x, y = sample(found, number, WINDOW)
         (x0, x1), (y0, y1) = WINDOW
-        assert found.locate((x - x0) / (x1 - x0) * cover.steps, (y - y0) / (y1 - y0) * cover.steps) == number
         at = rectangle_of((left, right, bottom, top), cover.steps, WINDOW)
-        assert at[0] < x < at[1] and at[2] < y < at[3]
+        for x, y in samples(found, number, WINDOW):
+            assert found.locate((x - x0) / (x1 - x0) * cover.steps, (y - y0) / (y1 - y0) * cover.steps) == number
+            assert at[0] < x < at[1] and at[2] < y < at[3]
 
 
 @settings(deadline=None, max_examples=50)
@@ -237,8 +237,9 @@ def test_area_bounds_count_a_shared_cluster_once() -> None:
     ring = Cover(8, ((2, 6, 2, 3), (2, 6, 5, 6), (2, 3, 2, 6), (5, 6, 2, 6)))
     found = components(ring)
     assert found.areas == (48, 4)
-    assert area_bounds(found, [0]) == (48, 60)
-    assert area_bounds(found, [0, 1]) == (52, 64)
+    assert area_bounds(found, 0, {0, 1}) == (48, 60)
+    assert area_bounds(found, 1, {0, 1}) == (4, 16)
+    assert area_bounds(found, 0, {0}) == (48, 64)
 
 
 def test_two_rectangles_that_touch_in_a_corner_part_the_window() -> None:
