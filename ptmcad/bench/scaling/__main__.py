@@ -1,4 +1,4 @@
-"""``python -m ptmcad.bench.scaling``: measure, write scaling.json, scaling.md and a picture."""
+"""``python -m ptmcad.bench.scaling``: measure, write scaling.json, scaling.md and a picture of each family."""
 
 from __future__ import annotations
 
@@ -7,13 +7,16 @@ import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from ptmcad.bench.scaling.families import FAMILIES, families
-from ptmcad.bench.scaling.run import LIMIT, ROUNDS, scaling
+from ptmcad.bench.scaling.run import LIMIT, ROUNDS, abscissa, scaling
 from ptmcad.bench.scaling.table import to_markdown
 from ptmcad.errors import PtmcadError
 
 PICTURES = ("svg", "png")
+FEWEST = 3
+"""Places along a family from which on a picture tells more than the table."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -25,9 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         epilog=f"Families: {names}. Example: python -m ptmcad.bench.scaling fold grid --rounds 1 --out out",
     )
     parser.add_argument("families", nargs="*", help="families by name; default: all")
-    parser.add_argument(
-        "--out", type=Path, help="folder for scaling.json, .md, .svg, .png; default: print the page only"
-    )
+    parser.add_argument("--out", type=Path, help="folder for JSON, page and pictures; default: print only")
     parser.add_argument("--rounds", type=int, default=ROUNDS, help=f"runs of each size (default {ROUNDS})")
     parser.add_argument("--seed", type=int, default=1, help="of slices, order and resampling (default 1)")
     parser.add_argument("--limit", type=float, default=LIMIT, help=f"seconds for one run (default {LIMIT:g})")
@@ -56,14 +57,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _draw(report: dict[str, object], folder: Path) -> None:
+def _draw(report: dict[str, Any], folder: Path) -> None:
     # loaded after the measurement, whose children would inherit its pages
     from ptmcad.render.printing import save
     from ptmcad.render.scaling import draw_scaling
 
-    figure = draw_scaling(report)
-    for suffix in PICTURES:
-        save(figure, folder / f"scaling.{suffix}")
+    for family in report["families"]:
+        if len({abscissa(family["against"], run) for run in family["runs"]}) >= FEWEST:
+            figure = draw_scaling(family)
+            for suffix in PICTURES:
+                save(figure, folder / f"scaling-{family['name']}.{suffix}")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
 
 from ptmcad.bench.scaling.folds import (
     fold,
@@ -51,6 +50,7 @@ class Family:
     measure : the runs for a size and a seed, in the present process.
     certified : whether it needs the certified engine's compiled code.
     expected : what theory lets expect, for the report.
+    fitted_from : runs below this place are measured but not fitted.
     """
 
     name: str
@@ -62,6 +62,7 @@ class Family:
     expected: str
     heavy: tuple[int, ...] = ()
     certified: bool = False
+    fitted_from: float = 0.0
 
 
 def exact(size: int, slice: Slice, regions: int | None = None) -> tuple[Run]:
@@ -108,7 +109,7 @@ def design_slice(free: str, load: str) -> Slice:
 
 
 def designs(seed: int) -> tuple[tuple[str, str, str, str], ...]:
-    """rho, L2, l0 and load of the designs that are solved: the known ones, and others with unequal bars or equal ones."""
+    """rho, L2, l0 and load of the designs: the known ones, and others with bars unequal or equal in turn."""
     source = random.Random(f"designs {seed}")
 
     def number(low: int, high: int) -> str:
@@ -168,17 +169,16 @@ def levels(size: int, seed: int) -> tuple[Run, ...]:
 
     watch = Stages()
     runs: list[Run] = []
-    treated, finished = 0, 0
+    treated = 0
 
     def progress(what: str, done: int, total: int) -> None:
         nonlocal treated
-        treated = done
+        if done == total:  # no box is waiting: a curve is finished at this level
+            treated += done
 
     def reached(share: Fraction) -> None:
-        nonlocal finished
-        finished += treated
         if share < 1:
-            runs.append(watch.run(size, {"one over undetermined": float(f"{float(1 / share):.4g}"), "boxes": finished}))
+            runs.append(watch.run(size, {"one over undetermined": float(f"{float(1 / share):.4g}"), "boxes": treated}))
 
     watch.begin("search")
     certified_map(certified_window(), tolerance=TIGHTEST, jobs=1, progress=progress, reached=reached)
@@ -283,8 +283,9 @@ FAMILIES = (
         "1 / undetermined share of the window",
         (1,),
         levels,
-        "a fixed cost; then 1 for the boxes, which line the curves: their number goes with length over width",
+        "a fixed cost, the search for the curves; then 1 for boxes that line them, as many as length over width",
         certified=True,
+        fitted_from=20.0,  # before, the curves are being found
     ),
     Family(
         "threads",
@@ -313,13 +314,23 @@ def families(names: Sequence[str] = ()) -> tuple[Family, ...]:
     return tuple(f for f in FAMILIES if not names or f.name in names)
 
 
-def warm_up(chosen: Sequence[Family]) -> None:
-    """Load, before anything is measured, all code that the families run; children inherit it."""
-    for task in (partial(exact, 2, fold(2)), partial(exact, 1, loaded(1, 1))):
-        task()
-    if any(f.certified for f in chosen):
+def warm_up(certified: bool) -> None:
+    """Load the code that families run, so that a measurement does not count it."""
+    exact(2, fold(2))
+    exact(1, loaded(1, 1))
+    if certified:
         from ptmcad.interval.engine import certified_map
         from ptmcad.interval.points import point_counter
 
         point_counter(design_slice("1/5", "-10")).at(Fraction(1), Fraction(3, 2), Count.TOTAL)
         certified_map(certified_window(), tolerance=Fraction(1, 4), jobs=1)
+
+
+def touch(certified: bool) -> None:
+    """A small run of the same code: a forked child gets its pages one by one when it first uses them."""
+    if certified:
+        from ptmcad.interval.points import point_counter
+
+        point_counter(design_slice("1/5", "-10")).at(Fraction(1), Fraction(3, 2), Count.TOTAL)
+    else:
+        exact(2, fold(2))

@@ -96,18 +96,21 @@ def highest_mebibytes() -> float:
     return peak / MEBIBYTE if sys.platform == "darwin" else peak / 1024
 
 
-def in_child(task: Callable[[], Sequence[Run]], limit: float) -> tuple[Run, ...] | Unmeasured:
+def in_child(
+    task: Callable[[], Sequence[Run]], limit: float, before: Callable[[], object] = lambda: None
+) -> tuple[Run, ...] | Unmeasured:
     """Run a task in a forked child.
 
     Parameters
     ----------
     task : measures itself; what it returns comes back as text.
     limit : wall seconds after which the child is killed.
+    before : called in the child before the task, and not measured.
     """
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
-        _child(task, reading, writing)
+        _child(task, before, reading, writing)
     os.close(writing)
     ended = False
     chunks: list[bytes] = []
@@ -134,17 +137,19 @@ def in_child(task: Callable[[], Sequence[Run]], limit: float) -> tuple[Run, ...]
     return tuple(Run(**run) for run in answer["runs"])
 
 
-def _child(task: Callable[[], Sequence[Run]], reading: int, writing: int) -> None:
+def _child(task: Callable[[], Sequence[Run]], before: Callable[[], object], reading: int, writing: int) -> None:
     """Answer through the pipe and leave without the parent's exit handlers."""
     os.close(reading)
     status = 1
     try:
-        gc.collect()
-        if _HIGH_WATER.exists():
-            _HIGH_WATER.write_text("5")  # the highest resident set is counted from here
+        answer: dict[str, Any]
         try:
-            answer: dict[str, Any] = {"runs": [asdict(run) for run in task()]}
-        except Exception as error:  # the parent records it as the run's reason
+            before()
+            gc.collect()
+            if _HIGH_WATER.exists():
+                _HIGH_WATER.write_text("5")  # the highest resident set is counted from here
+            answer = {"runs": [asdict(run) for run in task()]}
+        except Exception as error:  # noqa: BLE001  whatever it is, the parent records it as the run's reason
             answer = {"failed": "".join(traceback.format_exception_only(error)).strip()[:300]}
         with os.fdopen(writing, "w") as pipe:
             json.dump(answer, pipe)

@@ -8,12 +8,12 @@ fitted to them.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from functools import partial
 from typing import Any
 
-from ptmcad.bench.scaling.families import FAMILIES, Family, warm_up
+from ptmcad.bench.scaling.families import FAMILIES, Family, touch, warm_up
 from ptmcad.bench.scaling.fit import Points, fit
 from ptmcad.bench.scaling.measurement import Run, Unmeasured, in_child
 from ptmcad.bench.suite import machine, versions
@@ -52,7 +52,7 @@ def scaling(
     """
     before = machine()
     progress("loading")
-    warm_up(families)
+    warm_up(any(f.certified for f in families))
     runs: dict[str, list[Run]] = {family.name: [] for family in families}
     reasons: dict[str, dict[int, str]] = {family.name: {} for family in families}
     order = random.Random(seed)
@@ -63,7 +63,7 @@ def scaling(
             if any(size >= given_up for given_up in reasons[family.name]):
                 continue
             progress(f"round {index + 1} of {rounds}: {family.name} {size}")
-            found = in_child(partial(family.measure, size, seed), limit)
+            found = in_child(partial(family.measure, size, seed), limit, partial(touch, family.certified))
             if isinstance(found, Unmeasured):
                 reasons[family.name][size] = found.reason
             else:
@@ -79,14 +79,15 @@ def scaling(
 
 
 def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: int) -> dict[str, Any]:
-    fits = {name: fit(points, seed) for name, points in quantities(family.against, runs)}
+    late = [run for run in runs if _place(family.against, run) >= family.fitted_from]
+    fits = {name: fit(points, seed) for name, points in quantities(family.against, late)}
     return {
         "name": family.name,
         "title": family.title,
         "against": family.against,
         "axis": family.axis,
         "expected": family.expected,
-        "runs": [_rounded(asdict(run)) for run in sorted(runs, key=lambda r: (r.size, abscissa(family.against, r)))],
+        "runs": [_rounded(asdict(run)) for run in sorted(runs, key=lambda r: (r.size, _place(family.against, r)))],
         "reasons": {str(size): reason for size, reason in sorted(reasons.items())},
         "fits": {
             name: {**{k: float(f"{v:.4g}") for k, v in asdict(f).items() if k != "verdict"}, "verdict": f.verdict.value}
@@ -96,14 +97,18 @@ def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: 
     }
 
 
-def abscissa(against: str, run: Run) -> float:
-    """A run's place along its family."""
+def abscissa(against: str, run: Mapping[str, Any]) -> float:
+    """The place of a run, as data, along its family."""
+    return float(run["size"] if against == "size" else run["found"][against])
+
+
+def _place(against: str, run: Run) -> float:
     return run.size if against == "size" else run.found[against]
 
 
 def quantities(against: str, runs: Sequence[Run]) -> Iterator[tuple[str, Points]]:
     """What is fitted: processor time in all and by stage, wall time, memory in all and by stage, and boxes."""
-    places = [abscissa(against, run) for run in runs]
+    places = [_place(against, run) for run in runs]
     yield "seconds", [(x, run.seconds) for x, run in zip(places, runs, strict=True)]
     yield "wall", [(x, run.wall) for x, run in zip(places, runs, strict=True)]
     stages = list(dict.fromkeys(stage for run in runs for stage in run.stages))

@@ -41,7 +41,7 @@ def unloaded(n: int, seed: int) -> Slice:
 
 def loaded(n: int, seed: int) -> Slice:
     """Equal bars and loads, F3 = F4 = -(1 + y + q(x, y)), k = 2, rho = 1/2 + x/3: two curves of total degree 6 n."""
-    parameters = {"L1": 1, "L2": 1, "k": 2, "rho": "1/2 + x/3", "F3": "-1 - y", "F4": "-1 - y"}
+    parameters: dict[str, str | int] = {"L1": 1, "L2": 1, "k": 2, "rho": "1/2 + x/3", "F3": "-1 - y", "F4": "-1 - y"}
     slice = _mirror("loaded", n, parameters, ("-4/5", "4/5"))
     force = -(1 + axis(1) + bend(n, seed))
     return with_parameters(slice, F3=force, F4=force)

@@ -14,8 +14,9 @@ def to_markdown(report: Mapping[str, Any]) -> str:
     lines = [
         "# Scaling",
         "",
-        "Exponents p of cost = c x^p, by least squares in logarithms; in brackets 5 % and 95 % bounds from resampled runs.",
-        "Lower and upper are the slopes over the two halves of the range; where they differ, a single exponent says little.",
+        "Exponents p of cost = c x^p, by least squares in logarithms, with 5 % and 95 % bounds from resampled runs.",
+        "Lower and upper are the slopes over the two halves of the range; where they differ, one exponent says little;",
+        "where cost = a + c x^p fits, the fixed cost a is given, and the exponent beyond it.",
         "Seconds are processor time unless they are called wall time; memory is the growth of the resident set.",
         "[What grows and why](../scaling.md) explains it. Written by `python -m ptmcad.bench.scaling`.",
         "",
@@ -40,13 +41,18 @@ def _fits(family: Mapping[str, Any]) -> Iterator[str]:
         yield (
             f"| {_NAMES.get(name, name)} | {f['first']:g} - {f['last']:g} | {f['exponent']:.2f} "
             f"({f['low']:.2f} to {f['high']:.2f}) | {f['determination']:.3f} | {f['lower']:.2f}, {f['upper']:.2f} "
-            f"| {f['verdict']} |"
+            f"| {f['verdict']}{_beyond(f)} |"
         )
+
+
+def _beyond(f: Mapping[str, Any]) -> str:
+    return f"; beyond a fixed {f['fixed']:.3g}: {f['growth']:.2f}" if f["fixed"] else ""
 
 
 def _runs(family: Mapping[str, Any]) -> Iterator[str]:
     """Medians by abscissa, the spread of the seconds, and what was found."""
-    against, groups = family["against"], {}
+    against = family["against"]
+    groups: dict[float, list[Any]] = {}
     for run in family["runs"]:
         groups.setdefault(run["size"] if against == "size" else run["found"][against], []).append(run)
     facts = [k for k in (family["runs"][0]["found"] if family["runs"] else {}) if k != against]
