@@ -30,6 +30,8 @@ _STYLES: tuple[tuple[str, str, Any], ...] = (
 _LAWS = ("power law", "fixed cost and power law", "does not grow")
 _LEAST = 2e-4
 """Seconds: stages that never take longer are not drawn."""
+_LEAST_PEAK = 2.0
+"""MiB: memory that never grows by more is not drawn."""
 _CURVE = 60
 
 Groups = dict[float, list[Mapping[str, Any]]]
@@ -55,7 +57,7 @@ def draw_scaling(family: Mapping[str, Any]) -> Figure:
         groups.setdefault(run["size"] if family["against"] == "size" else run["found"][family["against"]], []).append(
             run
         )
-    memory = any(max(run["memory"].values(), default=0.0) >= 1 for run in runs)
+    memory = any(max(run["memory"].values(), default=0.0) >= _LEAST_PEAK for run in runs)
     with settings():
         staged = len(_stages(runs)) > 1  # then the legend needs a column of its own
         widths = (0.75, 4.0, 2.0 if staged else 0.95, 3.1 if memory else -0.6)

@@ -6,7 +6,7 @@ time and memory is the same in the next run with the same seed.
 Run it with ``python -m ptmcad.bench.scaling --out docs/benchmarks``; `scaling` is the plain function.
 """
 
-from ptmcad.bench.scaling.families import FAMILIES, Family, families
+from ptmcad.bench.scaling.families import FAMILIES, Family, families_named
 from ptmcad.bench.scaling.run import scaling
 
-__all__ = ["FAMILIES", "Family", "families", "scaling"]
+__all__ = ["FAMILIES", "Family", "families_named", "scaling"]

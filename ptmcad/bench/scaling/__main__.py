@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ptmcad.bench.scaling.families import FAMILIES, families
+from ptmcad.bench.scaling.families import FAMILIES, families_named
 from ptmcad.bench.scaling.run import LIMIT, ROUNDS, abscissa, scaling
 from ptmcad.bench.scaling.table import to_markdown
 from ptmcad.errors import PtmcadError
@@ -38,15 +38,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not chosen.limit > 0:
         parser.error("--limit must be positive")
     try:
+        if chosen.out is not None:
+            chosen.out.mkdir(parents=True, exist_ok=True)
         report = scaling(
-            families(chosen.families),
+            families_named(chosen.families),
             chosen.rounds,
             chosen.seed,
             limit=chosen.limit,
             progress=lambda message: print(message, file=sys.stderr),
         )
         if chosen.out is not None:
-            chosen.out.mkdir(parents=True, exist_ok=True)
             (chosen.out / "scaling.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
             (chosen.out / "scaling.md").write_text(to_markdown(report), encoding="utf-8")
             _draw(report, chosen.out)

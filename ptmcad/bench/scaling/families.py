@@ -300,7 +300,7 @@ FAMILIES = (
 )
 
 
-def families(names: Sequence[str] = ()) -> tuple[Family, ...]:
+def families_named(names: Sequence[str] = ()) -> tuple[Family, ...]:
     """The families of these names, all when there are none.
 
     Raises
@@ -317,7 +317,6 @@ def families(names: Sequence[str] = ()) -> tuple[Family, ...]:
 def warm_up(certified: bool) -> None:
     """Load the code that families run, so that a measurement does not count it."""
     exact(2, fold(2))
-    exact(1, loaded(1, 1))
     if certified:
         from ptmcad.interval.engine import certified_map
         from ptmcad.interval.points import point_counter

@@ -23,8 +23,9 @@ BEND, SHARE = 0.35, 0.15
 """The halves' slopes differ when their difference exceeds both the first and this share of the larger."""
 STRAIGHT, GOOD = 0.9, 0.98
 """R^2 from which on a line through few noisy points is taken for one; the same with a fixed cost, a freedom more."""
-BETTER, NOTICEABLE = 0.4, 0.05
-"""A fixed cost has to lessen the sum of squares to this part, and to be this part of the smallest y."""
+BETTER, NOTICEABLE, CURVED = 0.4, 0.05, 0.2
+"""A fixed cost has to lessen the sum of squares to the first part, to be the second part of the smallest y, and the
+halves' slopes have to differ by the third: a little noise is explained by it too."""
 LEAST_SIZES = 4
 PARTS = 400
 """Fixed costs that are tried."""
@@ -133,7 +134,7 @@ def _verdict(middle: Points, lower: float, upper: float, determination: float, f
     if len(middle) < LEAST_SIZES:
         return Verdict.TOO_FEW
     bends = abs(upper - lower) > max(BEND, SHARE * max(abs(lower), abs(upper)))
-    if fixed_cost and upper > lower:
+    if fixed_cost and upper > lower + CURVED:
         return Verdict.FIXED_COST
     if not bends and determination >= STRAIGHT:
         return Verdict.POWER_LAW

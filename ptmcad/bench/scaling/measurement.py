@@ -17,6 +17,7 @@ import select
 import signal
 import sys
 import traceback
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -108,7 +109,10 @@ def in_child(
     before : called in the child before the task, and not measured.
     """
     reading, writing = os.pipe()
-    child = os.fork()
+    with warnings.catch_warnings():
+        # Python warns of threads, which a numerical library may have started; the child uses none of theirs
+        warnings.simplefilter("ignore", DeprecationWarning)
+        child = os.fork()
     if child == 0:
         _child(task, before, reading, writing)
     os.close(writing)
