@@ -60,7 +60,7 @@ def draw_scaling(family: Mapping[str, Any]) -> Figure:
     memory = any(max(run["memory"].values(), default=0.0) >= _LEAST_PEAK for run in runs)
     with settings():
         staged = len(_stages(runs)) > 1  # then the legend needs a column of its own
-        widths = (0.75, 4.0, 2.0 if staged else 0.95, 3.1 if memory else -0.6)
+        widths = (0.75, 4.0, 2.0 if staged else 0.95, 3.1 if memory else -0.15)
         wide = sum(widths) + 0.25
         figure = Figure(figsize=(wide, 4.1))
         figure.set_label(f"{family['title']}\n{_words(family)}")

@@ -80,7 +80,7 @@ def scaling(
 
 def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: int) -> dict[str, Any]:
     late = [run for run in runs if _place(family.against, run) >= family.fitted_from]
-    fits = {name: fit(points, seed) for name, points in quantities(family.against, late)}
+    fits = {name: fit(points, seed) for name, points in quantities(family, late)}
     return {
         "name": family.name,
         "title": family.title,
@@ -106,11 +106,12 @@ def _place(against: str, run: Run) -> float:
     return run.size if against == "size" else run.found[against]
 
 
-def quantities(against: str, runs: Sequence[Run]) -> Iterator[tuple[str, Points]]:
-    """What is fitted: processor time in all and by stage, wall time, memory in all and by stage, and boxes."""
-    places = [_place(against, run) for run in runs]
+def quantities(family: Family, runs: Sequence[Run]) -> Iterator[tuple[str, Points]]:
+    """What is fitted: processor time in all and by stage, memory, boxes, and wall time where that is asked for."""
+    places = [_place(family.against, run) for run in runs]
     yield "seconds", [(x, run.seconds) for x, run in zip(places, runs, strict=True)]
-    yield "wall", [(x, run.wall) for x, run in zip(places, runs, strict=True)]
+    if family.wall:
+        yield "wall", [(x, run.wall) for x, run in zip(places, runs, strict=True)]
     stages = list(dict.fromkeys(stage for run in runs for stage in run.stages))
     if len(stages) > 1:
         for stage in stages:

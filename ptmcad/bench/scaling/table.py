@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from statistics import median
 from typing import Any
 
+MANY = 1000
 _NAMES = {"seconds": "processor time", "wall": "wall time", "memory": "memory", "boxes": "boxes treated"}
 
 
@@ -46,7 +47,11 @@ def _fits(family: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _beyond(f: Mapping[str, Any]) -> str:
-    return f"; beyond a fixed {f['fixed']:.3g}: {f['growth']:.2f}" if f["fixed"] else ""
+    """The fixed cost and the exponent beyond it, where there is one."""
+    if not f["fixed"]:
+        return ""
+    fixed = f"{f['fixed']:,.0f}" if f["fixed"] >= MANY else f"{f['fixed']:.2g}"
+    return f"; beyond a fixed {fixed}: {f['growth']:.2f}"
 
 
 def _runs(family: Mapping[str, Any]) -> Iterator[str]:
@@ -58,15 +63,16 @@ def _runs(family: Mapping[str, Any]) -> Iterator[str]:
     facts = [k for k in (family["runs"][0]["found"] if family["runs"] else {}) if k != against]
     stages = list(dict.fromkeys(stage for run in family["runs"] for stage in run["stages"]))
     stages = stages if len(stages) > 1 else []
-    yield "| " + " | ".join([family["axis"], "runs", "s: median (min - max)", *stages, "MiB", *facts]) + " |"
-    yield "|---" * (4 + len(stages) + len(facts)) + "|"
+    yield "| " + " | ".join([family["axis"], "runs", "s: median (min - max)", "wall s", *stages, "MiB", *facts]) + " |"
+    yield "|---" * (5 + len(stages) + len(facts)) + "|"
     for place, runs in sorted(groups.items()):
-        seconds = [run["seconds"] for run in runs]
+        seconds, walls = [run["seconds"] for run in runs], [run["wall"] for run in runs]
         memory = [max(run["memory"].values()) for run in runs if run["memory"]]
         cells = [
             f"{place:g}",
             str(len(runs)),
             f"{_number(median(seconds))} ({_number(min(seconds))} - {_number(max(seconds))})",
+            _number(median(walls)),
             *(_number(median(run["stages"].get(stage, 0.0) for run in runs)) for stage in stages),
             f"{median(memory):.1f}" if memory else "-",
             *(_range([run["found"][fact] for run in runs]) for fact in facts),
