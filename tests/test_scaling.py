@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import random
+import re
 import time
 from collections.abc import Iterator
 from dataclasses import replace
@@ -479,3 +480,40 @@ def test_pictures(report: dict[str, Any], tmp_path: Path, memory: float) -> None
 def test_a_family_without_runs_can_not_be_drawn(report: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match="no runs"):
         draw_scaling({**report["families"][0], "runs": []})
+
+
+# ---------------------------------------------------------------------------------------------------- the manual's page
+
+
+STORED = ROOT / "docs" / "benchmarks" / "scaling.json"
+ROW = re.compile(r"^\| `(?P<name>[\w-]+)` \| [^|]* \| (?P<time>[^|]*) \| (?P<memory>[^|]*) \|", re.MULTILINE)
+
+
+def said(cell: str) -> float | None:
+    """The exponent that a cell of the page's table says; None where it says that there is none."""
+    found = re.match(r"\d+\.\d+", cell)
+    return float(found[0]) if found else None
+
+
+def test_the_manual_says_what_was_measured() -> None:
+    """Each family has its row, and an exponent there is the stored one to within what two runs differ by."""
+    stored = {family["name"]: family for family in json.loads(STORED.read_text(encoding="utf-8"))["families"]}
+    rows = {found["name"]: found for found in ROW.finditer((ROOT / "docs" / "scaling.md").read_text(encoding="utf-8"))}
+    assert rows.keys() | {"threads"} == stored.keys() == {family.name for family in families.FAMILIES}
+    for name, row in rows.items():
+        for cell, quantity in ((row["time"], "seconds"), (row["memory"], "memory")):
+            exponent = said(cell)
+            if exponent is not None:
+                law = stored[name]["fits"][quantity]
+                assert min(abs(exponent - law[k]) for k in ("exponent", "growth")) < 0.4, (name, quantity)
+
+
+def test_the_page_of_figures_is_made_from_the_stored_runs() -> None:
+    report = json.loads(STORED.read_text(encoding="utf-8"))
+    assert (STORED.with_suffix(".md")).read_text(encoding="utf-8") == to_markdown(report)
+    assert report["rounds"] >= 3
+    for family in report["families"]:
+        assert not family["reasons"]
+        seen = {run.abscissa(family["against"], r) for r in family["runs"]}
+        for suffix in command.PICTURES if len(seen) >= command.FEWEST else ():
+            assert STORED.with_name(f"scaling-{family['name']}.{suffix}").exists()
