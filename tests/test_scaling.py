@@ -203,7 +203,19 @@ def test_levels_of_a_certified_map(monkeypatch: pytest.MonkeyPatch) -> None:
     """Less is undetermined at each level, and boxes add up."""
     pytest.importorskip("numba")
     monkeypatch.setattr(families, "TIGHTEST", Fraction(1, 20))
+    used: list[int] = []
+
+    def counting(*arguments: Any) -> Any:
+        result = search_curve(*arguments)
+        used.append(result[2])
+        return result
+
+    from ptmcad.interval import refinement
+
+    search_curve = refinement.search_curve
+    monkeypatch.setattr(refinement, "search_curve", counting)
     found = families.levels(1, 1)
+    assert found[-1].found["boxes"] == sum(used)
     for name in ("one over undetermined", "boxes"):
         values = [r.found[name] for r in found]
         assert len(values) > 1
@@ -329,7 +341,7 @@ def test_memory_is_what_the_task_takes_and_not_what_its_parent_has() -> None:
         len(bytes(40 << 20) + bytes(1))
         return [watch.run(1, {})]
 
-    found = in_child(task, 60.0)
+    found = in_child(task, 60.0, before=lambda: len(bytes(60 << 20)))
     assert not isinstance(found, Unmeasured)
     assert len(ballast) == 80 << 20
     assert found[0].memory["small"] < 20
@@ -510,6 +522,8 @@ def test_the_manual_says_what_was_measured() -> None:
 
 def test_the_page_of_figures_is_made_from_the_stored_runs() -> None:
     report = json.loads(STORED.read_text(encoding="utf-8"))
+    for family, stored in zip(families.FAMILIES, report["families"], strict=True):
+        assert run._family(family, [Run(**r) for r in stored["runs"]], {}, report["seed"]) == stored
     assert (STORED.with_suffix(".md")).read_text(encoding="utf-8") == to_markdown(report)
     assert report["rounds"] >= 3
     for family in report["families"]:

@@ -18,7 +18,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from ptmcad.render.legend import INK
 from ptmcad.render.printing import settings
 
-SIZE = 8.5
+SIZE = 9.5
 _STYLES: tuple[tuple[str, str, Any], ...] = (
     ("#0072b2", "s", "-"),
     ("#d55e00", "^", (0, (5, 2))),
@@ -60,7 +60,7 @@ def draw_scaling(family: Mapping[str, Any]) -> Figure:
     memory = any(max(run["memory"].values(), default=0.0) >= _LEAST_PEAK for run in runs)
     with settings():
         staged = len(_stages(runs)) > 1  # then the legend needs a column of its own
-        widths = (0.75, 4.0, 2.0 if staged else 0.95, 3.1 if memory else -0.15)
+        widths = (0.8, 3.7, 2.1 if staged else 1.0, 2.7 if memory else -0.15)
         wide = sum(widths) + 0.25
         figure = Figure(figsize=(wide, 4.1))
         figure.set_label(f"{family['title']}\n{_words(family)}")

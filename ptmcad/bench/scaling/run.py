@@ -79,6 +79,8 @@ def scaling(
 
 
 def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: int) -> dict[str, Any]:
+    # sorted and rounded as they are stored, so that the stored runs give the stored fits
+    runs = [Run(**_rounded(asdict(run))) for run in sorted(runs, key=lambda r: _order(family.against, r))]
     late = [run for run in runs if _place(family.against, run) >= family.fitted_from]
     fits = {name: fit(points, seed) for name, points in quantities(family, late)}
     return {
@@ -87,7 +89,7 @@ def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: 
         "against": family.against,
         "axis": family.axis,
         "expected": family.expected,
-        "runs": [_rounded(asdict(run)) for run in sorted(runs, key=lambda r: (r.size, _place(family.against, r)))],
+        "runs": [asdict(run) for run in runs],
         "reasons": {str(size): reason for size, reason in sorted(reasons.items())},
         "fits": {
             name: {**{k: float(f"{v:.4g}") for k, v in asdict(f).items() if k != "verdict"}, "verdict": f.verdict.value}
@@ -100,6 +102,10 @@ def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: 
 def abscissa(against: str, run: Mapping[str, Any]) -> float:
     """The place of a run, as data, along its family."""
     return float(run["size"] if against == "size" else run["found"][against])
+
+
+def _order(against: str, run: Run) -> tuple[float, ...]:
+    return (run.size, _place(against, run), run.seconds)
 
 
 def _place(against: str, run: Run) -> float:
