@@ -199,29 +199,27 @@ def test_algebra_has_four_or_six_equilibria(monkeypatch: pytest.MonkeyPatch) -> 
     assert {r.found["equilibria"] for r in found} == {4, 6}
 
 
-def test_levels_of_a_certified_map(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Less is undetermined at each level, and boxes add up."""
+def test_certified_maps_within_a_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The boxes are those that the search treated; a smaller tolerance takes more of them."""
     pytest.importorskip("numba")
-    monkeypatch.setattr(families, "TIGHTEST", Fraction(1, 20))
+    from ptmcad.interval import refinement
+
     used: list[int] = []
+    search_curve = refinement.search_curve
 
     def counting(*arguments: Any) -> Any:
         result = search_curve(*arguments)
         used.append(result[2])
         return result
 
-    from ptmcad.interval import refinement
-
-    search_curve = refinement.search_curve
     monkeypatch.setattr(refinement, "search_curve", counting)
-    found = families.levels(1, 1)
-    assert found[-1].found["boxes"] == sum(used)
-    for name in ("one over undetermined", "boxes"):
-        values = [r.found[name] for r in found]
-        assert len(values) > 1
-        assert values == sorted(values)
-        assert len(set(values)) == len(values)
-    assert found[-1].found["one over undetermined"] >= 20
+    boxes = []
+    for size in (5, 200):
+        used.clear()
+        (found,) = families.tolerances(size, 1)
+        assert found.found["boxes"] == sum(used)
+        boxes.append(sum(used))
+    assert boxes[0] < boxes[1]
 
 
 # ---------------------------------------------------------------------------------------------------------------- fits

@@ -32,8 +32,6 @@ KNOWN_DESIGNS = (
     ("0.75609", "1", "1.43487", "0"),
 )
 """rho, L2, l0, load: 12, 26 and 30 equilibria."""
-TIGHTEST = Fraction(1, 4000)
-"""Where the refinement of a certified map ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +48,6 @@ class Family:
     measure : the runs for a size and a seed, in the present process.
     certified : whether it needs the certified engine's compiled code.
     expected : what theory lets expect, for the report.
-    fitted_from : runs below this place are measured but not fitted.
     wall : whether wall time is fitted too, which on a shared machine tells less.
     """
 
@@ -63,7 +60,6 @@ class Family:
     expected: str
     heavy: tuple[int, ...] = ()
     certified: bool = False
-    fitted_from: float = 0.0
     wall: bool = False
 
 
@@ -165,26 +161,24 @@ def certified_window() -> Slice:
     )
 
 
-def levels(size: int, seed: int) -> tuple[Run, ...]:
-    """One certified map, refined level by level: a run for each, from the beginning to the level's end."""
+def tolerances(size: int, seed: int) -> tuple[Run]:
+    """One certified map with the tolerance 1 / size, by one thread."""
     from ptmcad.interval.engine import certified_map
 
     watch = Stages()
-    runs: list[Run] = []
-    treated = 0
+    boxes = 0
 
     def progress(what: str, done: int, total: int) -> None:
-        nonlocal treated
+        nonlocal boxes
         if done == total:  # no box is waiting: a curve is finished at this level
-            treated += done
+            boxes += done
 
-    def reached(share: Fraction) -> None:
-        if share < 1:
-            runs.append(watch.run(size, {"one over undetermined": float(f"{float(1 / share):.4g}"), "boxes": treated}))
-
-    watch.begin("search")
-    certified_map(certified_window(), tolerance=TIGHTEST, jobs=1, progress=progress, reached=reached)
-    return tuple(runs)
+    watch.begin("map")
+    result = certified_map(certified_window(), tolerance=Fraction(1, size), jobs=1, progress=progress)
+    if result.undetermined * size > 1:
+        raise PtmcadError(f"{float(result.undetermined):.3g} is undetermined, more than 1/{size}")
+    rectangles = 0 if result.cover is None else len(result.cover.rectangles)
+    return (watch.run(size, {"boxes": boxes, "rectangles of the cover": rectangles, "cells": len(result.cells)}),)
 
 
 def threads(size: int, seed: int) -> tuple[Run]:
@@ -281,13 +275,13 @@ FAMILIES = (
     Family(
         "tolerance",
         "Tolerance of certified maps",
-        "one over undetermined",
-        "1 / undetermined share of the window",
-        (1,),
-        levels,
-        "a fixed cost, the search for the curves; beyond it 1 for square boxes along them, 1/2 for flat ones",
+        "size",
+        "1 / undetermined share of the window that is allowed",
+        (20, 100, 500, 2500, 12500, 62500),
+        tolerances,
+        "a fixed cost, the search for the curves; beyond it 1 for square boxes along them, 1/2 for flat strips",
+        heavy=(12500, 62500),
         certified=True,
-        fitted_from=20.0,  # before, the curves are being found
     ),
     Family(
         "threads",

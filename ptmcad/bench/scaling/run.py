@@ -81,8 +81,7 @@ def scaling(
 def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: int) -> dict[str, Any]:
     # sorted and rounded as they are stored, so that the stored runs give the stored fits
     runs = [Run(**_rounded(asdict(run))) for run in sorted(runs, key=lambda r: _order(family.against, r))]
-    late = [run for run in runs if _place(family.against, run) >= family.fitted_from]
-    fits = {name: fit(points, seed) for name, points in quantities(family, late)}
+    fits = {name: fit(points, seed) for name, points in quantities(family, runs)}
     return {
         "name": family.name,
         "title": family.title,
