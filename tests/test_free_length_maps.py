@@ -14,7 +14,7 @@ from dense_search import dense_search
 
 import ptmcad
 from ptmcad.config import load, slice_from_options
-from ptmcad.errors import LimitReached
+from ptmcad.errors import DegenerateSliceError, LimitReached
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.slice import Count, Slice
 
@@ -119,6 +119,31 @@ def test_a_limit_leaves_a_map_from_which_the_search_goes_on() -> None:
     partial = stopped.value.partial
     assert isinstance(partial, RegionMap)
     assert partial.status is Status.PARTIAL
+
+
+def test_a_map_that_is_fine_enough_is_not_searched_again() -> None:
+    slice = load(CONFIGS / "fig4.yaml")
+    fine = certified(slice, "1/100")
+    again = ptmcad.classify(slice, engine="certified", tolerance=Fraction(1, 50), resume=fine)
+    assert again.cover == fine.cover
+    assert again.status is Status.CERTIFIED
+    assert [region.area for region in again.regions] == [region.area for region in fine.regions]
+
+
+def test_a_search_that_hardly_begins_keeps_the_map_it_goes_on_from() -> None:
+    slice = load(CONFIGS / "fig4.yaml")
+    known = certified(slice, "1/100")
+    with pytest.raises(LimitReached) as stopped:
+        ptmcad.classify(slice, engine="certified", tolerance=Fraction(1, 10**5), timeout=0.01, resume=known)
+    assert isinstance(stopped.value.partial, RegionMap)
+    assert stopped.value.partial.undetermined <= known.undetermined
+
+
+@pytest.mark.parametrize(("sets", "bar"), [(["L2=rho"], "L2"), (["L1=rho"], "L1")])
+def test_a_slice_that_is_a_crease_has_no_total_counts(sets: list[str], bar: str) -> None:
+    slice = slice_from_options(slice="rho,F", ranges=["F=-10:0"], sets=[*sets, "F3=F", "l0=1/5"], count="total")
+    with pytest.raises(DegenerateSliceError, match=f"rho = {bar}"):
+        ptmcad.classify(slice)
 
 
 @pytest.mark.slow

@@ -12,6 +12,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.errors import DegenerateSliceError
 from ptmcad.interval.formula import Formula, Graph, length
 from ptmcad.interval.mechanism import Mechanism
 from ptmcad.interval.parameters import PHI_UNIT, parameter_formulas, slice_mechanism
@@ -139,6 +140,11 @@ def _creases(slice: Slice) -> Iterator[Curve]:
     for spring, bar in ((1, "L2"), (2, "L1")):
         if values[f"l0_{spring}"].value != 0 and values[f"k{spring}"].value != 0:
             line = values["rho"].squared() - values[bar].squared()
+            if line.value == 0:
+                raise DegenerateSliceError(
+                    f"rho = {bar} everywhere on this slice: spring {spring} has no length in a configuration at each "
+                    "point, so that total counts need not be constant in regions; --count stable has an answer"
+                )
             yield Curve(
                 f"crease l{spring} = 0", f"spring {spring} has no length on a circle", system([line], (0, 1)), ()
             )

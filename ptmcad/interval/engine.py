@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf
@@ -18,7 +18,7 @@ import flint
 import numba
 import numpy as np
 
-from ptmcad.cover import MOST_STEPS, Cover, Rectangle, union_area
+from ptmcad.cover import MOST_STEPS, Cover, Rectangle, components, union_area
 from ptmcad.cover.filling import gathered, simplified
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.interval.assembly import Assembler
@@ -26,7 +26,7 @@ from ptmcad.interval.covering import Lattice, box_rectangles, thinning
 from ptmcad.interval.curves import curves
 from ptmcad.interval.points import point_counter
 from ptmcad.interval.refinement import Enclosure, begin, refine
-from ptmcad.interval.search import Boxes
+from ptmcad.interval.search import Boxes, search_curve
 from ptmcad.interval.statement import plan_of
 from ptmcad.interval.tape import enclosing_floats
 from ptmcad.interval.tiling import COMPILED
@@ -39,7 +39,7 @@ TOLERANCE = Fraction(1, 1000)
 TILES = 8
 """Rectangles along each axis that the search begins with."""
 MOST_TILES = 1000
-"""... or with when it goes on from a cover: every one of them costs a search of all angles."""
+"""... or with at most, when it goes on from a cover that is small: every one of them costs a search of all angles."""
 FIRST_LEVEL, LAST_LEVEL = 4, 40
 """At level n, boxes are bisected until their projection has at most 4^-n of the window's area."""
 LARGEST = Fraction(10**100)
@@ -51,6 +51,8 @@ WITHIN = 100
 """Strips are tried as soon as the boxes leave at most so many times the tolerance undetermined."""
 ENOUGH = 0.5
 """... and used as soon as the finest ones would leave less than this part of it."""
+SECONDS = 3e-5
+"""That a map takes for each rectangle, with its JSON: less, on most machines."""
 STEPS = 2**24
 """Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
 
@@ -120,6 +122,7 @@ class _Run:
         wanted = curves(slice, slice.count)
         self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, resume))
         self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted), _versions())
+        _load(self.enclosures, self.assembler, self.lattice)
         self.handed_over = perf_counter()
         self.slowest = 0.0
         self.seconds["plan"] = perf_counter() - self.started
@@ -127,6 +130,10 @@ class _Run:
     def run(self) -> RegionMap:
         undetermined = Fraction(1)
         tolerance = self.options.tolerance
+        if self.resumed is not None and _share(self.resumed) <= tolerance:
+            result = self.map(self.resumed, Status.CERTIFIED)
+            if result.undetermined <= tolerance:
+                return result
         for level in range(FIRST_LEVEL, LAST_LEVEL):
             start = perf_counter()
             in_time = refine(
@@ -181,7 +188,10 @@ class _Run:
     def partial(self) -> RegionMap:
         """The map so far, with strips as thin as they can be for not many more rectangles than boxes."""
         strips = thinning(self.enclosures, self.lattice, self.options.jobs)
-        cover, known = strips.cover(1.5 * strips.least(), 4 * len(strips.thin)), self.resumed
+        most, deadline = 4 * len(strips.thin), self.options.deadline
+        if deadline is not None:
+            most = min(most, int((deadline - perf_counter()) / (2 * SECONDS)))
+        cover, known = strips.cover(1.5 * strips.least(), most), self.resumed
         if known is not None and _share(known) < _share(cover):
             cover = known
         return self.map(cover, Status.PARTIAL)
@@ -202,7 +212,7 @@ class _Run:
         if deadline is None:
             return None
         boxes = sum(len(e.boxes()) for e in self.enclosures)
-        return deadline - max(1.0, 0.08 * (deadline - self.started), 2 * self.slowest, 5e-5 * boxes)
+        return deadline - max(1.0, 0.08 * (deadline - self.started), 2 * self.slowest, 4 * SECONDS * boxes)
 
     def _report(self, level: int, undetermined: Fraction) -> Callable[[int, int], None] | None:
         progress = self.options.progress
@@ -213,10 +223,23 @@ class _Run:
 
     def _hand_over(self) -> None:
         """Give the map so far to whoever asked for it, but not so often that it would cost much."""
-        partial = self.options.partial
-        if partial is not None and perf_counter() - self.handed_over > 10 * self.seconds["regions"] + 2:
+        partial, until = self.options.partial, self._search_until()
+        if partial is None or (until is not None and perf_counter() + 2 * self.slowest > until):
+            return
+        if perf_counter() - self.handed_over > 10 * self.seconds["regions"] + 2:
             partial(self.partial())
             self.handed_over = perf_counter()
+
+
+def _load(enclosures: Sequence[Enclosure], assembler: Assembler, lattice: Lattice) -> None:
+    """Use all compiled code once: what has to be compiled is so before the search, not at its deadline."""
+    nothing = [Enclosure(enclosure.curve, []) for enclosure in enclosures]
+    components(thinning(nothing, lattice, 1).cover(0.0), COMPILED)
+    for enclosure in nothing:
+        area, weights = 0.0, enclosure.curve.importance()
+        search_curve(enclosure.curve.system.arguments(), enclosure.boxes(), area, 1, weights)
+    (left, right), (bottom, top) = lattice.window
+    assembler.counter.at((left + right) / 2, (bottom + top) / 2, assembler.slice.count, thorough=False)
 
 
 def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
@@ -224,7 +247,8 @@ def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
     if resume is None:
         steps, rectangles = TILES, tuple(sorted(_tiles(), key=lambda tile: _ease(slice, tile), reverse=True))
     else:
-        steps, rectangles = resume.steps, gathered(resume, MOST_TILES).rectangles
+        most = min(Fraction(MOST_TILES), TILES**2 / max(_share(resume), Fraction(1, MOST_TILES)))
+        steps, rectangles = resume.steps, gathered(resume, int(most)).rectangles
     horizontal, vertical = slice.axes
 
     def value(axis_low: Fraction, axis_high: Fraction, step: int, towards: float) -> float:
