@@ -127,9 +127,15 @@ def pose_of(model: Model, state: State, digits: int) -> tuple[Pose, int]:
     """
     rational = _rational_eigenvalue(state)
     bits = 64 + 4 * digits
+    settled: list[Enclosure | None] = []
     while True:
         with ctx.workprec(bits):
-            settled = [n.enclosure(digits) for n in _numbers(model, state, rational)]
+            balls = list(_numbers(model, state, rational))
+            # what a lower precision settled stays as it is
+            settled = [
+                n.enclosure(digits) if known is None else known
+                for n, known in zip(balls, settled or [None] * len(balls), strict=True)
+            ]
         numbers = [n for n in settled if n is not None]
         if len(numbers) == len(settled):
             return _assembled(model, state, iter(numbers)), bits
