@@ -1,0 +1,38 @@
+"""All named stress cases, in the order of their families.
+
+Guarantee: names are unique.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ptmcad.errors import ConfigError
+from ptmcad.expressions import did_you_mean
+from ptmcad.stress.case import Case
+from ptmcad.stress.points import point_cases
+from ptmcad.stress.slices import slice_cases
+
+
+def named_cases() -> tuple[Case, ...]:
+    """Every named case."""
+    return (*point_cases(), *slice_cases())
+
+
+def chosen(names: Sequence[str]) -> tuple[Case, ...]:
+    """The cases of these names and families, all of them when none is given.
+
+    Raises
+    ------
+    ConfigError
+        For a name that is neither.
+    """
+    cases = named_cases()
+    known = {case.name for case in cases} | {case.family for case in cases}
+    for name in names:
+        if name not in known:
+            raise ConfigError(
+                f"{name!r} is no stress case and no family{did_you_mean(name, sorted(known))}; see ptmcad stress --list",
+                key="NAMES",
+            )
+    return tuple(case for case in cases if not names or case.name in names or case.family in names)
