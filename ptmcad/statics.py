@@ -184,6 +184,8 @@ def _degrees(angle: _Number, cosine: Element) -> _Number:
     if cosine.rational == -1:
         return _Number(Fraction(180), arb(180))
     turns = angle.ball / (2 * arb.pi())
+    if turns.rel_accuracy_bits() < ctx.prec // 2:
+        return _Number(None, arb.nan())  # a wide ball holds many fractions, and each is tried by algebra
     for order in _ORDERS:
         number = (turns * order).unique_fmpz()
         # other fractions are in lowest terms with a smaller order, and 0 and 1/2 are where the sine is zero
@@ -222,7 +224,7 @@ def _rational_eigenvalue(state: State) -> Fraction | None:
             holds = q * q - q * trace[0] + determinant[0] == 0 and all(
                 q * a == b for a, b in zip(trace[1:], determinant[1:], strict=True)
             )
-            return q if holds else None
+            return Fraction(int(q.p), int(q.q)) if holds else None
     return None
 
 

@@ -91,7 +91,8 @@ def region_areas(
     digits = len(str(tolerance.denominator // tolerance.numerator))
     width = base[1] - base[0]
     strip = fmpq(1, 10 ** (digits + 3) * 4)
-    bits = 64 + 6 * digits + max((int(q.height_bits()) for c in curves for q in c.in_v), default=0) // 2
+    # at first not much more for long coefficients: where they cancel, `branch_integral` says so, and arcs may do
+    bits = 64 + 6 * digits + min(max((int(q.height_bits()) for c in curves for q in c.in_v), default=0) // 2, _LONG)
     bits += _bits_lost(base) + _bits_lost(fibre)
     narrowest = min(map(_isolated, stacks))
     finer, even = 20, True
@@ -132,6 +133,8 @@ _PATIENT = 5
 """Cuts by half towards a turning point before they come faster."""
 _FASTEST = 10
 """The fastest cut is to the part 2^-32 of a panel."""
+_LONG = 128
+"""Bits granted at first to long coefficients."""
 _AT_FIRST = 20
 """Bits to which the height of a branch is asked for before the regions' areas are known roughly."""
 

@@ -176,9 +176,10 @@ def _petal(x: Fraction, y: Fraction) -> PointAnswer:
 
 def _nodes() -> Iterator[Case]:
     """The rose and the astroid touch at x = y = 1/sqrt 2, where four regions with three different counts meet."""
-    node = Fraction(isqrt(2 * 10**160), 2 * 10**80)
     for e in (-6, -15, -30):
-        d = ten(e)
+        # the curves are about d^2 apart at the distance d, so that the node's digits have to reach beyond that
+        digits = 10 - 2 * e
+        node, d = Fraction(isqrt(2 * 100**digits), 2 * 10**digits), ten(e)
         for name, x, y in (
             ("right", node + d, node - d), ("left", node - d, node + d),
             ("inner", node - d, node - d), ("outer", node + d, node + d),
