@@ -168,7 +168,11 @@ def _areas(
     by_component = {c.component: c for c in curves}
     widths = [_isolated(stack) for stack in stacks]
     narrower = [min(a, b) for a, b in pairwise(widths)]
-    sides = zip(widths, widths, strict=True) if strips[1] else zip((widths[0], *narrower), (*narrower, widths[-1]), strict=True)
+    sides = (
+        zip(widths, widths, strict=True)
+        if strips[1]
+        else zip((widths[0], *narrower), (*narrower, widths[-1]), strict=True)
+    )
     spans = [_span(s, a * strips[0], b * strips[0]) for s, (a, b) in zip(stacks, sides, strict=True)]
     gaps = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0))
     fixed = _edges(spans, regions, fibre, count)
@@ -279,7 +283,7 @@ def _halves(p: _Panel, fibre: Interval, effort: _Effort, wanted: fmpq) -> tuple[
     A branch that turns at an end is cut nearer and nearer to that end. When this has gone well for some times, the cuts
     come so fast that a turn which is many orders of magnitude smaller than the panel is reached in a few steps.
     """
-    share = fmpq(1, 2 ** 2 ** max(0, abs(p.singular) - _PATIENT))
+    share = fmpq(1, 2**2 ** max(0, abs(p.singular) - _PATIENT))
     if p.singular > 0:
         share = 1 - share
     margin = (p.high - p.low) * min(share, 1 - share) / 8

@@ -58,13 +58,13 @@ def _family(axes: Axes, family: str, outcomes: Sequence[Outcome]) -> None:
         linestyle="none", marker="_", markersize=7, color=OURS,
     )  # fmt: skip
     axes.set_ylim(FLOOR / 10, 30)
-    axes.set_yticks([1e-20, 1e-15, 1e-10, 1e-5, 1])
+    axes.set_yticks([1e-20, 1e-15, 1e-10, 1e-5, 1], ["1e-20", "1e-15", "1e-10", "1e-5", "1"])
     axes.minorticks_off()
-    axes.margins(x=0.12)
+    axes.margins(x=0.15)
     axes.set_title(family, fontsize=10)
     axes.tick_params(labelsize=8)
     axes.xaxis.set_major_formatter(lambda value, _: f"1e{value:g}")
-    axes.locator_params(axis="x", nbins=5, integer=True)
+    axes.locator_params(axis="x", nbins=4, integer=True)
     axes.grid(True, color="#dddddd", linewidth=0.5)
 
 

@@ -78,7 +78,7 @@ class PointAnswer:
 class MapAnswer:
     """Stable counts of the regions, in increasing order, and bounds for the area where two equilibria are stable.
 
-    ``at_least`` says that regions may be more than those (their counts as a set are right, though).
+    Of a certified map only the different counts are compared: what it leaves open may part a region.
     """
 
     stable: tuple[int, ...]

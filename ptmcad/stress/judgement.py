@@ -15,11 +15,11 @@ from ptmcad.enclosure import Enclosure
 from ptmcad.poses import Pose, Poses
 from ptmcad.ranges.line import CountIntervals, lower, upper
 from ptmcad.regionmap import RegionMap, Status
+from ptmcad.slice import FREE_LENGTHS, Slice
 from ptmcad.stress.case import Case, LineAnswer, LineQuestion, MapAnswer, MapQuestion, PointAnswer, PointQuestion
 from ptmcad.stress.doubles import DoublePose, angle_error, double_poses, scale
 from ptmcad.stress.measure import Verdict, as_float
 from ptmcad.stress.reference import ReferencePose, newton_pose, sextic_poses
-from ptmcad.slice import FREE_LENGTHS, Slice
 
 GRID = 16
 """Points along each axis of a map at which double precision is asked."""
@@ -105,9 +105,7 @@ def _overlap(a: ReferencePose, b: ReferencePose) -> bool:
     )
 
 
-def _matched(
-    poses: Sequence[Pose], reference: Sequence[ReferencePose]
-) -> list[tuple[Pose, ReferencePose]] | None:
+def _matched(poses: Sequence[Pose], reference: Sequence[ReferencePose]) -> list[tuple[Pose, ReferencePose]] | None:
     """Each pose with the reference that lies in its enclosures and has its index; None when some has none."""
     left = list(reference)
     pairs = []

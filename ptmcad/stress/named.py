@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, shown
 from ptmcad.expressions import did_you_mean
 from ptmcad.stress.case import Case
 from ptmcad.stress.points import point_cases
@@ -32,7 +32,8 @@ def chosen(names: Sequence[str]) -> tuple[Case, ...]:
     for name in names:
         if name not in known:
             raise ConfigError(
-                f"{name!r} is no stress case and no family{did_you_mean(name, sorted(known))}; see ptmcad stress --list",
+                f"{shown(repr(name), 60)} is no stress case and no family: ptmcad stress --list shows them"
+                f"{did_you_mean(name, sorted(known))}",
                 key="NAMES",
             )
     return tuple(case for case in cases if not names or case.name in names or case.family in names)

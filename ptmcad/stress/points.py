@@ -96,7 +96,9 @@ def _flat() -> Iterator[Case]:
     for e in (-3, -6, -9, -12):
         question = point(L2=1, rho=ten(e), F3=-10, F4=-10)
         sibling = point(L2=1, rho="1/2", F3=-10, F4=-10)
-        yield Case(f"short-base-1e{e}", "short base", ten(e), question, sibling, _petal(2 * ten(e), Fraction(1, 10)), PETALS)
+        yield Case(
+            f"short-base-1e{e}", "short base", ten(e), question, sibling, _petal(2 * ten(e), Fraction(1, 10)), PETALS
+        )
     yield Case("short-base-paper-1e-12", "short base", ten(-12), point(rho=ten(-12), F3=-10, F4=-10), TAME,
                PointAnswer(), SECOND)  # fmt: skip
 
@@ -178,7 +180,7 @@ def _nodes() -> Iterator[Case]:
     """The rose and the astroid touch at x = y = 1/sqrt 2, where four regions with three different counts meet."""
     for e in (-6, -15, -30):
         # the curves are about d^2 apart at the distance d, so that the node's digits have to reach beyond that
-        digits = 10 - 2 * e
+        digits = 4 - 2 * e
         node, d = Fraction(isqrt(2 * 100**digits), 2 * 10**digits), ten(e)
         for name, x, y in (
             ("right", node + d, node - d), ("left", node - d, node + d),

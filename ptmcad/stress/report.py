@@ -78,7 +78,9 @@ def listing(cases: Sequence[Case]) -> str:
     """Name, family, question and source of each case."""
     rows = [(c.name, c.family, question_text(c), c.source) for c in cases]
     widths = [max((len(row[k]) for row in rows), default=0) for k in range(3)]
-    return "\n".join("  ".join([*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3]]) for row in rows)
+    return "\n".join(
+        "  ".join([*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3]]) for row in rows
+    )
 
 
 def question_text(case: Case) -> str:
