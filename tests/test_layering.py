@@ -90,7 +90,7 @@ def test_only_render_imports_matplotlib(path: Path) -> None:
 
 @pytest.mark.parametrize("path", MODULES, ids=relative)
 def test_flint_stays_in_the_exact_engine(path: Path) -> None:
-    """FLINT's numbers and balls are used where counts are made; its polynomials in algebra/, and where it is checked."""
+    """FLINT's numbers and balls are used where counts are made; its polynomials in algebra/ and in its checks."""
     names = {name for module, name in imports(path) if module.partition(".")[0] == "flint"}
     used = {
         node.attr

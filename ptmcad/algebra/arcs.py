@@ -1,4 +1,4 @@
-"""Branches of a plane curve between two parabolic arcs: proved enclosures of their integrals where branches nearly meet.
+"""Branches of a plane curve between parabolic arcs: proved enclosures of their integrals where branches nearly meet.
 
 Guarantee: an enclosure that is returned contains the integral of the branch that was asked for; None means not proved.
 

@@ -1,7 +1,7 @@
 """The plot of a stress campaign: the error of double precision against what is extreme, family by family.
 
-Guarantee: every point that has an error is drawn; where the count of double precision is wrong it is drawn as such, also
-where no error exists.
+Guarantee: every point that has an error is drawn; where the count of double precision is wrong it is drawn as such,
+also where no error exists.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import log10
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -32,8 +33,9 @@ def draw_stress(outcomes: Sequence[Outcome]) -> Figure:
         figure = Figure(figsize=(12, 2.6 * rows + 1.1), layout="constrained")
         wrong = sum(not o.verdict.double_right for o in points)
         title = "Error of double precision against what is extreme"
-        figure.set_label(f"{title}\n{len(points)} cases; the count of double precision is wrong in {wrong}, ptmcad's in "
-                         f"{sum(not o.verdict.right for o in points)}.")  # fmt: skip
+        ours = sum(not o.verdict.right for o in points)
+        told = f"{len(points)} cases; the count of double precision is wrong in {wrong}, ptmcad's in {ours}."
+        figure.set_label(f"{title}\n{told}")
         figure.suptitle(title, fontsize=13)
         axes = [figure.add_subplot(rows, COLUMNS, k + 1) for k in range(len(families))]
         for k, (family, place) in enumerate(zip(families, axes, strict=True)):
@@ -68,10 +70,10 @@ def _family(axes: Axes, family: str, outcomes: Sequence[Outcome]) -> None:
     axes.grid(True, color="#dddddd", linewidth=0.5)
 
 
-def _legend(axes: Axes) -> tuple[list[object], list[str]]:
+def _legend(axes: Axes) -> tuple[list[Artist], list[str]]:
     shown = ((RIGHT, "o", "double precision, count right"), (WRONG, "X", "double precision, count wrong"),
              (OURS, "_", "ptmcad, middle of the enclosure"))  # fmt: skip
-    handles: list[object] = [
+    handles: list[Artist] = [
         axes.plot([], [], linestyle="none", marker=marker, color=colour, markersize=7)[0] for colour, marker, _ in shown
     ]
     return handles, [label for _, _, label in shown]

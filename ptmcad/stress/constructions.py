@@ -64,7 +64,7 @@ def fold(lengths: tuple[Fraction, Fraction], rho: Fraction, springs: tuple[Fract
         When the pose is on no fold: a cosine, h11 or the third derivative along the kernel is zero.
     """
     first, second = lengths
-    k1, k2, k3 = springs
+    _, k2, k3 = springs
     c1, s1, c2, s2 = pose
     c12, s12 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2
     a1 = (k2 + k3) * rho
@@ -84,7 +84,7 @@ def fold(lengths: tuple[Fraction, Fraction], rho: Fraction, springs: tuple[Fract
 
 
 def beside_fold(at: Degenerate, distance: Fraction) -> Parameters:
-    """The parameters with F3 changed by this much, relative to the force k2 rho; positive is towards more equilibria."""
+    """The parameters with F3 changed by so many times the force k2 rho; positive is towards more equilibria."""
     p = at.parameters
     return {**p, "F3": p["F3"] + at.side * distance * p["k2"] * p["rho"]}
 
@@ -112,7 +112,7 @@ def cusp(lengths: tuple[Fraction, Fraction], rho: Fraction, springs: tuple[Fract
 def beside_cusp(at: Degenerate, distance: Fraction) -> Parameters:
     """The parameters with h22 changed by this much, relative to k3 L2^2, the pose being kept an equilibrium."""
     p = at.parameters
-    c1, s1, c2, s2 = at.pose
+    _, _, c2, s2 = at.pose
     change = at.side * distance * p["k3"] * p["L2"]  # of h22 / L2
     # h22 / L2 = (a2 - k3 L1 c1) / c2 and F4 = (a2 s2 - k3 L1 s12) / c2
     shift = change * c2

@@ -160,8 +160,8 @@ def _double_error(double: Sequence[DoublePose], reference: Sequence[ReferencePos
 def _condition(parameters: dict[str, Fraction], poses: Sequence[Pose]) -> float | None:
     """The largest condition number, as the module `ptmcad.stress.measure` defines it."""
     largest = Fraction(scale({name: float(value) for name, value in parameters.items()}))
-    smallest = [min(abs(e.center) for e in pose.eigenvalues) for pose in poses]
-    return as_float(largest / min(smallest)) if smallest and min(smallest) else None
+    smallest = min((abs(e.center) for pose in poses for e in pose.eigenvalues), default=Fraction(0))
+    return as_float(largest / smallest) if smallest else None
 
 
 # ------------------------------------------------------------------------------------------------------ maps, lines
@@ -217,7 +217,7 @@ def _counts_of(slice: Slice, at: Sequence[Fraction]) -> tuple[int, int]:
 
 
 def _double_on_grid(found: RegionMap) -> tuple[float, set[int]]:
-    """The share of a grid's decided points at which double precision has another stable count, and the counts it has."""
+    """The share of a grid's decided points with another stable count in double precision, and the counts it has."""
     x, y = found.slice.axes
     wrong = decided = 0
     seen: set[int] = set()

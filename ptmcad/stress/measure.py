@@ -18,6 +18,7 @@ from statistics import median
 from time import process_time
 from typing import Any
 
+from ptmcad.poses import DIGITS
 from ptmcad.stress.case import Case, LineQuestion, MapQuestion, PointQuestion, Question
 
 
@@ -93,7 +94,7 @@ def answer(question: Question, name: str = "case") -> Any:
     import ptmcad
 
     if isinstance(question, PointQuestion):
-        return ptmcad.solve(**question.parameters)
+        return ptmcad.solve(DIGITS, **question.parameters)
     slice = ptmcad.slice_from_mapping(question.record(name))
     if isinstance(question, LineQuestion):
         return ptmcad.intervals(slice, question.along, question.at)

@@ -33,7 +33,7 @@ def chosen(names: Sequence[str]) -> tuple[Case, ...]:
         if name not in known:
             raise ConfigError(
                 f"{shown(repr(name), 60)} is no stress case and no family: ptmcad stress --list shows them"
-                f"{did_you_mean(name, sorted(known))}",
+                f"{did_you_mean(name, tuple(sorted(known)))}",
                 key="NAMES",
             )
     return tuple(case for case in cases if not names or case.name in names or case.family in names)

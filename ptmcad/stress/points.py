@@ -22,6 +22,9 @@ NO_LOAD = f"limit of no load; {THEOREM}"
 MUCH_LOAD = "limit of large loads: each bar points along its load or against it, four equilibria, one stable"
 SCALING = "scaling: the equations are those of the sibling"
 SECOND = "second method: roots of the sextic isolated to 100 digits with proof"
+ELIMINATION = (
+    "scaling: the equations are those of l0 = 1/5, where elimination leaves 94 real roots, six of them equilibria"
+)
 CONSTRUCTED = "construction of a degenerate pose in rational numbers, and on which side of it two more exist"
 PETALS = "the rose and the astroid of the symmetric slice, evaluated exactly"
 SIX, SLIVER, FOUR = PointAnswer(6, 2), PointAnswer(6, 1), PointAnswer(4, 1)
@@ -209,7 +212,8 @@ def _long_numbers() -> Iterator[Case]:
 def _unequal_springs() -> Iterator[Case]:
     for e in (-12, -6, 6, 12):
         for name in ("k1", "k3"):
-            question = point(**{"k": 100, name: 100 * ten(e), "F3": -10, "F4": -10})
+            stiff = {name: 100 * ten(e)}
+            question = point(k=100, F3=-10, F4=-10, **stiff)
             yield Case(f"springs-{name}-1e{e}", "springs", ten(e), question, TAME, PointAnswer(), SECOND)
 
 
@@ -219,8 +223,8 @@ def _free_lengths() -> Iterator[Case]:
     for e in (-12, -9, -6, -3):
         yield Case(f"free-length-1e{e}", "free length", ten(e), point(l0=ten(e), F3=-10, F4=-10), sibling, SIX, limit)
     proved = (
-        "second method: as many equilibria as are proved to exist by Newton's method in balls from a grid of starts, and "
-        "Euler's sum with the two cones"
+        "second method: as many equilibria as Newton's method in balls, from a grid of starts, proves to exist, and "
+        "Euler's sum with the cones"
     )
     for e in (1, 2, 3):
         yield Case(f"free-length-1e{e}", "free length", ten(e), point(l0=ten(e), F3=-10, F4=-10), sibling,
@@ -228,7 +232,6 @@ def _free_lengths() -> Iterator[Case]:
     for e in (-12, 12):
         s = ten(e)
         question = point(k=100 * s, l0="1/5", F3=-10 * s, F4=-10 * s)
-        yield Case(f"free-length-units-1e{e}", "free length", s, question, sibling, SIX, f"{SCALING}, which has (6, 2) at "
-                   "l0 = 1/5 by elimination (28 equations' degree, 94 real roots)")  # fmt: skip
+        yield Case(f"free-length-units-1e{e}", "free length", s, question, sibling, SIX, ELIMINATION)
     question = point(l0="1/5", F3=-10 * ten(-12), F4=-10 * ten(-12))
     yield Case("free-length-forces-1e-12", "free length", ten(-12), question, sibling, PointAnswer(), proved)

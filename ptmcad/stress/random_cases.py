@@ -37,7 +37,7 @@ def random_case(seed: int, number: int) -> Case:
         return Case(name, f"random {kind}", ten(exponent), question, sibling, PointAnswer(*counts), CONSTRUCTED)
     original, expected = _tame(dice)
     exponent = dice.choice([-1, 1]) * dice.randint(3, LARGEST)
-    moved = {"scaled": dict, "mirrored": mirrored, "swapped": swapped}[kind](original)
+    moved = mirrored(original) if kind == "mirrored" else swapped(original) if kind == "swapped" else original
     # springs and forces together, then lengths together with forces
     stretch = dice.randint(-9, 9)
     question = PointQuestion(stretched(stiffened(moved, ten(exponent)), ten(stretch)))

@@ -22,6 +22,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 from flint import arb, ctx, fmpq, fmpq_poly
 
@@ -96,21 +97,24 @@ def _candidates(p: Mapping[str, fmpq]) -> list[_Candidate] | None:
     for factor, multiplicity in sextic.numer().factor()[1]:
         of_factor = fmpq_poly(factor)
         both = (above % of_factor).degree() < 0 and (below % of_factor).degree() < 0
-        for root, _ in factor.complex_roots():
-            if root.imag != 0:
-                continue
+        for root in _real_roots(factor):
             if multiplicity != (2 if both else 1):
                 raise Degenerate("the sextic has a multiple root")
             if both and (length % of_factor).degree() < 0:
                 raise Degenerate("the first equation leaves th1 free")
             if both:
-                found += [_Candidate(root.real, 1), _Candidate(root.real, -1)]
+                found += [_Candidate(root, 1), _Candidate(root, -1)]
                 continue
-            sign = _sign(_at(above, root.real) * _at(below, root.real))
+            sign = _sign(_at(above, root) * _at(below, root))
             if sign == 0:
                 return None
-            found.append(_Candidate(root.real, sign))
+            found.append(_Candidate(root, sign))
     return found
+
+
+def _real_roots(factor: Any) -> list[arb]:
+    """The real roots of an irreducible polynomial over Z, isolated with proof at the context's precision."""
+    return [root.real for root, _ in factor.complex_roots() if root.imag == 0]
 
 
 def _at(polynomial: fmpq_poly, t: arb) -> arb:

@@ -78,8 +78,10 @@ def _tiny_windows() -> Iterator[Case]:
         ("fold", FOLD, beside_fold, ("F3", "rho")), ("cusp", CUSP, beside_cusp, ("F4", "F4x")),
     ):  # fmt: skip
         p = dict(at.parameters)
-        tame = MapQuestion(_without(p, axes), _around(Fraction(10), **{n: p[n] for n in axes})
-                           if name == "cusp" else _window(F3=(p["F3"] - 10, p["F3"] + 10), rho=(ZERO, TWO)))  # fmt: skip
+        wide = _window(F3=(p["F3"] - 10, p["F3"] + 10), rho=(ZERO, TWO))
+        if name == "cusp":
+            wide = _around(Fraction(10), F4=p["F4"], F4x=p["F4x"])
+        tame = MapQuestion(_without(p, axes), wide)
         question = MapQuestion(_without(p, axes), _around(w, **{n: p[n] for n in axes}))
         yield Case(f"window-{name}-1e-20", "windows", w, question, tame, MapAnswer((1, 2)), CONSTRUCTED, slow=True)
         moved = dict(beside(at, Fraction(1, 1000)))
@@ -87,22 +89,24 @@ def _tiny_windows() -> Iterator[Case]:
         yield Case(f"window-beside-{name}-1e-20", "windows", w, away, tame, MapAnswer((2,)), CONSTRUCTED)
     digits = Fraction(1234567891234567891234567891234567891234, 10**40)
     long = MapQuestion({"F3": -10 + ten(-40), "F4": -10 - digits * ten(-30)}, SQUARE)
-    yield Case("map-digits-40", "maps", ten(40), long, FIG4, MapAnswer((1, 2), (Fraction("0.74638"), Fraction("0.746381"))),
-               f"the sibling's answer changes by less than 1e-9: {PAPER}", slow=True)  # fmt: skip
+    area = (Fraction("0.74638"), Fraction("0.746381"))
+    source = f"the sibling's answer changes by less than 1e-9: {PAPER}"
+    yield Case("map-digits-40", "maps", ten(40), long, FIG4, MapAnswer((1, 2), area), source, slow=True)
 
 
 def _certified_maps() -> Iterator[Case]:
     share = Fraction(1, 10)
+    window = _window(rho=(Fraction(1, 2), TWO), L2=(Fraction(1, 2), TWO))
     sibling = MapQuestion(
         {**LOADED, "l0": Fraction(1, 5)}, _window(rho=(Fraction(1, 2), TWO), L2=(Fraction(1, 2), TWO)), share
     )
     for e in (-12, 12):
         s = ten(e)
-        question = MapQuestion({"k": 100 * s, "F3": -10 * s, "F4": -10 * s, "l0": Fraction(1, 5)}, sibling.axes, share)
+        question = MapQuestion({"k": 100 * s, "F3": -10 * s, "F4": -10 * s, "l0": Fraction(1, 5)}, window, share)
         yield Case(
             f"certified-units-1e{e}", "certified maps", s, question, sibling, MapAnswer((1, 2)), SCALING, slow=True
         )
-    question = MapQuestion({**LOADED, "l0": ten(-12)}, sibling.axes, share)
+    question = MapQuestion({**LOADED, "l0": ten(-12)}, window, share)
     yield Case("certified-free-length-1e-12", "certified maps", ten(-12), question, sibling, MapAnswer((1, 2)),
                f"limit of free lengths zero: {PAPER}", slow=True)  # fmt: skip
 
@@ -122,17 +126,17 @@ def _lines() -> Iterator[Case]:
                                 "rho", {"L2": 3 * s / 2})  # fmt: skip
         scaled = tuple((low * s, high * s) for low, high in ends)
         yield Case(f"line-units-length-1e{e}", "lines", s, question, tame, LineAnswer((1, 2, 1), scaled), paper)
+    straight = LineQuestion({}, window, "rho", {"L2": Fraction(3, 2)})
     for e in (-20, -30):
         second = 1 + ten(e)
         question = LineQuestion({}, window, "rho", {"L2": second})
         exact = ((ten(e) / 2,) * 2, ((second + 1) / 2,) * 2)
-        yield Case(f"line-symmetry-1e{e}", "lines", ten(e), question, LineQuestion({}, window, "rho", {"L2": Fraction(3, 2)}),
-                   LineAnswer((1, 2, 1), exact), THEOREM)  # fmt: skip
+        answer = LineAnswer((1, 2, 1), exact)
+        yield Case(f"line-symmetry-1e{e}", "lines", ten(e), question, straight, answer, THEOREM)
     digits = Fraction(1234567891234567891234567891234567891234, 10**40)
     question = LineQuestion({}, window, "rho", {"L2": 1 + digits})
     exact = ((digits / 2,) * 2, ((2 + digits) / 2,) * 2)
-    yield Case("line-digits-40", "lines", ten(40), question, LineQuestion({}, window, "rho", {"L2": Fraction(3, 2)}),
-               LineAnswer((1, 2, 1), exact), THEOREM)  # fmt: skip
+    yield Case("line-digits-40", "lines", ten(40), question, straight, LineAnswer((1, 2, 1), exact), THEOREM)
 
 
 def _window(**axes: tuple[Fraction, Fraction]) -> dict[str, tuple[Fraction, Fraction]]:
