@@ -20,9 +20,11 @@ from flint import fmpq, fmpz, fmpz_poly
 
 _SHIFT = fmpz_poly([1, 1])
 _PATIENCE = 50
-"""Cuts without a change of Descartes' bound after which `isolate` asks whether its polynomial is squarefree."""
+"""Cuts without a change of Descartes' bound after which `isolate` asks at the latest whether p is squarefree."""
 _TOGETHER = 3
 """Cuts without such a change after which the roots are taken for a cluster."""
+_FAST = 6
+"""Steps to a cluster that are longer than 2^64 are taken only when the polynomial is known to be squarefree."""
 _SLOWEST = 2
 """The first step to a cluster is to a quarter of the interval; each further one is twice as many bits long."""
 
@@ -126,7 +128,7 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
             found.append((low + width * part.left, low + width * (part.left + part.width)))
             continue
         unchanged = part.unchanged + 1 if bound == part.bound else 0
-        if not asked and unchanged >= _PATIENCE:
+        if not asked and (unchanged >= _PATIENCE or part.speed > _FAST):
             asked = True
             if p.gcd(p.derivative()).degree() > 0:
                 raise ValueError(f"a polynomial of degree {p.degree()} is not squarefree")

@@ -19,7 +19,7 @@ FIG4 = MapQuestion(LOADED, SQUARE)
 FIG2 = MapQuestion({}, {"L2": (ZERO, Fraction(4)), "rho": (ZERO, Fraction(4))})
 FIG4_AREA = (Fraction("0.74638067"), Fraction("0.74638068"))
 """Of two stable equilibria in the window of the paper's fig. 4; see the manual."""
-ASTROID = "limit of a long bar 2: it stays level, and two are stable where |2 rho - L2|^(2/3) + |(F3 + F4)/k|^(2/3) < L1^(2/3)"
+ASTROID = "limit of a long bar 2: and two are stable where |2 rho - L2|^(2/3) + |f3 + f4|^(2/3) < L1^(2/3)"
 PAPER = "the paper's fig. 4, whose area is known by two other programs"
 
 
