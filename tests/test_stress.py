@@ -27,7 +27,7 @@ from ptmcad.stress.points import CUSP, FOLD, MAXIMUM_CUSP, MAXIMUM_FOLD, OTHER_F
 from ptmcad.stress.random_cases import KINDS, mirrored, random_case, stiffened, stretched, swapped
 from ptmcad.stress.reference import Degenerate as DegeneratePoint
 from ptmcad.stress.reference import newton_pose, sextic_poses
-from ptmcad.stress.report import to_csv, to_json
+from ptmcad.stress.report import markdown, to_csv, to_json
 
 CASES = named_cases()
 MARKED = [pytest.param(c, id=c.name, marks=[pytest.mark.slow] if c.slow else []) for c in CASES]
@@ -231,6 +231,9 @@ def test_the_record_holds_every_figure() -> None:
     first, second = document["cases"]
     assert (first["expected"], first["found"], first["double"], first["right"]) == ("6/2", "6/2", "6/2", True)
     assert second["double_error"] is None  # no pose at all
+    page = markdown(found)
+    assert "| symmetry-inside-1e-20 | 6/2 | 6/2 | none wrong | - |" in page
+    assert "double precision is wrong in 1" in page
     rows = list(csv.DictReader(to_csv(found).splitlines()))
     assert [row["name"] for row in rows] == ["units-force-1e12", "symmetry-inside-1e-20"]
     assert rows[1]["double_error"] == ""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ptmcad.stress.campaign import Campaign
     from ptmcad.stress.case import Case
 
-FORMATS = ("table", "json", "csv", "png", "svg")
+FORMATS = ("table", "json", "csv", "md", "png", "svg")
 NAME = "stress"
 GRACE = 60.0
 """Seconds after the time limit for the case that is being run, before the process is ended from outside."""
@@ -34,13 +34,15 @@ def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> None:
     OutputError
         When a file can not be written.
     """
-    from ptmcad.stress.report import to_csv, to_json
+    from ptmcad.stress.report import markdown, to_csv, to_json
 
     name = NAME if found.complete else f"{NAME}.partial"
     writers: dict[str, Writer] = {}
     for suffix in formats:
         if suffix == "csv":
             writers[f"{name}.csv"] = text_writer(to_csv(found))
+        elif suffix == "md":
+            writers[f"{name}.md"] = text_writer(markdown(found))
         elif suffix in ("png", "svg"):
             writers[f"{name}.{suffix}"] = partial(_draw, found)
     if "json" in formats:
@@ -83,9 +85,9 @@ def command(
 ) -> int:
     """Run stiff and extreme cases: springs, lengths and forces of very different size, points next to folds and cusps.
 
-    NAMES are cases or families, all of them when none is given. Each case has an answer that is known beforehand, from
+    NAMES are cases or families, or all; without any, all are run. Each case has an answer that is known beforehand, from
     a theorem, a construction or a second method; ptmcad's poses are held against 100 digits, and what double precision
-    makes of the same question is shown beside. Writes stress.json, .csv, .png and .svg. The exit status is 1 when
+    makes of the same question is shown beside. Writes stress.json, .csv, .png and .svg (and .md when asked for). The exit status is 1 when
     ptmcad is wrong anywhere, or undecided.
 
     \b
@@ -93,6 +95,7 @@ def command(
         ptmcad stress --list
         ptmcad stress stiffness fold-many-1e-30 --format table
         ptmcad stress --random 100 --seed 7 --format table
+        ptmcad stress all --random 100
     """
     from ptmcad.stress.named import chosen  # the cases' numbers need no library
 

@@ -14,13 +14,17 @@ from ptmcad.stress.points import point_cases
 from ptmcad.stress.slices import slice_cases
 
 
+ALL = "all"
+"""The name that stands for every named case."""
+
+
 def named_cases() -> tuple[Case, ...]:
     """Every named case."""
     return (*point_cases(), *slice_cases())
 
 
 def chosen(names: Sequence[str]) -> tuple[Case, ...]:
-    """The cases of these names and families, all of them when none is given.
+    """The cases of these names and families; all of them for ``all`` and when none is given.
 
     Raises
     ------
@@ -28,7 +32,7 @@ def chosen(names: Sequence[str]) -> tuple[Case, ...]:
         For a name that is neither.
     """
     cases = named_cases()
-    known = {case.name for case in cases} | {case.family for case in cases}
+    known = {case.name for case in cases} | {case.family for case in cases} | {ALL}
     for name in names:
         if name not in known:
             raise ConfigError(
@@ -36,4 +40,4 @@ def chosen(names: Sequence[str]) -> tuple[Case, ...]:
                 f"{did_you_mean(name, tuple(sorted(known)))}",
                 key="NAMES",
             )
-    return tuple(case for case in cases if not names or case.name in names or case.family in names)
+    return tuple(c for c in cases if not names or ALL in names or c.name in names or c.family in names)

@@ -1,4 +1,4 @@
-"""A campaign as text: a table for the terminal or the manual, JSON and CSV.
+"""A campaign as text: a table for the terminal, a page for the manual, JSON and CSV.
 
 Guarantee: JSON and CSV hold every figure; a number that does not exist is null or empty, never 0.
 """
@@ -49,12 +49,31 @@ def table(campaign: Campaign) -> str:
     return "\n".join([*lines, "", *summary(campaign)])
 
 
-def markdown(campaign: Campaign, outcomes: Sequence[Outcome]) -> str:
-    """Some outcomes as a Markdown table, without times: they are the same in every run."""
+def markdown(campaign: Campaign) -> str:
+    """The campaign as a Markdown page, one table for each family.
+
+    Times are left out, so that the same versions write the same page; the work beside its sibling's stands for them.
+    """
     kept = [k for k, name in enumerate(HEADINGS) if name not in ("ms", "x tame")]
-    rows = [tuple(HEADINGS[k] for k in kept), ("---",) * len(kept)]
-    rows += [tuple(cells(o)[k] for k in kept) for o in outcomes]
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows) + "\n"
+    names = [*(HEADINGS[k] for k in kept), "work x tame"]
+    wrong, total = len(campaign.double_wrong), len(campaign.outcomes)
+    lines = [
+        "# The stress cases, one by one",
+        "",
+        f"Written by `ptmcad stress` with seed {campaign.seed}. ptmcad is right in {total - len(campaign.wrong)} of {total} "
+        f"cases; double precision is wrong in {wrong}. [What is tried, and what the columns mean](../stress.md).",
+    ]
+    for family in dict.fromkeys(o.case.family for o in campaign.outcomes):
+        lines += ["", f"## {family[0].upper()}{family[1:]}", "", _row(names), _row(["---"] * len(names))]
+        for outcome in campaign.outcomes:
+            if outcome.case.family == family:
+                row = cells(outcome)
+                lines.append(_row([*(row[k] for k in kept), f"{outcome.cost.work_ratio:.2g}"]))
+    return "\n".join(lines) + "\n"
+
+
+def _row(texts: Sequence[str]) -> str:
+    return f"| {' | '.join(texts)} |"
 
 
 def summary(campaign: Campaign) -> Iterable[str]:
