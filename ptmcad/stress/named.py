@@ -13,7 +13,6 @@ from ptmcad.stress.case import Case
 from ptmcad.stress.points import point_cases
 from ptmcad.stress.slices import slice_cases
 
-
 ALL = "all"
 """The name that stands for every named case."""
 

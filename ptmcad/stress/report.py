@@ -60,8 +60,9 @@ def markdown(campaign: Campaign) -> str:
     lines = [
         "# The stress cases, one by one",
         "",
-        f"Written by `ptmcad stress` with seed {campaign.seed}. ptmcad is right in {total - len(campaign.wrong)} of {total} "
-        f"cases; double precision is wrong in {wrong}. [What is tried, and what the columns mean](../stress.md).",
+        f"Written by `ptmcad stress` with seed {campaign.seed}. ptmcad is right in {total - len(campaign.wrong)} of "
+        f"{total} cases; double precision is wrong in {wrong}. "
+        "[What is tried, and what the columns mean](../stress.md).",
     ]
     for family in dict.fromkeys(o.case.family for o in campaign.outcomes):
         lines += ["", f"## {family[0].upper()}{family[1:]}", "", _row(names), _row(["---"] * len(names))]
