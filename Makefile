@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 JOBS ?= 2
 
-.PHONY: help demo test test-slow fuzz check bench docs free-maps clean distclean
+.PHONY: help demo test test-slow fuzz check bench stress docs free-maps clean distclean
 
 help:
 	@echo "make demo       the map of the paper's fig. 4, as out/fig4.png and out/fig4.svg"
@@ -15,6 +15,7 @@ help:
 	@echo "make fuzz       damaged and hostile records, results and points by the ten thousand, guided by coverage"
 	@echo "make check      ruff, its formatter and mypy in strict mode"
 	@echo "make bench      run time and memory of every slice in configs/, into docs/benchmarks/"
+	@echo "make stress     stiff and extreme cases against double precision, into docs/benchmarks/: some minutes"
 	@echo "make docs       the manual, as out/docs/html/index.html, and the README's picture, into docs/img/"
 	@echo "make free-maps  the manual's maps of springs with free lengths, into docs/img/: some minutes each"
 	@echo "make clean      removes what the targets made, except the environment"
@@ -64,6 +65,9 @@ check: $(VENV)/.installed-check
 bench: $(VENV)/.installed
 	$(BIN)/python -m ptmcad.bench --out docs/benchmarks
 	$(BIN)/python -m ptmcad.bench.scaling --out docs/benchmarks
+
+stress: $(VENV)/.installed
+	$(BIN)/ptmcad stress all --random 25 --format table,json,md,png --out docs/benchmarks
 
 docs: $(VENV)/.installed-docs
 	$(BIN)/ptmcad classify configs/fig4.yaml --format png --out docs/img

@@ -17,8 +17,8 @@ _GUARD = 6
 
 def enclosed(ball: arb, digits: int) -> Enclosure | None:
     """An enclosure that settles ``digits`` digits of any number in the ball; None when the ball is too wide."""
-    if not ball.is_finite() or ball.contains(0):
-        return None
+    if not ball.is_finite() or ball.contains(0) or 10 * ball.rel_accuracy_bits() < 33 * (digits + _GUARD - 2):
+        return None  # the test of the radius below would say so too; most balls that are too wide end here
     mantissa, exponent = (int(n) for n in ball.mid().man_exp())
     radius = _fraction(ball.rad())
     # the place of the first digit, to within one: 0.30103 is the logarithm of 2

@@ -55,6 +55,7 @@ class State:
     nodes : coordinates x, y of each node.
     squares : the springs' lengths squared.
     trace, determinant, spread : of the Hessian; the last is the squared difference of its eigenvalues.
+    eigenvalue : a rational one, when there is one and the other is irrational, or both are equal.
     """
 
     point: RealPoint
@@ -65,6 +66,7 @@ class State:
     trace: Element
     determinant: Element
     spread: Element
+    eigenvalue: Fraction | None
 
     def conjugate(self, point: RealPoint) -> State:
         """The equilibrium at another root of the same polynomial: the same residues."""
@@ -78,6 +80,7 @@ class State:
             self.trace.conjugate(field),
             self.determinant.conjugate(field),
             self.spread.conjugate(field),
+            self.eigenvalue,
         )
 
 
@@ -114,7 +117,8 @@ def state_at(model: Model, point: RealPoint) -> State:
     difference = h11 - h22
     spread = difference * difference + (h12 * h12).times(fmpq(4))
     energy = value_at(point, model.potential)
-    return State(point, point.unknowns, nodes, tuple(squares), energy, trace, determinant, spread)
+    eigenvalue = _rational_eigenvalue(trace, determinant)
+    return State(point, point.unknowns, nodes, tuple(squares), energy, trace, determinant, spread, eigenvalue)
 
 
 def pose_of(model: Model, state: State, digits: int) -> tuple[Pose, int]:
@@ -125,11 +129,16 @@ def pose_of(model: Model, state: State, digits: int) -> tuple[Pose, int]:
     ArithmeticError
         When `MOST_BITS` do not settle a number, which would be a fault of this program.
     """
-    rational = _rational_eigenvalue(state)
     bits = 64 + 4 * digits
+    settled: list[Enclosure | None] = []
     while True:
         with ctx.workprec(bits):
-            settled = [n.enclosure(digits) for n in _numbers(model, state, rational)]
+            balls = list(_numbers(model, state))
+            # what a lower precision settled stays as it is
+            settled = [
+                n.enclosure(digits) if known is None else known
+                for n, known in zip(balls, settled or [None] * len(balls), strict=True)
+            ]
         numbers = [n for n in settled if n is not None]
         if len(numbers) == len(settled):
             return _assembled(model, state, iter(numbers)), bits
@@ -140,7 +149,7 @@ def pose_of(model: Model, state: State, digits: int) -> tuple[Pose, int]:
             )
 
 
-def _numbers(model: Model, state: State, rational: Fraction | None) -> Iterator[_Number]:
+def _numbers(model: Model, state: State) -> Iterator[_Number]:
     """The numbers of a pose at the context's precision, in the order in which `_assembled` takes them."""
     at = state.point.field.generator()
 
@@ -161,7 +170,7 @@ def _numbers(model: Model, state: State, rational: Fraction | None) -> Iterator[
         k = model.parameters[stiffness]
         yield _Number(None if length.exact is None else k * length.exact, length.ball * _arb(k))
     yield number(state.energy)
-    yield from _eigenvalues(number(state.trace), number(state.spread), rational)
+    yield from _eigenvalues(number(state.trace), number(state.spread), state.eigenvalue)
 
 
 def _angle(cosine: _Number, sine: _Number) -> _Number:
@@ -178,6 +187,8 @@ def _degrees(angle: _Number, cosine: Element) -> _Number:
     if cosine.rational == -1:
         return _Number(Fraction(180), arb(180))
     turns = angle.ball / (2 * arb.pi())
+    if turns.rel_accuracy_bits() < ctx.prec // 2:
+        return _Number(None, arb.nan())  # a wide ball holds many fractions, and each is tried by algebra
     for order in _ORDERS:
         number = (turns * order).unique_fmpz()
         # other fractions are in lowest terms with a smaller order, and 0 and 1/2 are where the sine is zero
@@ -202,21 +213,21 @@ def _square_root(square: _Number) -> _Number:
     return _Number(root if root * root == square.exact else None, _arb(square.exact).sqrt())
 
 
-def _rational_eigenvalue(state: State) -> Fraction | None:
+def _rational_eigenvalue(trace_element: Element, determinant_element: Element) -> Fraction | None:
     """A rational eigenvalue of the Hessian when there is one and the other is irrational, or both are equal.
 
     With coefficients t_i of the trace and d_i of the determinant in powers of the field's generator, q^2 - q trace +
     determinant = 0 says q t_i = d_i for each i > 0, which leaves one candidate unless the trace is rational. In that
     case a rational eigenvalue makes the other one rational too.
     """
-    trace, determinant = state.trace.coefficients(), state.determinant.coefficients()
+    trace, determinant = trace_element.coefficients(), determinant_element.coefficients()
     for t, d in zip(trace[1:], determinant[1:], strict=True):
         if t:
             q = d / t
             holds = q * q - q * trace[0] + determinant[0] == 0 and all(
                 q * a == b for a, b in zip(trace[1:], determinant[1:], strict=True)
             )
-            return q if holds else None
+            return Fraction(int(q.p), int(q.q)) if holds else None
     return None
 
 

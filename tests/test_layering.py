@@ -35,6 +35,7 @@ EXACT = (
     "ranges",
     "verification",
     "paper",
+    "stress",
 )
 FLINT_POLYNOMIALS = ("poly", "mpoly", "mpoly_ctx", "mpoly_vec", "series")
 
@@ -89,7 +90,7 @@ def test_only_render_imports_matplotlib(path: Path) -> None:
 
 @pytest.mark.parametrize("path", MODULES, ids=relative)
 def test_flint_stays_in_the_exact_engine(path: Path) -> None:
-    """FLINT's numbers and balls are used where counts are made; its polynomials in algebra/ and verification/."""
+    """FLINT's numbers and balls are used where counts are made; its polynomials in algebra/ and in its checks."""
     names = {name for module, name in imports(path) if module.partition(".")[0] == "flint"}
     used = {
         node.attr
@@ -98,7 +99,7 @@ def test_flint_stays_in_the_exact_engine(path: Path) -> None:
     }
     if names or used:
         assert part(path) in (*EXACT, "interval")
-    if part(path) not in {"algebra", "verification"}:
+    if part(path) not in {"algebra", "verification", "stress"}:
         assert not [name for name in names | used if name.endswith(FLINT_POLYNOMIALS)]
 
 
@@ -155,6 +156,17 @@ def test_what_watches_knows_nothing_of_what_is_computed(name: str) -> None:
 
 
 @pytest.mark.parametrize("path", MODULES, ids=relative)
+def test_stress_asks_the_engines_as_a_user_does(path: Path) -> None:
+    """The answers that ptmcad is held against share no mathematics with it, and nothing that computes knows of them."""
+    if part(path) == "stress":
+        assert not imported_parts(path) & {
+            "algebra", "cad", "counting", "variety", "solving", "statics", "models", "interval", "balls", "exactmap",
+        }  # fmt: skip
+    elif part(path) not in {"cli", "render"}:
+        assert "stress" not in imported_parts(path)
+
+
+@pytest.mark.parametrize("path", MODULES, ids=relative)
 def test_only_the_entry_forks(path: Path) -> None:
     """A library function must not turn its caller's process into two."""
     if part(path) not in {"__main__", "supervisor"}:
@@ -170,7 +182,7 @@ def test_the_fork_comes_before_everything_large(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", MODULES, ids=relative)
 def test_data_flows_one_way(path: Path) -> None:
     """What computes knows nothing of how results are shown, asked for or timed."""
-    if part(path) not in {"cli", "bench", "render", "report", "paper", "__main__"}:
+    if part(path) not in {"cli", "bench", "render", "report", "paper", "stress", "__main__"}:
         allowed = {"regionmap": {"render"}, "slicevariety": {"export"}, "export": {"export"}}.get(part(path), set())
         assert not imported_parts(path) & {"cli", "bench", "render", "export"} - allowed
     if part(path) in {"errors", "expressions", "textfile"}:

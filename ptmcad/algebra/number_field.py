@@ -62,10 +62,9 @@ class Element:
         """An enclosure, from one of the field's root."""
         return arb_poly(self.residue)(generator)
 
-    def coefficients(self) -> tuple[Fraction, ...]:
+    def coefficients(self) -> tuple[fmpq, ...]:
         """The residue's coefficients, as many as the field's degree, constant first."""
-        numbers = [fmpq(self.residue[k]) for k in range(self.field.modulus.degree())]
-        return tuple(Fraction(int(c.p), int(c.q)) for c in numbers)
+        return tuple(fmpq(self.residue[k]) for k in range(self.field.modulus.degree()))
 
     def __add__(self, other: Element) -> Element:
         return Element(self.field, self.residue + other.residue)

@@ -109,18 +109,21 @@ def _trace_polynomials(algebra: Fibre, matrix: fmpq_mat, radical: fmpz_poly) -> 
     """For v = 1 and each unknown, the sum over the points of multiplicity times v times the product of (T - value of
     the form) over the other points; the value of v at a point is the quotient of that by the first of them."""
     size, degree = algebra.dimension, radical.degree()
-    traces = fmpq_mat(1, size, [_trace(evaluate(algebra, {m: fmpq(1)})) for m in algebra.basis])
-    vectors = fmpq_mat(size, 1, [fmpq(int(i == 0)) for i in range(size)])
-    columns = [vectors, *(m * vectors for m in algebra.multiplication)]
-    monic = fmpq_poly(radical) / fmpq(radical[degree])
-    tails = [fmpq_poly([monic[degree - k + i] for i in range(k + 1)]) for k in range(degree)]
+    # in integers over common denominators: reducing every fraction on the way would take most of the time
+    traces, below_traces = fmpq_mat(
+        1, size, [_trace(evaluate(algebra, {m: fmpq(1)})) for m in algebra.basis]
+    ).numer_denom()
+    step, below_step = matrix.numer_denom()
+    one = fmpq_mat(size, 1, [fmpq(int(i == 0)) for i in range(size)])
+    tails = [fmpz_poly([radical[degree - k + i] for i in range(k + 1)]) for k in range(degree)]
     result = []
-    for vector in columns:
-        total, shifted = fmpq_poly([0]), vector
+    for column in (one, *(m * one for m in algebra.multiplication)):
+        vector, below = column.numer_denom()
+        total, factor = fmpz_poly([0]), below_step ** (degree - 1)
         for j in range(degree):
-            total += tails[degree - 1 - j] * (traces * shifted)[0, 0]
-            shifted = matrix * shifted
-        result.append(total)
+            total += tails[degree - 1 - j] * ((traces * vector)[0, 0] * factor)
+            vector, factor = step * vector, factor // below_step
+        result.append(fmpq_poly(total) / fmpq(radical[degree] * below_traces * below * below_step ** (degree - 1)))
     return result
 
 

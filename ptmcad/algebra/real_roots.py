@@ -1,9 +1,14 @@
-"""Real roots of integer polynomials: isolation by Descartes' rule and bisection, refinement, rational points between.
+"""Real roots of integer polynomials: isolation by Descartes' rule, refinement, rational points between.
 
 Guarantee: exact. Isolation finds every root in the open interval; isolating intervals have rational ends, are disjoint
 and contain one root each, an interval of length zero being the root itself.
 
-Reference: Collins & Akritas, SYMSAC 1976; Rouillier & Zimmermann, J. Comput. Appl. Math. 162 (2004).
+Intervals are bisected; where several bisections in a row have not parted some roots, Newton's method says where their
+cluster may be, and Descartes' rule whether it is. So the steps that a cluster takes grow with the logarithm of its
+number of leading digits, not with that number.
+
+References: Collins & Akritas, SYMSAC 1976; Rouillier & Zimmermann, J. Comput. Appl. Math. 162 (2004); Sagraloff &
+Mehlhorn, Computing real roots of real polynomials, J. Symb. Comp. 73 (2016).
 """
 
 from __future__ import annotations
@@ -15,7 +20,13 @@ from flint import fmpq, fmpz, fmpz_poly
 
 _SHIFT = fmpz_poly([1, 1])
 _PATIENCE = 50
-"""Levels of bisection after which `isolate` asks whether its polynomial is squarefree."""
+"""Cuts without a change of Descartes' bound after which `isolate` asks at the latest whether p is squarefree."""
+_TOGETHER = 3
+"""Cuts without such a change after which the roots are taken for a cluster."""
+_FAST = 6
+"""Steps to a cluster that are longer than 2^64 are taken only when the polynomial is known to be squarefree."""
+_SLOWEST = 2
+"""The first step to a cluster is to a quarter of the interval; each further one is twice as many bits long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,30 +114,89 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
             return ()
     width = high - low
     found: list[tuple[fmpq, fmpq]] = []
-    start = _on_unit_interval(p, low, high)
-    stack = [(start, fmpz(0), 0)]  # polynomial on (0, 1), number of the dyadic interval, its level
+    asked = False
+    stack = [_Part(_on_unit_interval(p, low, high), fmpq(0), fmpq(1), -1, 0, _SLOWEST)]
     while stack:
-        q, number, level = stack.pop()
+        part = stack.pop()
+        q = part.polynomial
         while q[0] == 0:
             q = q.right_shift(1)
         bound = _descartes_bound(q, q.degree())
         if bound == 0:
             continue
-        if level % _PATIENCE == _PATIENCE - 1 and p.gcd(p.derivative()).degree() > 0:
-            raise ValueError(f"a polynomial of degree {p.degree()} is not squarefree")
-        left, right = low + width * fmpq(number, 2**level), low + width * fmpq(number + 1, 2**level)
         if bound == 1:
-            found.append((left, right))
+            found.append((low + width * part.left, low + width * (part.left + part.width)))
             continue
+        unchanged = part.unchanged + 1 if bound == part.bound else 0
+        if not asked and (unchanged >= _PATIENCE or part.speed > _FAST):
+            asked = True
+            if p.gcd(p.derivative()).degree() > 0:
+                raise ValueError(f"a polynomial of degree {p.degree()} is not squarefree")
+        speed = part.speed
+        if unchanged >= _TOGETHER:
+            cluster = _cluster(q, bound, 2 ** (2**speed))
+            if cluster is not None:
+                narrow, start, size = cluster
+                left, piece = part.left + start * part.width, size * part.width
+                stack.append(_Part(narrow, left, piece, bound, unchanged, speed + 1))
+                continue
+            speed = max(_SLOWEST, speed - 1)
         n = q.degree()
         half = fmpz_poly([c << (n - i) for i, c in enumerate(q.coeffs())])
         other = half(_SHIFT)
+        piece = part.width / 2
+        middle = part.left + piece
         if other[0] == 0:
-            middle = (left + right) / 2
-            found.append((middle, middle))
-        stack.append((half, 2 * number, level + 1))
-        stack.append((other, 2 * number + 1, level + 1))
+            found.append((low + width * middle, low + width * middle))
+        stack.append(_Part(half, part.left, piece, bound, unchanged, speed))
+        stack.append(_Part(other, middle, piece, bound, unchanged, speed))
     return tuple(_tidy(p, left, right) for left, right in sorted(found))
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A part of the interval in which roots are isolated.
+
+    Attributes
+    ----------
+    polynomial : a multiple of p on the part, which is mapped to (0, 1).
+    left, width : of the part, the whole interval being (0, 1).
+    bound : Descartes' bound for the part that it was cut from.
+    unchanged : for how many cuts the bound has been the same.
+    speed : a cluster is looked for in a part that is narrower by the factor 2^(2^speed) / 4.
+    """
+
+    polynomial: fmpz_poly
+    left: fmpq
+    width: fmpq
+    bound: int
+    unchanged: int
+    speed: int
+
+
+def _cluster(q: fmpz_poly, bound: int, pieces: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
+    """Four of so many pieces of (0, 1) which hold all roots of q there: q on them, their start and their width.
+
+    None when that is not proved. It is when Descartes' bound for the pieces is that for (0, 1), as the sum of the
+    bounds for disjoint parts never exceeds the bound for the whole. Roots that lie together far from all others look
+    like a multiple one to Newton's method, from the left end as from the right.
+    """
+    slope = q.derivative()
+    estimates = []
+    for end in (0, 1):
+        below = slope(end)
+        if below == 0:
+            return None
+        estimates.append(end * pieces - bound * q(end) * pieces // below)
+    if abs(estimates[0] - estimates[1]) > max(2, pieces // 8) or not 0 <= estimates[0] <= pieces:
+        return None
+    for estimate in dict.fromkeys(estimates):
+        start = min(max(int(estimate) - 2, 0), max(pieces - 4, 0))
+        left, right = fmpq(start, pieces), fmpq(min(start + 4, pieces), pieces)
+        narrow = _on_unit_interval(q, left, right)
+        if narrow[0] != 0 and _descartes_bound(narrow, q.degree()) == bound:
+            return narrow, left, right - left
+    return None
 
 
 def _root_bound(p: fmpz_poly) -> fmpq:
@@ -259,19 +329,17 @@ def simplest_between(low: fmpq, high: fmpq) -> fmpq:
         return fmpq(0)
     if high <= 0:
         return -simplest_between(-high, -low)
-    # continued fraction descent; p/q matrices kept as integers
+    # continued fraction descent in integers: no fraction has to be reduced on the way
+    above, below, upper, lower = int(low.p), int(low.q), int(high.p), int(high.q)
     a, b, c, d = 1, 0, 0, 1
     while True:
-        whole = int(low.floor())
-        if fmpq(whole + 1) < high:
-            value = fmpq(whole + 1) if low >= whole else fmpq(whole)
-            return (a * value + b) / (c * value + d)
-        if low == whole:
-            # smallest 1/t + whole below high, t integer
-            t = int((1 / (high - whole)).floor()) + 1
-            value = whole + fmpq(1, t)
-            return (a * value + b) / (c * value + d)
-        low, high = low - whole, high - whole
-        # both in (0, 1]; take reciprocals
+        whole, rest = divmod(above, below)
+        excess = upper - whole * lower
+        if excess > lower:  # whole + 1 lies below the upper end
+            return fmpq(a * (whole + 1) + b, c * (whole + 1) + d)
         a, b, c, d = a * whole + b, a, c * whole + d, c
-        low, high = 1 / high, 1 / low
+        if rest == 0:  # the smallest 1/t below the rest of the upper end, t integer
+            t = lower // excess + 1
+            return fmpq(a * t + b, c * t + d)
+        # both in (0, 1]; take reciprocals
+        above, below, upper, lower = lower, excess, below, rest

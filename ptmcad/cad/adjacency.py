@@ -44,6 +44,9 @@ from ptmcad.cad.stacks import BaseEnd, StackData, Wall, roots_over
 
 ROUNDS = 4
 """Bracketings that are tried before the exact separation; each has twice as many bits as the one before."""
+_LONG = 64
+"""Long coefficients may bring branches very near to each other: one bracketing more is tried for each doubling of their
+bits beyond ``_LONG`` 2^ROUNDS, as the cost of the exact separation grows with them far faster."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,11 +98,12 @@ def cross(
     """All adjacent pairs of cells across the abscissa between two neighbouring stacks, with proof."""
     end = left.right
     assert end.root is not None
-    reach, height = min(end.value - left.sample, right.sample - end.value), fibre[1] - fibre[0]
-    width, resolution, step = reach, height, 8
+    reach, extent = min(end.value - left.sample, right.sample - end.value), fibre[1] - fibre[0]
+    width, resolution, step = reach, extent, 8
     extra: tuple[fmpq, ...] = ()
     points: UnivariatePolynomial | None = None  # costly, computed once if the rounds do not suffice
-    attempt = 0
+    attempt, height = 0, max((int(q.height_bits()) for c in curves for q in c.in_v), default=0)
+    rounds = max(ROUNDS, (height // _LONG).bit_length())
     while True:
         check()
         width, resolution = width / 2**step, resolution / 2 ** (step - 2)
@@ -117,10 +121,10 @@ def cross(
             return Crossing(tuple(sorted(unique.values(), key=lambda p: (p.left, p.right))), tuple(slots))
         attempt += 1
         step = 2 * step
-        if attempt >= ROUNDS:
+        if attempt >= rounds:
             if points is None:
                 points = _points_polynomial(curves, end)
-                width, resolution, step = reach, height, 8  # with the heights now known, wide brackets may do
+                width, resolution, step = reach, extent, 8  # with the heights now known, wide brackets may do
             separating = (h for gap in unresolved for h in _between_points(points, gap))
             extra = tuple(sorted({*extra, *separating}))
 

@@ -17,8 +17,9 @@ from itertools import pairwise
 
 from flint import arb, ctx, fmpq
 
+from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.branches import PrecisionTooLow, avoids, branch_integral
-from ptmcad.algebra.polynomials import to_fraction
+from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.cad.curves import Curve
@@ -46,8 +47,9 @@ class _Effort:
 class _Panel:
     """A part of a wall that separates region ``below`` from region ``above``, with the enclosure of its integral.
 
-    ``smooth`` tells whether the branch was enclosed by its Taylor series; ``singular`` is -1 or 1 when that is not
-    even tried because the branch seems to turn at the left or right end, else 0. Neither affects the guarantee.
+    ``smooth`` tells whether the branch was enclosed by its Taylor series or by arcs; ``singular`` is not zero when that
+    is not even tried because the branch seems to turn at the left (negative) or right (positive) end, and counts how
+    often it seemed so. Neither affects the guarantee.
     """
 
     curve: Curve
@@ -89,21 +91,25 @@ def region_areas(
         return ((whole, whole),), 0
     digits = len(str(tolerance.denominator // tolerance.numerator))
     width = base[1] - base[0]
-    strip = width * fmpq(1, 10 ** (digits + 3) * 4 * (len(stacks) + 1))
-    bits = 64 + 6 * digits + max((int(q.height_bits()) for c in curves for q in c.in_v), default=0) // 2
+    strip = fmpq(1, 10 ** (digits + 3) * 4)
+    # at first not much more for long coefficients: where they cancel, `branch_integral` says so, and arcs may do
+    bits = 64 + 6 * digits + min(max((int(q.height_bits()) for c in curves for q in c.in_v), default=0) // 2, _LONG)
     bits += _bits_lost(base) + _bits_lost(fibre)
-    finer = 20
+    narrowest = min(map(_isolated, stacks))
+    finer, even = 20, True
     while True:
-        effort = _Effort(digits + 2, width, width * fmpq(1, 2 ** (3 * digits // 2)), width / 2 ** (bits // 2))
+        effort = _Effort(digits + 2, width, width * fmpq(1, 2 ** (3 * digits // 2)), narrowest / 2 ** (bits // 2))
         try:
             with ctx.workprec(bits):
-                bounds = _areas(stacks, regions, curves, strip, fibre, tolerance * 3 / 4, count, effort, check)
+                bounds = _areas(stacks, regions, curves, (strip, even), fibre, tolerance * 3 / 4, count, effort, check)
                 return tuple(_with_room(b, tolerance, whole) for b in bounds), bits
         except PrecisionTooLow:
             bits = 3 * bits // 2
         except _Unreachable as obstacle:
             # a region is tiny, or the precision is too low for it: the effort grows fast, so this ends soon
-            if obstacle.strips:
+            if obstacle.strips and even:
+                even = False
+            elif obstacle.strips:
                 bits, strip, finer = bits + finer, strip / 2**finer, 2 * finer
             else:
                 bits = 3 * bits // 2
@@ -124,6 +130,14 @@ def _with_room(bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fr
 
 
 _NEGLIGIBLE = Fraction(1, 10**15)
+_PATIENT = 5
+"""Cuts by half towards a turning point before they come faster."""
+_FASTEST = 10
+"""The fastest cut is to the part 2^-32 of a panel."""
+_LONG = 128
+"""Bits granted at first to long coefficients."""
+_AT_FIRST = 20
+"""Bits to which the height of a branch is asked for before the regions' areas are known roughly."""
 
 
 class _Unreachable(ArithmeticError):
@@ -138,41 +152,62 @@ def _areas(
     stacks: Sequence[StackData],
     regions: Sequence[Sequence[int]],
     curves: Sequence[Curve],
-    strip: fmpq,
+    strips: tuple[fmpq, bool],
     fibre: Interval,
     tolerance: Fraction,
     count: int,
     effort: _Effort,
     check: Callable[[], None],
 ) -> tuple[tuple[Fraction, Fraction], ...]:
-    """One attempt: strips of at most the given width around the critical abscissae are left to any region."""
+    """One attempt: around each critical abscissa a strip is left to any region.
+
+    Parameters
+    ----------
+    strips : their share of a stack's width, and whether it is that of the stack itself. Otherwise it is of the narrower
+        of the two stacks there: in a vast window some are narrower than others by many orders of magnitude.
+    """
     by_component = {c.component: c for c in curves}
-    spans = [_span(stack, strip) for stack in stacks]
+    widths = [_isolated(stack) for stack in stacks]
+    narrower = [min(a, b) for a, b in pairwise(widths)]
+    sides = (
+        zip(widths, widths, strict=True)
+        if strips[1]
+        else zip((widths[0], *narrower), (*narrower, widths[-1]), strict=True)
+    )
+    spans = [_span(s, a * strips[0], b * strips[0]) for s, (a, b) in zip(stacks, sides, strict=True)]
     gaps = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0))
     fixed = _edges(spans, regions, fibre, count)
+    wanted = (fibre[1] - fibre[0]) / 2**_AT_FIRST
     panels = []
     for (low, high), stack, row in zip(spans, stacks, regions, strict=True):
         for j, wall in enumerate(stack.walls):
             if row[j] != row[j + 1]:
                 check()
                 source = by_component[wall.component]
-                panels.append(_panel(source, wall.root, low, high, row[j], row[j + 1], fibre, effort))
+                panels.append(_panel(source, wall.root, low, high, row[j], row[j + 1], fibre, effort, wanted))
     return _refine(panels, fixed, gaps * (fibre[1] - fibre[0]), fibre, tolerance, effort, check)
 
 
-def _span(stack: StackData, strip: fmpq) -> Interval:
+def _isolated(stack: StackData) -> fmpq:
+    """About the stack's width."""
+    low = stack.left.root.high if stack.left.root else stack.left.value
+    high = stack.right.root.low if stack.right.root else stack.right.value
+    return high - low
+
+
+def _span(stack: StackData, left_strip: fmpq, right_strip: fmpq) -> Interval:
     """The stack's base interval shortened to rational ends, of small height as all arithmetic starts from them."""
     left, right = stack.left.value, stack.right.value
     if stack.left.root is not None:
-        root = refine(stack.left.root, strip / 2)
+        root = refine(stack.left.root, left_strip / 2)
         left = root.high
         if not root.is_rational:
-            left = simplest_between(left, min(left + strip / 2, stack.sample))
+            left = simplest_between(left, min(left + left_strip / 2, stack.sample))
     if stack.right.root is not None:
-        root = refine(stack.right.root, strip / 2)
+        root = refine(stack.right.root, right_strip / 2)
         right = root.low
         if not root.is_rational:
-            right = simplest_between(max(right - strip / 2, stack.sample), right)
+            right = simplest_between(max(right - right_strip / 2, stack.sample), right)
     return left, right
 
 
@@ -206,14 +241,23 @@ def _refine(
         target = {i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor}
         refined: list[_Panel] = []
         for p in panels:
-            if any(p.width > target[i] for i in poor & {p.below, p.above}):
+            allowed = min((target[i] for i in poor & {p.below, p.above}), default=p.width)
+            if p.width > allowed:
                 check()
                 if p.high - p.low < effort.narrowest:
                     raise _Unreachable(strips=False)
-                refined += _halves(p, fibre, effort)
+                refined += _halves(p, fibre, effort, _wanted(from_fraction(allowed) / (p.high - p.low), fibre))
             else:
                 refined.append(p)
         panels = refined
+
+
+def _wanted(allowed: fmpq, fibre: Interval) -> fmpq:
+    """The error of a branch's height to ask for where this much is allowed now: with twice as many right digits.
+
+    What is allowed falls as the areas get known better, and panels that miss it then would have to be halved.
+    """
+    return min(allowed, allowed * allowed / (fibre[1] - fibre[0])) / 2
 
 
 def _bounds(panels: Sequence[_Panel], fixed: Sequence[fmpq], lost: fmpq) -> tuple[tuple[Fraction, Fraction], ...]:
@@ -234,16 +278,26 @@ def _exact(value: arb) -> Fraction:
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
-def _halves(p: _Panel, fibre: Interval, effort: _Effort) -> tuple[_Panel, _Panel]:
-    """The two parts of a panel; if only one of them is smooth, the other one's far end is taken to be singular."""
-    margin = (p.high - p.low) * fmpq(7, 16)
-    middle = simplest_between(p.low + margin, p.high - margin)
-    left = _panel(p.curve, p.root, p.low, middle, p.below, p.above, fibre, effort, min(p.singular, 0))
-    right = _panel(p.curve, p.root, middle, p.high, p.below, p.above, fibre, effort, max(p.singular, 0))
+def _halves(p: _Panel, fibre: Interval, effort: _Effort, wanted: fmpq) -> tuple[_Panel, _Panel]:
+    """The two parts of a panel; if only one of them is smooth, the other one's far end is taken to be singular.
+
+    A branch that turns at an end is cut nearer and nearer to that end. When this has gone well for some times, the cuts
+    come so fast that a turn which is many orders of magnitude smaller than the panel is reached in a few steps.
+    """
+    share = fmpq(1, 2**2 ** max(0, abs(p.singular) - _PATIENT))
+    if p.singular > 0:
+        share = 1 - share
+    margin = (p.high - p.low) * min(share, 1 - share) / 8
+    cut = p.low + (p.high - p.low) * share
+    middle = simplest_between(cut - margin, cut + margin)
+    left = _panel(p.curve, p.root, p.low, middle, p.below, p.above, fibre, effort, wanted, min(p.singular, 0))
+    right = _panel(p.curve, p.root, middle, p.high, p.below, p.above, fibre, effort, wanted, max(p.singular, 0))
     if left.smooth and not right.smooth:
-        right = replace(right, singular=1)
+        right = replace(right, singular=min(max(p.singular, 0) + 1, _FASTEST))
     elif right.smooth and not left.smooth:
-        left = replace(left, singular=-1)
+        left = replace(left, singular=max(min(p.singular, 0) - 1, -_FASTEST))
+    elif abs(p.singular) > _PATIENT:
+        left, right = (replace(q, singular=(q.singular > 0) - (q.singular < 0)) for q in (left, right))
     return left, right
 
 
@@ -256,14 +310,18 @@ def _panel(
     above: int,
     fibre: Interval,
     effort: _Effort,
+    wanted: fmpq,
     singular: int = 0,
 ) -> _Panel:
-    """A panel with the first enclosure that works: Taylor series, horizontals, the window's edges."""
+    """A panel with the first enclosure that works: Taylor series, arcs, horizontals, the window's edges.
+
+    ``wanted`` is an error of the branch's height that would do.
+    """
     middle = (low + high) / 2
     at_middle = isolate(curve.fibre(middle), *fibre)[root]
     integral = None
     if singular == 0:
-        integral = branch_integral(curve.in_v, at_middle, middle, (high - low) / 2, fibre, effort.order)
+        integral = _smooth(curve, root, at_middle, low, high, fibre, effort, wanted)
     smooth = integral is not None
     if integral is None:
         bottom, top = fibre
@@ -271,6 +329,51 @@ def _panel(
             bottom, top = _horizontals(curve, low, high, effort.width, at_middle, fibre)
         integral = arb(bottom).union(arb(top)) * arb(high - low)
     return _Panel(curve, root, low, high, below, above, integral, smooth, singular)
+
+
+def _smooth(
+    curve: Curve, root: int, at_middle: RealRoot, low: fmpq, high: fmpq, fibre: Interval, effort: _Effort, wanted: fmpq
+) -> arb | None:
+    """The integral of a branch that does not turn, by its Taylor series or between arcs; None if neither is proved.
+
+    Raises
+    ------
+    PrecisionTooLow
+        When a higher precision may help and arcs do not.
+    """
+    middle, radius = (low + high) / 2, (high - low) / 2
+    series, obstacle = None, False
+    try:
+        series = branch_integral(curve.in_v, at_middle, middle, radius, fibre, effort.order)
+    except PrecisionTooLow:
+        obstacle = True
+    if series is not None and series.rad() < arb(2 * radius * wanted):
+        return series
+
+    def branch(u: fmpq) -> RealRoot:
+        return at_middle if u == middle else isolate(curve.fibre(u), *fibre)[root]
+
+    between = arc_integral(curve.in_v, branch, middle, radius, fibre, wanted)
+    if between is None and obstacle:
+        return _finer_series(curve, at_middle, middle, radius, fibre, effort)
+    if series is None or between is None:
+        return series if between is None else between
+    return series if series.rad() < between.rad() else between
+
+
+def _finer_series(
+    curve: Curve, at_middle: RealRoot, middle: fmpq, radius: fmpq, fibre: Interval, effort: _Effort
+) -> arb | None:
+    """The integral by the Taylor series at twice to eight times the precision."""
+    bits, most = 2 * ctx.prec, 8 * ctx.prec
+    while True:
+        try:
+            with ctx.workprec(bits):
+                return branch_integral(curve.in_v, at_middle, middle, radius, fibre, effort.order)
+        except PrecisionTooLow:
+            if bits >= most:
+                raise
+        bits *= 2
 
 
 def _horizontals(

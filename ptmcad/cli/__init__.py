@@ -31,6 +31,7 @@ COMMANDS = {
     "plot": "ptmcad.cli.plot",
     "range": "ptmcad.cli.range",
     "report": "ptmcad.cli.report",
+    "stress": "ptmcad.cli.stress",
     "variety": "ptmcad.cli.variety",
     "verify": "ptmcad.cli.verify",
 }

@@ -104,12 +104,15 @@ def _pose(
     """The pose with all numbers settled, and the bits that this took; None when some number is not."""
     signs = _flat(parameters, solution)
     bits = 64 + 4 * digits
+    found: dict[str, Enclosure] = {}
     while bits <= MORE_BITS + 8 * digits:
         box = refined(equations, _box(solution, bits), bits)
         with ctx.workprec(bits):
             numbers = _numbers(parameters, box, signs)
-            settled = {name: number.enclosure(digits) for name, number in numbers.items()}
-        if (found := {name: x for name, x in settled.items() if x is not None}).keys() == settled.keys():
+            for name in numbers.keys() - found.keys():  # what a lower precision settled stays as it is
+                if (settled := numbers[name].enclosure(digits)) is not None:
+                    found[name] = settled
+        if found.keys() == numbers.keys():
             return _assembled(parameters, found, solution.signs, signs is not None), bits
         bits *= 2
     return None, bits // 2

@@ -1,0 +1,136 @@
+"""``ptmcad stress``: stiff and extreme cases, with the answers of ptmcad and of double precision."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import click
+
+from ptmcad.cli.formats import formats_of
+from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.memory import Bound
+from ptmcad.output import Writer, check_writable, text_writer, write_files
+
+if TYPE_CHECKING:
+    from ptmcad.stress.campaign import Campaign
+    from ptmcad.stress.case import Case
+
+FORMATS = ("table", "json", "csv", "md", "png", "svg")
+NAME = "stress"
+GRACE = 60.0
+"""Seconds after the time limit for the case that is being run, before the process is ended from outside."""
+
+
+def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> None:
+    """Write the files of these formats, all or none.
+
+    Raises
+    ------
+    OutputError
+        When a file can not be written.
+    """
+    from ptmcad.stress.report import markdown, to_csv, to_json
+
+    name = NAME if found.complete else f"{NAME}.partial"
+    writers: dict[str, Writer] = {}
+    for suffix in formats:
+        if suffix == "csv":
+            writers[f"{name}.csv"] = text_writer(to_csv(found))
+        elif suffix == "md":
+            writers[f"{name}.md"] = text_writer(markdown(found))
+        elif suffix in ("png", "svg"):
+            writers[f"{name}.{suffix}"] = partial(_draw, found)
+    if "json" in formats:
+        writers[f"{name}.json"] = text_writer(to_json(found))
+    if writers:
+        write_files(folder, writers)
+
+
+def _draw(found: Campaign, path: Path) -> None:
+    from ptmcad.render.printing import save as save_figure  # brings matplotlib
+    from ptmcad.render.stress import draw_stress
+
+    save_figure(draw_stress(found.outcomes), path)
+
+
+@click.command("stress")
+@click.argument("names", nargs=-1, metavar="[NAMES]...")
+@click.option("--random", "number", type=click.IntRange(0, 100_000), default=0, show_default=True, metavar="N",
+              help="Run N random extreme cases too, or alone when no name is given.")  # fmt: skip
+@click.option("--seed", type=click.IntRange(0, 2**31), default=1, show_default=True, metavar="N",
+              help="Of the random cases.")  # fmt: skip
+@click.option("--repeats", type=click.IntRange(1, 1000), default=5, show_default=True, metavar="N",
+              help="Timed runs of each case and of its tame sibling; slow cases have one.")  # fmt: skip
+@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="table,json,csv,png,svg",
+              show_default=True, metavar="LIST", help="What to make; the table is printed.")  # fmt: skip
+@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@click.option("--list", "only_list", is_flag=True, help="Print the cases with their sources, and run none.")
+@limit_options
+def command(
+    *,
+    names: tuple[str, ...],
+    number: int,
+    seed: int,
+    repeats: int,
+    formats: tuple[str, ...],
+    out: Path,
+    only_list: bool,
+    timeout: float | None,
+    max_memory: Bound | None,
+) -> int:
+    """Run stiff and extreme cases: springs, lengths and forces of very different size, points next to folds and cusps.
+
+    NAMES are cases or families, or all; without any, all are run. Each case has an answer that is known beforehand,
+    from a theorem, a construction or a second method; ptmcad's poses are held against 100 digits, and what double
+    precision makes of the same question is shown beside. Writes stress.json, .csv, .png and .svg, and .md when asked
+    for. The exit status is 1 when ptmcad is wrong anywhere, or undecided.
+
+    \b
+    Examples:
+        ptmcad stress --list
+        ptmcad stress stiffness fold-many-1e-30 --format table
+        ptmcad stress --random 100 --seed 7 --format table
+        ptmcad stress all --random 100
+    """
+    from ptmcad.stress.named import chosen  # the cases' numbers need no library
+
+    with limits(None if timeout is None else timeout + GRACE, max_memory):
+        cases = _cases(names, number, seed, everything=only_list)
+        if only_list:
+            from ptmcad.stress.report import listing
+
+            click.echo(listing(cases if names or number else chosen(())))
+            return 0
+        files = [kind for kind in formats if kind != "table"]
+        if files:
+            check_writable(out, tuple(f"{NAME}.{kind}" for kind in files))
+        from ptmcad.stress.campaign import campaign
+        from ptmcad.stress.report import summary, table
+
+        deadline = None if timeout is None else perf_counter() + timeout
+        with ProgressBar() as progress:
+            found = campaign(cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress)
+        save(found, out, formats)
+        click.echo(table(found) if "table" in formats else "\n".join(summary(found)))
+    if not found.complete:
+        raise LimitReached(f"the time limit was reached after {len(found.outcomes)} of {found.wanted} cases")
+    return 1 if found.wrong else 0
+
+
+def _cases(names: tuple[str, ...], number: int, seed: int, *, everything: bool) -> tuple[Case, ...]:
+    """The named cases, unless only random ones are asked for, and the random ones."""
+    from ptmcad.stress.named import chosen
+
+    found = chosen(names) if names or not number or everything else ()
+    if number:
+        from ptmcad.stress.random_cases import random_case
+
+        found = (*found, *(random_case(seed, k) for k in range(number)))
+    if not found:
+        raise ConfigError("no case is asked for", key="NAMES")
+    return found

@@ -1,0 +1,164 @@
+"""What keeps extreme maps cheap: clusters of roots, branches that nearly meet, strips and cuts that follow scales."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+
+import pytest
+from flint import arb, ctx, fmpq, fmpq_poly, fmpz_poly
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import ptmcad
+from ptmcad.algebra import real_roots
+from ptmcad.algebra.arcs import arc_integral
+from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
+from ptmcad.stress.measure import work_of
+from ptmcad.stress.slices import FIG4, LOADED, MapQuestion, ten
+
+
+def polynomial(roots: list[Fraction]) -> fmpz_poly:
+    """With these rational roots, each once."""
+    product = fmpz_poly([1])
+    for r in set(roots):
+        product *= fmpz_poly([-r.numerator, r.denominator])
+    return product
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.fractions(-3, 3, max_denominator=50),
+    st.lists(st.tuples(st.sampled_from([0, 1, 7, 30, 80]), st.integers(-9, 9)), min_size=1, max_size=6),
+    st.lists(st.fractions(-4, 4, max_denominator=9), max_size=3),
+)
+def test_clusters_are_isolated(center: Fraction, near: list[tuple[int, int]], others: list[Fraction]) -> None:
+    """Roots known by construction, some as near to each other as 10^-80."""
+    roots = sorted({center + n * Fraction(1, 10**e) for e, n in near} | set(others))
+    low, high = fmpq(-5), fmpq(5)
+    inside = [r for r in roots if -5 < r < 5]
+    found = isolate(polynomial(roots), low, high)
+    assert len(found) == len(inside)
+    for root, known in zip(found, inside, strict=True):
+        exact = fmpq(known.numerator, known.denominator)
+        assert root.low == exact if root.is_rational else root.low < exact < root.high
+    for a, b in pairwise(found):
+        assert a.high <= b.low
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(1, 90), st.integers(1, 90), st.booleans(), st.integers(-99, 99))
+def test_pairs_that_are_real_or_not_are_told_apart(e: int, f: int, real: bool, n: int) -> None:
+    """((x - n/100)^2 -+ 10^-e) (x^2 -+ 10^-f / 3): two roots each, or none."""
+    sign = -1 if real else 1
+    first = fmpz_poly([-n, 100]) ** 2 * 10**e + sign * 10_000
+    second = fmpz_poly([sign, 0, 3 * 10**f])
+    p = first * second
+    if p.gcd(p.derivative()).degree() > 0:
+        return
+    assert len(isolate(p, fmpq(-10), fmpq(10))) == (4 if real else 0)
+
+
+def test_a_cluster_takes_steps_like_the_logarithm_of_its_digits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bisection would take 3.3 tests for each digit that the roots have in common."""
+    calls = 0
+    bound = real_roots._descartes_bound
+
+    def counted(q: fmpz_poly, degree: int) -> int:
+        nonlocal calls
+        calls += 1
+        return bound(q, degree)
+
+    monkeypatch.setattr(real_roots, "_descartes_bound", counted)
+    taken = {}
+    for digits in (50, 100, 200, 400):
+        calls = 0
+        third = Fraction(1, 3)
+        assert len(isolate(polynomial([third, third + Fraction(1, 10**digits), Fraction(2)]), fmpq(0), fmpq(3))) == 3
+        taken[digits] = calls
+    assert taken[400] < 100
+    assert taken[400] <= 2 * taken[50]
+
+
+def test_multiple_roots_are_refused() -> None:
+    double = fmpz_poly([-1, 3]) ** 2 * fmpz_poly([-2, 1])
+    with pytest.raises(ValueError, match="squarefree"):
+        isolate(double, fmpq(0), fmpq(3))
+
+
+@given(st.fractions(), st.fractions())
+def test_the_simplest_rational_between_is_the_simplest(a: Fraction, b: Fraction) -> None:
+    if a == b:
+        return
+    low, high = min(a, b), max(a, b)
+    found = simplest_between(fmpq(low.numerator, low.denominator), fmpq(high.numerator, high.denominator))
+    value = Fraction(int(found.p), int(found.q))
+    assert low < value < high
+    for q in range(1, min(value.denominator, 40)):  # no smaller denominator fits
+        p = (low * q).__floor__() + 1
+        assert not Fraction(p, q) < high
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(5, 60), st.fractions(-1, 1, max_denominator=8), st.fractions(0, 1, max_denominator=8))
+def test_arcs_enclose_the_integral_of_branches_that_nearly_meet(e: int, bend: Fraction, slope: Fraction) -> None:
+    """(v - s - b u - a u^2)^2 = 10^-e: both branches, whose integrals are known, by a tube that holds both or one."""
+    gap = Fraction(1, 10 ** (e // 2 * 2))
+    arc = fmpq_poly([fmpq(2), fmpq(slope.numerator, slope.denominator), fmpq(bend.numerator, bend.denominator)])
+    scale = 64 * 10 ** (e // 2 * 2) * arc.denom() ** 2
+    # p = (v - arc)^2 - gap, times a number that makes it integral
+    square = arc * arc - fmpq(gap.numerator, gap.denominator)
+    in_v = [(q * fmpq(scale)).numer() for q in (square, arc * fmpq(-2), fmpq_poly([1]))]
+    integral = sum((Fraction(int(c.p), int(c.q)) * 2 / (k + 1) for k, c in enumerate(arc.coeffs()) if k % 2 == 0))
+    fibre = (fmpq(-1), fmpq(5))
+    half = Fraction(1, 10 ** (e // 2))
+    for side, number in ((-1, 0), (1, 1)):
+
+        def branch(u: fmpq, number: int = number) -> RealRoot:
+            at = [c(u) for c in in_v]
+            common = 1
+            for value in at:
+                common = common * int(fmpq(value).q)
+            return isolate(fmpz_poly([int((fmpq(v) * common).p) for v in at]), *fibre)[number]
+
+        with ctx.workprec(200):
+            found = arc_integral(in_v, branch, fmpq(0), fmpq(1), fibre, fmpq(1, 1000))
+            assert found is not None
+            known = integral + side * half * 2
+            assert found.contains(arb(fmpq(known.numerator, known.denominator)))
+            assert found.rad() < arb(fmpq(1, 20))
+
+
+def test_arcs_prove_nothing_where_a_branch_runs_through_the_tube() -> None:
+    """v (v - u) = 0: the two branches cross, so that neither arc is free of the curve."""
+    in_v = [fmpz_poly([0]), fmpz_poly([0, -1]), fmpz_poly([1])]
+
+    def branch(u: fmpq) -> RealRoot:
+        return RealRoot(fmpz_poly([0, 1]), fmpq(0), fmpq(0))
+
+    with ctx.workprec(100):
+        assert arc_integral(in_v, branch, fmpq(0), fmpq(1), (fmpq(-2), fmpq(2)), fmpq(1, 100)) is None
+
+
+def test_refinement_keeps_the_root() -> None:
+    root = isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0]
+    assert refine(root, fmpq(1, 10**60)).high ** 2 > 2
+
+
+@pytest.mark.parametrize("force", [Fraction(1, 10**6), Fraction(1, 10**20)])
+def test_areas_next_to_a_limit_take_little_more_work(force: Fraction) -> None:
+    """The loaded curve runs along the unloaded lines, several branches within force^(2/3) of each other."""
+    nearly = MapQuestion({"F3": -force, "F4": -force}, FIG4.axes)
+    assert work_of(nearly) <= 3 * work_of(FIG4)
+
+
+def test_a_vast_window_takes_at_most_five_times_the_work() -> None:
+    vast = MapQuestion(LOADED, {"rho": (Fraction(0), ten(12)), "L2": (Fraction(0), ten(12))})
+    assert work_of(vast) <= 5 * work_of(FIG4)
+
+
+@pytest.mark.slow
+def test_areas_next_to_a_limit_are_confirmed_by_verification() -> None:
+    """The checker integrates power series; it shares no code with arcs."""
+    nearly = MapQuestion({"F3": ten(-12), "F4": ten(-12)}, FIG4.axes)
+    assert ptmcad.verify(ptmcad.classify(ptmcad.slice_from_mapping(nearly.record("nearly")))).ok

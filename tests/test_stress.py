@@ -1,0 +1,303 @@
+"""Stiff and extreme cases: every named one, random ones, and what they rest on."""
+
+from __future__ import annotations
+
+import csv
+import json
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import ptmcad
+from ptmcad.cli import run
+from ptmcad.regionmap import Status
+from ptmcad.render.stress import draw_stress, exponent
+from ptmcad.stress import campaign as campaign_module
+from ptmcad.stress.campaign import campaign
+from ptmcad.stress.case import Case, MapQuestion, PointAnswer, PointQuestion
+from ptmcad.stress.constructions import Degenerate, beside_cusp, beside_fold
+from ptmcad.stress.doubles import angle_error, double_poses
+from ptmcad.stress.judgement import judge
+from ptmcad.stress.measure import Verdict, answer, work_of
+from ptmcad.stress.named import chosen, named_cases
+from ptmcad.stress.points import CUSP, FOLD, MAXIMUM_CUSP, MAXIMUM_FOLD, OTHER_FOLD, TAME, point
+from ptmcad.stress.random_cases import KINDS, mirrored, random_case, stiffened, stretched, swapped
+from ptmcad.stress.reference import Degenerate as DegeneratePoint
+from ptmcad.stress.reference import newton_pose, sextic_poses
+from ptmcad.stress.report import markdown, to_csv, to_json
+
+CASES = named_cases()
+MARKED = [pytest.param(c, id=c.name, marks=[pytest.mark.slow] if c.slow else []) for c in CASES]
+
+
+def case(name: str) -> Case:
+    return next(c for c in CASES if c.name == name)
+
+
+@pytest.mark.parametrize("case", MARKED)
+def test_ptmcad_is_right(case: Case) -> None:
+    verdict = judge(case, answer(case.question, case.name))
+    assert verdict.right, verdict.remarks
+
+
+def test_there_are_enough_cases_and_all_that_was_asked_for() -> None:
+    assert len(CASES) >= 60
+    assert len({c.name for c in CASES}) == len(CASES)
+    assert all(c.source for c in CASES)
+    reach = {
+        family: [exponent(c.stiffness) for c in CASES if c.family == family] for family in {c.family for c in CASES}
+    }
+    for family, low, high in (
+        ("stiffness", -12, 12), ("lengths", -9, 9), ("short base", -12, -3), ("forces", -30, 30), ("symmetry", -20, -5),
+        ("fold", -30, -6), ("cusp", -30, -6), ("node", -30, -6), ("windows", -20, -20), ("straight", -30, -6),
+        ("free length", -12, 3), ("springs", -12, 12), ("digits", 40, 40),
+    ):  # fmt: skip
+        assert round(min(reach[family])) <= low
+        assert round(max(reach[family])) >= high
+
+
+WRONG_IN_DOUBLES = (
+    "stiffness-1e-12", "lengths-strip-1e9", "short-base-1e-12", "forces-1e30", "symmetry-outside-1e-20",
+    "straight-inside-1e-30", "fold-many-1e-30", "fold-few-1e-30", "cusp-many-1e-30", "node-right-1e-30",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG_IN_DOUBLES)
+def test_double_precision_is_wrong(name: str) -> None:
+    """What the manual says of it."""
+    c = case(name)
+    assert not judge(c, answer(c.question)).double_right
+
+
+@pytest.mark.parametrize("name", ["units-force-1e30", "units-length-1e-9", "lengths-loaded-1e-9", "fold-few-1e-6"])
+def test_double_precision_is_right_where_nothing_cancels(name: str) -> None:
+    c = case(name)
+    verdict = judge(c, answer(c.question))
+    assert verdict.double_right
+    assert verdict.double_error is not None
+    assert verdict.double_error < 1e-9
+
+
+# ------------------------------------------------------------------------------------------------------------- cost
+
+
+HARDEST = [
+    max((c for c in CASES if c.family == family and isinstance(c.question, PointQuestion)), default=None,
+        key=lambda c: abs(exponent(c.stiffness)))
+    for family in dict.fromkeys(c.family for c in CASES)
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("case", [pytest.param(c, id=c.name) for c in HARDEST if c is not None])
+def test_an_extreme_case_takes_at_most_five_times_the_work_of_its_sibling(case: Case) -> None:
+    """Work is counted in calls of functions, so that no clock is asked."""
+    assert work_of(case.question) <= 5 * work_of(case.sibling)
+
+
+def test_work_is_the_same_in_every_run() -> None:
+    assert work_of(TAME) == work_of(TAME)
+
+
+def test_precision_starts_low_and_grows_by_doubling() -> None:
+    tame = ptmcad.solve(**TAME.parameters).bits
+    assert tame == 112
+    for c in CASES:
+        if c.family == "units" and isinstance(c.question, PointQuestion):
+            assert ptmcad.solve(**c.question.parameters).bits == tame  # scaling cancels nothing
+    reached = [
+        ptmcad.solve(**point(F3=-(Fraction(10) ** e), F4=-(Fraction(10) ** e)).parameters).bits for e in (-5, -15, -30)
+    ]
+    assert reached == sorted(reached)
+    assert all(bits in (112, 224, 448, 896) for bits in reached)
+
+
+# ---------------------------------------------------------------------------------------------------- constructions
+
+
+@pytest.mark.parametrize(
+    ("at", "multiplicity"), [(FOLD, 2), (OTHER_FOLD, 2), (MAXIMUM_FOLD, 2), (CUSP, 3), (MAXIMUM_CUSP, 3)]
+)
+def test_constructed_poses_are_degenerate(at: Degenerate, multiplicity: int) -> None:
+    """On the fold itself two equilibria coincide, at the cusp three: zero is recognised exactly."""
+    poses = ptmcad.solve(**at.parameters)
+    assert poses.status is Status.ON_VARIETY
+    (double,) = (p for p in poses.equilibria if p.multiplicity > 1)
+    assert double.multiplicity == multiplicity
+    assert all(e.low <= x <= e.high for e, x in zip(double.cosines_sines, at.pose, strict=True))
+    with pytest.raises(DegeneratePoint):
+        sextic_poses(at.parameters)
+
+
+@pytest.mark.parametrize(("at", "beside"), [(FOLD, beside_fold), (MAXIMUM_FOLD, beside_fold), (CUSP, beside_cusp)])
+def test_sides_differ_by_one_pair(at: Degenerate, beside: object) -> None:
+    """By the second method alone, at a distance at which nothing is extreme."""
+    for sign, counts in ((1, at.many), (-1, at.few)):
+        poses = sextic_poses(beside(at, sign * Fraction(1, 1000)))  # type: ignore[operator]
+        assert (len(poses), sum(p.index == 0 for p in poses)) == counts
+
+
+# --------------------------------------------------------------------------------------------------- second methods
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6))
+def test_the_reference_agrees_with_signatures_of_hermite_forms(seed: int) -> None:
+    """Counts by the sextic's roots and by Tarski queries on the quotient algebra."""
+    from flint import fmpq
+
+    from ptmcad.counting import count_by_signature
+    from ptmcad.models.ptm import ptm_system
+
+    p = dict(random_case(seed, 0).sibling.parameters)  # type: ignore[union-attr]
+    counts = count_by_signature(ptm_system(), {n: fmpq(v.numerator, v.denominator) for n, v in p.items()})
+    indices = [pose.index for pose in sextic_poses({n: Fraction(v) for n, v in p.items()})]
+    assert (indices.count(0), indices.count(1), indices.count(2)) == counts.index
+
+
+def test_newton_in_balls_proves_what_the_sextic_finds() -> None:
+    parameters = dict(TAME.parameters)
+    for pose in sextic_poses(parameters):
+        proved = newton_pose(parameters, (float(pose.th1.mid()), float(pose.th2.mid())))
+        assert proved is not None
+        assert proved.index == pose.index
+        assert proved.th1.overlaps(pose.th1)
+        assert proved.th2.overlaps(pose.th2)
+
+
+def test_newton_in_balls_proves_nothing_at_a_degenerate_pose() -> None:
+    c1, s1, c2, s2 = map(float, FOLD.pose)
+    import math
+
+    assert newton_pose(dict(FOLD.parameters), (math.atan2(s1, c1), math.atan2(s2, c2))) is None
+
+
+def test_double_precision_agrees_on_a_tame_point() -> None:
+    parameters = dict(TAME.parameters)
+    found, known = double_poses(parameters), sextic_poses(parameters)
+    assert found is not None
+    assert sorted(p.index for p in found) == sorted(p.index for p in known)
+    for pose in found:
+        assert min(angle_error(pose.th1, float(k.th1.mid())) for k in known) < 1e-12
+
+
+def test_a_wrong_answer_is_called_wrong() -> None:
+    """The judge itself: counts, status, poses and areas that are not right do not pass."""
+    c = case("stiffness-1e4")
+    other = ptmcad.solve(**point(k=10, F3=-10, F4=-10).parameters)
+    assert not judge(c, other).right
+    assert "reference" in " ".join(judge(c, ptmcad.solve(**point(k=1001, F3=-10, F4=-10).parameters)).remarks)
+    question = case("window-line-1e-20").question
+    assert isinstance(question, MapQuestion)
+    halved = MapQuestion(question.parameters, {n: (low, high) for n, (low, high) in question.axes.items()} | {
+        "rho": (question.axes["rho"][0], sum(question.axes["rho"]) / 2)})  # fmt: skip
+    assert not judge(case("window-line-1e-20"), answer(halved)).right
+
+
+# ----------------------------------------------------------------------------------------------------- random cases
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6), st.integers(0, 4))
+def test_random_extreme_cases_are_answered_right(seed: int, number: int) -> None:
+    c = random_case(seed, number)
+    verdict = judge(c, answer(c.question))
+    assert verdict.right, (c.name, verdict.remarks)
+
+
+def test_random_cases_are_the_same_in_every_run_and_of_all_kinds() -> None:
+    assert [random_case(3, k) for k in range(10)] == [random_case(3, k) for k in range(10)]
+    assert {random_case(3, k).name.rsplit("-", 1)[1] for k in range(5)} == set(KINDS)
+    assert random_case(3, 0) != random_case(4, 0)
+
+
+@given(st.integers(0, 1000), st.integers(-40, 40).map(lambda e: Fraction(10) ** e))
+@settings(max_examples=20, deadline=None)
+def test_symmetries_undo_each_other(seed: int, factor: Fraction) -> None:
+    p = {n: Fraction(v) for n, v in random_case(seed, 0).sibling.parameters.items()}  # type: ignore[union-attr]
+    assert mirrored(mirrored(p)) == swapped(swapped(p)) == p
+    assert stiffened(stiffened(p, factor), 1 / factor) == stretched(stretched(p, factor), 1 / factor) == p
+
+
+# ---------------------------------------------------------------------------------------------- record, plot, command
+
+
+def test_the_record_holds_every_figure() -> None:
+    found = campaign([case("units-force-1e12"), case("symmetry-inside-1e-20")], seed=1, repeats=1)
+    document = json.loads(to_json(found))
+    assert document["complete"] is True
+    first, second = document["cases"]
+    assert (first["expected"], first["found"], first["double"], first["right"]) == ("6/2", "6/2", "6/2", True)
+    assert second["double_error"] is None  # no pose at all
+    page = markdown(found)
+    assert "| symmetry-inside-1e-20 | 6/2 | 6/2 | none wrong | - |" in page
+    assert "double precision is wrong in 1" in page
+    rows = list(csv.DictReader(to_csv(found).splitlines()))
+    assert [row["name"] for row in rows] == ["units-force-1e12", "symmetry-inside-1e-20"]
+    assert rows[1]["double_error"] == ""
+    again = json.loads(to_json(campaign([case("units-force-1e12")], seed=1, repeats=1)))["cases"][0]
+    timed = {"seconds", "sibling_seconds", "ratio", "ratio_low", "ratio_high"}
+    assert {k: v for k, v in again.items() if k not in timed} == {k: v for k, v in first.items() if k not in timed}
+
+
+def test_the_plot_has_a_panel_for_each_family_and_marks_what_is_wrong() -> None:
+    cases = [case(n) for n in ("fold-many-1e-6", "fold-many-1e-30", "symmetry-inside-1e-20", "stiffness-1e4")]
+    figure = draw_stress(campaign(cases, seed=1, repeats=1).outcomes)
+    assert [axes.get_title() for axes in figure.axes] == ["fold", "symmetry", "stiffness"]
+    right, wrong, _ = figure.axes[0].lines[:3]
+    assert list(right.get_xdata()) == pytest.approx([-6])
+    assert list(wrong.get_xdata()) == pytest.approx([-30])
+    assert list(figure.axes[1].lines[1].get_ydata()) == [10.0]
+    assert "wrong in 2" in figure.get_label()
+
+
+def test_the_command_lists_its_cases(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["stress", "--list"]) == 0
+    out = capsys.readouterr().out
+    assert all(c.name in out for c in CASES)
+
+
+def test_the_command_runs_cases_and_writes_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["stress", "fold-many-1e-30", "--random", "2", "--repeats", "1", "--out", str(tmp_path)]
+    assert run([*arguments, "--format", "table,json,csv,svg"]) == 0
+    out = capsys.readouterr().out
+    assert "5/2 wrong" in out
+    assert "ptmcad is right in 3 of 3 cases" in out
+    assert {p.name for p in tmp_path.iterdir()} == {"stress.json", "stress.csv", "stress.svg"}
+
+
+def test_the_command_refuses_unknown_names(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["stress", "stifness"]) == 2
+    assert "did you mean 'stiffness'" in capsys.readouterr().err
+
+
+def test_a_time_limit_saves_what_there_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["stress", "units", "--timeout", "1e-9", "--format", "json", "--out", str(tmp_path)]) == 3
+    document = json.loads((tmp_path / "stress.partial.json").read_text())
+    assert document["complete"] is False
+    assert "time limit" in capsys.readouterr().err
+
+
+def test_a_wrong_answer_gives_exit_status_1(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def wrong(_case: Case, _found: object) -> Verdict:
+        return Verdict("6/2", "4/1", "6/2", False, ("total 4, but 6 by construction",), True, 0.0, 0.0, 1.0, 112)
+
+    monkeypatch.setattr(campaign_module, "judge", wrong)
+    assert run(["stress", "stiffness-1e4", "--repeats", "1", "--format", "table"]) == 1
+    assert "4/1 WRONG" in capsys.readouterr().out
+
+
+def test_answers_of_another_kind_are_refused() -> None:
+    c = case("window-line-1e-20")
+    with pytest.raises(TypeError, match="another kind"):
+        judge(Case(c.name, c.family, c.stiffness, c.question, c.sibling, PointAnswer(), c.source), None)
+
+
+def test_families_and_names_choose_cases() -> None:
+    assert {c.family for c in chosen(["node"])} == {"node"}
+    assert [c.name for c in chosen(["digits-40"])] == ["digits-40"]
+    assert chosen([]) == CASES
