@@ -16,6 +16,7 @@ from time import perf_counter
 
 from ptmcad.errors import ConfigError
 from ptmcad.expressions import did_you_mean
+from ptmcad.plan import is_certified
 from ptmcad.regionmap import RegionMap
 from ptmcad.savings import kept, load_all
 from ptmcad.slice import Count, Slice, without_free_lengths
@@ -92,11 +93,6 @@ def classify(
     from ptmcad.exactmap import AREA_TOLERANCE, exact_map
 
     return exact_map(slice, AREA_TOLERANCE if relative is None else relative, deadline, progress, off, partial)
-
-
-def is_certified(slice: Slice, engine: str) -> bool:
-    """Whether a choice of `ENGINES` means the certified engine for a slice."""
-    return engine == "certified" or (engine == "auto" and slice.has_free_lengths)
 
 
 def _certified(

@@ -30,6 +30,11 @@ def saving_step(name: str, keep: frozenset[str], what: str = "", why: str = "") 
     return PlanStep(what or saving.what, name in keep, KEPT if name in keep else why or saving.why, name)
 
 
+def is_certified(slice: Slice, engine: str) -> bool:
+    """Whether the choice ``"exact"``, ``"certified"`` or ``"auto"`` means the certified engine for a slice."""
+    return engine == "certified" or (engine == "auto" and slice.has_free_lengths)
+
+
 def beforehand(slice: Slice, keep: frozenset[str]) -> tuple[PlanStep, ...]:
     """What is known of the plan before anything is computed."""
     zero = zero_parameters(slice)

@@ -94,14 +94,10 @@ def kept(names: Iterable[str], certified: bool) -> frozenset[str]:
         For a name that no saving has, or one of the other engine's.
     """
     given = (names,) if isinstance(names, str) else tuple(names)
+    check_names(given)
     engine = Engine.CERTIFIED if certified else Engine.EXACT
     own = frozenset(s.name for s in SAVINGS if s.engine in (engine, Engine.ANY))
     for name in given:
-        if name != ALL and name not in BY_NAME:
-            raise ConfigError(
-                f"{name[:60]!r} is no saving{did_you_mean(name, (*BY_NAME, ALL))}: write {', '.join(BY_NAME)} or {ALL}",
-                key="keep",
-            )
         if name != ALL and name not in own:
             raise ConfigError(
                 f"{name!r} is a saving of the {BY_NAME[name].engine.value}, and this slice is the {engine.value}'s, "
@@ -109,6 +105,23 @@ def kept(names: Iterable[str], certified: bool) -> frozenset[str]:
                 key="keep",
             )
     return own if ALL in given else frozenset(given)
+
+
+def check_names(names: Iterable[str]) -> None:
+    """Refuse what is no saving's name.
+
+    Raises
+    ------
+    ConfigError
+        That lists the names.
+    """
+    for name in names:
+        if name != ALL and name not in BY_NAME:
+            raise ConfigError(
+                f"{name[:60]!r} is no saving{did_you_mean(name, (*BY_NAME, ALL))}; "
+                f"there are {', '.join(BY_NAME)} and {ALL}",
+                key="keep",
+            )
 
 
 def load_all() -> None:
