@@ -43,7 +43,6 @@ def beforehand(slice: Slice, keep: frozenset[str]) -> tuple[PlanStep, ...]:
         *([saving_step("zero-terms", keep, "terms of " + ", ".join(zero))] if zero else []),
         saving_step("sign-curve", keep),
         saving_step("hermite-matrix", keep),
-        saving_step("leading-coefficients", keep),
         saving_step("equal-counts", keep),
     )
 

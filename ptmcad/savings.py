@@ -55,8 +55,6 @@ _EXACT = (
            "cosines and sines are bounded: no real solution does"),
     Saving("no-real-points", Engine.EXACT, "components without a point in the window", "no cell touches them"),
     Saving("axis-order", Engine.EXACT, "decomposition over the other axis", "regions do not depend on it"),
-    Saving("leading-coefficients", Engine.EXACT, "leading coefficients",
-           "roots that leave through infinity do not cross the window"),
     Saving("even-powers", Engine.EXACT, "discriminants and resultants of full degree",
            "where only powers of u^k occur they are computed in u^k"),
     Saving("equal-counts", Engine.EXACT, "areas beside walls that separate no regions",

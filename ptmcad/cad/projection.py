@@ -62,7 +62,7 @@ def project(
     Parameters
     ----------
     check : called now and then; may raise to stop.
-    keep : names of savings to switch off: ``"even-powers"``, ``"leading-coefficients"``.
+    keep : names of savings to switch off: ``"even-powers"``.
     """
     deflate = "even-powers" not in keep
     found: dict[tuple[int, ...], tuple[UnivariatePolynomial, str]] = {}
@@ -78,8 +78,6 @@ def project(
     for c in curves:
         for p, origin in _of_one(c, fibre, check, deflate):
             adopt(p, origin)
-        if "leading-coefficients" in keep:
-            adopt(c.in_v[-1], f"component {c.component}: leading coefficient")
     for i, c in enumerate(curves):
         for d in curves[i + 1 :]:
             adopt(_of_two(c, d, check, deflate), f"components {c.component} and {d.component} meet")

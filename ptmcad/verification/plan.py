@@ -24,7 +24,6 @@ _GENERAL = (
     ("sign-curve", "projection of H11 = 0", "where it vanishes off the critical curves, det H < 0"),
     ("hermite-matrix", "determinant of the Hermite matrix",
      "the norm of det H has the same critical factors and no others"),
-    ("leading-coefficients", "leading coefficients", "roots that leave through infinity do not cross the window"),
     ("equal-counts", "areas beside walls that separate no regions",
      "what one cell has too much there its neighbour in the region has too little"),
     ("infinity", "curves over which solutions leave every bounded set",
