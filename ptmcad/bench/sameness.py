@@ -25,7 +25,7 @@ def _exact(one: RegionMap, other: RegionMap) -> Iterator[str]:
     pairs: set[tuple[int, int]] = set()
     for first, second, forward in ((one, other, True), (other, one, False)):
         for cell in first.cells:
-            at = second.locate(**cell.sample)
+            at = second.locate(**dict(cell.sample))
             if at.region is None:  # on a curve that only one of the maps uses
                 continue
             if (at.total, at.stable, at.index) != (cell.total, cell.stable, cell.index):
@@ -55,7 +55,7 @@ def neighbours(result: RegionMap) -> set[frozenset[int]]:
 def _certified(one: RegionMap, other: RegionMap) -> Iterator[str]:
     for first, second in ((one, other), (other, one)):
         for cell in first.cells:
-            at = second.locate(**cell.sample)
+            at = second.locate(**dict(cell.sample))
             for name in ("total", "stable", "index", "admissible"):
                 mine, yours = getattr(cell, name), getattr(at, name)
                 if mine is not None and yours is not None and mine != yours and name == first.slice.count.value:
