@@ -218,6 +218,11 @@ def test_terms_of_parameters_that_are_zero_change_nothing() -> None:
     reduced = without_parameters(system, frozenset({"F3", "F4x"}))
     assert at_point(reduced, values) == at_point(system, values)
     assert all(len(a) <= len(b) for a, b in zip(reduced.gradient_terms, system.gradient_terms, strict=True))
+    polynomials = (reduced.potential, *reduced.gradient, *reduced.hessian[0], *reduced.hessian[1])
+    assert not [name for p in polynomials for name in ("F3*", "F4x*") if name in str(p)]
+    slice = record("fig2")
+    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
+    assert on_slice(without_parameters(system, frozenset({"F3", "F4x"})), parameters) == on_slice(system, parameters)
 
 
 # ------------------------------------------------------------------------------------------------------------- the plan
