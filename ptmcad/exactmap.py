@@ -83,6 +83,7 @@ def exact_map(
     progress: Progress | None = None,
     keep: frozenset[str] = frozenset(),
     partial: Callable[[RegionMap], None] | None = None,
+    areas: bool = True,
 ) -> RegionMap:
     """The region map of a slice without free lengths.
 
@@ -93,6 +94,7 @@ def exact_map(
     progress : called as progress(stage, done, total).
     keep : names of savings to switch off, of `ptmcad.savings`.
     partial : called with the map after each stage that improves it, the complete one included.
+    areas : whether to enclose the regions' areas; without, they are known only to be at most the window's.
 
     Raises
     ------
@@ -108,7 +110,7 @@ def exact_map(
     clock = _Clock(progress, deadline, now, now, {})
     best: RegionMap | None = None
     try:
-        for reached in _stages(slice, area_tolerance, clock, keep):
+        for reached in _stages(slice, area_tolerance if areas else None, clock, keep):
             best = reached
             if partial is not None:
                 partial(reached)
@@ -146,8 +148,13 @@ def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVari
     )
 
 
-def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str]) -> Iterator[RegionMap]:
-    """The region map after the variety, after the counts, and complete; the first two are marked as partial."""
+def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozenset[str]) -> Iterator[RegionMap]:
+    """The region map after the variety, after the counts, and complete; the first two are marked as partial.
+
+    Parameters
+    ----------
+    relative : largest relative width of areas' bounds, None when they are not asked for.
+    """
     mechanism = system_of(slice.mechanism)
     parameters = {name: from_expression(slice.parameters[name]) for name in mechanism.ring.parameters}
     system = mechanism
@@ -176,7 +183,7 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
         adjacencies=(),
         non_adjacencies=(),
         regions=(),
-        plan=plan_of(slice, variety.components, base, costs, keep),
+        plan=plan_of(slice, variety.components, base, costs, keep, relative is not None),
         undetermined=Fraction(1),
         versions={
             "ptmcad": __version__,
@@ -213,17 +220,21 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
     counted = assemble(started, projection, stacks, points, counts, crossings, lines)
     yield counted
     clock.stage("adjacency")
+    if relative is None:
+        times = {**clock.seconds, "total": perf_counter() - clock.started}
+        yield replace(counted, status=Status.EXACT, timings=times)
+        return
 
     clock.report("areas", 0, 1)
     cells_alone = "equal-counts" in keep
     whole = (slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low)
     rows = [tuple(n if cells_alone else counted.cells[n].region for n in stack.cells) for stack in counted.stacks]
-    areas, bits = region_areas(stacks, rows, curves, window[base], window[1 - base], relative, clock.check)
+    bounds, bits = region_areas(stacks, rows, curves, window[base], window[1 - base], relative, clock.check)
     if cells_alone:
-        areas = tuple(_sum_of([areas[n] for n in region.cells], whole) for region in counted.regions)
+        bounds = tuple(_sum_of([bounds[n] for n in region.cells], whole) for region in counted.regions)
     clock.stage("areas")
     yield replace(
-        with_areas(counted, areas, bits),
+        with_areas(counted, bounds, bits),
         status=Status.EXACT,
         timings={**clock.seconds, "total": perf_counter() - clock.started},
     )

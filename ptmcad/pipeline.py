@@ -39,6 +39,7 @@ def classify(
     keep: Iterable[str] = (),
     partial: Callable[[RegionMap], None] | None = None,
     resume: RegionMap | None = None,
+    areas: bool = True,
 ) -> RegionMap:
     """The region map of a slice.
 
@@ -56,6 +57,7 @@ def classify(
     partial : called with the map after each stage that improves it.
     resume : a certified map of the same slice and count, stopped or not, from which to go on. Its cover is taken as
         it stands: what `ptmcad.verify` says of the result rests on it.
+    areas : False leaves the regions' areas out (exact engine): of each is then known that it is at most the window's.
 
     Raises
     ------
@@ -78,6 +80,8 @@ def classify(
     _check_count(slice)
     deadline = None if timeout is None else started + timeout
     certified = is_certified(slice, engine)
+    if not areas:
+        _check_no_areas(certified, relative)
     off = kept(keep, certified)
     if certified:
         result = _certified(slice, undetermined, relative, deadline, jobs, progress, off, partial, resume)
@@ -92,7 +96,14 @@ def classify(
         load_all()
     from ptmcad.exactmap import AREA_TOLERANCE, exact_map
 
-    return exact_map(slice, AREA_TOLERANCE if relative is None else relative, deadline, progress, off, partial)
+    return exact_map(slice, AREA_TOLERANCE if relative is None else relative, deadline, progress, off, partial, areas)
+
+
+def _check_no_areas(certified: bool, area_tolerance: Fraction | None) -> None:
+    if certified:
+        raise ConfigError("the certified engine has areas for nothing: it can not leave them out", key="areas")
+    if area_tolerance is not None:
+        raise ConfigError("areas are not asked for, but a tolerance for them is given: leave one out", key="areas")
 
 
 def _certified(

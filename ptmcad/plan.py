@@ -35,20 +35,30 @@ def is_certified(slice: Slice, engine: str) -> bool:
     return engine == "certified" or (engine == "auto" and slice.has_free_lengths)
 
 
-def beforehand(slice: Slice, keep: frozenset[str]) -> tuple[PlanStep, ...]:
-    """What is known of the plan before anything is computed."""
+def beforehand(slice: Slice, keep: frozenset[str], areas: bool = True) -> tuple[PlanStep, ...]:
+    """What is known of the plan before anything is computed.
+
+    Parameters
+    ----------
+    areas : whether they are asked for.
+    """
     zero = zero_parameters(slice)
     return (
         saving_step("imports", keep),
         *([saving_step("zero-terms", keep, "terms of " + ", ".join(zero))] if zero else []),
         saving_step("sign-curve", keep),
         saving_step("hermite-matrix", keep),
-        saving_step("equal-counts", keep),
+        saving_step("equal-counts", keep) if areas else PlanStep("areas of the regions", False, "not asked for"),
     )
 
 
 def plan_of(
-    slice: Slice, components: Sequence[Component], base: int, costs: tuple[int, int], keep: frozenset[str]
+    slice: Slice,
+    components: Sequence[Component],
+    base: int,
+    costs: tuple[int, int],
+    keep: frozenset[str],
+    areas: bool = True,
 ) -> tuple[PlanStep, ...]:
     """The steps of the exact engine for a slice.
 
@@ -57,8 +67,9 @@ def plan_of(
     base : number of the base axis.
     costs : predicted costs of the two axis orders.
     keep : savings that were switched off.
+    areas : whether they are asked for.
     """
-    steps = list(beforehand(slice, keep))
+    steps = list(beforehand(slice, keep, areas))
     steps.append(saving_step("infinity", keep))
     if "no-real-points" in keep:
         steps.append(saving_step("no-real-points", keep))

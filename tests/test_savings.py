@@ -240,6 +240,21 @@ def test_every_saving_is_in_the_plan_once(shipped: Shipped) -> None:
     assert Kind.AUXILIARY in {c.kind for c in plain.components}
 
 
+def test_areas_that_nobody_asks_for(shipped: Shipped) -> None:
+    whole = shipped("fig4")
+    result = ptmcad.classify(record("fig4"), areas=False)
+    assert {region.area for region in result.regions} == {(0, 4)}
+    assert "areas     not computed" in result.table()
+    assert result.status is whole.status
+    assert difference(whole, result) == ""
+    assert ptmcad.verify(result).ok
+    assert not ptmcad.verify(replace(whole, plan=result.plan)).ok
+    with pytest.raises(ConfigError, match="leave one out"):
+        ptmcad.classify(record("fig4"), areas=False, area_tolerance="1e-3")
+    with pytest.raises(ConfigError, match="for nothing"):
+        ptmcad.classify(record("free02"), areas=False)
+
+
 def test_verify_checks_what_the_plan_says_was_kept(shipped: Shipped) -> None:
     honest = shipped("fig2")
     plain = ptmcad.classify(record("fig2"), keep=ALL)

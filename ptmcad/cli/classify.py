@@ -43,6 +43,7 @@ class Request:
     samples: bool = False
     timings: bool = True
     keep: tuple[str, ...] = ()
+    areas: bool = True
 
 
 def classify_to_files(slice: Slice, request: Request) -> Any:
@@ -77,6 +78,7 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
                 partial=partial(_hand_over, request) if watched() else None,
                 resume=request.resume,
                 keep=request.keep,
+                areas=request.areas,
             )
         except LimitReached as stopped:
             if stopped.partial is None or "json" not in request.formats:
@@ -121,7 +123,7 @@ def explanation(steps: Iterable[Any]) -> str:
     return "\n".join(str(step) for step in steps)
 
 
-def announced(slice: Slice, engine: str, keep: tuple[str, ...]) -> tuple[Any, ...]:
+def announced(slice: Slice, request: Request) -> tuple[Any, ...]:
     """Print what is known of the plan before anything is computed, and return these steps.
 
     Raises
@@ -131,13 +133,14 @@ def announced(slice: Slice, engine: str, keep: tuple[str, ...]) -> tuple[Any, ..
     """
     from ptmcad import plan
 
-    certified = plan.is_certified(slice, engine)
-    off = kept(keep, certified)
+    certified = plan.is_certified(slice, request.engine)
+    off = kept(request.keep, certified)
     if certified:
         from ptmcad.interval.plan import beforehand
+
+        steps = beforehand(slice, off)
     else:
-        from ptmcad.plan import beforehand
-    steps = beforehand(slice, off)
+        steps = plan.beforehand(slice, off, request.areas)
     click.echo(f"plan of {slice.name}, {'certified' if certified else 'exact'} engine, before it starts:")
     click.echo(explanation(steps))
     later = () if certified else tuple(name for name in plan.LATER if name not in off)
@@ -218,6 +221,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @click.option(
     "--area-tolerance", callback=_share, metavar="EPS", help="Relative width of the areas' bounds (exact engine)."
 )
+@click.option("--no-areas", is_flag=True, help="Leave the regions' areas out, often half of the work (exact engine).")
 @click.option("--samples", is_flag=True, help="Draw the cells' sample points.")
 @click.option("--no-timings", is_flag=True, help="Leave run times out of the JSON, so that it is the same every time.")
 def command(
@@ -240,6 +244,7 @@ def command(
     samples: bool,
     no_timings: bool,
     keep: tuple[str, ...],
+    no_areas: bool,
 ) -> None:
     """Map the regions of a slice by their number of equilibria.
 
@@ -271,8 +276,9 @@ def command(
         samples=samples,
         timings=not no_timings,
         keep=keep,
+        areas=not no_areas,
     )
-    steps = announced(slice, engine, keep) if explain else ()
+    steps = announced(slice, request) if explain else ()
     with limits(timeout, max_memory):
         result = classify_to_files(slice, request)
     further = [step for step in result.plan if step not in steps]

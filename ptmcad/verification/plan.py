@@ -32,6 +32,9 @@ _GENERAL = (
 """Names, subjects and reasons of the savings that are made on every slice."""
 
 
+_NO_AREAS = PlanStep("areas of the regions", False, "not asked for")
+
+
 def check_plan(claims: Claims) -> str:
     """Every step of the plan."""
     result = claims.result
@@ -59,7 +62,9 @@ def _expected(result: RegionMap, keep: frozenset[str]) -> Iterator[PlanStep]:
     names = result.slice.axis_names
     zero = ", ".join(n for n, e in result.slice.parameters.items() if not e.numerator)
     for saving, what, why in _GENERAL:
-        if zero or saving != "zero-terms":
+        if saving == "equal-counts" and _NO_AREAS in result.plan:
+            yield _NO_AREAS
+        elif zero or saving != "zero-terms":
             yield _step(saving, what.format(zero=zero), why, keep)
     if "no-real-points" in keep:
         yield _step("no-real-points", "components without a point in the window", "", keep)
@@ -106,5 +111,7 @@ def _check_left_out(result: RegionMap, keep: frozenset[str]) -> None:
         raise Violation("a component without a point in the window is left out, but the plan says that such are kept")
     if "infinity" in keep and HARMLESS in reasons:
         raise Violation("a component is left out as harmless, but the plan says that such are kept")
+    if _NO_AREAS in result.plan and any(low for low, _ in (region.area for region in result.regions)):
+        raise Violation("areas are known, but the plan says that they were not asked for")
     if "axis-order" in keep and result.base != 0:
         raise Violation("the base is not the first axis, but the plan says that it was asked for")
