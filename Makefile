@@ -63,6 +63,7 @@ check: $(VENV)/.installed-check
 
 bench: $(VENV)/.installed
 	$(BIN)/python -m ptmcad.bench --out docs/benchmarks
+	$(BIN)/python -m ptmcad.bench.scaling --out docs/benchmarks
 
 docs: $(VENV)/.installed-docs
 	$(BIN)/ptmcad classify configs/fig4.yaml --format png --out docs/img

@@ -199,6 +199,7 @@ def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozen
     clock.report("projection", 0, 1)
     projection = project(curves, list(verticals.values()), window[base], window[1 - base], clock.check, keep)
     clock.stage("projection")
+    clock.report("stacks", 0, 1)
     avoided = avoided_by_samples(variety.components, base)
     stacks = lift(curves, projection.abscissae, window[base], window[1 - base], avoided)
     clock.stage("stacks")
