@@ -31,14 +31,15 @@ from ptmcad.cad.adjacency import cross
 from ptmcad.cad.area import region_areas
 from ptmcad.cad.curves import Curve, curve
 from ptmcad.cad.projection import predicted_cost, project
-from ptmcad.cad.stacks import lift
+from ptmcad.cad.stacks import Avoided, lift
 from ptmcad.counting import DegeneratePoint, Equilibria, equilibria, solutions_at
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
 from ptmcad.models import ParametricSystem, system_of
 from ptmcad.models.elimination import elimination_system
+from ptmcad.models.system import without_parameters
 from ptmcad.models.text import system_text
 from ptmcad.plan import plan_of
-from ptmcad.regionmap import Component, RegionMap, Status
+from ptmcad.regionmap import HARMLESS, Component, RegionMap, Status
 from ptmcad.slice import Slice, without_free_lengths
 from ptmcad.slicevariety import SliceVariety
 from ptmcad.variety import discriminant_variety
@@ -82,6 +83,7 @@ def exact_map(
     progress: Progress | None = None,
     keep: frozenset[str] = frozenset(),
     partial: Callable[[RegionMap], None] | None = None,
+    areas: bool = True,
 ) -> RegionMap:
     """The region map of a slice without free lengths.
 
@@ -90,8 +92,9 @@ def exact_map(
     area_tolerance : largest relative width of each region's area bounds.
     deadline : reading of `time.perf_counter` after which `LimitReached` is raised.
     progress : called as progress(stage, done, total).
-    keep : names of savings to switch off, see `ptmcad.plan`.
+    keep : names of savings to switch off, of `ptmcad.savings`.
     partial : called with the map after each stage that improves it, the complete one included.
+    areas : whether to enclose the regions' areas; without, they are known only to be at most the window's.
 
     Raises
     ------
@@ -107,7 +110,7 @@ def exact_map(
     clock = _Clock(progress, deadline, now, now, {})
     best: RegionMap | None = None
     try:
-        for reached in _stages(slice, area_tolerance, clock, keep):
+        for reached in _stages(slice, area_tolerance if areas else None, clock, keep):
             best = reached
             if partial is not None:
                 partial(reached)
@@ -122,7 +125,7 @@ def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVari
 
     Parameters
     ----------
-    keep : names of savings to switch off, see `ptmcad.plan`.
+    keep : names of savings to switch off, of `ptmcad.savings`.
 
     Raises
     ------
@@ -145,10 +148,18 @@ def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVari
     )
 
 
-def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str]) -> Iterator[RegionMap]:
-    """The region map after the variety, after the counts, and complete; the first two are marked as partial."""
-    system = system_of(slice.mechanism)
-    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
+def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozenset[str]) -> Iterator[RegionMap]:
+    """The region map after the variety, after the counts, and complete; the first two are marked as partial.
+
+    Parameters
+    ----------
+    relative : largest relative width of areas' bounds, None when they are not asked for.
+    """
+    mechanism = system_of(slice.mechanism)
+    parameters = {name: from_expression(slice.parameters[name]) for name in mechanism.ring.parameters}
+    system = mechanism
+    if "zero-terms" not in keep:
+        system = without_parameters(mechanism, frozenset(n for n, (a, _) in parameters.items() if a.is_zero()))
     window = tuple((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
     clock.report("variety", 0, 1)
     try:
@@ -162,7 +173,7 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
     started = RegionMap(
         slice=slice,
         status=Status.PARTIAL,
-        system=system_text(system),
+        system=system_text(mechanism),
         base=base,
         complex_solutions=variety.complex_solutions,
         components=variety.components,
@@ -172,7 +183,7 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
         adjacencies=(),
         non_adjacencies=(),
         regions=(),
-        plan=plan_of(slice, variety.components, slice.axis_names[base], costs, keep),
+        plan=plan_of(slice, variety.components, base, costs, keep, relative is not None),
         undetermined=Fraction(1),
         versions={
             "ptmcad": __version__,
@@ -186,10 +197,11 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
     clock.stage("variety")
 
     clock.report("projection", 0, 1)
-    projection = project(curves, verticals, window[base], window[1 - base], clock.check)
+    projection = project(curves, list(verticals.values()), window[base], window[1 - base], clock.check, keep)
     clock.stage("projection")
     clock.report("stacks", 0, 1)
-    stacks = lift(curves, projection.abscissae, window[base], window[1 - base])
+    avoided = avoided_by_samples(variety.components, base)
+    stacks = lift(curves, projection.abscissae, window[base], window[1 - base], avoided)
     clock.stage("stacks")
 
     points = [
@@ -205,20 +217,32 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
     for k, (left, right) in enumerate(pairwise(stacks)):
         clock.report("adjacency", k, len(stacks) - 1)
         crossings.append(cross(curves, left, right, window[1 - base], clock.check))
-    lines = {tuple(int(c) for c in p.coeffs()): n for n, p in _vertical_lines(variety.components, base).items()}
+    lines = {tuple(int(c) for c in p.coeffs()): n for n, p in verticals.items()}
     counted = assemble(started, projection, stacks, points, counts, crossings, lines)
     yield counted
     clock.stage("adjacency")
+    if relative is None:
+        times = {**clock.seconds, "total": perf_counter() - clock.started}
+        yield replace(counted, status=Status.EXACT, timings=times)
+        return
 
     clock.report("areas", 0, 1)
-    rows = [tuple(counted.cells[n].region for n in stack.cells) for stack in counted.stacks]
-    areas, bits = region_areas(stacks, rows, curves, window[base], window[1 - base], relative, clock.check)
+    cells_alone = "equal-counts" in keep
+    whole = (slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low)
+    rows = [tuple(n if cells_alone else counted.cells[n].region for n in stack.cells) for stack in counted.stacks]
+    bounds, bits = region_areas(stacks, rows, curves, window[base], window[1 - base], relative, clock.check)
+    if cells_alone:
+        bounds = tuple(_sum_of([bounds[n] for n in region.cells], whole) for region in counted.regions)
     clock.stage("areas")
     yield replace(
-        with_areas(counted, areas, bits),
+        with_areas(counted, bounds, bits),
         status=Status.EXACT,
         timings={**clock.seconds, "total": perf_counter() - clock.started},
     )
+
+
+def _sum_of(areas: Sequence[tuple[Fraction, Fraction]], most: Fraction) -> tuple[Fraction, Fraction]:
+    return sum((low for low, _ in areas), Fraction(0)), min(sum((high for _, high in areas), Fraction(0)), most)
 
 
 def domain_limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coefficient]:
@@ -228,33 +252,34 @@ def domain_limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> lis
     return [limit for limit in limits if not limit.is_constant()]
 
 
-def _vertical_lines(components: Sequence[Component], base: int) -> dict[int, UnivariatePolynomial]:
-    """The components that are lines across the fibre direction, as polynomials in the base coordinate."""
-    lines = {}
+def _seen_from(
+    components: Sequence[Component], base: int, reason: str = ""
+) -> tuple[list[Curve], dict[int, UnivariatePolynomial]]:
+    """The components that are used, or left out for a reason: curves, and lines across the fibre by their numbers."""
+    curves, lines = [], {}
     for n, c in enumerate(components):
-        if not c.left_out and c.polynomial.degrees[1 - base] == 0:
-            lines[n] = coefficients_in(from_plane(c.polynomial), 1 - base)[0]
-    return lines
+        if c.left_out == reason:
+            if c.polynomial.degrees[1 - base] > 0:
+                curves.append(curve(n, from_plane(c.polynomial), base))
+            else:
+                lines[n] = coefficients_in(from_plane(c.polynomial), 1 - base)[0]
+    return curves, lines
+
+
+def avoided_by_samples(components: Sequence[Component], base: int) -> Avoided:
+    """Where real solutions stay regular but complex ones are lost, and a fibre may not be finite."""
+    curves, lines = _seen_from(components, base, HARMLESS)
+    return Avoided(curves, list(lines.values()))
 
 
 def _choose_base(
     components: Sequence[Component], keep: frozenset[str]
-) -> tuple[int, list[Curve], list[UnivariatePolynomial], tuple[int, int]]:
+) -> tuple[int, list[Curve], dict[int, UnivariatePolynomial], tuple[int, int]]:
     """The base axis of the cheaper decomposition, with the curves and lines as seen from it."""
-    views = []
-    for base in (0, 1):
-        curves = [
-            curve(n, from_plane(c.polynomial), base)
-            for n, c in enumerate(components)
-            if not c.left_out and c.polynomial.degrees[1 - base] > 0
-        ]
-        views.append((predicted_cost(curves), base, curves))
-    costs = (views[0][0], views[1][0])
-    chosen = views[1] if costs[1] < costs[0] else views[0]
-    if "axis-order" in keep:
-        chosen = views[0]
-    _, base, curves = chosen
-    return base, curves, list(_vertical_lines(components, base).values()), costs
+    views = [_seen_from(components, base) for base in (0, 1)]
+    costs = (predicted_cost(views[0][0]), predicted_cost(views[1][0]))
+    base = 1 if costs[1] < costs[0] and "axis-order" not in keep else 0
+    return base, *views[base], costs
 
 
 def _where(slice: Slice, at: tuple[fmpq, fmpq]) -> str:

@@ -8,7 +8,7 @@ Only the engine that is used is loaded.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
@@ -16,7 +16,9 @@ from time import perf_counter
 
 from ptmcad.errors import ConfigError
 from ptmcad.expressions import did_you_mean
+from ptmcad.plan import is_certified
 from ptmcad.regionmap import RegionMap
+from ptmcad.savings import kept, load_all
 from ptmcad.slice import Count, Slice, without_free_lengths
 
 ENGINES = ("auto", "exact", "certified")
@@ -34,9 +36,10 @@ def classify(
     area_tolerance: Fraction | float | str | None = None,
     jobs: int | None = None,
     progress: Progress | None = None,
-    keep: frozenset[str] = frozenset(),
+    keep: Iterable[str] = (),
     partial: Callable[[RegionMap], None] | None = None,
     resume: RegionMap | None = None,
+    areas: bool = True,
 ) -> RegionMap:
     """The region map of a slice.
 
@@ -50,16 +53,17 @@ def classify(
     area_tolerance : largest relative width of each region's area bounds, 1e-4 when None; for the exact engine.
     jobs : number of threads of the certified engine, all processors when None; the exact engine uses one.
     progress : called as progress(stage, done, total).
-    keep : names of savings of the exact engine to switch off, see `ptmcad.plan`.
+    keep : names of savings to switch off, of `ptmcad.savings`; ``"all"`` stands for all that the engine has.
     partial : called with the map after each stage that improves it.
     resume : a certified map of the same slice and count, stopped or not, from which to go on. Its cover is taken as
         it stands: what `ptmcad.verify` says of the result rests on it.
+    areas : False leaves the regions' areas out (exact engine): of each is then known that it is at most the window's.
 
     Raises
     ------
     ConfigError
-        For an unknown engine or count, a tolerance out of range, an option that the engine does not have, a slice that
-        the engine does not take, or a map to go on from that is not of this slice.
+        For an unknown engine, count or saving, a tolerance out of range, an option that the engine does not have, a
+        slice that the engine does not take, or a map to go on from that is not of this slice.
     HypothesisError
         When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
     LimitReached
@@ -75,8 +79,12 @@ def classify(
     undetermined, relative = _share(tolerance, "tolerance"), _share(area_tolerance, "area_tolerance")
     _check_count(slice)
     deadline = None if timeout is None else started + timeout
-    if engine == "certified" or (engine == "auto" and slice.has_free_lengths):
-        result = _certified(slice, undetermined, relative, deadline, jobs, progress, keep, partial, resume)
+    certified = is_certified(slice, engine)
+    if not areas:
+        _check_no_areas(certified, relative)
+    off = kept(keep, certified)
+    if certified:
+        result = _certified(slice, undetermined, relative, deadline, jobs, progress, off, partial, resume)
         return replace(result, timings={**result.timings, "total": perf_counter() - started})
     try:
         without_free_lengths(slice.parameters, "an exact map is")
@@ -84,9 +92,18 @@ def classify(
         raise ConfigError(f"{error.message}: choose certified or auto", key="engine") from error
     if resume is not None:
         raise ConfigError("only the certified engine can go on from an earlier map", key="resume")
+    if "imports" in off:
+        load_all()
     from ptmcad.exactmap import AREA_TOLERANCE, exact_map
 
-    return exact_map(slice, AREA_TOLERANCE if relative is None else relative, deadline, progress, keep, partial)
+    return exact_map(slice, AREA_TOLERANCE if relative is None else relative, deadline, progress, off, partial, areas)
+
+
+def _check_no_areas(certified: bool, area_tolerance: Fraction | None) -> None:
+    if certified:
+        raise ConfigError("the certified engine has areas for nothing: it can not leave them out", key="areas")
+    if area_tolerance is not None:
+        raise ConfigError("areas are not asked for, but a tolerance for them is given: leave one out", key="areas")
 
 
 def _certified(
@@ -105,16 +122,23 @@ def _certified(
             "the certified engine bounds areas by what it leaves undetermined: give tolerance instead",
             key="area_tolerance",
         )
-    if keep:
-        raise ConfigError("the certified engine has no savings to switch off", key="keep")
     if resume is not None:
         check_resumable(slice, resume)
     import_module("ptmcad.interval.compiled")  # first: where numba is missing, it says so
+    if "imports" in keep:
+        load_all()
     from ptmcad.interval.engine import certified_map
 
     cover = None if resume is None else resume.cover
     return certified_map(
-        slice, tolerance=tolerance, deadline=deadline, jobs=jobs, progress=progress, partial=partial, resume=cover
+        slice,
+        tolerance=tolerance,
+        deadline=deadline,
+        jobs=jobs,
+        progress=progress,
+        partial=partial,
+        resume=cover,
+        keep=keep,
     )
 
 

@@ -1,45 +1,118 @@
-"""The plan: what a slice needs, what is left out, and the reason for each.
+"""The plan of the exact engine: what a slice needs, what is left out, and the reason for each.
 
-Guarantee: each saving that is named here was really made in the computation that it accompanies.
+Guarantee: each saving that is named here was really made in the computation that it accompanies, or is said to have
+been switched off.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from math import gcd
 
-from ptmcad.regionmap import Component, PlanStep
+from ptmcad.regionmap import HARMLESS, Component, PlanStep
+from ptmcad.savings import BY_NAME
 from ptmcad.slice import Slice
+
+KEPT = "kept, as asked for"
+"""The reason for a step that a saving would have left out."""
+LATER = ("infinity", "no-real-points", "axis-order", "even-powers")
+"""Savings of which nothing can be said before the curves are known."""
+
+
+def saving_step(name: str, keep: frozenset[str], what: str = "", why: str = "") -> PlanStep:
+    """The step of a saving that is made, unless it is switched off.
+
+    Parameters
+    ----------
+    what, why : in place of the saving's general words.
+    """
+    saving = BY_NAME[name]
+    return PlanStep(what or saving.what, name in keep, KEPT if name in keep else why or saving.why, name)
+
+
+def is_certified(slice: Slice, engine: str) -> bool:
+    """Whether the choice ``"exact"``, ``"certified"`` or ``"auto"`` means the certified engine for a slice."""
+    return engine == "certified" or (engine == "auto" and slice.has_free_lengths)
+
+
+def beforehand(slice: Slice, keep: frozenset[str], areas: bool = True) -> tuple[PlanStep, ...]:
+    """What is known of the plan before anything is computed.
+
+    Parameters
+    ----------
+    areas : whether they are asked for.
+    """
+    zero = zero_parameters(slice)
+    return (
+        saving_step("imports", keep),
+        *([saving_step("zero-terms", keep, "terms of " + ", ".join(zero))] if zero else []),
+        saving_step("sign-curve", keep),
+        saving_step("hermite-matrix", keep),
+        saving_step("equal-counts", keep) if areas else PlanStep("areas of the regions", False, "not asked for"),
+    )
 
 
 def plan_of(
-    slice: Slice, components: Sequence[Component], base: str, costs: tuple[int, int], keep: frozenset[str]
+    slice: Slice,
+    components: Sequence[Component],
+    base: int,
+    costs: tuple[int, int],
+    keep: frozenset[str],
+    areas: bool = True,
 ) -> tuple[PlanStep, ...]:
     """The steps of the exact engine for a slice.
 
     Parameters
     ----------
-    base : name of the base axis.
+    base : number of the base axis.
     costs : predicted costs of the two axis orders.
     keep : savings that were switched off.
+    areas : whether they are asked for.
     """
-    names = slice.axis_names
-    zero = [n for n, e in slice.parameters.items() if e.is_constant and e.constant() == 0]
-    steps = []
-    if zero:
-        steps.append(PlanStep("terms of " + ", ".join(zero), False, "they are zero on this slice"))
-    steps.append(PlanStep("projection of H11 = 0", False, "where it vanishes off the critical curves, det H < 0"))
+    steps = list(beforehand(slice, keep, areas))
+    steps.append(saving_step("infinity", keep))
+    if "no-real-points" in keep:
+        steps.append(saving_step("no-real-points", keep))
     for c in components:
-        what = f"{c.kind.value} component {_short(c, names)}"
-        steps.append(PlanStep(what, not c.left_out, c.left_out or f"degrees {c.polynomial.degrees}"))
+        what = f"{c.kind.value} component {_short(c, slice.axis_names)}"
+        steps.append(PlanStep(what, not c.left_out, c.left_out or f"degrees {c.polynomial.degrees}", _saving_of(c)))
+    steps += _axis_order(slice.axis_names, base, costs, keep)
+    powers = ", ".join(_even_powers(components, slice.axis_names))
+    if powers:
+        steps.append(saving_step("even-powers", keep, why=f"computed in the power, where only such occur: {powers}"))
+    return tuple(steps)
+
+
+def zero_parameters(slice: Slice) -> list[str]:
+    """The parameters that are zero on the whole slice."""
+    return [n for n, e in slice.parameters.items() if e.is_constant and e.constant() == 0]
+
+
+def _saving_of(c: Component) -> str:
+    if not c.left_out:
+        return ""
+    return "infinity" if c.left_out == HARMLESS else "no-real-points"
+
+
+def _axis_order(names: tuple[str, str], base: int, costs: tuple[int, int], keep: frozenset[str]) -> Iterator[PlanStep]:
     if "axis-order" in keep:
-        reason = "the first axis, as asked for"
-    elif costs[0] == costs[1]:
+        yield PlanStep(f"decomposition over {names[base]}", True, "the first axis, as asked for", "axis-order")
+        return
+    if costs[0] == costs[1]:
         reason = "both orders are predicted to cost the same"
     else:
         reason = f"predicted cost {min(costs):.3g} against {max(costs):.3g}"
-    steps.append(PlanStep(f"decomposition over {base}", True, reason))
-    steps.append(PlanStep("leading coefficients", False, "roots that leave through infinity do not cross the window"))
-    return tuple(steps)
+    yield PlanStep(f"decomposition over {names[base]}", True, reason)
+    yield saving_step("axis-order", keep, f"decomposition over {names[1 - base]}")
+
+
+def _even_powers(components: Sequence[Component], names: tuple[str, str]) -> Iterator[str]:
+    """Such as ``rho^2 in component 0``, for the components that are used."""
+    for n, c in enumerate(components):
+        for axis in (0, 1):
+            power = gcd(*(t[axis] for t in c.polynomial.terms))
+            if power > 1 and not c.left_out and min(c.polynomial.degrees) > 0:
+                yield f"{names[axis]}^{power} in component {n}"
 
 
 def _short(component: Component, names: tuple[str, str]) -> str:

@@ -31,11 +31,20 @@ class Status(Enum):
 
 
 class Kind(Enum):
-    """Why a curve belongs to the variety: see `ptmcad.variety`."""
+    """Why a curve belongs to the variety: see `ptmcad.variety`. An AUXILIARY one does not: no count changes across it.
+
+    AUXILIARY curves are there only when a saving that leaves them out was switched off (`ptmcad.savings`).
+    """
 
     CRITICAL = "critical"
     INFINITY = "infinity"
     BOUNDARY = "boundary"
+    AUXILIARY = "auxiliary"
+
+
+NO_POINT = "no point in the window"
+HARMLESS = "real solutions stay bounded and regular there"
+"""Why a component is left out of the decomposition."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,11 +265,16 @@ class Location:
 
 @dataclass(frozen=True, slots=True)
 class PlanStep:
-    """One decision of the plan: what, whether it is done or left out, and why."""
+    """One decision of the plan: what, whether it is done or left out, and why.
+
+    ``saving`` is the name in `ptmcad.savings` of the saving that was made when the step is left out, and switched off
+    when it is done; empty for other steps.
+    """
 
     what: str
     done: bool
     reason: str
+    saving: str = ""
 
     def __str__(self) -> str:
         return f"{'computed' if self.done else 'left out'}: {self.what} ({self.reason})"

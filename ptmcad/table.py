@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from ptmcad.cover import Cover
 from ptmcad.numerals import decimal, magnitude
-from ptmcad.regionmap import Region, RegionMap
+from ptmcad.regionmap import Region, RegionMap, Status
 from ptmcad.slice import Count
 
 _NAMES = {
@@ -118,6 +118,8 @@ def table(result: RegionMap) -> str:
         bounds = _by_count(bounds, result)
     told = certified_digits if result.cover is None else interval_text
     areas = "; ".join(f"{text}: {told(area)}" for text, area in bounds)
+    if result.status is Status.EXACT and len(bounds) > 1 and not any(low for _, (low, _) in bounds):
+        areas = "not computed"
     widths = [(high - low) / low for _, (low, high) in bounds if low]
     known = widths and len(widths) == len(bounds) and min(widths) >= 0  # a damaged file may say anything
     error = _short(max(widths)) if known else "unknown"

@@ -16,27 +16,29 @@ the latter also vanishes where the monomial basis degenerates; `hermite_determin
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
-from ptmcad.algebra.polynomials import PLANE, Coefficient, Ratio, irreducible_factors, to_plane
+from ptmcad.algebra.polynomials import Coefficient, Ratio, irreducible_factors, ratio, to_plane
 from ptmcad.algebra.quotient import (
     QuotientAlgebra,
+    Vector,
+    bounded_away_from_zero,
     determinant,
+    multiples,
     multiplication_denominator,
     norm,
-    on_line,
+    poles_at_points,
     power_trace_denominators,
     quotient_algebra,
     trace_form,
 )
 from ptmcad.algebra.window import Interval, nowhere_zero
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
-from ptmcad.models.system import ParametricSystem, SliceSystem, on_slice
+from ptmcad.models.system import ParametricSystem, SliceSystem, first_minor, on_slice
 from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import Component, Kind
+from ptmcad.regionmap import HARMLESS, NO_POINT, Component, Kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +63,7 @@ def discriminant_variety(
     parameters : each parameter as a ratio of polynomials in Z[x, y].
     window : the ranges of x and y.
     limits : further polynomials whose zeros bound the slice's domain (lengths and stiffnesses that vanish).
-    keep : names of savings to switch off: ``"no-real-points"`` keeps components that have no point in the window.
+    keep : names of savings to switch off, of `ptmcad.savings`.
 
     Raises
     ------
@@ -70,65 +72,80 @@ def discriminant_variety(
     """
     equations = on_slice(system, parameters)
     algebra = _algebra(equations)
-    jacobian_norm, _ = norm(algebra, equations.jacobian)
-    if jacobian_norm.is_zero():
+    rows = multiples(algebra, equations.jacobian)
+    jacobian_norm = determinant([[ratio(c, below) for c in row] for row, below in rows])
+    if jacobian_norm[0].is_zero():
         raise DegenerateSliceError(
             "the slice lies inside the discriminant variety: at every point of it some equilibrium has a singular "
             "Hessian, so no count is stable under a small change; fix or free another parameter"
         )
     found: dict[PlanePolynomial, Component] = {}
 
-    def adopt(factor: Coefficient, kind: Kind, left_out: str = "") -> None:
-        polynomial = to_plane(factor)
-        if polynomial in found:
-            return
-        if not left_out and "no-real-points" not in keep and nowhere_zero(factor, *window):
-            left_out = "no point in the window"
-        found[polynomial] = Component(polynomial, kind, left_out)
+    def adopt(factors: Iterable[Coefficient], kind: Kind, left_out: str = "") -> None:
+        for factor in factors:
+            polynomial = to_plane(factor)
+            if polynomial not in found:
+                found[polynomial] = Component(polynomial, kind, left_out or outside(factor))
+
+    def outside(factor: Coefficient) -> str:
+        return NO_POINT if "no-real-points" not in keep and nowhere_zero(factor, *window) else ""
 
     for polynomial in (*equations.boundary, *limits):
-        for factor in irreducible_factors(polynomial):
-            adopt(factor, Kind.BOUNDARY)
-    for factor in irreducible_factors(jacobian_norm):
-        adopt(factor, Kind.CRITICAL)
+        adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
+    adopt(irreducible_factors(jacobian_norm[0]), Kind.CRITICAL)
     suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in found]
-    visible = [f for f in suspects if not nowhere_zero(f, *window)]
-    hidden = [f for f in suspects if f not in visible]
-    # the costly test is made only for factors that may have a point in the window
-    poles = [power_trace_denominators(algebra, k) for k in range(0, equations.unknowns, 2)] if visible else []
-    for factor in visible:
-        if any(pole.gcd(factor).total_degree() > 0 for pole in poles):
-            adopt(factor, Kind.INFINITY)
-    for factor in _with_poles_on_a_line(algebra, hidden, equations.unknowns):
-        adopt(factor, Kind.INFINITY, "no point in the window")
-    order = {Kind.CRITICAL: 0, Kind.INFINITY: 1, Kind.BOUNDARY: 2}
+    if "infinity" in keep:
+        adopt(_with_poles(algebra, suspects, equations.unknowns), Kind.INFINITY)
+    else:
+        hidden = [f for f in suspects if outside(f)]
+        visible = [f for f in suspects if f not in hidden]
+        harmless = _harmless(equations, rows, jacobian_norm, visible)
+        adopt(poles_at_points(algebra, hidden, equations.unknowns), Kind.INFINITY, NO_POINT)
+        adopt(poles_at_points(algebra, harmless, equations.unknowns), Kind.INFINITY, HARMLESS)
+        doubtful = [f for f in visible if f not in harmless]
+        seen = poles_at_points(algebra, doubtful, equations.unknowns)
+        adopt(seen, Kind.INFINITY)
+        adopt(_with_poles(algebra, [f for f in doubtful if f not in seen], equations.unknowns), Kind.INFINITY)
+    if "sign-curve" in keep:
+        adopt(irreducible_factors(norm(algebra, first_minor(system, parameters))[0]), Kind.AUXILIARY)
+    if "hermite-matrix" in keep:
+        for part in determinant(trace_form(algebra)):
+            adopt(irreducible_factors(part), Kind.AUXILIARY)
+    order = {Kind.CRITICAL: 0, Kind.INFINITY: 1, Kind.BOUNDARY: 2, Kind.AUXILIARY: 3}
     components = sorted(
         found.values(), key=lambda c: (bool(c.left_out), order[c.kind], len(c.polynomial.terms), c.polynomial.terms)
     )
     return DiscriminantVariety(tuple(components), algebra.dimension)
 
 
-def _with_poles_on_a_line(algebra: QuotientAlgebra, asked: Sequence[Coefficient], unknowns: int) -> list[Coefficient]:
-    """Those of the polynomials asked for on which solutions are seen to have poles, along one line y = a x + b.
-
-    Guarantee: a polynomial that is returned divides the denominator of a power trace. For on the line these
-    denominators consist of the factors of the multiplication matrices' denominators, which are pairwise coprime there;
-    so a common root with one of them is a pole on that one. Not guaranteed is that none is missed; as they have no
-    point in the window, nothing depends on it.
-    """
-    if not asked:
+def _with_poles(algebra: QuotientAlgebra, suspects: Sequence[Coefficient], unknowns: int) -> list[Coefficient]:
+    """Those of the polynomials on which some unknown has a pole; none is missed."""
+    if not suspects:
         return []
-    x = PLANE.gens()[0]
-    every = irreducible_factors(multiplication_denominator(algebra))
-    for slope in range(1, 20):
-        line = slope * x + 1000 + slope
-        traces = [f.compose(x, line) for f in every]
-        coprime = all(p.gcd(q).total_degree() == 0 for p, q in combinations(traces, 2))
-        restricted = on_line(algebra, line)
-        if coprime and restricted is not None:
-            poles = [power_trace_denominators(restricted, k) for k in range(0, unknowns, 2)]
-            return [f for f in asked if any(p.gcd(f.compose(x, line)).total_degree() > 0 for p in poles)]
-    return []
+    poles = [power_trace_denominators(algebra, k) for k in range(0, unknowns, 2)]
+    return [f for f in suspects if any(pole.gcd(f).total_degree() > 0 for pole in poles)]
+
+
+def _harmless(
+    equations: SliceSystem, rows: Sequence[Vector], jacobian_norm: Ratio, suspects: Sequence[Coefficient]
+) -> list[Coefficient]:
+    """Those of the curves across which no real count can change: near them det H stays away from 0 at all solutions.
+
+    Real solutions stay bounded, as cosines and sines do; being regular as well, they continue across the curve one by
+    one. A second monomial order is tried where the first one's basis degenerates.
+    """
+    proved = [f for f in suspects if bounded_away_from_zero(rows, jacobian_norm, f)]
+    for permutation in _OTHER_ORDERS:
+        if len(proved) < len(suspects):
+            other = quotient_algebra(groebner_basis(equations.equations, MonomialOrder(permutation)))
+            assert other is not None  # the ideal is zero-dimensional in any order
+            rows = multiples(other, equations.jacobian)
+            proved += [f for f in suspects if f not in proved and bounded_away_from_zero(rows, jacobian_norm, f)]
+    return proved
+
+
+_OTHER_ORDERS = ((2, 0, 3, 1),)
+"""Orders of (cos th1, sin th1, cos th2, sin th2). Where the first order's basis degenerates, these have not, so far."""
 
 
 def _algebra(equations: SliceSystem) -> QuotientAlgebra:

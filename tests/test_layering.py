@@ -241,7 +241,7 @@ def test_the_command_line_starts_lean(tmp_path: Path) -> None:
 
 
 def test_json_needs_no_picture_or_symbolic_library(tmp_path: Path) -> None:
-    """A whole classification to JSON loads neither matplotlib nor sympy nor numpy."""
+    """A whole classification to JSON loads neither matplotlib nor sympy nor numpy nor numba."""
     record = str(ROOT / "configs" / "fig4.yaml")
     code = (
         "import sys\n"
@@ -254,5 +254,5 @@ def test_json_needs_no_picture_or_symbolic_library(tmp_path: Path) -> None:
     )
     loaded = loaded_after(code, tmp_path)
     assert "flint" in loaded
-    assert not loaded & {"matplotlib", "sympy", "numpy"}
+    assert not loaded & {"matplotlib", "sympy", "numpy", "numba"}
     assert (tmp_path / "fig4.json").exists()

@@ -8,20 +8,23 @@ References: Lazard & Rouillier, J. Symb. Comp. 42 (2007); Le & Safey El Din, arX
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import add
 
+from flint import fmpq, fmpq_mat
+
 from ptmcad.algebra.groebner import GroebnerBasis, Monomial, shifted
 from ptmcad.algebra.polynomials import (
     ONE,
-    PLANE,
     ZERO,
     Coefficient,
     Ratio,
     UnknownPolynomial,
     add_ratios,
     common_factor,
+    irreducible_factors,
     lcm,
     ratio,
 )
@@ -133,11 +136,70 @@ def element(algebra: QuotientAlgebra, p: UnknownPolynomial) -> Vector:
 
 def norm(algebra: QuotientAlgebra, p: UnknownPolynomial) -> Ratio:
     """The product of p over all complex solutions, as a rational function of the axes."""
+    return determinant([[ratio(c, below) for c in row] for row, below in multiples(algebra, p)])
+
+
+def multiples(algebra: QuotientAlgebra, p: UnknownPolynomial) -> tuple[Vector, ...]:
+    """p times each element of the basis: the rows of the matrix of multiplication by p."""
     images: dict[Monomial, Vector] = {algebra.basis[0]: element(algebra, p)}
     for m in algebra.basis[1:]:
         k, below = next((k, below) for k in range(len(m)) if m[k] and (below := shifted(m, k, -1)) in images)
         images[m] = _times_unknown(algebra, k, images[below])
-    return determinant([[ratio(c, images[m][1]) for c in images[m][0]] for m in algebra.basis])
+    return tuple(images[m] for m in algebra.basis)
+
+
+def multiplicity(p: Coefficient, factor: Coefficient) -> int:
+    """How often a polynomial that is not constant divides p, which is not zero."""
+    count = 0
+    quotient, rest = divmod(p, factor)
+    while rest.is_zero():
+        count += 1
+        quotient, rest = divmod(quotient, factor)
+    return count
+
+
+def bounded_away_from_zero(rows: Sequence[Vector], product: Ratio, factor: Coefficient) -> bool:
+    """Whether the values of p at the solutions are proved to stay away from 0 near almost all points of a curve.
+
+    Also where solutions leave every bounded set. True is a proof; False means that the test did not decide.
+
+    Parameters
+    ----------
+    rows : the `multiples` of p.
+    product : its `norm`, not zero.
+    factor : the curve's irreducible polynomial.
+
+    Why: a coefficient of the characteristic polynomial is a sum of products of entries, one in each of some rows and
+    columns of the same numbers. So its pole along the curve has at most the order of such a product of entries, the
+    greatest of which is an assignment problem. When the constant one, the norm, has a pole of that order, the
+    polynomial times a common denominator keeps a constant coefficient that does not vanish on the curve, and its roots
+    stay away from 0 wherever that coefficient does.
+    """
+    orders = [[_order(c, below, factor) for c in row] for row, below in rows]
+    return _least_assignment(orders) == _order(product[0], product[1], factor)
+
+
+def _order(above: Coefficient, below: Coefficient, factor: Coefficient) -> int | None:
+    """The order of the zero of a fraction along a curve, negative for a pole; None for the fraction 0."""
+    return None if above.is_zero() else multiplicity(above, factor) - multiplicity(below, factor)
+
+
+def _least_assignment(orders: Sequence[Sequence[int | None]]) -> int:
+    """The least sum of entries in different rows and columns of a square matrix, rows left out with their columns.
+
+    None stands for infinity. To leave row and column k out is to take 0 for the entry (k, k).
+    """
+    least = {0: 0}  # set of columns taken by the rows so far -> least sum
+    for i, row in enumerate(orders):
+        following: dict[int, int] = {}
+        for taken, total in least.items():
+            for j, order in enumerate(row):
+                entry = min(order or 0, 0) if i == j else order
+                if entry is not None and not taken >> j & 1:
+                    columns = taken | 1 << j
+                    following[columns] = min(total + entry, following.get(columns, total + entry))
+        least = following
+    return least[2 ** len(orders) - 1]
 
 
 def multiplication_denominator(algebra: QuotientAlgebra) -> Coefficient:
@@ -162,16 +224,59 @@ def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:
     return scale
 
 
-def on_line(algebra: QuotientAlgebra, y: Coefficient) -> QuotientAlgebra | None:
-    """The algebra over the line y = y(x), or None when some normal form has a pole all along it."""
-    x = PLANE.gens()[0]
-    table: dict[Monomial, Vector] = {}
-    for monomial, (numerators, denominator) in algebra.table.items():
-        below = denominator.compose(x, y)
-        if below.is_zero():
-            return None
-        table[monomial] = _normalised([c.compose(x, y) for c in numerators], below)
-    return QuotientAlgebra(algebra.basis, table)
+def poles_at_points(algebra: QuotientAlgebra, asked: Sequence[Coefficient], unknowns: int) -> list[Coefficient]:
+    """Those of the asked-for factors of `multiplication_denominator` on which solutions are seen to have poles.
+
+    Guarantee: every polynomial that is returned divides the denominator of a power trace. For at an integer point the
+    traces' denominators consist of primes of the values of the normal forms' denominators there; a prime that among
+    these divides only the value of one factor, and is there, comes from that factor. Not guaranteed is that none is
+    missed, which takes a numerator that vanishes modulo these primes at all points.
+    """
+    denominator = multiplication_denominator(algebra)
+    content = math.gcd(*(int(c) for _, c in denominator.terms()))
+    every = irreducible_factors(denominator)
+    open, found = list(asked), list[Coefficient]()
+    for point in _POINTS:
+        values = [abs(int(f(*point))) for f in every]
+        if not open or 0 in values:
+            continue
+        below = math.lcm(*(_trace_denominator(algebra, k, point) for k in range(0, unknowns, 2)))
+        for f in tuple(open):
+            others = content * math.prod(v for g, v in zip(every, values, strict=True) if g != f)
+            own = _without_primes_of(abs(int(f(*point))), others)
+            if math.gcd(own, below) > 1:
+                found.append(f)
+            if own > _LARGE or f in found:
+                open.remove(f)
+    return [f for f in asked if f in found]
+
+
+_LARGE = 2**16
+"""A value of a factor from which on it is no accident that no trace has a pole."""
+_POINTS = ((1_000_003, 998_244_353), (2_147_483_647, 179_424_673))
+"""Any integers do; large ones, so that the values at them have prime factors of their own."""
+
+
+def _trace_denominator(algebra: QuotientAlgebra, k: int, point: tuple[int, int]) -> int:
+    """The common denominator of trace(u^j), j = 1 ... dimension, at a point, for the unknown number k."""
+    size = algebra.dimension
+    entries = []
+    for m in algebra.basis:
+        numerators, below = algebra.table[shifted(m, k)]
+        scale = below(*point)
+        entries += [fmpq(c(*point), scale) for c in numerators]
+    matrix = fmpq_mat(size, size, entries)
+    power, common = matrix, 1
+    for _ in range(size):
+        common = math.lcm(common, int(sum((power[i, i] for i in range(size)), fmpq(0)).q))
+        power = power * matrix
+    return common
+
+
+def _without_primes_of(n: int, other: int) -> int:
+    while (common := math.gcd(n, other)) > 1:
+        n //= common
+    return n
 
 
 def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:

@@ -55,8 +55,16 @@ def project(
     base: Interval,
     fibre: Interval,
     check: Check = nothing,
+    keep: frozenset[str] = frozenset(),
 ) -> Projection:
-    """The projection of the curves (and of vertical lines, given by their polynomials in u) and its real roots."""
+    """The projection of the curves (and of vertical lines, given by their polynomials in u) and its real roots.
+
+    Parameters
+    ----------
+    check : called now and then; may raise to stop.
+    keep : names of savings to switch off: ``"even-powers"``.
+    """
+    deflate = "even-powers" not in keep
     found: dict[tuple[int, ...], tuple[UnivariatePolynomial, str]] = {}
 
     def adopt(p: UnivariatePolynomial, origin: str) -> None:
@@ -68,11 +76,11 @@ def project(
     for line in verticals:
         adopt(line, "vertical line")
     for c in curves:
-        for p, origin in _of_one(c, fibre, check):
+        for p, origin in _of_one(c, fibre, check, deflate):
             adopt(p, origin)
     for i, c in enumerate(curves):
         for d in curves[i + 1 :]:
-            adopt(_of_two(c, d, check), f"components {c.component} and {d.component} meet")
+            adopt(_of_two(c, d, check, deflate), f"components {c.component} and {d.component} meet")
     roots = [r for p, _ in found.values() for r in isolate(p, *base)]
     # intervals that are short against the window leave room for simple samples between them
     width = (base[1] - base[0]) / 2**16
@@ -80,9 +88,9 @@ def project(
     return Projection(tuple(found.values()), inside(disjoint(short), base))
 
 
-def _of_one(c: Curve, fibre: Interval, check: Check) -> list[tuple[UnivariatePolynomial, str]]:
-    k = deflation(c.in_v)
-    (deflated,), inflation = _deflated([c.in_v[::k]])
+def _of_one(c: Curve, fibre: Interval, check: Check, deflate: bool) -> list[tuple[UnivariatePolynomial, str]]:
+    k = deflation(c.in_v) if deflate else 1
+    (deflated,), inflation = _deflated([c.in_v[::k]], deflate)
     name = f"component {c.component}"
     result = [(discriminant(deflated, check).inflate(inflation), f"{name}: turning or singular point")]
     if k > 1 and fibre[0] < 0 < fibre[1]:
@@ -92,17 +100,19 @@ def _of_one(c: Curve, fibre: Interval, check: Check) -> list[tuple[UnivariatePol
     return result
 
 
-def _of_two(c: Curve, d: Curve, check: Check) -> UnivariatePolynomial:
-    k = gcd(deflation(c.in_v), deflation(d.in_v))
-    (first, second), inflation = _deflated([c.in_v[::k], d.in_v[::k]])
+def _of_two(c: Curve, d: Curve, check: Check, deflate: bool) -> UnivariatePolynomial:
+    k = gcd(deflation(c.in_v), deflation(d.in_v)) if deflate else 1
+    (first, second), inflation = _deflated([c.in_v[::k], d.in_v[::k]], deflate)
     return resultant(first, second, check).inflate(inflation)
 
 
 Coefficients = tuple[UnivariatePolynomial, ...]
 
 
-def _deflated(polynomials: list[Coefficients]) -> tuple[list[Coefficients], int]:
-    """The polynomials with u in place of u^k, and the largest k for which that can be done in all of them."""
+def _deflated(polynomials: list[Coefficients], deflate: bool) -> tuple[list[Coefficients], int]:
+    """The polynomials with u in place of u^k, and the largest k for which that can be done in all of them; or k = 1."""
+    if not deflate:
+        return polynomials, 1
     varying = [base_deflation(p) for p in polynomials if any(q.degree() > 0 for q in p)]
     k = gcd(*varying) if varying else 1
     return [tuple(q.deflate(k) if q else q for q in p) for p in polynomials], k

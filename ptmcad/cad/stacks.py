@@ -12,7 +12,8 @@ from itertools import pairwise
 
 from flint import fmpq
 
-from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, simplest_between
+from ptmcad.algebra.polynomials import UnivariatePolynomial
+from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, sign_at, simplest_between
 from ptmcad.algebra.window import Interval
 from ptmcad.cad.curves import Curve
 
@@ -67,8 +68,20 @@ def roots_over(curves: Sequence[Curve], u: fmpq, fibre: Interval) -> tuple[tuple
     return tuple(result)
 
 
+@dataclass(frozen=True, slots=True)
+class Avoided:
+    """Curves, and lines by their polynomials in u, that are no walls but on which no sample may lie."""
+
+    curves: Sequence[Curve] = ()
+    lines: Sequence[UnivariatePolynomial] = ()
+
+
 def lift(
-    curves: Sequence[Curve], abscissae: Sequence[RealRoot], base: Interval, fibre: Interval
+    curves: Sequence[Curve],
+    abscissae: Sequence[RealRoot],
+    base: Interval,
+    fibre: Interval,
+    avoided: Avoided = Avoided(),
 ) -> tuple[StackData, ...]:
     """The stacks over the open intervals between consecutive critical abscissae."""
     ends = [BaseEnd(base[0], None, None)]
@@ -78,14 +91,28 @@ def lift(
     for left, right in pairwise(ends):
         low = left.root.high if left.root else left.value
         high = right.root.low if right.root else right.value
-        sample = simplest_between(low, high)
+        sample = _simplest_off(low, high, avoided.lines)
         roots = roots_over(curves, sample, fibre)
-        stacks.append(StackData(left, right, sample, tuple(w for w, _ in roots), heights_between(roots, fibre)))
+        heights = heights_between(roots, fibre, [c.fibre(sample) for c in avoided.curves])
+        stacks.append(StackData(left, right, sample, tuple(w for w, _ in roots), heights))
     return tuple(stacks)
 
 
-def heights_between(roots: Sequence[tuple[Wall, RealRoot]], fibre: Interval) -> tuple[fmpq, ...]:
-    """Simple rational heights below, between and above the given roots, within the fibre interval."""
+def heights_between(
+    roots: Sequence[tuple[Wall, RealRoot]], fibre: Interval, avoided: Sequence[UnivariatePolynomial] = ()
+) -> tuple[fmpq, ...]:
+    """Simple rational heights below, between and above the given roots, within the fibre interval.
+
+    None is a root of the polynomials to be avoided.
+    """
     separated = inside([r for _, r in roots], fibre)
     levels = [fibre[0], *(x for r in separated for x in (r.low, r.high)), fibre[1]]
-    return tuple(simplest_between(levels[2 * k], levels[2 * k + 1]) for k in range(len(separated) + 1))
+    return tuple(_simplest_off(levels[2 * k], levels[2 * k + 1], avoided) for k in range(len(separated) + 1))
+
+
+def _simplest_off(low: fmpq, high: fmpq, avoided: Sequence[UnivariatePolynomial]) -> fmpq:
+    """A simple rational strictly between low and high at which none of the polynomials vanishes."""
+    value = simplest_between(low, high)
+    while any(sign_at(p, value) == 0 for p in avoided):  # as often as they have roots at most
+        value = simplest_between(value, high)
+    return value

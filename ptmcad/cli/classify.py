@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -20,6 +21,7 @@ from ptmcad.expressions import rational
 from ptmcad.handover import Topic, tell, watched
 from ptmcad.memory import Bound
 from ptmcad.output import Writer, check_writable, save_stopped, text_writer, where_saved, write_files
+from ptmcad.savings import check_names, kept
 from ptmcad.slice import Count, Slice
 
 FORMATS = ("json", "png", "svg", "pdf")
@@ -40,6 +42,8 @@ class Request:
     resume: Any = None
     samples: bool = False
     timings: bool = True
+    keep: tuple[str, ...] = ()
+    areas: bool = True
 
 
 def classify_to_files(slice: Slice, request: Request) -> Any:
@@ -73,6 +77,8 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
                 progress=progress,
                 partial=partial(_hand_over, request) if watched() else None,
                 resume=request.resume,
+                keep=request.keep,
+                areas=request.areas,
             )
         except LimitReached as stopped:
             if stopped.partial is None or "json" not in request.formats:
@@ -112,9 +118,35 @@ def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) ->
     write_files(request.out, writers)
 
 
-def explanation(plan: Any) -> str:
-    """The plan as text, one step a line."""
-    return plan if isinstance(plan, str) else "\n".join(str(step) for step in plan)
+def explanation(steps: Iterable[Any]) -> str:
+    """Steps of a plan as text, one a line."""
+    return "\n".join(str(step) for step in steps)
+
+
+def announced(slice: Slice, request: Request) -> tuple[Any, ...]:
+    """Print what is known of the plan before anything is computed, and return these steps.
+
+    Raises
+    ------
+    ConfigError
+        For a name that no saving of the engine has.
+    """
+    from ptmcad import plan
+
+    certified = plan.is_certified(slice, request.engine)
+    off = kept(request.keep, certified)
+    if certified:
+        from ptmcad.interval.plan import beforehand
+
+        steps = beforehand(slice, off)
+    else:
+        steps = plan.beforehand(slice, off, request.areas)
+    click.echo(f"plan of {slice.name}, {'certified' if certified else 'exact'} engine, before it starts:")
+    click.echo(explanation(steps))
+    later = () if certified else tuple(name for name in plan.LATER if name not in off)
+    if later:
+        click.echo(f"to be decided on the way: {', '.join(later)}")
+    return steps
 
 
 def _share(_context: click.Context, parameter: click.Parameter, value: str | None) -> Fraction | None:
@@ -128,6 +160,14 @@ def _share(_context: click.Context, parameter: click.Parameter, value: str | Non
     if not 0 < share < 1:
         raise ConfigError(f"{value} is not between 0 and 1: write a number such as 1e-6", key=option)
     return share
+
+
+def _kept(_context: click.Context, parameter: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
+    try:
+        check_names(names)
+    except ConfigError as error:
+        raise ConfigError(error.message, key=parameter.opts[0]) from error
+    return names
 
 
 def _resumed(slice: Slice, path: Path) -> Any:
@@ -157,6 +197,8 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="json,png,svg",
               show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
+@click.option("--keep", multiple=True, callback=_kept, metavar="NAME",
+              help="Switch off a saving: compute what would be left out; 'all' for every one. Repeatable.")  # fmt: skip
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),
@@ -179,6 +221,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @click.option(
     "--area-tolerance", callback=_share, metavar="EPS", help="Relative width of the areas' bounds (exact engine)."
 )
+@click.option("--no-areas", is_flag=True, help="Leave the regions' areas out, often half of the work (exact engine).")
 @click.option("--samples", is_flag=True, help="Draw the cells' sample points.")
 @click.option("--no-timings", is_flag=True, help="Leave run times out of the JSON, so that it is the same every time.")
 def command(
@@ -200,6 +243,8 @@ def command(
     area_tolerance: Fraction | None,
     samples: bool,
     no_timings: bool,
+    keep: tuple[str, ...],
+    no_areas: bool,
 ) -> None:
     """Map the regions of a slice by their number of equilibria.
 
@@ -230,9 +275,13 @@ def command(
         resume=None if resume is None else _resumed(slice, resume),
         samples=samples,
         timings=not no_timings,
+        keep=keep,
+        areas=not no_areas,
     )
+    steps = announced(slice, request) if explain else ()
     with limits(timeout, max_memory):
         result = classify_to_files(slice, request)
-    if explain:
-        click.echo(explanation(result.plan))
+    further = [step for step in result.plan if step not in steps]
+    if explain and further:
+        click.echo(f"decided on the way:\n{explanation(further)}")
     click.echo(result.table())

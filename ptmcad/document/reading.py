@@ -247,5 +247,6 @@ def _triple(node: Node) -> Segment:
 
 
 def _plan_step(node: Node) -> PlanStep:
-    p = node.record("what", "done", "reason")
-    return PlanStep(p["what"].text(), p["done"].truth(), p["reason"].text())
+    p = node.record("what", "done", "reason", "saving?")
+    saving = p["saving"].text() if "saving" in p else ""
+    return PlanStep(p["what"].text(), p["done"].truth(), p["reason"].text(), saving)

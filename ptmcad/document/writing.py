@@ -142,7 +142,10 @@ def _encode(result: RegionMap) -> dict[str, Any]:
             }
             for a in result.non_adjacencies
         ],
-        "plan": [{"what": p.what, "done": p.done, "reason": p.reason} for p in result.plan],
+        "plan": [
+            {"what": p.what, "done": p.done, "reason": p.reason} | ({"saving": p.saving} if p.saving else {})
+            for p in result.plan
+        ],
         "versions": dict(result.versions),
         "precision": dict(result.precision),
     }

@@ -52,30 +52,40 @@ class Curve:
         return np.concatenate([window[:, :2], low, window[:, 2:], high], axis=1)
 
 
-def curves(slice: Slice, count: Count) -> tuple[Curve, ...]:
-    """The curves at which ``count`` may change; docs/free-lengths-curves.md proves that no other is needed."""
+def curves(slice: Slice, count: Count, keep: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
+    """The curves at which ``count`` may change; docs/free-lengths-curves.md proves that no other is needed.
+
+    Parameters
+    ----------
+    keep : names of savings to switch off, of `ptmcad.savings`.
+    """
     scale = np.array(axis_weights(slice))
     return tuple(
-        replace(curve, weights=np.concatenate([scale, np.ones(len(curve.ranges))])) for curve in _CURVES[count](slice)
+        replace(curve, weights=np.concatenate([scale, np.ones(len(curve.ranges))]))
+        for curve in _CURVES[count](slice, keep)
     )
 
 
-def _stable(slice: Slice) -> Iterator[Curve]:
-    yield from _folds(slice, stable=True)
+def _stable(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
+    yield from _folds(slice, keep, stable="folds-of-saddles" not in keep)
+    if "cones-and-creases" in keep:
+        yield from _cone(slice, keep)
+        yield from _creases(slice)
 
 
-def _all(slice: Slice) -> Iterator[Curve]:
-    yield from _folds(slice, stable=False)
-    yield from _cone(slice)
+def _all(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
+    yield from _folds(slice, keep, stable=False)
+    yield from _cone(slice, keep)
     yield from _creases(slice)
 
 
-def _folds(slice: Slice, *, stable: bool) -> Iterator[Curve]:
+def _folds(slice: Slice, keep: frozenset[str], *, stable: bool) -> Iterator[Curve]:
     """Where D = 0; with spring 3 short and long apart, since D and the derivatives of E1, E2 have a pole at l3 = 0."""
     name = "fold of a stable equilibrium" if stable else "fold"
     reason = "a minimum meets a saddle: det H = 0 with nonnegative diagonal" if stable else "equilibria meet: det H = 0"
+    factored = "unloaded-factor" not in keep
     graph = Graph()
-    m = slice_mechanism(graph, slice)
+    m = slice_mechanism(graph, slice, factored=factored)
     there = m.at_equilibrium
     short = SHORT * parameter_formulas(graph, slice)["L1"]
     # unloaded, a stable configuration with spring 3 short is told from the multiples without phi
@@ -88,7 +98,8 @@ def _folds(slice: Slice, *, stable: bool) -> Iterator[Curve]:
         system(
             [e1, balance, singular],
             (0, 1, 2, 3),
-            (
+            _dependent(
+                keep,
                 [e2, *m.dependent, *_present(m.unit)],
                 [there.determinant, m.turned, *([] if stable else [there.levelled])],
             ),
@@ -99,7 +110,7 @@ def _folds(slice: Slice, *, stable: bool) -> Iterator[Curve]:
     if not apart:
         return
     graph = Graph()
-    m = slice_mechanism(graph, slice, phi=True)
+    m = slice_mechanism(graph, slice, phi=True, factored=factored)
     there = m.at_equilibrium
     short = SHORT * parameter_formulas(graph, slice)["L1"]
     yield Curve(
@@ -108,7 +119,8 @@ def _folds(slice: Slice, *, stable: bool) -> Iterator[Curve]:
         system(
             [*_present(m.aligned), *m.equilibrium, m.hessian.blown_up],
             (0, 1, 2, 3, 4),
-            (
+            _dependent(
+                keep,
                 [*m.dependent, *_present(m.unit)],
                 [there.blown_up, *([m.turned] if stable else [there.levelled])],
             ),
@@ -123,13 +135,20 @@ def _semidefinite(m: Mechanism) -> list[Formula]:
     return [m.at_equilibrium.p11, m.at_equilibrium.p22, m.turn]
 
 
-def _cone(slice: Slice) -> Iterator[Curve]:
+def _dependent(
+    keep: frozenset[str], cheap: list[Formula], costly: list[Formula]
+) -> tuple[list[Formula], list[Formula]]:
+    """Formulas that vanish where the equations do, unless they are not to be used."""
+    return ([], []) if "dependent-equations" in keep else (cheap, costly)
+
+
+def _cone(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
     m = slice_mechanism(Graph(), slice, phi=True)
     if m.unit is not None:
         yield Curve(
             "cone",
             "an equilibrium is swallowed by the cone l3 = 0",
-            system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), ([*m.dependent, m.unit], [])),
+            system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), _dependent(keep, [*m.dependent, m.unit], [])),
             (TORUS, TORUS, PHI),
         )
 
@@ -150,8 +169,8 @@ def _creases(slice: Slice) -> Iterator[Curve]:
             )
 
 
-def _admissible(slice: Slice) -> Iterator[Curve]:
-    yield from _stable(slice)
+def _admissible(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
+    yield from _stable(slice, keep)
     m = slice_mechanism(Graph(), slice)
     for spring, (extent, free, vector) in enumerate(zip(m.lengths, m.free, m.vectors, strict=True), start=1):
         third, dependent = (vector[0], [vector[1]]) if free.value == 0 else (extent - free, [])
@@ -161,7 +180,7 @@ def _admissible(slice: Slice) -> Iterator[Curve]:
             system(
                 [*m.equilibrium, third],
                 (0, 1, 2, 3),
-                ([*m.dependent, *dependent], []),
+                _dependent(keep, [*m.dependent, *dependent], []),
                 [*_semidefinite(m), m.at_equilibrium.determinant, m.turned],
             ),
             (TORUS, TORUS),
@@ -174,7 +193,7 @@ def _present(formula: Formula | None) -> list[Formula]:
 
 SHORT = Fraction(1, 8)
 """Below this length of spring 3, as a part of L1, its direction is a variable of its own."""
-_CURVES: dict[Count, Callable[[Slice], Iterator[Curve]]] = {
+_CURVES: dict[Count, Callable[[Slice, frozenset[str]], Iterator[Curve]]] = {
     Count.STABLE: _stable,
     Count.TOTAL: _all,
     Count.INDEX: _all,

@@ -69,6 +69,7 @@ class Options:
     progress: Progress | None = None
     partial: Callable[[RegionMap], None] | None = None
     reached: Callable[[Fraction], None] | None = None
+    keep: frozenset[str] = frozenset()
 
 
 def certified_map(
@@ -81,6 +82,7 @@ def certified_map(
     partial: Callable[[RegionMap], None] | None = None,
     resume: Cover | None = None,
     reached: Callable[[Fraction], None] | None = None,
+    keep: frozenset[str] = frozenset(),
 ) -> RegionMap:
     """The region map of a slice by interval methods.
 
@@ -93,6 +95,7 @@ def certified_map(
     partial : called with maps on the way, each complete but for a larger undetermined area.
     reached : called after each level with the share of the window that the boxes still cover.
     resume : cover of an earlier map of the same slice and count: what was outside it stays decided.
+    keep : names of savings to switch off, of `ptmcad.savings`.
 
     Raises
     ------
@@ -101,7 +104,7 @@ def certified_map(
     """
     if any(max(abs(axis.low), abs(axis.high)) > LARGEST for axis in slice.axes):
         raise ConfigError(f"the certified engine computes in floats: an axis may reach {float(LARGEST):g}, no more")
-    options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial, reached)
+    options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial, reached, keep)
     return _Run(slice, options, resume).run()
 
 
@@ -119,9 +122,9 @@ class _Run:
         horizontal, vertical = slice.axes
         self.lattice = Lattice(((horizontal.low, horizontal.high), (vertical.low, vertical.high)), steps)
         self.resumed = resume
-        wanted = curves(slice, slice.count)
+        wanted = curves(slice, slice.count, options.keep)
         self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, resume))
-        self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted), _versions())
+        self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted, options.keep), _versions())
         _load(self.enclosures, self.assembler, self.lattice)
         self.handed_over = perf_counter()
         self.slowest = 0.0

@@ -46,11 +46,20 @@ def parameter_formulas(graph: Graph, slice: Slice) -> dict[str, Formula]:
     }
 
 
-def slice_mechanism(graph: Graph, slice: Slice, *, phi: bool = False) -> Mechanism:
-    """The slice's mechanism in variables x, y, th1, th2 and, if asked for, v, which is phi / PHI_UNIT."""
+def slice_mechanism(graph: Graph, slice: Slice, *, phi: bool = False, factored: bool = True) -> Mechanism:
+    """The slice's mechanism in variables x, y, th1, th2 and, if asked for, v, which is phi / PHI_UNIT.
+
+    ``factored`` says whether the unloaded mechanism's factor rho may be left out where rho is positive.
+    """
     direction = PHI_UNIT * graph.variable(4) if phi else None
+    values = parameter_formulas(graph, slice)
+    return mechanism(
+        graph, values, graph.variable(2), graph.variable(3), direction, positive_base=factored and positive_base(slice)
+    )
+
+
+def positive_base(slice: Slice) -> bool:
+    """Whether rho is certainly positive in the open window."""
     rho = slice.parameters["rho"]
     # an axis is positive in the open window; of other expressions only constants are known to be
-    positive = rho in (axis(0), axis(1)) or (rho.is_constant and rho.constant() > 0)
-    values = parameter_formulas(graph, slice)
-    return mechanism(graph, values, graph.variable(2), graph.variable(3), direction, positive_base=positive)
+    return rho in (axis(0), axis(1)) or (rho.is_constant and rho.constant() > 0)

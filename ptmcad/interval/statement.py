@@ -8,8 +8,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ptmcad.interval.curves import Curve
+from ptmcad.interval.plan import beforehand
 from ptmcad.regionmap import PlanStep, System
-from ptmcad.slice import FREE_LENGTHS, Slice
+from ptmcad.slice import Slice
 
 _VECTORS = (
     ("rho - L2*cos(th2)", "L2*sin(th2)"),
@@ -25,17 +26,17 @@ def system_text() -> System:
     return System(("th1", "th2"), (), " + ".join(springs) + " - " + work, (), ())
 
 
-def plan_of(slice: Slice, curves: Sequence[Curve]) -> tuple[PlanStep, ...]:
-    """What the certified engine does for a slice and what it leaves out."""
-    absent = [name for name in FREE_LENGTHS if name not in slice.parameters or not slice.parameters[name].numerator]
-    zero = [n for n, e in slice.parameters.items() if e.is_constant and e.constant() == 0 and n not in FREE_LENGTHS]
-    steps = []
-    if zero or absent:
-        steps.append(PlanStep("terms of " + ", ".join([*zero, *absent]), False, "they are zero on this slice"))
-    steps.append(PlanStep("discriminant variety", False, "its degree is out of reach when springs have free lengths"))
-    for curve in curves:
-        n = len(curve.system.unknowns)
-        steps.append(PlanStep(curve.name, True, f"enclosed by branch and prune in {n} unknowns"))
-    if slice.count.value == "stable":
-        steps.append(PlanStep("folds of saddles and maxima", False, "the number of stable equilibria does not change"))
-    return tuple(steps)
+def plan_of(slice: Slice, curves: Sequence[Curve], keep: frozenset[str] = frozenset()) -> tuple[PlanStep, ...]:
+    """What the certified engine does for a slice and what it leaves out.
+
+    Parameters
+    ----------
+    keep : savings that were switched off.
+    """
+    return (
+        *beforehand(slice, keep),
+        *(
+            PlanStep(curve.name, True, f"enclosed by branch and prune in {len(curve.system.unknowns)} unknowns")
+            for curve in curves
+        ),
+    )

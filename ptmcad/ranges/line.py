@@ -280,7 +280,7 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Kind], ...]:
     try:
         # the second axis does not occur, so any range serves for it
         variety = discriminant_variety(
-            system, parameters, (window, (fmpq(0), fmpq(1))), domain_limits(system, parameters)
+            system, parameters, (window, (fmpq(0), fmpq(1))), domain_limits(system, parameters), frozenset({"infinity"})
         )
     except DegenerateSliceError as error:
         raise DegenerateSliceError(

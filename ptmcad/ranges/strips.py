@@ -16,7 +16,7 @@ from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refin
 from ptmcad.cad.curves import Curve, curve
 from ptmcad.cad.projection import project
 from ptmcad.cad.stacks import BaseEnd, StackData, Wall, lift
-from ptmcad.exactmap import count_at, domain_limits
+from ptmcad.exactmap import avoided_by_samples, count_at, domain_limits
 from ptmcad.models import system_of
 from ptmcad.regionmap import MorseIndex
 from ptmcad.slice import Slice, without_free_lengths
@@ -80,7 +80,9 @@ def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
         else:
             verticals.append(coefficients_in(p, 1 - base)[0])
     projection = project(curves, verticals, window[base], window[1 - base])
-    stacks = lift(curves, projection.abscissae, window[base], window[1 - base])
+    stacks = lift(
+        curves, projection.abscissae, window[base], window[1 - base], avoided_by_samples(variety.components, base)
+    )
     by_number = {c.component: c for c in curves}
 
     def counted(stack: StackData, height: fmpq) -> MorseIndex:

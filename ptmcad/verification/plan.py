@@ -1,52 +1,117 @@
-"""Check of the plan: what it says was computed and left out is what the result shows.
+"""Check of the plan: what it says was computed, left out and kept is what the result shows.
 
-Guarantee: the steps are those that the slice's parameters and the stored components ask for, in their order. Only the
-predicted costs, by which the base axis was chosen, are not computed again.
+Guarantee: the steps are those that the slice's parameters, the stored components and the savings that were switched off
+ask for, in their order; what a saving leaves out is not in the result. Only the predicted costs, by which the base axis
+was chosen, are not computed again.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from math import gcd
 
-from ptmcad.regionmap import Component, PlanStep
+from ptmcad.regionmap import HARMLESS, NO_POINT, Component, Kind, PlanStep, RegionMap
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
 
 _COST = r"[0-9]+(?:\.[0-9]+)?(?:e\+[0-9]+)?"
-_CHOICE = re.compile(
-    rf"predicted cost {_COST} against {_COST}"
-    r"|both orders are predicted to cost the same"
-    r"|the first axis, as asked for",
-    re.ASCII,
-)
+_CHOICE = re.compile(rf"predicted cost {_COST} against {_COST}|both orders are predicted to cost the same", re.ASCII)
+_KEPT = "kept, as asked for"
+_GENERAL = (
+    ("imports", "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),
+    ("zero-terms", "terms of {zero}", "they are zero on this slice"),
+    ("sign-curve", "projection of H11 = 0", "where it vanishes off the critical curves, det H < 0"),
+    ("hermite-matrix", "determinant of the Hermite matrix",
+     "the norm of det H has the same critical factors and no others"),
+    ("equal-counts", "areas beside walls that separate no regions",
+     "what one cell has too much there its neighbour in the region has too little"),
+    ("infinity", "curves over which solutions leave every bounded set",
+     "cosines and sines are bounded: no real solution does"),
+)  # fmt: skip
+"""Names, subjects and reasons of the savings that are made on every slice."""
+
+
+_NO_AREAS = PlanStep("areas of the regions", False, "not asked for")
 
 
 def check_plan(claims: Claims) -> str:
     """Every step of the plan."""
     result = claims.result
-    names = result.slice.axis_names
-    expected: list[tuple[str, bool, str | None]] = []
-    zero = [n for n, e in result.slice.parameters.items() if not e.numerator]
-    if zero:
-        expected.append(("terms of " + ", ".join(zero), False, "they are zero on this slice"))
-    expected.append(("projection of H11 = 0", False, "where it vanishes off the critical curves, det H < 0"))
-    expected += [_of_component(c, names) for c in result.components]
-    expected.append((f"decomposition over {names[result.base]}", True, None))
-    expected.append(("leading coefficients", False, "roots that leave through infinity do not cross the window"))
+    keep = kept(result)
+    expected = list(_expected(result, keep))
     if len(expected) != len(result.plan):
         raise Violation(f"the plan has {len(result.plan)} steps, not {len(expected)}")
-    for n, (step, (what, done, reason)) in enumerate(zip(result.plan, expected, strict=True)):
-        if (step.what, step.done) != (what, done) or not _holds(step, reason):
-            raise Violation(f"step {n} of the plan is not {str(step)[:100]!r}, but {what!r}, "
-                            f"{'computed' if done else 'left out'}: {reason or 'by predicted cost'}")  # fmt: skip
-    return f"{len(expected)} steps"
+    for n, (step, other) in enumerate(zip(result.plan, expected, strict=True)):
+        same = (step.what, step.done, step.saving) == (other.what, other.done, other.saving)
+        if not same or not (step.reason == other.reason if other.reason else _CHOICE.fullmatch(step.reason)):
+            done = "computed" if other.done else "left out"
+            raise Violation(f"step {n} of the plan is not {str(step)[:100]!r}, but {other.what!r}, {done}: "
+                            f"{other.reason or 'by predicted cost'}")  # fmt: skip
+    _check_left_out(result, keep)
+    return f"{len(expected)} steps, {len(keep)} savings switched off"
 
 
-def _holds(step: PlanStep, reason: str | None) -> bool:
-    return step.reason == reason if reason is not None else _CHOICE.fullmatch(step.reason) is not None
+def kept(result: RegionMap) -> frozenset[str]:
+    """The savings that the plan says were switched off."""
+    return frozenset(step.saving for step in result.plan if step.saving and step.done)
 
 
-def _of_component(c: Component, names: tuple[str, str]) -> tuple[str, bool, str]:
+def _expected(result: RegionMap, keep: frozenset[str]) -> Iterator[PlanStep]:
+    """The plan; the reason is empty where predicted costs decided."""
+    names = result.slice.axis_names
+    zero = ", ".join(n for n, e in result.slice.parameters.items() if not e.numerator)
+    for saving, what, why in _GENERAL:
+        if saving == "equal-counts" and _NO_AREAS in result.plan:
+            yield _NO_AREAS
+        elif zero or saving != "zero-terms":
+            yield _step(saving, what.format(zero=zero), why, keep)
+    if "no-real-points" in keep:
+        yield _step("no-real-points", "components without a point in the window", "", keep)
+    for c in result.components:
+        yield _of_component(c, names)
+    this, other = (f"decomposition over {names[axis]}" for axis in (result.base, 1 - result.base))
+    if "axis-order" in keep:
+        yield PlanStep(this, True, "the first axis, as asked for", "axis-order")
+    else:
+        yield PlanStep(this, True, "")
+        yield PlanStep(other, False, "regions do not depend on it", "axis-order")
+    powers = ", ".join(_even_powers(result))
+    if powers:
+        why = f"computed in the power, where only such occur: {powers}"
+        yield _step("even-powers", "discriminants and resultants of full degree", why, keep)
+
+
+def _step(saving: str, what: str, why: str, keep: frozenset[str]) -> PlanStep:
+    return PlanStep(what, saving in keep, _KEPT if saving in keep else why, saving)
+
+
+def _of_component(c: Component, names: tuple[str, str]) -> PlanStep:
     text = c.polynomial.text(names)
     shown = text if len(text) <= 40 else f"with {len(c.polynomial.terms)} terms"
-    return f"{c.kind.value} component {shown}", not c.left_out, c.left_out or f"degrees {c.polynomial.degrees}"
+    saving = {NO_POINT: "no-real-points", HARMLESS: "infinity"}.get(c.left_out, "")
+    reason = c.left_out or f"degrees {c.polynomial.degrees}"
+    return PlanStep(f"{c.kind.value} component {shown}", not c.left_out, reason, saving)
+
+
+def _even_powers(result: RegionMap) -> Iterator[str]:
+    for n, c in enumerate(result.components):
+        for axis, name in enumerate(result.slice.axis_names):
+            power = gcd(*(term[axis] for term in c.polynomial.terms))
+            if power > 1 and not c.left_out and 0 not in c.polynomial.degrees:
+                yield f"{name}^{power} in component {n}"
+
+
+def _check_left_out(result: RegionMap, keep: frozenset[str]) -> None:
+    """What savings leave out, or would have left out, against the components and the base."""
+    if not keep & {"sign-curve", "hermite-matrix"} and any(c.kind is Kind.AUXILIARY for c in result.components):
+        raise Violation("a component is auxiliary, but no saving that leaves such out was switched off")
+    reasons = {c.left_out for c in result.components}
+    if "no-real-points" in keep and NO_POINT in reasons:
+        raise Violation("a component without a point in the window is left out, but the plan says that such are kept")
+    if "infinity" in keep and HARMLESS in reasons:
+        raise Violation("a component is left out as harmless, but the plan says that such are kept")
+    if _NO_AREAS in result.plan and any(low for low, _ in (region.area for region in result.regions)):
+        raise Violation("areas are known, but the plan says that they were not asked for")
+    if "axis-order" in keep and result.base != 0:
+        raise Violation("the base is not the first axis, but the plan says that it was asked for")

@@ -8,7 +8,8 @@ The points are drawn from a hash of the claims themselves, so that no one can ch
 
 Guarantee: up to that probability, every CRITICAL component is a factor of N, and no other curve is a factor of it but
 BOUNDARY components; the poles of the unknowns' characteristic polynomials lie on stored components, and every INFINITY
-component consists of such poles.
+component consists of such poles. Where one is left out as harmless, the values of det H at the solutions stay away from
+0 near almost all of its points.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ from fractions import Fraction
 from functools import reduce
 from math import gcd, lcm
 
-from flint import fmpz_poly
+from flint import fmpq, fmpz_poly
 
 from ptmcad.numerals import text_of
 from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import Kind
+from ptmcad.regionmap import HARMLESS, Kind
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.fibre import Fibre
 from ptmcad.verification.report import Violation
@@ -120,6 +121,9 @@ def check_norm(claims: Claims, seed: str) -> str:
         if c.kind is Kind.INFINITY and not _has_poles(c.polynomial, claims, far):
             raise Violation(f"component {k} is said to be at infinity, but solutions have no pole on it: "
                             f"{c.polynomial.text(result.slice.axis_names)[:60]}")  # fmt: skip
+        if c.left_out == HARMLESS and not _is_harmless(c.polynomial, claims, far):
+            raise Violation(f"component {k} is said to be harmless, but det H may vanish at solutions near it: "
+                            f"{c.polynomial.text(result.slice.axis_names)[:60]}")  # fmt: skip
     poles = [_foreign_poles(claims, *point) for point in far]
     if max(poles) // gcd(*poles) > 2**20:  # a curve that is missing has values of some hundred bits
         raise Violation("solutions have a pole on no stored component")
@@ -168,6 +172,25 @@ def _has_poles(p: PlanePolynomial, claims: Claims, points: Sequence[tuple[Fracti
     return True
 
 
+def _is_harmless(p: PlanePolynomial, claims: Claims, points: Sequence[tuple[Fraction, Fraction, Fibre]]) -> bool:
+    """Whether the primes of p's value do not divide the constant coefficient of det H's characteristic polynomial.
+
+    That polynomial is made integral and primitive first. On a curve that divides its constant coefficient as a
+    polynomial in the axes, all primes of p's values divide it.
+    """
+    for x, y, f in points:
+        own = abs(int(p(x, y)))
+        for c in claims.result.components:
+            if c.polynomial != p:
+                own = _without(own, int(c.polynomial(x, y)))
+        own = _without(own, _SMALL_PRIMES)
+        coefficients = f.jacobian.charpoly().coeffs()
+        constant = fmpq(coefficients[0]) * lcm(*(int(fmpq(c).q) for c in coefficients))
+        if own // gcd(own, int(constant.p)) > 2**20:
+            return True
+    return False
+
+
 def _denominator(f: Fibre) -> int:
     """The common denominator of the power traces of a linear form."""
     return lcm(*(int(t.q) for t in f.form_traces((3, 5, 7, 11))))
@@ -177,7 +200,8 @@ def _foreign_poles(claims: Claims, x: Fraction, y: Fraction, f: Fibre) -> int:
     """Denominator of the power traces at an integer point, without the primes of the stored components."""
     below = _denominator(f)
     for c in claims.result.components:
-        below = _without(below, int(c.polynomial(x, y)))
+        if c.kind is not Kind.AUXILIARY:
+            below = _without(below, int(c.polynomial(x, y)))
     return _without(below, _SMALL_PRIMES)
 
 
