@@ -9,6 +9,7 @@ Distances are Euclidean in the window drawn as a unit square.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.bench.reference import Walls
-from ptmcad.cad.polyline import UNPROVED
+from ptmcad.cad.polyline import UNPROVED, Chord
 
 Points = NDArray[np.float64]
 FloatBounds = tuple[float, float]
@@ -70,7 +71,7 @@ def distances(walls: Walls, sides: Points, pixel: Fraction) -> Distances | None:
     """
     spacing = float(pixel) / DENSITY
     known = [c for c, _, _ in walls.chords if c.apart < UNPROVED]
-    segments = np.array([[float(x) for x in (c.left, c.at_left, c.right, c.at_right)] for c in known]).reshape(-1, 4)
+    segments = _segments(known)
     apart = np.array([float(c.apart) for c in known])
     vague = np.array(
         [[float(x) for x in (left, low, right, high)] for left, right, parts in walls.gaps for low, high in parts]
@@ -95,6 +96,16 @@ def distances(walls: Walls, sides: Points, pixel: Fraction) -> Distances | None:
     if len(boxes):
         least = np.minimum(least, _nearest(cKDTree(boxes), drawn) - reach.max())
     return Distances(_outward(missed_low, missed_high), _outward(float(least.max()), false_high))
+
+
+def chord_points(known: Sequence[Chord], spacing: float) -> tuple[Points, float]:
+    """Points on chords, and a bound for the distance from any point of the walls to the nearest one and back."""
+    points, _, near = _points(_segments(known), spacing)
+    return points, float(near.max()) + max(float(c.apart) for c in known) + ROUNDING
+
+
+def _segments(known: Sequence[Chord]) -> Points:
+    return np.array([[float(x) for x in (c.left, c.at_left, c.right, c.at_right)] for c in known]).reshape(-1, 4)
 
 
 def _points(segments: Points, spacing: float) -> tuple[Points, NDArray[np.int64], Points]:

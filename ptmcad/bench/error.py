@@ -9,12 +9,14 @@ length of what is below v and does not show c, the wrong length over u is
 
     G_{c_m}(u, 1) + sum_k [G_{c_{k-1}}(u, v_k) - G_{c_k}(u, v_k)].
 
-The bracket changes by at most as much as v_k, so a chord in the place of a wall brings an error of at most its distance
-times its width; and along a chord the bracket is piecewise quadratic, so its integral is a rational number.
+The bracket, and either of its terms, changes by at most as much as v_k, so a chord in the place of a wall brings an
+error of at most its distance times its width. Along a chord G is piecewise linear: its integral is a rational number.
+Each term belongs to one region, so that what is wrong is known for each region too.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -23,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.bench.distance import Distances, distances, grid_boundary
-from ptmcad.bench.reference import Column, Reference, Walls, count_of, regions
+from ptmcad.bench.reference import Column, Reference, Walls, regions
 
 Counts = NDArray[np.int16]
 Bounds = tuple[Fraction, Fraction]
@@ -38,25 +40,25 @@ class MapError:
     wrong : bounds of the share of the window's area that shows a wrong count or none.
     undetermined : exact share that shows none.
     wrong_centres : pixels whose centre shows a wrong count; None when the map has no pixels.
-    missed : regions of the exact map of which nothing is shown with their count.
     regions : of the exact map.
-    distance : from the drawn boundary to the true one and back; None when one of them is empty and the other is not.
+    missed : regions in which no pixel that is centred there, or no part that is decided, shows the region's count.
+    faintest : bounds of the smallest share of a region's own area that shows its count.
+    distance : between the drawn boundary and the true one; None when one of them is empty and the other is not.
     """
 
     wrong: Bounds
     undetermined: Fraction
     wrong_centres: int | None
-    missed: int
     regions: int
+    missed: int
+    faintest: Bounds
     distance: Distances | None
 
 
-NO_DISTANCE = Distances((0.0, 0.0), (0.0, 0.0))
-
-
-def exact_error(exact: Reference, count: str) -> MapError:
+def exact_error(walls: Walls) -> MapError:
     """Of an exact map: by construction nothing is wrong, and its boundary is the true curves themselves."""
-    return MapError((Fraction(0),) * 2, Fraction(0), None, 0, 1 + max(regions(exact.result, count)), NO_DISTANCE)
+    zero, one = Fraction(0), Fraction(1)
+    return MapError((zero, zero), zero, None, len(walls.counts), 0, (one, one), Distances((0.0, 0.0), (0.0, 0.0)))
 
 
 def grid_error(
@@ -72,53 +74,74 @@ def grid_error(
         none is shown.
     """
     picture = drawn if exact.result.base == 0 else drawn.T
-    wrong_centres, missed, number = _centres(exact, columns, picture, count)
+    wrong, by_region = wrong_areas(walls, picture)
+    centres, missed = _centres(regions(exact.result, count), walls, columns, picture)
     return MapError(
-        wrong=wrong_area(walls, picture),
+        wrong=wrong,
         undetermined=Fraction(int((drawn < 0).sum()), drawn.size),
-        wrong_centres=wrong_centres,
+        wrong_centres=centres,
+        regions=len(walls.counts),
         missed=missed,
-        regions=number,
+        faintest=faintest(walls, by_region),
         distance=distances(walls, grid_boundary(picture), Fraction(1, len(picture))),
     )
 
 
-def _centres(exact: Reference, columns: tuple[Column, ...], picture: Counts, count: str) -> tuple[int, int, int]:
-    """Centres with a wrong count, regions that no centre in them shows, and all regions."""
-    region_of = regions(exact.result, count)
-    truth = [count_of(cell, count) for cell in exact.result.cells]
+def faintest(walls: Walls, wrong: Sequence[Bounds]) -> Bounds:
+    """The smallest share of a region that is shown with its count, from the areas that are not."""
+    shares = [
+        (max(1 - high / area[0], Fraction(0)) if area[0] else Fraction(0), 1 - low / area[1])
+        for area, (low, high) in zip(walls.areas, wrong, strict=True)
+    ]
+    return min(low for low, _ in shares), max(Fraction(0), min(high for _, high in shares))
+
+
+def _centres(
+    region_of: tuple[int, ...], walls: Walls, columns: tuple[Column, ...], picture: Counts
+) -> tuple[int, int]:
+    """Centres with a wrong count, and regions that no centre in them shows."""
     wrong, seen = 0, set()
     for k, runs in enumerate(columns):
         for cell, first, end in runs:
-            right = int((picture[k, first:end] == truth[cell]).sum())
+            region = region_of[cell]
+            right = int((picture[k, first:end] == walls.counts[region]).sum())
             wrong += end - first - right
             if right:
-                seen.add(region_of[cell])
-    return wrong, len(set(region_of) - seen), len(set(region_of))
+                seen.add(region)
+    return wrong, len(walls.counts) - len(seen)
 
 
-def wrong_area(walls: Walls, picture: Counts) -> Bounds:
-    """The share of the window where the picture shows another count than the true one.
+def wrong_areas(walls: Walls, picture: Counts) -> tuple[Bounds, tuple[Bounds, ...]]:
+    """The share of the window where the picture does not show the true count, in all and in each region.
 
     Parameters
     ----------
     picture : shape (n, n), the first index along the base.
     """
     n = len(picture)
-    needed = {c for _, *sides in walls.chords for c in sides} | {c for *_, c in walls.tops}
-    sums = {c: _sums(picture, c) for c in needed}
-    total, doubt = Fraction(0), Fraction(0)
+    sums = {c: _sums(picture, c) for c in set(walls.counts)}
+    parts, doubts = [Fraction(0)] * len(walls.counts), [Fraction(0)] * len(walls.counts)
+    doubt = sum((right - left for left, right, _ in walls.gaps), Fraction(0))
+    doubts = [doubt] * len(walls.counts)
     for left, right, top in walls.tops:
-        below = sums[top][:, n]
-        total += sum((b - a) * int(below[k]) for k, a, b in _columns(left, right, n)) / n
+        below = sums[walls.counts[top]][:, n]
+        parts[top] += sum((b - a) * int(below[k]) for k, a, b in _columns(left, right, n)) / n
     for chord, lower, upper in walls.chords:
-        doubt += chord.apart * (chord.right - chord.left)
+        blurred = chord.apart * (chord.right - chord.left)
+        doubt += blurred
+        doubts[lower] += blurred
+        doubts[upper] += blurred
         rise = (chord.at_right - chord.at_left) / (chord.right - chord.left)
         for k, a, b in _columns(chord.left, chord.right, n):
             ends = (chord.at_left + (a - chord.left) * rise, chord.at_left + (b - chord.left) * rise)
-            total += (b - a) * _mean(sums[lower][k], sums[upper][k], min(ends) * n, max(ends) * n, n) / n
-    doubtful = sum((right - left for left, right, _ in walls.gaps), Fraction(0))
-    return max(total - doubt, Fraction(0)), min(total + doubt + doubtful, Fraction(1))
+            low, high = min(ends) * n, max(ends) * n
+            parts[lower] += (b - a) * _mean(sums[walls.counts[lower]][k], low, high, n) / n
+            parts[upper] -= (b - a) * _mean(sums[walls.counts[upper]][k], low, high, n) / n
+    return _around(sum(parts, Fraction(0)), doubt), tuple(map(_around, parts, doubts))
+
+
+def _around(value: Fraction, doubt: Fraction) -> Bounds:
+    return max(value - doubt, Fraction(0)), min(value + doubt, Fraction(1))
 
 
 def _sums(picture: Counts, count: int) -> Any:
@@ -132,18 +155,17 @@ def _sums(picture: Counts, count: int) -> Any:
 def _columns(left: Fraction, right: Fraction, n: int) -> list[tuple[int, Fraction, Fraction]]:
     """The parts of an interval in the columns of a grid."""
     first, last = (left * n).__floor__(), -((-right * n).__floor__()) - 1
-    return [
-        (k, max(left, Fraction(k, n)), min(right, Fraction(k + 1, n))) for k in range(first, last + 1)
-    ]
+    return [(k, max(left, Fraction(k, n)), min(right, Fraction(k + 1, n))) for k in range(first, last + 1)]
 
 
-def _mean(lower: Any, upper: Any, low: Fraction, high: Fraction, n: int) -> Fraction:
-    """The mean of n (G_lower - G_upper) over the heights from low to high, which are in pixels."""
-    first, last = min(low.__floor__(), n - 1), min(max(-((-high).__floor__()) - 1, low.__floor__()), n - 1)
+def _mean(sums: Any, low: Fraction, high: Fraction, n: int) -> Fraction:
+    """The mean of n G over the heights from low to high, which are in pixels; G is linear in each pixel."""
+    first = min(low.__floor__(), n - 1)
+    last = min(max(-((-high).__floor__()) - 1, first), n - 1)
 
     def at(j: int, height: Fraction) -> Fraction:
-        below = int(lower[j]) - int(upper[j])
-        return below + (height - j) * (int(lower[j + 1]) - int(upper[j + 1]) - below)
+        below = int(sums[j])
+        return below + (height - j) * (int(sums[j + 1]) - below)
 
     if first == last:
         return at(first, (low + high) / 2)

@@ -24,6 +24,7 @@ from ptmcad.cad.polyline import ROUNDING, UNPROVED, Chord, chords, reaching, to_
 from ptmcad.cad.stacks import roots_over
 from ptmcad.regionmap import Cell, RegionMap, Status
 from ptmcad.regions import Link, merge
+from ptmcad.slice import Count
 
 APART = Fraction(1, 2**18)
 """Largest distance between a wall and its chord, as a share of the window's side."""
@@ -64,16 +65,20 @@ Gap = tuple[Fraction, Fraction, tuple[tuple[Fraction, Fraction], ...]]
 
 @dataclass(frozen=True, slots=True)
 class Walls:
-    """What separates two counts.
+    """What separates regions when they are told apart by a count.
 
     Attributes
     ----------
-    chords : each with the counts below and above it.
-    tops : for each stack its span and the count of its topmost cell.
+    counts : of each region, see `shown_count`.
+    areas : bounds of each region's share of the window's area.
+    chords : each with the regions below and above it.
+    tops : for each stack its span and the region of its topmost cell.
     gaps : parts of the base that no chord covers, or one of which the distance is unproved, each with the
         parts of the fibre that a wall may reach there.
     """
 
+    counts: tuple[int, ...]
+    areas: tuple[tuple[Fraction, Fraction], ...]
     chords: tuple[tuple[Chord, int, int], ...]
     tops: tuple[tuple[Fraction, Fraction, int], ...]
     gaps: tuple[Gap, ...]
@@ -85,10 +90,10 @@ def reference(result: RegionMap) -> Reference:
     Raises
     ------
     ValueError
-        When the map is not exact.
+        When the map is not exact, or its regions are not told apart by the index.
     """
-    if result.status is not Status.EXACT:
-        raise ValueError(f"errors are measured against an exact map, and this one is {result.status.value}")
+    if result.status is not Status.EXACT or result.slice.count is not Count.INDEX:
+        raise ValueError("errors are measured against an exact map with regions told apart by the index")
     axes = result.slice.axes
     base, fibre = (
         (from_fraction(axes[k].low), from_fraction(axes[k].high)) for k in (result.base, 1 - result.base)
@@ -113,20 +118,21 @@ def reference(result: RegionMap) -> Reference:
 
 
 def walls(exact: Reference, check: Callable[[], None] = lambda: None) -> dict[str, Walls]:
-    """For each of `COUNTS` the walls that separate different counts."""
+    """For each of `COUNTS` the walls that separate its regions."""
     by_component = {c.component: c for c in exact.curves}
     chains: dict[tuple[int, int], tuple[Chord, ...]] = {}
     found: dict[str, Walls] = {}
     for count in COUNTS:
+        region_of = regions(exact.result, count)
         sides: list[tuple[Chord, int, int]] = []
         tops: list[tuple[Fraction, Fraction, int]] = []
         separating: set[int] = set()
         for s, (stack, span) in enumerate(zip(exact.result.stacks, exact.spans, strict=True)):
-            counts = [count_of(exact.result.cells[n], count) for n in stack.cells]
+            here = [region_of[n] for n in stack.cells]
             wide = span[0] < span[1]  # else the stack is narrower than the gaps at its ends
             if wide:
-                tops.append((*span, counts[-1]))
-            for level, (wall, (below, above)) in enumerate(zip(stack.walls, pairwise(counts), strict=True)):
+                tops.append((*span, here[-1]))
+            for level, (wall, (below, above)) in enumerate(zip(stack.walls, pairwise(here), strict=True)):
                 if below == above:
                     continue
                 separating.add(wall.component)
@@ -137,8 +143,24 @@ def walls(exact: Reference, check: Callable[[], None] = lambda: None) -> dict[st
                     chains[s, level] = chords(source, wall.root, span, exact.base, exact.fibre, APART, NARROWEST, check)
                 sides += [(c, below, above) for c in chains[s, level]]
         meeting = [by_component[n] for n in sorted(separating)]
-        found[count] = Walls(tuple(sides), tuple(tops), tuple(_gaps(exact, [c for c, _, _ in sides], meeting, check)))
+        gaps = tuple(_gaps(exact, [c for c, _, _ in sides], meeting, check))
+        found[count] = Walls(*_told(exact.result, region_of, count), tuple(sides), tuple(tops), gaps)
     return found
+
+
+def _told(
+    result: RegionMap, region_of: tuple[int, ...], count: str
+) -> tuple[tuple[int, ...], tuple[tuple[Fraction, Fraction], ...]]:
+    """Counts and areas of the regions; those of the map, which are told apart by the index, are parts of them."""
+    first, second = result.slice.axes
+    window = (first.high - first.low) * (second.high - second.low)
+    number = 1 + max(region_of)
+    counts = {region: count_of(cell, count) for region, cell in zip(region_of, result.cells, strict=True)}
+    areas = [(Fraction(0), Fraction(0))] * number
+    for part in result.regions:
+        n = region_of[part.cells[0]]
+        areas[n] = (areas[n][0] + part.area[0] / window, areas[n][1] + part.area[1] / window)
+    return tuple(counts[n] for n in range(number)), tuple(areas)
 
 
 def _gaps(exact: Reference, known: list[Chord], meeting: list[Curve], check: Callable[[], None]) -> Iterator[Gap]:
@@ -192,7 +214,7 @@ def regions(result: RegionMap, count: str) -> tuple[int, ...]:
 def count_of(cell: Cell, count: str) -> int:
     if cell.stable is None or cell.total is None:
         raise ValueError("the map does not tell both the stable and the total counts of its cells")
-    return showncount_of(cell.stable, cell.total, count)
+    return shown_count(cell.stable, cell.total, count)
 
 
 def shown_count(stable: Any, total: Any, count: str) -> Any:
