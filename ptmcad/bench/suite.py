@@ -23,7 +23,7 @@ from ptmcad.bench.process import Outcome, Usage, run
 from ptmcad.slice import Slice
 
 FLOOR = (sys.executable, "-c", "import flint, numpy, click, yaml")
-PACKAGES = ("ptmcad", "python-flint", "numpy", "click", "PyYAML", "matplotlib", "sympy")
+PACKAGES = ("ptmcad", "python-flint", "numpy", "click", "PyYAML", "matplotlib", "sympy", "numba", "scipy", "gcad")
 
 
 @dataclass(frozen=True, slots=True)
