@@ -35,6 +35,7 @@ EXACT = (
     "ranges",
     "verification",
     "paper",
+    "bench",
 )
 FLINT_POLYNOMIALS = ("poly", "mpoly", "mpoly_ctx", "mpoly_vec", "series")
 

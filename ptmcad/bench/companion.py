@@ -1,4 +1,4 @@
-"""The rival that people write: an N x N grid, at each point the sextic in tan(theta2/2), its companion matrix's eigenvalues.
+"""The rival that people write: on an N x N grid, eigenvalues of the companion matrix of a sextic in tan(theta2/2).
 
 Guarantee: none for the counts, as with every such program; they are what floating point and a tolerance say. The same
 input gives the same counts.
@@ -26,13 +26,13 @@ POLISHING = 2
 AT_ONCE = 40_000
 """Points whose matrices are in memory together."""
 LEADING = 1e-14
-"""A leading coefficient that is smaller, relatively, everywhere in the window is taken for zero: the degree is lower."""
+"""A leading coefficient that is relatively smaller everywhere in the window is taken for zero: the degree is lower."""
 
 Values = dict[str, Array]
 
 
 def grid_values(question: dict[str, Any], n: int) -> Values:
-    """The mechanism's parameters at the n x n pixel centres, each of shape (n * n,), the second axis running fastest."""
+    """The mechanism's parameters at the n x n pixel centres, of shape (n * n,), the second axis running fastest."""
     (x0, x1), (y0, y1) = question["window"]
     x = x0 + (x1 - x0) * (np.arange(n) + 0.5) / n
     y = y0 + (y1 - y0) * (np.arange(n) + 0.5) / n
@@ -44,9 +44,7 @@ def grid_values(question: dict[str, Any], n: int) -> Values:
             total += c * first ** int(i) * second ** int(j)
         return total
 
-    return {
-        name: evaluated(above) / evaluated(below) for name, (above, below) in question["parameters"].items()
-    }
+    return {name: evaluated(above) / evaluated(below) for name, (above, below) in question["parameters"].items()}
 
 
 def sextics(p: Values) -> Array:

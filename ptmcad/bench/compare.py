@@ -60,11 +60,11 @@ def compare(old: Study, new: Study) -> tuple[Change, ...]:
     before = {(m.method, m.setting): m for m in old.measurements}
     after = {(m.method, m.setting): m for m in new.measurements}
     found: list[Change] = []
-    for key, m in before.items():
-        found += _changes(old, new, m, after.get(key))
-    for key, m in after.items():
-        if key not in before and m.seconds is not None:
-            found.append(Change(*key, Verdict.GAINED, "not in the old study"))
+    for place, m in before.items():
+        found += _changes(old, new, m, after.get(place))
+    for place, m in after.items():
+        if place not in before and m.seconds is not None:
+            found.append(Change(*place, Verdict.GAINED, "not in the old study"))
     return tuple(found)
 
 
@@ -81,8 +81,8 @@ def _changes(old: Study, new: Study, before: Measurement, after: Measurement | N
     yield from differences
     verdict, ratio = _time(old.floor, before.seconds, new.floor, after.seconds)
     detail = (
-        f"{ratio:.2f} times the time, machine allowed for "
-        f"({before.seconds.median:g} s over {old.floor.median:g} s, now {after.seconds.median:g} over {new.floor.median:g})"
+        f"{ratio:.2f} times the time, machine allowed for ({before.seconds.median:g} s at a floor of "
+        f"{old.floor.median:g} s, now {after.seconds.median:g} at {new.floor.median:g})"
     )
     if verdict is not Verdict.SAME or not differences:
         yield Change(*place, verdict, detail)

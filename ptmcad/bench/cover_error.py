@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ptmcad.bench.distance import Distances, chord_points
 from ptmcad.bench.error import Bounds, MapError, faintest
-from ptmcad.bench.reference import Reference, Walls, count_of, regions, shown_count
+from ptmcad.bench.reference import Reference, Walls, regions, shown_count
 from ptmcad.cad.polyline import UNPROVED
 from ptmcad.cover import Cover, components, union_area
 from ptmcad.cover.complement import Components
@@ -101,9 +101,7 @@ def _inside(parts: Components, n: int) -> tuple[Fraction, Fraction]:
     return left + Fraction(right - left) * Fraction(19, 37), bottom + Fraction(top - bottom) * Fraction(20, 41)
 
 
-def _region(
-    exact: Reference, region_of: tuple[int, ...], place: tuple[Fraction, Fraction], steps: int
-) -> int | None:
+def _region(exact: Reference, region_of: tuple[int, ...], place: tuple[Fraction, Fraction], steps: int) -> int | None:
     axes = exact.result.slice.axes
     at = {a.name: a.low + (a.high - a.low) * x / steps for a, x in zip(axes, place, strict=True)}
     cell = exact.result.locate(**at).cell
@@ -162,9 +160,10 @@ def _distances(walls: Walls, cover: Cover, boxes: Any, base: int) -> Distances |
     r = np.array(cover.rectangles, dtype=float) / cover.steps
     corners = np.concatenate([r[:, [i, j]] for i in (0, 1) for j in (2, 3)])
     low = float(tree.query(corners)[0].max()) - near
-    middles, half = np.stack([r[:, 0] + r[:, 1], r[:, 2] + r[:, 3]], axis=1) / 2, np.hypot(
-        r[:, 1] - r[:, 0], r[:, 3] - r[:, 2]
-    ) / 2
+    middles, half = (
+        np.stack([r[:, 0] + r[:, 1], r[:, 2] + r[:, 3]], axis=1) / 2,
+        np.hypot(r[:, 1] - r[:, 0], r[:, 3] - r[:, 2]) / 2,
+    )
     high = float((tree.query(middles)[0] + half).max()) + near
     stray = 0.0
     if boxes:

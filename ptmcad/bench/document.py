@@ -48,7 +48,7 @@ def _rows(slice: str, m: Measurement) -> Iterator[tuple[Any, ...]]:
     start = (slice, m.method, m.setting, *((s.median, s.minimum, s.maximum, s.runs) if s else none * 4),
              m.computing.median if m.computing else None, m.peak)  # fmt: skip
     if not m.figures:
-        yield (*start, *(none * 10), m.area_width, m.reason)
+        yield (*start, *(none * 11), m.area_width, m.reason)
     for count, f in (m.figures or {}).items():
         yield (*start, count, *f.wrong, f.undetermined, f.wrong_centres, f.regions, f.missed,
                *(f.faintest or none * 2), *(f.distance or none * 2), m.area_width, m.reason)  # fmt: skip

@@ -61,9 +61,7 @@ def exact_error(walls: Walls) -> MapError:
     return MapError((zero, zero), zero, None, len(walls.counts), 0, (one, one), Distances((0.0, 0.0), (0.0, 0.0)))
 
 
-def grid_error(
-    exact: Reference, walls: Walls, columns: tuple[Column, ...], drawn: Counts, count: str
-) -> MapError:
+def grid_error(exact: Reference, walls: Walls, columns: tuple[Column, ...], drawn: Counts, count: str) -> MapError:
     """Of a grid.
 
     Parameters
@@ -96,9 +94,7 @@ def faintest(walls: Walls, wrong: Sequence[Bounds]) -> Bounds:
     return min(low for low, _ in shares), max(Fraction(0), min(high for _, high in shares))
 
 
-def _centres(
-    region_of: tuple[int, ...], walls: Walls, columns: tuple[Column, ...], picture: Counts
-) -> tuple[int, int]:
+def _centres(region_of: tuple[int, ...], walls: Walls, columns: tuple[Column, ...], picture: Counts) -> tuple[int, int]:
     """Centres with a wrong count, and regions that no centre in them shows."""
     wrong, seen = 0, set()
     for k, runs in enumerate(columns):
@@ -125,7 +121,7 @@ def wrong_areas(walls: Walls, picture: Counts) -> tuple[Bounds, tuple[Bounds, ..
     doubts = [doubt] * len(walls.counts)
     for left, right, top in walls.tops:
         below = sums[walls.counts[top]][:, n]
-        parts[top] += sum((b - a) * int(below[k]) for k, a, b in _columns(left, right, n)) / n
+        parts[top] += sum(((b - a) * int(below[k]) for k, a, b in _columns(left, right, n)), Fraction(0)) / n
     for chord, lower, upper in walls.chords:
         blurred = chord.apart * (chord.right - chord.left)
         doubt += blurred

@@ -30,7 +30,6 @@ from ptmcad.pipeline import classify
 from ptmcad.regionmap import RegionMap
 from ptmcad.slice import Slice
 from ptmcad.table import count_text
-from ptmcad.verification import verify
 
 FLOOR = (
     sys.executable,
@@ -61,6 +60,7 @@ class _Runs:
 def measure(
     slice: Slice,
     record: Path,
+    verified: Callable[[RegionMap], bool],
     *,
     methods: Sequence[Method] = tuple(Method),
     rounds: int = 3,
@@ -74,6 +74,7 @@ def measure(
     Parameters
     ----------
     record : the slice's own file.
+    verified : whether an independent check confirms a map, such as `ptmcad.verify`; the errors rest on it.
     rounds : runs of each job that takes no longer than `LONG`; others are run once.
     seed : of the order within a round, and of the starts of the scipy grid.
     time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
@@ -85,11 +86,11 @@ def measure(
     PtmcadError
         When the slice has no map, or an answer of ours contradicts the reference.
     """
-    exact, sides, verified = None, None, None
+    exact, sides, sound = None, None, None
     if not slice.has_free_lengths:
         report(f"{slice.name}: the exact map that errors are measured against")
         result = classify(slice, count="index")
-        verified = verify(result).ok
+        sound = verified(result)
         exact = reference(result)
         sides = walls(exact)
     with tempfile.TemporaryDirectory() as name:
@@ -111,7 +112,7 @@ def measure(
         rounds=rounds,
         time_limit=time_limit,
         quick=quick,
-        verified=verified,
+        verified=sound,
         floor=floor,
         measurements=(*measured, *absent),
     )

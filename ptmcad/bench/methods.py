@@ -81,9 +81,7 @@ def question(slice: Slice, exact: RegionMap | None) -> str:
     )
 
 
-def jobs(
-    method: Method, slice: Slice, record: Path, folder: Path, quick: bool, seed: int
-) -> tuple[Job, ...] | str:
+def jobs(method: Method, slice: Slice, record: Path, folder: Path, quick: bool, seed: int) -> tuple[Job, ...] | str:
     """A method's jobs for a slice, or why there are none.
 
     Parameters
@@ -125,9 +123,7 @@ def jobs(
     return _qepcad(slice)
 
 
-def _classify(
-    method: Method, slice: Slice, record: Path, folder: Path, settings: Sequence[str]
-) -> tuple[Job, ...]:
+def _classify(method: Method, slice: Slice, record: Path, folder: Path, settings: Sequence[str]) -> tuple[Job, ...]:
     count = slice.count.value if slice.has_free_lengths else "index"
     option = "--area-tolerance" if method is Method.EXACT else "--tolerance"
     found = []

@@ -25,8 +25,8 @@ def draw(study: Study, path: Path) -> None:
                 for m, error, label in points
                 if m.seconds is not None
             ),
-            hollow,
+            style,
         )
-        for name, hollow, points in curves(study)
+        for name, style, points in curves(study)
     )
-    save(draw_error_time(f"{study.slice}: {study.heading}", " ".join(sentences(study)), drawn), path, dpi=DPI)
+    save(draw_error_time(f"{study.slice}: {study.heading}", sentences(study), drawn), path, dpi=DPI)

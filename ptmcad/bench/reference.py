@@ -95,9 +95,7 @@ def reference(result: RegionMap) -> Reference:
     if result.status is not Status.EXACT or result.slice.count is not Count.INDEX:
         raise ValueError("errors are measured against an exact map with regions told apart by the index")
     axes = result.slice.axes
-    base, fibre = (
-        (from_fraction(axes[k].low), from_fraction(axes[k].high)) for k in (result.base, 1 - result.base)
-    )
+    base, fibre = ((from_fraction(axes[k].low), from_fraction(axes[k].high)) for k in (result.base, 1 - result.base))
     used = [(n, from_plane(c.polynomial)) for n, c in enumerate(result.components) if not c.left_out]
     across = 1 - result.base
     curves = tuple(curve(n, p, result.base) for n, p in used if int(p.degrees()[across]) > 0)
@@ -184,10 +182,14 @@ def _gaps(exact: Reference, known: list[Chord], meeting: list[Curve], check: Cal
         reached = sorted(r for c in meeting for r in reaching(c, (left, right), exact.base, exact.fibre, DEPTH))
         # a wall that goes on into the gap stays in the part in which it enters; the others are no boundary
         entries = [*ends.get(left, ()), *ends.get(right, ())]
-        yield left, right, tuple(
-            (low, high)
-            for low, high in _joined(reached)
-            if any(low - ROUNDING <= at <= high + ROUNDING for at in entries)
+        yield (
+            left,
+            right,
+            tuple(
+                (low, high)
+                for low, high in _joined(reached)
+                if any(low - ROUNDING <= at <= high + ROUNDING for at in entries)
+            ),
         )
 
 
@@ -214,7 +216,7 @@ def regions(result: RegionMap, count: str) -> tuple[int, ...]:
 def count_of(cell: Cell, count: str) -> int:
     if cell.stable is None or cell.total is None:
         raise ValueError("the map does not tell both the stable and the total counts of its cells")
-    return shown_count(cell.stable, cell.total, count)
+    return int(shown_count(cell.stable, cell.total, count))
 
 
 def shown_count(stable: Any, total: Any, count: str) -> Any:

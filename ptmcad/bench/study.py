@@ -100,9 +100,7 @@ class Study:
 
 def times(seconds: Sequence[float]) -> Times:
     """Median and spread, rounded to 0.1 ms."""
-    return Times(
-        len(seconds), *(round(x, 4) for x in (statistics.median(seconds), min(seconds), max(seconds)))
-    )
+    return Times(len(seconds), *(round(x, 4) for x in (statistics.median(seconds), min(seconds), max(seconds))))
 
 
 def figures(error: MapError) -> Figures:

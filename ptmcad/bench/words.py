@@ -18,10 +18,10 @@ from ptmcad.bench.study import (
     main_figures,
     smallest_grid,
 )
-from ptmcad.report.error_curve import FORMAT as CURVE_FORMAT
 
 _NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "minima, saddles and maxima"}
-GRID = (Method.COMPANION.value, Method.MULTISTART.value)
+CURVE_FORMAT = "ptmcad-error-time/1"
+"""What ``ptmcad report`` reads."""
 
 
 def sentences(study: Study) -> tuple[str, ...]:
@@ -33,8 +33,8 @@ def sentences(study: Study) -> tuple[str, ...]:
             first, whole = (smallest_grid(study, Method.COMPANION.value, count, seen) for seen in (False, True))
             upto = f"none up to {measured[-1]} x {measured[-1]}"
             found.append(
-                f"By {name}: the smallest grid with a pixel in every region is {_grid(first, upto)}; the smallest that "
-                f"shows at least {SEEN:.0%} of each is {_grid(whole, upto)}."
+                f"Regions by {name}: the smallest grid with a pixel in each is {_grid(first, upto)}; with at least "
+                f"{SEEN:.0%} of each, {_grid(whole, upto)}."
             )
     ours, theirs = _fastest_exact(study), _at(study, 400)
     if ours and theirs and ours.seconds and theirs.seconds:
@@ -77,9 +77,9 @@ def rows(study: Study) -> Iterator[tuple[str, ...]]:
             m.method,
             m.setting,
             f"{m.seconds.median:.2f}{spread}",
-            _share(f),
+            _share(f) + " *" * bool(m.note),
             "-" if f is None or f.missed is None else f"{f.missed} of {f.regions}",
-            "-" if f is None or f.faintest is None else f"{sum(f.faintest) / 2:.2%}",
+            "-" if f is None or f.faintest is None else f"{f.faintest[0]:.2%}",
             "-" if f is None or f.distance is None else _about(f.distance),
             "-" if m.area_width is None else f"{m.area_width:.1e}",
         )
@@ -99,28 +99,42 @@ def terminal(study: Study) -> str:
     """The table in columns, and the sentences."""
     cells = [_HEADER, *rows(study)]
     # a reason stands in a column of times, and may be long
-    widths = [max(len(row[k]) for row in cells if k != 2 or row[3] != "-" or row[5] != "-") for k in range(len(_HEADER))]
+    widths = [
+        max(len(row[k]) for row in cells if k != 2 or row[3] != "-" or row[5] != "-") for k in range(len(_HEADER))
+    ]
     lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
-    return "\n".join([*lines, "", *sentences(study)])
+    return "\n".join([*lines, *notes(study), "", *sentences(study)])
 
 
-def curves(study: Study) -> list[tuple[str, bool, list[tuple[Measurement, tuple[float, float], str]]]]:
-    """(name, hollow, points) for the picture: a point is a measurement, its error's bounds and a label."""
-    found = []
-    for method in Method:
+def notes(study: Study) -> tuple[str, ...]:
+    """What the errors with a star rest on."""
+    return tuple(dict.fromkeys(f"* {m.method}: {m.note}" for m in study.measurements if m.note and m.seconds))
+
+
+Point = tuple[Measurement, tuple[float, float], str]
+WIDTH_STYLE = len(Method)
+"""Of the width of area bounds, which is another kind of error; each method has its own style."""
+
+
+def curves(study: Study) -> list[tuple[str, int, list[Point]]]:
+    """(name, style, points) for the picture: a point is a measurement, its error's bounds and a label."""
+    found: list[tuple[str, int, list[Point]]] = []
+    for style, method in enumerate(Method):
         done = [m for m in study.measurements if m.method == method.value and m.seconds]
         told = [(m, f) for m in done if (f := main_figures(m))]
         if told:
-            found.append((TITLES[method], False, [(m, f.wrong, _label(m)) for m, f in told]))
+            found.append((TITLES[method], style, [(m, f.wrong, _label(m)) for m, f in told]))
         if method is Method.EXACT and done:
             widths = [(m, (m.area_width, m.area_width), "") for m in done if m.area_width]
-            found.append((f"{TITLES[method]}: width of the area bounds", True, widths))
-    return [(name, hollow, points) for name, hollow, points in found if points]
+            found.append((f"{TITLES[method]}: width of the area bounds", WIDTH_STYLE, widths))
+    return [curve for curve in found if curve[2]]
 
 
 def _label(m: Measurement) -> str:
     if m.grid is not None:
         return str(m.grid)
+    if m.method == Method.QEPCAD.value:
+        return m.setting.removeprefix("where ")
     return m.setting.removeprefix("tolerance ") if m.setting.startswith("tolerance ") else ""
 
 
@@ -155,6 +169,7 @@ def page(studies: Sequence[Study]) -> str:
         said = sentences(study)
         lines += [f"- {s}" for s in said] + ([""] if said else [])
         lines += [_line(_HEADER), _line(("---",) * len(_HEADER)), *(_line(row) for row in rows(study)), ""]
+        lines += [f"\\{note}  " for note in notes(study)] + ([""] if notes(study) else [])
     lines += [
         "## Machine",
         "",

@@ -10,11 +10,10 @@ import click
 
 from ptmcad.config import load
 from ptmcad.errors import ConfigError
-from ptmcad.output import Writer, check_writable, text_writer, write_files
+from ptmcad.output import check_writable
 
 METHODS = ("exact", "certified", "companion", "multistart", "qepcad", "gcad")
 DEFAULT = Path("configs") / "fig4.yaml"
-PAGE = "error-time.md"
 
 
 def _seconds(_context: click.Context, parameter: click.Parameter, value: float) -> float:
@@ -38,7 +37,7 @@ def _seconds(_context: click.Context, parameter: click.Parameter, value: float) 
 @click.option("--time-limit", type=float, default=60.0, show_default=True, callback=_seconds, metavar="S",
               help="Seconds for each method on each slice; what does not fit is left out, and told.")  # fmt: skip
 @click.option("--quick", is_flag=True, help="Fewer and coarser settings.")
-@click.option("--page", is_flag=True, help=f"Write {PAGE} too, a page of all slices.")
+@click.option("--page", is_flag=True, help="Write error-time.md too, a page of all studies in the folder.")
 def command(
     *,
     configs: tuple[Path, ...],
@@ -79,41 +78,31 @@ def command(
         raise ConfigError(f"two records have the name {next(n for n in names if names.count(n) > 1)}", key="CONFIG")
     if find_spec("scipy") is None:
         raise ConfigError("measuring distances needs scipy: pip install 'ptmcad[bench]'", key="bench")
-    suffixes = ("bench.csv", "bench.svg", "bench.png", "error-time.json", "bench.json")
-    check_writable(out, tuple(f"{name}.{suffix}" for name in names for suffix in suffixes) + (PAGE,))
-    from ptmcad.bench.document import write_study, write_table
+    from ptmcad.bench.files import PAGE, SUFFIXES, save, save_page
     from ptmcad.bench.measuring import measure
     from ptmcad.bench.methods import Method
-    from ptmcad.bench.words import curve_file, terminal
-    from ptmcad.bench.words import page as page_of
+    from ptmcad.bench.words import terminal
+    from ptmcad.verification import verify
 
+    check_writable(out, (*(f"{name}.{suffix}" for name in names for suffix in SUFFIXES), PAGE))
     chosen = tuple(Method(name) for name in methods) or tuple(Method)
-    studies = []
     for slice, path in slices:
         study = measure(
-            slice, path, methods=chosen, rounds=rounds, seed=seed, time_limit=time_limit, quick=quick,
+            slice,
+            path,
+            lambda result: verify(result).ok,
+            methods=chosen,
+            rounds=rounds,
+            seed=seed,
+            time_limit=time_limit,
+            quick=quick,
             report=partial(click.echo, err=True),
-        )  # fmt: skip
-        studies.append(study)
-        writers: dict[str, Writer] = {f"{slice.name}.bench.csv": text_writer(write_table(study))}
-        if any(m.seconds for m in study.measurements):
-            for suffix in ("svg", "png"):
-                writers[f"{slice.name}.bench.{suffix}"] = partial(_draw, study)
-            writers[f"{slice.name}.error-time.json"] = text_writer(curve_file(study))
-        writers[f"{slice.name}.bench.json"] = text_writer(write_study(study))
-        write_files(out, writers)
+        )
+        save(study, out)
         click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}\n")
     if page:
-        write_files(out, {PAGE: text_writer(page_of(studies))})
+        click.echo(f"written {save_page(out)}")
     return 0
-
-
-def _draw(study: object, path: Path) -> None:
-    from ptmcad.bench.picture import draw
-    from ptmcad.bench.study import Study
-
-    assert isinstance(study, Study)
-    draw(study, path)
 
 
 def _compare(old: Path, new: Path) -> int:

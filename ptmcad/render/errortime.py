@@ -7,6 +7,7 @@ axis does not have, is in a band of its own at the bottom, marked so.
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, floor, log10
 from typing import Any
@@ -19,18 +20,18 @@ from ptmcad.render.legend import INK
 from ptmcad.render.printing import settings
 
 WIDE, TALL = 9.2, 6.4
-BAND = 1.6
-"""Height of the band of zero error, in powers of ten."""
-_STYLES: tuple[tuple[str, str, Any], ...] = (
-    ("#0b5394", "o", "-"),
-    ("#38761d", "s", "-"),
-    ("#b45f06", "^", "-"),
-    ("#741b47", "D", "-"),
-    ("#555555", "P", "-"),
-    ("#999900", "X", "-"),
-    ("#0b5394", "o", (0, (2, 2))),
-    ("#38761d", "s", (0, (2, 2))),
+BAND = 0.3
+"""Height of the band of zero error, as a share of what is above it."""
+_STYLES: tuple[tuple[str, str, str, Any], ...] = (
+    ("#0b5394", "#0b5394", "o", "-"),
+    ("#38761d", "#38761d", "s", "-"),
+    ("#741b47", "#741b47", "D", "-"),
+    ("#b45f06", "#b45f06", "^", "-"),
+    ("#555555", "#555555", "P", "-"),
+    ("#8a7d00", "#8a7d00", "X", "-"),
+    ("#0b5394", "white", "o", (0, (2, 2))),
 )
+"""Line, face, mark and dashes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,44 +45,45 @@ class Spot:
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """A method's points in order; ``hollow`` sets apart a curve of another kind of error."""
+    """A method's points in order, in one of seven styles; the last is for another kind of error."""
 
     name: str
     spots: tuple[Spot, ...]
-    hollow: bool = False
+    style: int
 
 
-def draw_error_time(title: str, below: str, curves: tuple[Curve, ...]) -> Figure:
+def draw_error_time(title: str, below: Sequence[str], curves: tuple[Curve, ...]) -> Figure:
     """The picture.
 
     Parameters
     ----------
     title : of one line.
-    below : what is to be read off, in words.
+    below : what is to be read off, in sentences.
     """
     positive = [x for c in curves for s in c.spots for x in s.error if x > 0]
     low, high = floor(log10(min(positive, default=1e-3))), min(0, ceil(log10(max(positive, default=1.0))))
     high = max(high, low + 1)
-    left, right = (
-        10 ** (log10(f(s.seconds[k] for c in curves for s in c.spots)) + d) for f, k, d in ((min, 1, -0.12), (max, 2, 0.2))
-    )
-    band = BAND * max(1.0, (high - low) / 8)
+    left = 0.75 * min(s.seconds[1] for c in curves for s in c.spots)
+    right = 1.6 * max(s.seconds[2] for c in curves for s in c.spots)
+    exact = [k for k, c in enumerate(curves) if any(s.error[1] <= 0 for s in c.spots)]
+    band = BAND * (high - low)
     bottom = 10.0 ** (low - band)
-    zero = 10.0 ** (low - band / 2)
-    notes = textwrap.wrap(below, 120)
+    # each method with its own height in the band, so that equal times do not hide one another
+    zero = {k: 10.0 ** (low - band * (n + 1) / (len(exact) + 1)) for n, k in enumerate(exact)}
+    notes = [line for sentence in below for line in textwrap.wrap(sentence, 145)]
     tall = TALL + 0.2 * len(notes)
     with settings():
         figure = Figure(figsize=(WIDE, tall), facecolor="white")
-        figure.set_label(f"{title}\n{_words(curves)} {below}")
-        axes = figure.add_axes((0.09, (0.66 + 0.2 * len(notes)) / tall, 0.885, (TALL - 2.35) / tall))
+        figure.set_label(f"{title}\n{_words(curves)} {' '.join(below)}")
+        axes = figure.add_axes((0.09, (0.66 + 0.2 * len(notes)) / tall, 0.885, (TALL - 2.2) / tall))
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_xlim(left, right)
         axes.set_ylim(bottom, 10.0**high)
         axes.axhspan(bottom, 10.0**low, color="#eef3e6", zorder=0)
         axes.axhline(10.0**low, color=INK, linewidth=0.8, zorder=1)
-        axes.text(0.992, (band / 2) / (high - low + band), "no error: 0", transform=axes.transAxes, ha="right",
-                  va="center", fontsize=9, color=INK)  # fmt: skip
+        axes.text(0.006, (band - 0.04 * (high - low)) / (high - low + band), "no error (0)", transform=axes.transAxes,
+                  ha="left", va="center", fontsize=9, color=INK)  # fmt: skip
         every = max(1, (high - low) // 8)
         axes.set_yticks([10.0**k for k in range(low, high + 1, every)])
         axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: _power(round(log10(y)))))
@@ -93,18 +95,17 @@ def draw_error_time(title: str, below: str, curves: tuple[Curve, ...]) -> Figure
         axes.set_axisbelow(True)
         axes.set_xlabel("seconds of whole processes, start-up included: medians, least and largest")
         axes.set_ylabel("share of the window")
-        entries = [_draw(axes, c, k, zero) for k, c in enumerate(curves)]
-        figure.text(0.02, 1 - 0.25 / tall, title, fontsize=12, va="center")
-        figure.legend(handles=entries, loc="upper left", bbox_to_anchor=(0.01, 1 - 0.42 / tall), ncol=2, frameon=False,
+        entries = [_draw(axes, c, zero.get(k, bottom)) for k, c in enumerate(curves)]
+        figure.text(0.02, 1 - 0.27 / tall, title, fontsize=12, va="center")
+        figure.legend(handles=entries, loc="upper left", bbox_to_anchor=(0.01, 1 - 0.44 / tall), ncol=2, frameon=False,
                       fontsize=9, labelcolor=INK)  # fmt: skip
         for k, line in enumerate(notes):
             figure.text(0.02, (0.2 * (len(notes) - k) - 0.06) / tall, line, fontsize=8.5, va="center")
     return figure
 
 
-def _draw(axes: Any, curve: Curve, number: int, zero: float) -> Line2D:
-    colour, marker, dash = _STYLES[number % len(_STYLES)]
-    face = "white" if curve.hollow else colour
+def _draw(axes: Any, curve: Curve, zero: float) -> Line2D:
+    colour, face, marker, dash = _STYLES[curve.style]
     x = [s.seconds[0] for s in curve.spots]
     y = [_height(s, zero) for s in curve.spots]
     spread = [[s.seconds[0] - s.seconds[1] for s in curve.spots], [s.seconds[2] - s.seconds[0] for s in curve.spots]]
