@@ -69,7 +69,7 @@ $(VENV)/.installed-bench: $(VENV)/.installed
 	@touch $@
 
 bench: $(VENV)/.installed-bench
-	$(BIN)/python -m ptmcad.bench --rounds 3 --picture-rounds 1 --qepcad "" --out docs/benchmarks
+	$(BIN)/python -m ptmcad.bench --rounds 3 --picture-rounds 1 --out docs/benchmarks
 	$(BIN)/ptmcad bench $(PAPER:%=configs/%.yaml) --time-limit 45 --out docs/benchmarks
 	$(BIN)/ptmcad bench $(filter-out $(PAPER:%=configs/%.yaml),$(wildcard configs/*.yaml)) --quick --rounds 2 --time-limit 8 \
 		--method exact --method certified --method companion --page --out docs/benchmarks
