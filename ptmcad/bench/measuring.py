@@ -1,7 +1,7 @@
 """Running a study: methods take turns, times are taken, and each answer is measured against the exact map.
 
-Guarantee: in each round every job that is still due runs once, all methods at their first setting before any at its
-second, the methods in an order drawn from the seed. Nothing is measured while something else is run.
+Guarantee: all methods are run at their first setting before any is at its second; there each round runs every method
+once, in an order drawn from the seed, beside the reference job. Nothing is measured while something else is run.
 """
 
 from __future__ import annotations
@@ -37,8 +37,10 @@ FLOOR = (
     "import flint, numpy, click, yaml; numpy.linalg.eigvals(numpy.random.default_rng(1).random((8000, 6, 6)))",
 )
 """The reference job: start-up, and some linear algebra that is always the same."""
-LONG = 4.0
+LONG = 2.0
 """Seconds from which on a job is not repeated."""
+GROWTH = 4.5
+"""A grid is taken to need so many times the time of the one before, which has a quarter of its pixels."""
 
 Report = Callable[[str], None]
 
@@ -137,24 +139,29 @@ def _begin(
 
 
 def _rounds(runs: Sequence[_Runs], rounds: int, seed: int, time_limit: float, report: Report) -> Times:
+    """Run all jobs; the times of the reference job are returned."""
     order = random.Random(seed)
     spent = {r.job.method: 0.0 for r in runs}
+    last = dict(spent)
     floor = []
     run(FLOOR)
-    for number in range(rounds):
-        floor.append(run(FLOOR).seconds)
-        turns = list(spent)
-        order.shuffle(turns)
-        for rank in range(1 + max((r.job.rank for r in runs), default=0)):
-            for r in sorted((r for r in runs if r.job.rank == rank and r.due), key=lambda r: turns.index(r.job.method)):
-                left = time_limit - spent[r.job.method]
-                if left < (r.usages[-1].seconds if r.usages else 0.0):
-                    continue  # it has run, and would not fit again
-                if left <= 0:
-                    r.reason = f"left out: the {time_limit:g} s for each method were used up"
+    for rank in range(1 + max((r.job.rank for r in runs), default=0)):
+        turns = [r for r in runs if r.job.rank == rank]
+        for _ in range(rounds):
+            floor.append(run(FLOOR).seconds)
+            order.shuffle(turns)
+            for r in turns:
+                method = r.job.method
+                left = time_limit - spent[method]
+                needed = r.usages[-1].seconds if r.usages else GROWTH * last[method] if r.job.grows else 0.0
+                if not r.due or (r.usages and left < needed):
                     continue
-                report(f"round {number + 1}: {r.job.method.value}, {r.job.setting}")
-                spent[r.job.method] += _run(r, left, time_limit)
+                if left <= needed:
+                    r.reason = f"left out: it does not fit into the {time_limit:g} s for each method"
+                    continue
+                report(f"{method.value}, {r.job.setting}")
+                last[method] = _run(r, left, time_limit)
+                spent[method] += last[method]
     return times(floor)
 
 

@@ -55,6 +55,7 @@ class Job:
     commands : each with its standard input.
     answer : the file that they write, None where the answer is on standard output.
     rank : jobs of a method are run in this order, the shortest first.
+    grows : whether it is known to need more time than the job before it.
     """
 
     method: Method
@@ -62,6 +63,7 @@ class Job:
     commands: tuple[tuple[tuple[str, ...], str], ...]
     answer: Path | None
     rank: int
+    grows: bool = False
 
 
 def question(slice: Slice, exact: RegionMap | None) -> str:
@@ -138,7 +140,7 @@ def _classify(method: Method, slice: Slice, record: Path, folder: Path, settings
 
 def _grid(method: Method, folder: Path, n: int, rank: int, module: str, *arguments: str) -> Job:
     target = folder / f"{method.value}-{n}.npy"
-    return Job(method, f"N = {n}", ((_module(module, *arguments, str(target)), ""),), target, rank)
+    return Job(method, f"N = {n}", ((_module(module, *arguments, str(target)), ""),), target, rank, grows=rank > 0)
 
 
 def _module(name: str, *arguments: str) -> tuple[str, ...]:

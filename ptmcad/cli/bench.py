@@ -31,7 +31,7 @@ def _seconds(_context: click.Context, parameter: click.Parameter, value: float) 
               help=f"Measure this method only, of {', '.join(METHODS)}; may be repeated.  "
                    "[default: all that are installed]")  # fmt: skip
 @click.option("--rounds", type=click.IntRange(1, 1000), default=3, show_default=True,
-              help="Runs of each job that takes less than 4 seconds; others are run once.")  # fmt: skip
+              help="Runs of each job that takes less than 2 seconds; others are run once.")  # fmt: skip
 @click.option("--seed", type=click.IntRange(0, 2**31), default=1, show_default=True,
               help="Of the order of the methods, and of the starting points of scipy.")  # fmt: skip
 @click.option("--time-limit", type=float, default=60.0, show_default=True, callback=_seconds, metavar="S",
