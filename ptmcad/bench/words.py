@@ -134,7 +134,7 @@ def _label(m: Measurement) -> str:
     if m.grid is not None:
         return str(m.grid)
     if m.method == Method.QEPCAD.value:
-        return m.setting.removeprefix("where ")
+        return m.setting.replace("where ", "")
     return m.setting.removeprefix("tolerance ") if m.setting.startswith("tolerance ") else ""
 
 
