@@ -310,3 +310,5 @@ def test_page_tells_what_is_left_out_and_what_is_claimed() -> None:
     assert r"\* qepcad: claimed" in text
     assert "passed `ptmcad verify`" in text
     assert "did NOT pass" in page([replace(STUDY, verified=False)])
+    assert "](fig4.bench.svg)" in text
+    assert ".svg" not in page([replace(STUDY, measurements=STUDY.measurements[-1:])])  # nothing to draw

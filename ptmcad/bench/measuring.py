@@ -69,6 +69,7 @@ def measure(
     seed: int = 1,
     time_limit: float = 60.0,
     quick: bool = False,
+    warm_up: bool = True,
     report: Report = lambda _: None,
 ) -> Study:
     """Measure error against run time on one slice.
@@ -81,6 +82,7 @@ def measure(
     seed : of the order within a round, and of the starts of the scipy grid.
     time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
     quick : fewer and coarser settings.
+    warm_up : run the certified engine once before, because the first run on a machine compiles.
     report : told what is being done.
 
     Raises
@@ -101,6 +103,8 @@ def measure(
             question(slice, None if exact is None else exact.result), encoding="utf-8"
         )
         started, absent = _begin(slice, record, methods, folder, quick, seed)
+        if warm_up:
+            _compile(started)
         report(f"{slice.name}: {len(started)} jobs")
         floor = _rounds(started, rounds, seed, time_limit, report)
         report(f"{slice.name}: errors")
@@ -131,11 +135,15 @@ def _begin(
             absent.append(Measurement(method.value, "", None, reason=found))
         else:
             started += [_Runs(job, [], []) for job in found]
-    if any(r.job.method is Method.CERTIFIED for r in started):
-        # the first run of a machine compiles; what is told is the time of every later one
-        first = next(r.job for r in started if r.job.method is Method.CERTIFIED)
-        run(first.commands[0][0], timeout=300)
     return started, absent
+
+
+def _compile(started: Sequence[_Runs]) -> None:
+    """Run the certified engine's first job, if there is one: what is told is the time of every later run."""
+    for r in started:
+        if r.job.method is Method.CERTIFIED:
+            run(r.job.commands[0][0], timeout=300)
+            return
 
 
 def _rounds(runs: Sequence[_Runs], rounds: int, seed: int, time_limit: float, report: Report) -> Times:

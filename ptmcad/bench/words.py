@@ -164,8 +164,9 @@ def page(studies: Sequence[Study]) -> str:
         "",
     ]
     for study in studies:
-        lines += [f"## {study.slice}", "", f"{study.heading}. {_checked(study)}", "",
-                  f"![Error against seconds for {study.slice}]({study.slice}.bench.svg)", ""]  # fmt: skip
+        lines += [f"## {study.slice}", "", f"{study.heading}. {_checked(study)}", ""]
+        if any(m.seconds for m in study.measurements):
+            lines += [f"![Error against seconds for {study.slice}]({study.slice}.bench.svg)", ""]
         said = sentences(study)
         lines += [f"- {s}" for s in said] + ([""] if said else [])
         lines += [_line(_HEADER), _line(("---",) * len(_HEADER)), *(_line(row) for row in rows(study)), ""]

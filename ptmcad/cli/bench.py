@@ -86,7 +86,7 @@ def command(
 
     check_writable(out, (*(f"{name}.{suffix}" for name in names for suffix in SUFFIXES), PAGE))
     chosen = tuple(Method(name) for name in methods) or tuple(Method)
-    for slice, path in slices:
+    for number, (slice, path) in enumerate(slices):
         study = measure(
             slice,
             path,
@@ -96,6 +96,7 @@ def command(
             seed=seed,
             time_limit=time_limit,
             quick=quick,
+            warm_up=number == 0,
             report=partial(click.echo, err=True),
         )
         save(study, out)
