@@ -19,7 +19,7 @@ from ptmcad.bench.study import (
     smallest_grid,
 )
 
-_NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "minima, saddles and maxima"}
+_NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "index"}
 CURVE_FORMAT = "ptmcad-error-time/1"
 """What ``ptmcad report`` reads."""
 

@@ -22,6 +22,8 @@ from ptmcad.render.printing import settings
 WIDE, TALL = 9.2, 6.4
 BAND = 0.3
 """Height of the band of zero error, as a share of what is above it."""
+RIM = 0.06
+"""The same of the space above the largest error, for its label."""
 _STYLES: tuple[tuple[str, str, str, Any], ...] = (
     ("#0b5394", "#0b5394", "o", "-"),
     ("#38761d", "#38761d", "s", "-"),
@@ -79,10 +81,11 @@ def draw_error_time(title: str, below: Sequence[str], curves: tuple[Curve, ...])
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_xlim(left, right)
-        axes.set_ylim(bottom, 10.0**high)
+        axes.set_ylim(bottom, 10.0 ** (high + RIM * (high - low)))
         axes.axhspan(bottom, 10.0**low, color="#eef3e6", zorder=0)
         axes.axhline(10.0**low, color=INK, linewidth=0.8, zorder=1)
-        axes.text(0.006, (band - 0.04 * (high - low)) / (high - low + band), "no error (0)", transform=axes.transAxes,
+        above = (1 + RIM) * (high - low)
+        axes.text(0.006, (band - 0.04 * (high - low)) / (above + band), "no error (0)", transform=axes.transAxes,
                   ha="left", va="center", fontsize=9, color=INK)  # fmt: skip
         every = max(1, (high - low) // 8)
         axes.set_yticks([10.0**k for k in range(low, high + 1, every)])
