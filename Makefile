@@ -73,6 +73,7 @@ bench: $(VENV)/.installed-bench
 	$(BIN)/ptmcad bench $(PAPER:%=configs/%.yaml) --time-limit 36 --out docs/benchmarks
 	$(BIN)/ptmcad bench $(filter-out $(PAPER:%=configs/%.yaml),$(wildcard configs/*.yaml)) --quick --rounds 2 --time-limit 5 \
 		--method exact --method certified --method companion --page --out docs/benchmarks
+	$(BIN)/python -m ptmcad.bench.scaling --out docs/benchmarks
 
 docs: $(VENV)/.installed-docs
 	$(BIN)/ptmcad classify configs/fig4.yaml --format png --out docs/img

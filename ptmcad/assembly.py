@@ -199,8 +199,10 @@ def _regions(
     whole: Fraction,
 ) -> tuple[Region, ...]:
     regions = []
-    for number in range(1 + max(region_of)):
-        cells = tuple(n for n, r in enumerate(region_of) if r == number)
+    cells_of: list[list[int]] = [[] for _ in range(1 + max(region_of))]
+    for n, number in enumerate(region_of):
+        cells_of[number].append(n)
+    for cells in map(tuple, cells_of):
         members = [counts[n] for n in cells]
 
         def common(values: list[Any]) -> Any:

@@ -188,6 +188,7 @@ def _stages(slice: Slice, relative: Fraction, clock: _Clock, keep: frozenset[str
     clock.report("projection", 0, 1)
     projection = project(curves, verticals, window[base], window[1 - base], clock.check)
     clock.stage("projection")
+    clock.report("stacks", 0, 1)
     stacks = lift(curves, projection.abscissae, window[base], window[1 - base])
     clock.stage("stacks")
 

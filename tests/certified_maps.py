@@ -9,7 +9,7 @@ from math import hypot
 from ptmcad.config import slice_from_mapping
 from ptmcad.cover import Cover, Rectangle, components
 from ptmcad.cover.borders import area_bounds
-from ptmcad.cover.samples import sample
+from ptmcad.cover.samples import samples
 from ptmcad.regionmap import Cell, Region, RegionMap, Status, System
 from ptmcad.slice import Count, Point
 
@@ -51,8 +51,8 @@ def certified(
     square = (window[0][1] - window[0][0]) * (window[1][1] - window[1][0]) / cover.steps**2
     cells, regions = [], []
     for n in range(len(complement.areas)):
-        x, y = sample(complement, n, window)
-        low, high = area_bounds(complement, [n])
+        x, y = next(samples(complement, n, window))
+        low, high = area_bounds(complement, n, range(len(complement.areas)))
         minima = stable(float(x) / 2, float(y) / 2)
         point = Point(slice.axis_names, x, y)
         total, index = 2 * minima + 2, (minima, minima + 1, 1)

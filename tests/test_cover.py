@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from ptmcad.cover import MOST_STEPS, Cover, Rectangle, components, from_boxes, union_area
 from ptmcad.cover.borders import area_bounds, borders
-from ptmcad.cover.filling import filled, pockets, simplified
+from ptmcad.cover.filling import filled, gathered, pockets, simplified
 from ptmcad.cover.outlines import outlines
-from ptmcad.cover.samples import rectangle_of, sample, simplest_between
+from ptmcad.cover.samples import rectangle_of, samples, simplest_between
 
 UNIT = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))
 WINDOW = ((Fraction(1, 20), Fraction(2)), (Fraction(-7, 3), Fraction(5)))
@@ -166,11 +166,11 @@ def test_samples_are_in_their_components_and_rectangles_can_not_grow(cover: Cove
                       (left, right, bottom - 1, top), (left, right, bottom, top + 1)):  # fmt: skip
             a, b, c, d = grown
             assert min(grown) < 0 or max(grown) > cover.steps or grid.closed[2 * a + 1 : 2 * b, 2 * c + 1 : 2 * d].any()
-        x, y = sample(found, number, WINDOW)
         (x0, x1), (y0, y1) = WINDOW
-        assert found.locate((x - x0) / (x1 - x0) * cover.steps, (y - y0) / (y1 - y0) * cover.steps) == number
         at = rectangle_of((left, right, bottom, top), cover.steps, WINDOW)
-        assert at[0] < x < at[1] and at[2] < y < at[3]
+        for x, y in samples(found, number, WINDOW):
+            assert found.locate((x - x0) / (x1 - x0) * cover.steps, (y - y0) / (y1 - y0) * cover.steps) == number
+            assert at[0] < x < at[1] and at[2] < y < at[3]
 
 
 @settings(deadline=None, max_examples=50)
@@ -190,6 +190,22 @@ def test_a_simplified_cover_covers_the_same_with_no_more_rectangles(cover: Cover
     assert len(after.rectangles) <= len(cover.rectangles)
     assert (flood(after).closed == flood(cover).closed).all()
     assert list(after.rectangles) == sorted(set(after.rectangles))
+
+
+@settings(deadline=None, max_examples=80)
+@given(covers(), st.integers(1, 20))
+def test_gathered_rectangles_are_few_and_cover_at_least_the_same(cover: Cover, most: int) -> None:
+    after = gathered(cover, most)
+    assert len(after.rectangles) <= most
+    assert (flood(after).closed >= flood(cover).closed).all()
+    if len(cover.rectangles) <= most:
+        assert after == cover
+
+
+def test_gathered_rectangles_stay_close_to_a_line() -> None:
+    diagonal = Cover(1024, tuple((k, k + 1, k, k + 1) for k in range(1024)))
+    after = gathered(diagonal, 64)
+    assert after.rectangles == tuple((k, k + 16, k, k + 16) for k in range(0, 1024, 16))
 
 
 def test_of_two_rectangles_that_cover_for_each_other_one_stays() -> None:
@@ -221,8 +237,9 @@ def test_area_bounds_count_a_shared_cluster_once() -> None:
     ring = Cover(8, ((2, 6, 2, 3), (2, 6, 5, 6), (2, 3, 2, 6), (5, 6, 2, 6)))
     found = components(ring)
     assert found.areas == (48, 4)
-    assert area_bounds(found, [0]) == (48, 60)
-    assert area_bounds(found, [0, 1]) == (52, 64)
+    assert area_bounds(found, 0, {0, 1}) == (48, 60)
+    assert area_bounds(found, 1, {0, 1}) == (4, 16)
+    assert area_bounds(found, 0, {0}) == (48, 64)
 
 
 def test_two_rectangles_that_touch_in_a_corner_part_the_window() -> None:

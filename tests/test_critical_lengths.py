@@ -15,8 +15,10 @@ from programs import needs_msolve
 from ptmcad import msolve
 from ptmcad.algebra.critical_lengths import NAMES, critical_system
 from ptmcad.algebra.signed import signed_solutions
+from ptmcad.config import slice_from_options
 from ptmcad.errors import ConfigError
-from ptmcad.ranges.free_lengths import critical_free_lengths
+from ptmcad.ranges.certified import certified_intervals
+from ptmcad.ranges.free_lengths import critical_free_lengths, critical_on_line
 
 RHO, RODS, LOADS = Fraction(7, 10), (Fraction(1), Fraction(3, 2)), (Fraction(-1, 10), Fraction(-1, 10))
 
@@ -121,3 +123,17 @@ def test_fifty_two_critical_lengths_and_the_counts_around_them() -> None:
     counts = [signed_solutions((RHO, RODS, free, LOADS)) for free in samples]
     for critical, (before, after) in zip(positive, pairwise(counts), strict=False):
         assert abs(after.real - before.real) == 2, critical
+
+
+@needs_msolve
+@pytest.mark.slow
+def test_elimination_and_intervals_find_the_same_folds() -> None:
+    """Along l0 in (0, 2) at rho = 7/10, L2 = 3/2, F = -10: seven, to ten digits."""
+    pytest.importorskip("numba")
+    axes = {"slice": "rho,l0", "ranges": ["l0=0:2"], "sets": ["L2=3/2", "F3=-10", "F4=-10"]}
+    slice = slice_from_options(**axes)  # type: ignore[arg-type]
+    algebra = [c.free for c in critical_on_line(slice, "l0", {"rho": "7/10"}) if c.fold]
+    line = certified_intervals(slice, "l0", {"rho": "7/10"}, 10)
+    folds = [c.at for c in line.changes if c.names == ("fold",)]
+    assert len(algebra) == 7
+    assert [c.text(10) for c in algebra] == [c.text(10) for c in folds]

@@ -105,3 +105,39 @@ def test_labels_keep_apart_and_inside(places: list[float], half: float) -> None:
         for place, center in zip(sorted(places), centers, strict=True):
             if len(places) == 1 and half <= place <= 1 - half:
                 assert center == place
+
+
+FREE02 = str(ROOT / "configs" / "free02.yaml")
+
+
+def test_a_line_with_free_lengths_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("numba")
+    arguments = [FREE02, "--along", "rho", "--at", "L2=3/2", "--range", "rho=3/10:3/5", "--format", "json"]
+    assert run(["range", *arguments, "--out", str(tmp_path), "--name", "x"]) == 0
+    data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
+    jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
+    intervals = data["enclosed"]["intervals"]
+    assert [(i["total"], i["stable"], i["index"]) for i in intervals] == [(4, 1, [1, 2, 1]), (6, 2, [2, 3, 1])]
+    assert intervals[0]["high"] == intervals[1]["low"] == data["enclosed"]["changes"][0]["at"]
+    assert intervals[0]["high"]["decimal"] == "0.4634527060"
+    assert run(["range", *arguments[:-1], "json,svg", "--out", str(tmp_path), "--name", "y"]) == 2
+    assert "no picture" in capsys.readouterr().err
+    assert not (tmp_path / "y.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--slice", "rho,L2", "--along", "rho", "--at", "L2=3/2"], "springs with a free length"),
+        ([FREE02, "--along", "rho", "--at", "L2=3/2"], "the free length of all three springs"),
+        (["--slice", "rho,l0", "--along", "l0", "--range", "l0=0:1", "--at", "rho=1,k1=2"], "springs of one stiffness"),
+        (["--slice", "rho,l0", "--along", "l0", "--range", "l0=0:1", "--at", "rho=1,F3x=2"], "horizontal"),
+        (["--slice", "rho,l0", "--along", "l0", "--range", "l0=0:1", "--at", "rho=1", "--set", "F3=l0"], "F3"),
+    ],
+    ids=["no free length", "another axis", "unequal springs", "horizontal load", "load that varies"],
+)
+def test_what_elimination_can_not_do_is_told(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["range", *arguments, "--critical"]) == 2
+    assert message in capsys.readouterr().err

@@ -73,10 +73,20 @@ def _offset(p: Coefficients, slope: Fraction) -> Fraction:
 
 
 def _slopes(p: Coefficients) -> set[Fraction]:
-    points = [(i, c.degree()) for i, c in enumerate(p) if c]
-    slopes = {Fraction(0)}
-    slopes |= {Fraction(d - e, j - i) for k, (i, d) in enumerate(points) for j, e in points[k + 1 :]}
-    return slopes
+    """0 and the slopes of the Newton polygon: the bounds are convex in a and bend only there, so one is best."""
+    hull: list[tuple[int, int]] = []
+    for i, c in enumerate(p):
+        if c:
+            d = int(c.degree())
+            while len(hull) > 1 and _fall(hull[-1], (i, d)) <= _fall(hull[-2], hull[-1]):
+                hull.pop()
+            hull.append((i, d))
+    return {Fraction(0), *(_fall(left, right) for left, right in pairwise(hull))}
+
+
+def _fall(left: tuple[int, int], right: tuple[int, int]) -> Fraction:
+    """The a for which deg c_i + a i is the same at both points (i, deg c_i)."""
+    return Fraction(left[1] - right[1], right[0] - left[0])
 
 
 def interpolate(at: Callable[[int], fmpz], degree: int, check: Check = nothing) -> fmpz_poly:

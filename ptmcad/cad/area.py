@@ -9,6 +9,7 @@ panels grows with the logarithm of 1/tolerance.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -201,7 +202,7 @@ def _refine(
             return bounds
         if any(to_fraction(lost) * 4 > tolerance * bounds[i][1] for i in poor):
             raise _Unreachable(strips=True)
-        load = {i: sum(i in (p.below, p.above) for p in panels) for i in poor}
+        load = Counter(i for p in panels for i in (p.below, p.above))
         target = {i: tolerance * max(bounds[i][0], bounds[i][1] / 8) / (2 * max(load[i], 1)) for i in poor}
         refined: list[_Panel] = []
         for p in panels:

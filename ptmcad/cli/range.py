@@ -85,6 +85,7 @@ class Request:
     ----------
     at : the value of the slice's other axis, empty when only ``over`` is asked for.
     over : whether to tabulate the widths over the other axis, in so many rows.
+    critical : whether to find the critical free lengths by elimination instead.
     start, pose : of the paths; ``start`` None for none.
     """
 
@@ -95,6 +96,7 @@ class Request:
     start: Fraction | None
     pose: int | None
     digits: int
+    critical: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,8 +121,9 @@ def answer(slice: Slice, request: Request) -> Answer:
 
     only_line = not request.over and request.start is None
     if only_line and certified.has_free_lengths(slice, request.along, request.at):
-        line = certified.certified_intervals(slice, request.along, request.at, request.digits)
-        return Answer(f"{slice.heading}\n\n{certified.table(line, request.digits)}", {}, {})
+        return _enclosed(slice, request)
+    if request.critical:
+        raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
     texts, parts = [slice.heading], {}
     pictures: dict[str, Callable[[Path], None]] = {}
     if request.at:
@@ -139,6 +142,22 @@ def answer(slice: Slice, request: Request) -> Answer:
         parts["path"] = document.path_data(paths)
         pictures["-path"] = partial(_picture, "path", slice, paths)
     return Answer("\n\n".join(texts), parts, pictures)
+
+
+def _enclosed(slice: Slice, request: Request) -> Answer:
+    """The answer where springs have free lengths."""
+    from ptmcad.ranges import certified, document, free_lengths
+
+    texts, parts = [slice.heading], dict[str, Any]()
+    if request.critical:
+        critical = free_lengths.critical_on_line(slice, request.along, request.at)
+        texts.append(free_lengths.critical_table(critical, request.digits))
+        parts["critical"] = document.critical_data(critical, request.digits)
+    else:
+        line = certified.certified_intervals(slice, request.along, request.at, request.digits)
+        texts.append(certified.table(line, request.digits))
+        parts["enclosed"] = document.enclosed_data(line, request.digits)
+    return Answer("\n\n".join(texts), parts, {})
 
 
 def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
@@ -171,6 +190,8 @@ def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
 @click.option("--path", "start", metavar="VALUE", help="Follow stable poses from this value until they snap.")
 @click.option("--pose", type=click.IntRange(min=1), metavar="N",
               help="Which pose, as ptmcad solve numbers them.  [default: every stable one]")  # fmt: skip
+@click.option("--critical", is_flag=True,
+              help="Along the springs' free length: all critical values by elimination, with msolve.")  # fmt: skip
 @limit_options
 def command(
     *,
@@ -188,6 +209,7 @@ def command(
     rows: int,
     start: str | None,
     pose: int | None,
+    critical: bool,
     timeout: float | None,
     max_memory: Bound | None,
 ) -> None:
@@ -206,7 +228,7 @@ def command(
     """
     values = {} if at is None else point_of(at)
     slice, other = slice_and_line(config, axes, along, values, over, sets, ranges)
-    request = Request(along, other, over is not None, rows, _start(start, other), pose, digits)
+    request = Request(along, other, over is not None, rows, _start(start, other), pose, digits, critical)
     if over is None and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
         raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
     if pose is not None and start is None:
@@ -216,8 +238,8 @@ def command(
         if formats and slice.has_free_lengths:
             from ptmcad.ranges.certified import has_free_lengths
 
-            if has_free_lengths(slice, along, other):
-                raise ConfigError("with a free length there is only the table for the terminal", key="--format")
+            if has_free_lengths(slice, along, other) and set(formats) != {"json"}:
+                raise ConfigError("with a free length there is the table and JSON, no picture", key="--format")
         pictures = [suffix for suffix in formats if suffix != "json"]
         names = [f"{stem}{part}.{suffix}" for part in _parts(request) for suffix in pictures]
         names += [f"{stem}.json"] * ("json" in formats)

@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ptmcad.cover.complement import Components
+    from ptmcad.cover.complement import Components, Tiling
 
 Rectangle = tuple[int, int, int, int]
 """left, right, bottom, top in lattice steps from the window's lower left corner; closed; 0 <= left < right <= steps."""
@@ -36,8 +36,12 @@ class Cover:
     rectangles: tuple[Rectangle, ...]
 
 
-def components(cover: Cover) -> Components:
+def components(cover: Cover, tiling: Tiling | None = None) -> Components:
     """The connected components of the open window without the closed rectangles.
+
+    Parameters
+    ----------
+    tiling : compiled code for what takes time; numpy's when None. The result is the same.
 
     Raises
     ------
@@ -46,14 +50,14 @@ def components(cover: Cover) -> Components:
     """
     from ptmcad.cover import complement
 
-    return complement.components(cover)
+    return complement.components(cover, tiling or complement.PLAIN)
 
 
-def union_area(cover: Cover) -> int:
+def union_area(cover: Cover, tiling: Tiling | None = None) -> int:
     """The area of the rectangles' union, in squares of a lattice step."""
     from ptmcad.cover import complement
 
-    return complement.union_area(cover)
+    return complement.union_area(cover, tiling or complement.PLAIN)
 
 
 def from_boxes(window: Window, low: Any, high: Any, steps: int) -> Cover:

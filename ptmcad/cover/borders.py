@@ -5,7 +5,7 @@ Guarantee: exact.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container
 
 import numpy as np
 
@@ -13,16 +13,25 @@ from ptmcad.cover.complement import Components
 from ptmcad.cover.subdivision import FREE, rectangle_array
 
 
-def area_bounds(components: Components, numbers: Iterable[int]) -> tuple[int, int]:
-    """Area of some components together; and with all clusters that touch them, each of them once.
+def area_bounds(components: Components, number: int, known: Container[int]) -> tuple[int, int]:
+    """A component's area; and with all that can be reached from it without entering another known component.
 
-    In squares of a lattice step. What a continuous count does between the components is not decided here: a region that
-    crosses a cluster to a component that is not among the numbers is larger.
+    In squares of a lattice step. What is reached are clusters, each of them once, and components that are not known.
+    The connected set of points with the component's count is no larger, unless it reaches another known component.
     """
-    chosen = set(numbers)
-    low = sum(components.areas[n] for n in chosen)
-    clusters = {cluster for n in chosen for cluster in components.clusters_at[n]}
-    return low, low + sum(components.cluster_areas[c] for c in clusters)
+    around: dict[int, list[int]] = {}
+    for component, cluster in components.touching:
+        around.setdefault(cluster, []).append(component)
+    reached, clusters, waiting = {number}, set[int](), [number]
+    while waiting:
+        for cluster in components.clusters_at[waiting.pop()]:
+            if cluster not in clusters:
+                clusters.add(cluster)
+                more = {m for m in around[cluster] if m not in known} - reached
+                reached |= more
+                waiting += more
+    high = sum(components.areas[m] for m in reached) + sum(components.cluster_areas[cluster] for cluster in clusters)
+    return components.areas[number], high
 
 
 def borders(components: Components) -> tuple[tuple[int, ...], ...]:

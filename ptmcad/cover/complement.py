@@ -10,6 +10,7 @@ edges, and clusters across edges and corners.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -17,12 +18,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.cover import MOST_STEPS, Cover, Rectangle
-from ptmcad.cover.graph import connected, touching
+from ptmcad.cover.graph import Touching, connected, touching
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
 
 Integers = NDArray[np.int64]
 _LIMB = 20
 """Bits of a half coordinate: products of halves are summed without overflow, and put together as Python's integers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tiling:
+    """How a window is cut into leaves, and which of them touch: what takes time, and may be compiled.
+
+    Attributes
+    ----------
+    subdivide : see `ptmcad.cover.subdivision.subdivide`.
+    touching : the pairs of leaves of a subdivision that touch, as positions among the leaves' given numbers.
+    connected : see `ptmcad.cover.graph.connected`.
+    """
+
+    subdivide: Callable[[Integers, int], Subdivision]
+    touching: Callable[[Subdivision, Integers], Touching]
+    connected: Callable[[int, Integers, Integers], Integers]
+
+
+PLAIN = Tiling(subdivide, lambda tree, leaves: touching(tree.bounds[leaves]), connected)
+"""Without compiled code."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,7 +93,7 @@ class Components:
         return tuple((n, cluster) for n, clusters in enumerate(self.clusters_at) for cluster in clusters)
 
 
-def components(cover: Cover) -> Components:
+def components(cover: Cover, tiling: Tiling = PLAIN) -> Components:
     """The connected components of the open window without the closed rectangles.
 
     Raises
@@ -80,13 +101,13 @@ def components(cover: Cover) -> Components:
     ValueError
         When a rectangle is not one, or the lattice is too fine.
     """
-    tree = subdivide(cover)
+    tree = tiling.subdivide(rectangle_array(cover), cover.steps)
     parts = np.flatnonzero(tree.state != CUT)
     leaves, free = tree.bounds[parts], tree.state[parts] == FREE
-    pairs = touching(leaves)
+    pairs = tiling.touching(tree, parts)
     a_free, b_free = free[pairs.first], free[pairs.second]
     joined = (a_free & b_free & pairs.along) | ~(a_free | b_free)
-    label = connected(len(leaves), pairs.first[joined], pairs.second[joined])
+    label = tiling.connected(len(leaves), pairs.first[joined], pairs.second[joined])
 
     number, areas, thick = _numbered(leaves, label, free)
     clusters, cluster_areas, _ = _numbered(leaves, label, ~free)
@@ -198,8 +219,8 @@ def _sums_of_areas(boxes: Integers, group: Integers, groups: int) -> list[int]:
     return sums
 
 
-def union_area(cover: Cover) -> int:
+def union_area(cover: Cover, tiling: Tiling = PLAIN) -> int:
     """The area of the rectangles' union, in squares of a lattice step."""
-    tree = subdivide(cover)
+    tree = tiling.subdivide(rectangle_array(cover), cover.steps)
     covered = tree.bounds[tree.state == COVERED]
     return _sums_of_areas(covered, np.zeros(len(covered), dtype=np.int64), 1)[0]

@@ -1,7 +1,7 @@
 """Covers with less detail: small components given up, and the same area covered by fewer rectangles.
 
 Guarantee: `filled` covers what the cover covers and the chosen components, and no inner point of another component;
-`simplified` covers the same points as before.
+`simplified` covers the same points as before; `gathered` covers them and more.
 """
 
 from __future__ import annotations
@@ -40,10 +40,11 @@ def simplified(cover: Cover) -> Cover:
     ValueError
         When a rectangle is not one, or the lattice is too fine.
     """
-    array = _merged(rectangle_array(cover))
+    rectangles = rectangle_array(cover)
+    array = _merged(rectangles)
     if not len(array):
         return cover
-    tree = subdivide(cover)
+    tree = subdivide(rectangles, cover.steps)
     rectangle, leaf = tree.meeting(array, closed=False)
     order = np.argsort(rectangle, kind="stable")
     rectangle, leaf = rectangle[order], leaf[order]
@@ -66,6 +67,46 @@ def simplified(cover: Cover) -> Cover:
             covering[leaf[own_leaves]] = left
             kept[k] = False
     return cover_of(_merged(array[kept]), cover.steps)
+
+
+def gathered(cover: Cover, most: int) -> Cover:
+    """A cover of more, by at most so many rectangles: boxes around what the cover has in each square of a grid.
+
+    The grid is the finest that needs no more of them; a cover of no more rectangles stays as it is.
+    """
+    array = rectangle_array(cover)
+    if len(array) <= most:
+        return cover
+    result = array
+    for shift in reversed(range(cover.steps.bit_length())):
+        boxes = _in_squares(array, shift, most)
+        if boxes is None:
+            break
+        result = boxes
+    return cover_of(result, cover.steps)
+
+
+def _in_squares(array: Integers, shift: int, most: int) -> Integers | None:
+    """Boxes around the parts of rectangles in squares of 2^shift steps; None if they are more than ``most``."""
+    first, last = array[:, (0, 2)] >> shift, (array[:, (1, 3)] - 1) >> shift
+    spans = last - first + 1
+    if int(spans.prod(axis=1).max()) > most:
+        return None
+    found = []
+    for i in range(int(spans[:, 0].max())):
+        for j in range(int(spans[:, 1].max())):
+            there = (spans[:, 0] > i) & (spans[:, 1] > j)
+            square = first[there] + (i, j)
+            low = np.maximum(array[there][:, (0, 2)], square << shift)
+            high = np.minimum(array[there][:, (1, 3)], (square + 1) << shift)
+            found.append(np.concatenate([square, low, high], axis=1))
+    parts = np.concatenate(found)
+    parts = parts[np.lexsort((parts[:, 1], parts[:, 0]))]
+    starts = np.flatnonzero(np.concatenate([[True], (parts[1:, :2] != parts[:-1, :2]).any(axis=1)]))
+    if len(starts) > most:
+        return None
+    low, high = np.minimum.reduceat(parts[:, 2:4], starts), np.maximum.reduceat(parts[:, 4:6], starts)
+    return np.stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]], axis=1)
 
 
 def _merged(array: Integers) -> Integers:

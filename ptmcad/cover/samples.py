@@ -5,28 +5,30 @@ Guarantee: the point is in the component, and not in any closed rectangle.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 
 from ptmcad.cover import Rectangle, Window
 from ptmcad.cover.complement import Components
 
-_MIDDLE = Fraction(1, 4)
-"""The point is taken from the middle of the component's rectangle: this part of its sides is left out at each end."""
+_PLACES = ((Fraction(1, 2), Fraction(1, 2)), (Fraction(1, 3), Fraction(3, 7)), (Fraction(3, 5), Fraction(2, 7)))
+"""Where the points are, as parts of the sides of the component's rectangle ..."""
+_REACH = Fraction(1, 8)
+"""... and how far they may be from there."""
 
 
-def sample(components: Components, number: int, window: Window) -> tuple[Fraction, Fraction]:
-    """The simplest point in the middle of the component's rectangle, in the axes' own units."""
+def samples(components: Components, number: int, window: Window) -> Iterator[tuple[Fraction, Fraction]]:
+    """Simple points in the middle of the component's rectangle, and then off the middle, in the axes' own units."""
     left, right, bottom, top = components.rectangles[number]
     steps = components.cover.steps
-    x = _in_the_middle(left, right, window[0], steps)
-    y = _in_the_middle(bottom, top, window[1], steps)
-    return x, y
+    for u, v in _PLACES:
+        yield _near(left, right, u, window[0], steps), _near(bottom, top, v, window[1], steps)
 
 
-def _in_the_middle(first: int, last: int, interval: tuple[Fraction, Fraction], steps: int) -> Fraction:
-    width = (interval[1] - interval[0]) / steps
-    rim = (last - first) * _MIDDLE
-    return simplest_between(interval[0] + (first + rim) * width, interval[0] + (last - rim) * width)
+def _near(first: int, last: int, place: Fraction, interval: tuple[Fraction, Fraction], steps: int) -> Fraction:
+    step = (interval[1] - interval[0]) / steps
+    middle, reach = first + (last - first) * place, (last - first) * _REACH
+    return simplest_between(interval[0] + (middle - reach) * step, interval[0] + (middle + reach) * step)
 
 
 def simplest_between(low: Fraction, high: Fraction) -> Fraction:

@@ -114,16 +114,14 @@ def rectangle_array(cover: Cover) -> Integers:
     return array
 
 
-def subdivide(cover: Cover) -> Subdivision:
+def subdivide(rectangles: Integers, steps: int) -> Subdivision:
     """Cut the window until every part is covered by one rectangle or meets the interior of none.
 
-    Raises
-    ------
-    ValueError
-        When a rectangle is not one, or the lattice is too fine.
+    Parameters
+    ----------
+    rectangles : shape (k, 4), from `rectangle_array`.
     """
-    rectangles = rectangle_array(cover)
-    growing = _Growing(cover.steps)
+    growing = _Growing(steps)
     parts = np.zeros(1 if len(rectangles) else 0, dtype=np.int64)
     """the parts of this depth that some rectangle meets"""
     counts = np.full(len(parts), len(rectangles))

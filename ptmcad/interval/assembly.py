@@ -7,15 +7,18 @@ it may be an artefact of the boxes, with the same counts as a larger component b
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import islice
 
-from ptmcad.cover import Cover, Rectangle, components
+from ptmcad.cover import Cover, components
+from ptmcad.cover.borders import area_bounds
 from ptmcad.cover.complement import Components
-from ptmcad.cover.samples import simplest_between
+from ptmcad.cover.samples import samples
 from ptmcad.interval.points import PointCount, PointCounter
 from ptmcad.interval.statement import system_text
+from ptmcad.interval.tiling import COMPILED
 from ptmcad.regionmap import Cell, PlanStep, Region, RegionMap, Status
 from ptmcad.slice import Count, Point, Slice
 
@@ -37,11 +40,13 @@ class Assembler:
 
     def map(self, cover: Cover, status: Status, seconds: Mapping[str, float]) -> RegionMap:
         """The map of the window outside the cover."""
-        complement = components(cover)
+        complement = components(cover, COMPILED)
         pocket = min(POCKET * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
         counted = self._counts(complement, pocket)
         kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)]
         known = frozenset(kept)
+        horizontal, vertical = self.slice.axes
+        square = (horizontal.high - horizontal.low) * (vertical.high - vertical.low) / cover.steps**2
         cells, regions = [], []
         for region, n in enumerate(kept):
             sample, count = counted[n]
@@ -49,7 +54,8 @@ class Assembler:
             cells.append(
                 Cell(None, n, sample, region, count.total, count.stable, count.index, count.solutions, admissible)
             )
-            area = self._area_bounds(complement, n, known)
+            low, high = area_bounds(complement, n, known)
+            area = (low * square, high * square)
             regions.append(Region(count.stable, count.total, count.index, area, (region,), sample, admissible))
         open_area = cover.steps**2 - sum(complement.areas[n] for n in kept)
         return RegionMap(
@@ -75,44 +81,18 @@ class Assembler:
 
     def _counts(self, complement: Components, pocket: Fraction) -> dict[int, tuple[Point, PointCount]]:
         """Samples and counts of the components, largest first, as far as they are decided; small ones only easily."""
+        horizontal, vertical = self.slice.axes
+        window = ((horizontal.low, horizontal.high), (vertical.low, vertical.high))
         counted = {}
         for n in range(min(len(complement.areas), MOST_COUNTED)):
             large = complement.areas[n] >= pocket
-            for part in _parts(complement.rectangles[n])[: 3 if large else 1]:
-                sample = self._sample(complement.cover, part)
+            for x, y in islice(samples(complement, n, window), 3 if large else 1):
+                sample = Point((horizontal.name, vertical.name), x, y)
                 count = self.counter.at(sample[0], sample[1], self.slice.count, thorough=large)
                 if count.decided:
                     counted[n] = (sample, count)
                     break
         return counted
-
-    def _sample(self, cover: Cover, part: tuple[Fraction, Fraction, Fraction, Fraction]) -> Point:
-        """A point of small height in a part of the window that is given in lattice steps."""
-        names, values = [], []
-        for axis, (low, high) in zip(self.slice.axes, (part[:2], part[2:]), strict=True):
-            step = (axis.high - axis.low) / cover.steps
-            names.append(axis.name)
-            values.append(simplest_between(axis.low + low * step, axis.low + high * step))
-        return Point((names[0], names[1]), values[0], values[1])
-
-    def _area_bounds(self, complement: Components, n: int, known: frozenset[int]) -> tuple[Fraction, Fraction]:
-        """The component's area; and with all that is undetermined beside it, components without a cell included."""
-        horizontal, vertical = self.slice.axes
-        square = (horizontal.high - horizontal.low) * (vertical.high - vertical.low) / complement.cover.steps**2
-        around: dict[int, list[int]] = {}
-        for component, cluster in complement.touching:
-            around.setdefault(cluster, []).append(component)
-        components, clusters, waiting = {n}, set[int](), [n]
-        while waiting:
-            for cluster in complement.clusters_at[waiting.pop()]:
-                if cluster not in clusters:
-                    clusters.add(cluster)
-                    more = {m for m in around[cluster] if m not in known} - components
-                    components |= more
-                    waiting += more
-        low, high = complement.areas[n], sum(complement.areas[m] for m in components)
-        high += sum(complement.cluster_areas[cluster] for cluster in clusters)
-        return low * square, high * square
 
 
 def _key(count: PointCount, which: Count) -> object:
@@ -139,16 +119,3 @@ def _is_pocket(
     return any(
         m < n and _key(counted[m][1], which) == mine and near.intersection(complement.clusters_at[m]) for m in counted
     )
-
-
-def _parts(rectangle: Rectangle) -> Sequence[tuple[Fraction, Fraction, Fraction, Fraction]]:
-    """Smaller rectangles in the middle of a free one, and then off the middle, where to try a sample."""
-    left, right, bottom, top = rectangle
-
-    def span(low: int, high: int, place: Fraction) -> tuple[Fraction, Fraction]:
-        width = Fraction(high - low, 8)
-        middle = low + (high - low) * place
-        return middle - width, middle + width
-
-    places = [(Fraction(1, 2), Fraction(1, 2)), (Fraction(1, 3), Fraction(3, 7)), (Fraction(3, 5), Fraction(2, 7))]
-    return [(*span(left, right, u), *span(bottom, top, v)) for u, v in places]

@@ -89,48 +89,17 @@ def precondition(middle: Floats, inverse: Floats, widths: Floats, pivots: NDArra
 @compiled
 def contract(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> bool:
     """Shrink the box in place around the solutions in it; False when there are none."""
-    program, stages, unknowns, equations, jacobian, cheap, rest, costly, nonnegative = system
-    low, high, low_at, high_at, middle_low, middle_high, radius, j_low, j_high, matrix, inverse = work
-    m, n = jacobian.shape
-    pivots = np.empty(m, np.int64)
+    pivots = np.empty(system[4].shape[0], np.int64)
+    radius, matrix, inverse = work[6], work[9], work[10]
     for _ in range(SWEEPS):
-        if not run(program, box_low, box_high, low, high, 0, stages[0]) or discarded(low, high, cheap):
+        usable = linearise(system, box_low, box_high, work)
+        if usable < 0:
             return False
-        if not run(program, box_low, box_high, low, high, stages[0], stages[1]) or discarded(low, high, rest):
-            return False
-        if not run(program, box_low, box_high, low, high, stages[1], stages[2]) or discarded(low, high, costly):
-            return False
-        for place in nonnegative:
-            if high[place] < 0:
-                return False
-        if not run(program, box_low, box_high, low, high, stages[2], stages[3]):
-            return False
-        for k in range(box_low.shape[0]):
-            middle_low[k], middle_high[k] = box_low[k], box_high[k]
-        for j in range(n):
-            k = unknowns[j]
-            middle = 0.5 * (box_low[k] + box_high[k])
-            middle_low[k] = middle_high[k] = middle
-            radius[j] = up(max(box_high[k] - middle, middle - box_low[k]))
-        # only the equations: at a middle that is no solution, the two formulas of a `meet` may differ
-        run(program, middle_low, middle_high, low_at, high_at, 0, stages[1])
-        usable = True
-        for i in range(m):
-            u, v = low_at[equations[i]], high_at[equations[i]]
-            for j in range(n):
-                place = jacobian[i, j]
-                j_low[i, j], j_high[i, j] = low[place], high[place]
-                matrix[i, j] = 0.5 * (low[place] + high[place])
-                usable = usable and abs(matrix[i, j]) < 1e150
-                change = up(magnitude(low[place], high[place]) * radius[j])
-                u, v = down(u - change), up(v + change)
-            if u > 0 or v < 0:
-                return False
-        if not usable:
+        if usable == 0:
             return True
         precondition(matrix, inverse, radius, pivots, 1e-200)
         shrunk = False
-        for i in range(m):
+        for i in range(len(pivots)):
             if pivots[i] < 0:
                 continue
             step = solve_row(system, i, pivots[i], box_low, box_high, work)
@@ -143,24 +112,84 @@ def contract(system: Arguments, box_low: Floats, box_high: Floats, work: Workspa
 
 
 @compiled
-def solve_row(system: Arguments, i: int, pivot: int, box_low: Floats, box_high: Floats, work: Workspace) -> int:
-    """Row i of the preconditioned linear equations, solved for its pivot: -1 no solution, 1 much narrower, 0 else."""
-    _, _, unknowns, equations, jacobian, _, _, _, _ = system
-    _, _, low_at, high_at, middle_low, _, radius, j_low, j_high, _, inverse = work
+def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> int:
+    """Test a box and enclose its equations' derivatives: -1 no solution, 0 a derivative may be unbounded, 1 done.
+
+    Afterwards ``work`` has the middle and the radii of the box, the equations there, their derivatives over the box,
+    and the middles of these.
+    """
+    program, stages, unknowns, equations, jacobian, cheap, rest, costly, nonnegative = system
+    low, high, low_at, high_at, middle_low, middle_high, radius, j_low, j_high, matrix, _ = work
     m, n = jacobian.shape
+    if not run(program, box_low, box_high, low, high, 0, stages[0]) or discarded(low, high, cheap):
+        return -1
+    if not run(program, box_low, box_high, low, high, stages[0], stages[1]) or discarded(low, high, rest):
+        return -1
+    if not run(program, box_low, box_high, low, high, stages[1], stages[2]) or discarded(low, high, costly):
+        return -1
+    for place in nonnegative:
+        if high[place] < 0:
+            return -1
+    if not run(program, box_low, box_high, low, high, stages[2], stages[3]):
+        return -1
+    for k in range(box_low.shape[0]):
+        middle_low[k], middle_high[k] = box_low[k], box_high[k]
+    for j in range(n):
+        k = unknowns[j]
+        middle = 0.5 * (box_low[k] + box_high[k])
+        middle_low[k] = middle_high[k] = middle
+        radius[j] = up(max(box_high[k] - middle, middle - box_low[k]))
+    # only the equations: at a middle that is no solution, the two formulas of a `meet` may differ
+    run(program, middle_low, middle_high, low_at, high_at, 0, stages[1])
+    usable = True
+    for i in range(m):
+        u, v = low_at[equations[i]], high_at[equations[i]]
+        for j in range(n):
+            place = jacobian[i, j]
+            j_low[i, j], j_high[i, j] = low[place], high[place]
+            matrix[i, j] = 0.5 * (low[place] + high[place])
+            usable = usable and abs(matrix[i, j]) < 1e150
+            change = up(magnitude(low[place], high[place]) * radius[j])
+            u, v = down(u - change), up(v + change)
+        if u > 0 or v < 0:
+            return -1
+    return 1 if usable else 0
+
+
+@compiled
+def row_constant(i: int, equations: NDArray[np.int64], work: Workspace) -> tuple[float, float]:
+    """Row i of the preconditioned equations at the middle."""
+    low_at, high_at, inverse = work[2], work[3], work[10]
     c_low = c_high = 0.0
-    for k in range(m):
+    for k in range(inverse.shape[0]):
         u, v = multiply(inverse[i, k], inverse[i, k], low_at[equations[k]], high_at[equations[k]])
         c_low, c_high = down(c_low + u), up(c_high + v)
+    return c_low, c_high
+
+
+@compiled
+def row_coefficient(i: int, j: int, work: Workspace) -> tuple[float, float]:
+    """Entry j of row i of the preconditioned derivatives."""
+    j_low, j_high, inverse = work[7], work[8], work[10]
+    u = v = 0.0
+    for k in range(inverse.shape[0]):
+        factor = inverse[i, k]
+        if factor >= 0:
+            u, v = down(u + down(factor * j_low[k, j])), up(v + up(factor * j_high[k, j]))
+        else:
+            u, v = down(u + down(factor * j_high[k, j])), up(v + up(factor * j_low[k, j]))
+    return u, v
+
+
+@compiled
+def solve_row(system: Arguments, i: int, pivot: int, box_low: Floats, box_high: Floats, work: Workspace) -> int:
+    """Row i of the preconditioned linear equations, solved for its pivot: -1 no solution, 1 much narrower, 0 else."""
+    unknowns, equations = system[2], system[3]
+    middle_low, radius = work[4], work[6]
+    c_low, c_high = row_constant(i, equations, work)
     p_low = p_high = 1.0
-    for j in range(n):
-        u = v = 0.0
-        for k in range(m):
-            factor = inverse[i, k]
-            if factor >= 0:
-                u, v = down(u + down(factor * j_low[k, j])), up(v + up(factor * j_high[k, j]))
-            else:
-                u, v = down(u + down(factor * j_high[k, j])), up(v + up(factor * j_low[k, j]))
+    for j in range(len(unknowns)):
+        u, v = row_coefficient(i, j, work)
         if j == pivot:
             p_low, p_high = u, v
             continue

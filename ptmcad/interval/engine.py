@@ -18,16 +18,18 @@ import flint
 import numba
 import numpy as np
 
-from ptmcad.cover import MOST_STEPS, Cover, Rectangle, from_boxes, union_area
-from ptmcad.cover.filling import simplified
+from ptmcad.cover import MOST_STEPS, Cover, Rectangle, union_area
+from ptmcad.cover.filling import gathered, simplified
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.interval.assembly import Assembler
+from ptmcad.interval.covering import Lattice, box_rectangles, thinning
 from ptmcad.interval.curves import curves
 from ptmcad.interval.points import point_counter
 from ptmcad.interval.refinement import Enclosure, begin, refine
 from ptmcad.interval.search import Boxes
 from ptmcad.interval.statement import plan_of
 from ptmcad.interval.tape import enclosing_floats
+from ptmcad.interval.tiling import COMPILED
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.slice import Slice
 from ptmcad.version import __version__
@@ -36,13 +38,19 @@ TOLERANCE = Fraction(1, 1000)
 """Of the window's area, left undetermined unless another number is asked for."""
 TILES = 8
 """Rectangles along each axis that the search begins with."""
+MOST_TILES = 1000
+"""... or with when it goes on from a cover: every one of them costs a search of all angles."""
 FIRST_LEVEL, LAST_LEVEL = 4, 40
 """At level n, boxes are bisected until their projection has at most 4^-n of the window's area."""
 LARGEST = Fraction(10**100)
 """Ends of axes; areas and squares of such numbers are floats still."""
 MOST_BOXES = 6_000_000
-MANY = 40_000
-"""Rectangles from which on it pays to look for fewer that cover the same."""
+OVERLAPPING = 3
+"""Where rectangles have this times the area of their union it pays to look for fewer that cover the same."""
+WITHIN = 100
+"""Strips are tried as soon as the boxes leave at most so many times the tolerance undetermined."""
+ENOUGH = 0.5
+"""... and used as soon as the finest ones would leave less than this part of it."""
 STEPS = 2**24
 """Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
 
@@ -103,11 +111,12 @@ class _Run:
         self.slice, self.options = slice, options
         self.seconds = {"plan": 0.0, "curves": 0.0, "regions": 0.0}
         self.area = float((slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low))
-        self.steps = STEPS
-        while self.steps * options.tolerance < 64 and self.steps < MOST_STEPS:
-            self.steps *= 2
-        if resume is not None and len(resume.rectangles) > TILES**2:
-            resume = simplified(resume)  # disjoint rectangles: nothing is searched twice
+        steps = STEPS
+        while steps * options.tolerance < 64 and steps < MOST_STEPS:
+            steps *= 2
+        horizontal, vertical = slice.axes
+        self.lattice = Lattice(((horizontal.low, horizontal.high), (vertical.low, vertical.high)), steps)
+        self.resumed = resume
         wanted = curves(slice, slice.count)
         self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, resume))
         self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted), _versions())
@@ -117,6 +126,7 @@ class _Run:
 
     def run(self) -> RegionMap:
         undetermined = Fraction(1)
+        tolerance = self.options.tolerance
         for level in range(FIRST_LEVEL, LAST_LEVEL):
             start = perf_counter()
             in_time = refine(
@@ -127,45 +137,59 @@ class _Run:
                 self._report(level, undetermined),
             )
             self.seconds["curves"] += perf_counter() - start
-            cover = self.cover()
-            undetermined = Fraction(union_area(cover), cover.steps**2)
-            if self.options.reached is not None:
-                self.options.reached(undetermined)
             if not in_time:
-                so_far = self.map(cover, Status.PARTIAL)
+                so_far = self.partial()
                 raise LimitReached(
                     f"the time limit was reached with {_percent(so_far.undetermined)} undetermined, "
-                    f"more than the tolerance of {_percent(self.options.tolerance)}",
+                    f"more than the tolerance of {_percent(tolerance)}",
                     partial=so_far,
                 )
-            if undetermined <= self.options.tolerance:
+            cover = self.lattice.cover(box_rectangles(self.enclosures))
+            undetermined = _share(cover)
+            thin = None if undetermined <= tolerance else self.thin_cover(undetermined)
+            if thin is not None:
+                cover = thin
+            if self.options.reached is not None:
+                self.options.reached(undetermined)
+            if thin is not None or undetermined <= tolerance:
                 result = self.map(cover, Status.CERTIFIED)
                 undetermined = result.undetermined
-                if undetermined <= self.options.tolerance:
+                if undetermined <= tolerance:
                     return result
-            self._hand_over(cover)
+            self._hand_over()
             if sum(len(e.boxes()) for e in self.enclosures) > MOST_BOXES:
                 break
-        so_far = self.map(self.cover(), Status.PARTIAL)
+        so_far = self.partial()
         raise LimitReached(
             f"the search ended with {_percent(so_far.undetermined)} undetermined, more than the tolerance of "
-            f"{_percent(self.options.tolerance)}: smaller boxes did not help",
+            f"{_percent(tolerance)}: smaller boxes did not help",
             partial=so_far,
         )
 
-    def cover(self) -> Cover:
-        boxes = [enclosure.boxes() for enclosure in self.enclosures]
-        low = np.concatenate([b[:, :2] for b in boxes])
-        high = np.concatenate([b[:, b.shape[1] // 2 :][:, :2] for b in boxes])
-        horizontal, vertical = self.slice.axes
-        window = ((horizontal.low, horizontal.high), (vertical.low, vertical.high))
-        return from_boxes(window, low, high, self.steps)
+    def thin_cover(self, undetermined: Fraction) -> Cover | None:
+        """A cover of strips that are thin enough for the tolerance, if they can be."""
+        allowed = self.options.tolerance
+        if undetermined > WITHIN * allowed:
+            return None
+        start = perf_counter()
+        strips = thinning(self.enclosures, self.lattice, self.options.jobs)
+        target = float(allowed) * self.area
+        cover = strips.cover(target) if strips.least() <= ENOUGH * target else None
+        self.seconds["curves"] += perf_counter() - start
+        return cover
+
+    def partial(self) -> RegionMap:
+        """The map so far, with strips as thin as they can be for not many more rectangles than boxes."""
+        strips = thinning(self.enclosures, self.lattice, self.options.jobs)
+        cover, known = strips.cover(1.5 * strips.least(), 4 * len(strips.thin)), self.resumed
+        if known is not None and _share(known) < _share(cover):
+            cover = known
+        return self.map(cover, Status.PARTIAL)
 
     def map(self, cover: Cover, status: Status) -> RegionMap:
         start = perf_counter()
-        if len(cover.rectangles) > MANY:
-            fewer = simplified(cover)
-            cover = fewer if len(fewer.rectangles) < len(cover.rectangles) else cover
+        if _overlap(cover) > OVERLAPPING:
+            cover = simplified(cover)
         times = self.seconds | {"total": start - self.started}
         result = self.assembler.map(cover, status, times)
         self.seconds["regions"] += perf_counter() - start
@@ -178,7 +202,7 @@ class _Run:
         if deadline is None:
             return None
         boxes = sum(len(e.boxes()) for e in self.enclosures)
-        return deadline - max(1.0, 0.08 * (deadline - self.started), 2 * self.slowest, 2e-5 * boxes)
+        return deadline - max(1.0, 0.08 * (deadline - self.started), 2 * self.slowest, 5e-5 * boxes)
 
     def _report(self, level: int, undetermined: Fraction) -> Callable[[int, int], None] | None:
         progress = self.options.progress
@@ -187,19 +211,20 @@ class _Run:
         what = f"undetermined {_percent(undetermined)}"
         return lambda treated, waiting: progress(what, treated, treated + 8 * waiting)
 
-    def _hand_over(self, cover: Cover) -> None:
+    def _hand_over(self) -> None:
         """Give the map so far to whoever asked for it, but not so often that it would cost much."""
         partial = self.options.partial
         if partial is not None and perf_counter() - self.handed_over > 10 * self.seconds["regions"] + 2:
-            partial(self.map(cover, Status.PARTIAL))
+            partial(self.partial())
             self.handed_over = perf_counter()
 
 
 def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
     """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards."""
-    steps, rectangles = (resume.steps, resume.rectangles) if resume is not None else (TILES, ())
     if resume is None:
-        rectangles = tuple(sorted(_tiles(), key=lambda tile: _ease(slice, tile), reverse=True))
+        steps, rectangles = TILES, tuple(sorted(_tiles(), key=lambda tile: _ease(slice, tile), reverse=True))
+    else:
+        steps, rectangles = resume.steps, gathered(resume, MOST_TILES).rectangles
     horizontal, vertical = slice.axes
 
     def value(axis_low: Fraction, axis_high: Fraction, step: int, towards: float) -> float:
@@ -230,6 +255,17 @@ def _ease(slice: Slice, tile: Rectangle) -> Fraction:
     )
     rho, bar1, bar2 = (slice.parameters[name].evaluate(x, y) for name in ("rho", "L1", "L2"))
     return rho + abs(bar1 - bar2)
+
+
+def _share(cover: Cover) -> Fraction:
+    """The part of the window that the cover has."""
+    return Fraction(union_area(cover, COMPILED), cover.steps**2)
+
+
+def _overlap(cover: Cover) -> float:
+    """How many times the rectangles cover their union, on average."""
+    union = union_area(cover, COMPILED)
+    return sum(float((right - left) * (top - bottom)) for left, right, bottom, top in cover.rectangles) / max(union, 1)
 
 
 def _percent(share: Fraction) -> str:

@@ -11,10 +11,10 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.enclosure import Enclosure
-from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.errors import ExpressionError
 from ptmcad.expressions import rational
 from ptmcad.numerals import shortest_text
-from ptmcad.ranges.line import restricted
+from ptmcad.ranges.line import restricted, varying_axis
 from ptmcad.ranges.table import aligned
 from ptmcad.regionmap import MorseIndex
 from ptmcad.slice import FREE_LENGTHS, Axis, Slice
@@ -88,20 +88,7 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
     """
     from ptmcad.interval.line import line_counts
 
-    names = slice.axis_names
-    if along not in names:
-        raise ConfigError(f"{along} is not an axis of the slice: choose {names[0]} or {names[1]}", key="along")
-    varying = names.index(along)
-    other = names[1 - varying]
-    if set(at) != {other}:
-        given = ", ".join(map(str, at)) or "nothing"
-        raise ConfigError(
-            f"a line along {along} needs a value of {other} and of nothing else, not of {given}", key="at"
-        )
-    try:
-        value = rational(at[other])
-    except ExpressionError as error:
-        raise ConfigError(str(error), key=f"at {other}") from error
+    varying, other, value = varying_axis(slice, along, at)
     found = line_counts(slice, varying, value, 64 + 4 * digits)
     ends = {gap.low: Enclosure(gap.low, gap.high) for gap in found.gaps}
     ends |= {gap.high: Enclosure(gap.low, gap.high) for gap in found.gaps}

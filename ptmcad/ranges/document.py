@@ -7,9 +7,13 @@ the same text.
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
+from ptmcad.enclosure import Enclosure
 from ptmcad.numerals import text_of
+from ptmcad.ranges.certified import CertifiedIntervals
+from ptmcad.ranges.free_lengths import CriticalFreeLength
 from ptmcad.ranges.line import CountInterval, CountIntervals
 from ptmcad.ranges.numbers import enclosure_data, end_data, number_data, settled, width_text
 from ptmcad.ranges.path import PathEnd, PathPoint, PosePaths
@@ -40,6 +44,37 @@ def line_data(found: CountIntervals, digits: int) -> dict[str, Any]:
         ],
         "operation": [n for n, i in enumerate(found.intervals) if i.stable == 2],
     }
+
+
+def enclosed_data(found: CertifiedIntervals, digits: int) -> dict[str, Any]:
+    """The intervals of a line on which springs have free lengths as JSON data."""
+    return {
+        "along": _axis(found.along),
+        "at": {name: text_of(value) for name, value in found.at.items()},
+        "intervals": [
+            {
+                "low": _place(i.low, digits),
+                "high": _place(i.high, digits),
+                "total": None if i.index is None else sum(i.index),
+                "stable": None if i.index is None else i.index[0],
+                "index": None if i.index is None else list(i.index),
+                "peaks": i.cones,
+                "sample": text_of(i.sample),
+            }
+            for i in found.intervals
+        ],
+        "changes": [{"at": _place(c.at, digits), "met": list(c.names), "proved": c.proved} for c in found.changes],
+    }
+
+
+def critical_data(found: Sequence[CriticalFreeLength], digits: int) -> list[dict[str, Any]]:
+    """Critical free lengths as JSON data."""
+    return [{"at": _place(c.free, digits), "signs": list(c.signs), "fold": c.fold} for c in found]
+
+
+def _place(enclosure: Enclosure, digits: int) -> dict[str, str | None]:
+    low, high = text_of(enclosure.low), text_of(enclosure.high)
+    return {"low": low, "high": high, "decimal": settled(enclosure, digits)}
 
 
 def _axis(axis: Axis) -> dict[str, Any]:
@@ -127,7 +162,7 @@ def _point(point: PathPoint) -> dict[str, Any]:
 
 
 def document(name: str, mechanism: str, parts: dict[str, Any]) -> str:
-    """The JSON text of an answer; ``parts`` has some of the entries line, over and path."""
+    """The JSON text of an answer; ``parts`` has some of the entries line, enclosed, critical, over and path."""
     data = {
         "format": FORMAT,
         "name": name,

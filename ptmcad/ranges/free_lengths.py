@@ -8,13 +8,19 @@ The number of equilibria also changes where one is swallowed by the cone l3 = 0,
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 from ptmcad.algebra.critical_lengths import NAMES, critical_system
 from ptmcad.enclosure import Enclosure
 from ptmcad.errors import ConfigError
+from ptmcad.expressions import axis
 from ptmcad.msolve import MsolveError, real_solutions
+from ptmcad.ranges.line import restricted, varying_axis
+from ptmcad.ranges.table import aligned
+from ptmcad.slice import FREE_LENGTHS, Slice
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +63,50 @@ def critical_free_lengths(
         _sign(low, high)  # at l0 = 0 the signs have no meaning
         found.append(CriticalFreeLength(Enclosure(low, high), (first, second, third)))
     return tuple(sorted(found, key=lambda c: c.free.center))
+
+
+def critical_on_line(
+    slice: Slice, along: str, at: Mapping[str, Any], timeout: float | None = None
+) -> tuple[CriticalFreeLength, ...]:
+    """The critical free lengths in the window of a line along the common free length of all springs, ascending.
+
+    Raises
+    ------
+    ConfigError
+        When the line is of another kind: the springs need one stiffness, ``along`` has to be the free length of each
+        of them, and all else has to be constant, without horizontal loads.
+    MsolveError
+        See `critical_free_lengths`.
+    """
+    varying, _, value = varying_axis(slice, along, at)
+    on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
+    if any(on_line.get(name) != axis(0) for name in FREE_LENGTHS):
+        raise ConfigError(f"elimination needs {along} to be the free length of all three springs", key="along")
+    constants = {name: e.constant() for name, e in on_line.items() if e.is_constant}
+    missing = [name for name in on_line if name not in constants and name not in FREE_LENGTHS]
+    if missing:
+        raise ConfigError(f"elimination needs {', '.join(missing)} to be constant along {along}", key="along")
+    if not constants["k1"] == constants["k2"] == constants["k3"] != 0:
+        raise ConfigError("elimination needs three springs of one stiffness", key="k")
+    if any(constants.get(name, 0) != 0 for name in ("F3x", "F4x")):
+        raise ConfigError("elimination needs loads without horizontal parts", key="F3x")
+    k = constants["k1"]
+    found = critical_free_lengths(
+        constants["rho"], (constants["L1"], constants["L2"]), (constants["F3"] / k, constants["F4"] / k), timeout
+    )
+    window = slice.axes[varying]
+    return tuple(c for c in found if c.free.high > window.low and c.free.low < window.high)
+
+
+def critical_table(found: Sequence[CriticalFreeLength], digits: int) -> str:
+    """One row for each critical free length."""
+    if not found:
+        return "no critical free length in the window, by elimination"
+    rows = [["critical by elimination", "signs of l1, l2, l3", ""]]
+    for c in found:
+        decimal = next((c.free.text(n) for n in range(digits, 0, -1) if c.free.settles(n)), "near 0")
+        rows.append([decimal, " ".join("+" if s > 0 else "-" for s in c.signs), "fold" if c.fold else ""])
+    return "\n".join(aligned(rows))
 
 
 def _sign(low: Fraction, high: Fraction) -> int:

@@ -165,14 +165,13 @@ class Line:
         return ", ".join([f"{self.along.name} = {value}", *fixed])
 
 
-def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
-    """The line of a slice on which one axis varies and the other is fixed.
+def varying_axis(slice: Slice, along: str, at: Mapping[str, Any]) -> tuple[int, str, Fraction]:
+    """The number of the axis that varies on a line, and the other axis with its value.
 
     Raises
     ------
     ConfigError
-        When ``along`` is no axis, ``at`` does not name exactly the other one, its value is not an exact number, a
-        parameter is not defined on the line, or springs have a free length on it.
+        When ``along`` is no axis, or ``at`` does not name exactly the other one with an exact number.
     """
     names = slice.axis_names
     if along not in names:
@@ -185,7 +184,22 @@ def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
             f"a line along {along} needs a value of {other} and of nothing else, not of {given}", key="at"
         )
     try:
-        value = rational(at[other])
+        return varying, other, rational(at[other])
+    except ExpressionError as error:
+        raise ConfigError(str(error), key=f"at {other}") from error
+
+
+def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
+    """The line of a slice on which one axis varies and the other is fixed.
+
+    Raises
+    ------
+    ConfigError
+        When ``along`` is no axis, ``at`` does not name exactly the other one, its value is not an exact number, a
+        parameter is not defined on the line, or springs have a free length on it.
+    """
+    varying, other, value = varying_axis(slice, along, at)
+    try:
         parameters = {n: restricted(e, varying, value) for n, e in slice.parameters.items()}
     except ExpressionError as error:
         raise ConfigError(str(error), key=f"at {other}") from error
