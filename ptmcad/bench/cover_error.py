@@ -20,7 +20,7 @@ from ptmcad.bench.reference import Reference, Walls, regions, shown_count
 from ptmcad.cad.polyline import UNPROVED
 from ptmcad.cover import Cover, components, union_area
 from ptmcad.cover.complement import Components
-from ptmcad.cover.subdivision import FREE, subdivide
+from ptmcad.cover.subdivision import FREE
 from ptmcad.regionmap import Cell, RegionMap
 
 Integers = NDArray[np.int64]
@@ -45,11 +45,11 @@ def cover_error(exact: Reference, walls: Walls, result: RegionMap, count: str) -
         return None
     whole = cover.steps**2
     open_area = union_area(cover)
-    boxes = _outside(cover, _boxes(walls, exact.result.base, cover.steps))
+    shown = components(cover)
+    boxes = _outside(shown, _boxes(walls, exact.result.base, cover.steps))
     more = replace(cover, rectangles=(*cover.rectangles, *boxes))
     parts = components(more)  # by descending area
     doubt = union_area(more) - open_area
-    shown = components(cover)
     cells = {shown.locate(*_steps(result, cover, cell)): cell for cell in result.cells}
     region_of = regions(exact.result, count)
     agreed = [0] * len(walls.counts)
@@ -117,13 +117,12 @@ def _boxes(walls: Walls, base: int, steps: int) -> NDArray[np.float64]:
     return array if base == 0 else array[:, [1, 0, 3, 2, 4]] * np.array([1, 1, 1, 1, -1])
 
 
-def _outside(cover: Cover, chords: NDArray[np.float64]) -> tuple[tuple[int, int, int, int], ...]:
+def _outside(shown: Components, chords: NDArray[np.float64]) -> tuple[tuple[int, int, int, int], ...]:
     """Boxes around the chords with their walls, but those that the cover holds; large ones are cut smaller first.
 
     A negative distance is one along the first axis. Boxes are a step larger than the floats say.
     """
-    tree = subdivide(cover)
-    steps = cover.steps
+    tree, steps = shown.subdivision, shown.cover.steps
     found: list[Integers] = []
     while len(chords):
         ends = np.stack([chords[:, [0, 2]], chords[:, [1, 3]]], axis=1)
