@@ -129,13 +129,14 @@ def table(result: RegionMap) -> str:
         bound = f"area bounds at most {_short(max(high - low for _, (low, high) in bounds))} apart"
     seconds = result.timings.get("total")
     time = "not recorded" if seconds is None else f"{seconds:.2f} s"
-    undetermined = "0" if result.undetermined == 0 else f"{float(result.undetermined):.2g}"
+    share = float(result.undetermined)  # nothing is misclassified by either engine, see docs/error.md
+    wrong = "error 0, nothing undetermined" if share == 0 else f"error {share:.2g}, the undetermined share"
     return "\n".join(
         [
             f"regions   {len(result.regions)} of {len(result.cells)} cells, {result.status.value}",
             f"counts    {counts or 'none yet'}",
             f"areas     {areas or 'none yet'}",
             _curves(result) if result.cover is None else _covered(result.cover),
-            f"time      {time}; undetermined {undetermined}; {bound}",
+            f"time      {time}; {wrong}; {bound}",
         ]
     )

@@ -88,7 +88,7 @@ def test_a_result_to_files_and_on_from_it(
     assert "left out: terms of F3x, F4x (they are zero on this slice)" in lines[:at]
     assert lines[at + 1].startswith("computed: fold of a stable equilibrium")
     assert lines[at + 2] == "regions   3 of 3 cells, certified"
-    assert lines[-1].endswith("undetermined 0.28; area bounds at most 1.1e+00 apart")
+    assert lines[-1].endswith("error 0.28, the undetermined share; area bounds at most 1.1e+00 apart")
     stored = RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8"))
     assert stored == replace(certified_map(), slice=stored.slice)
     assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED), "--jobs", "1"]) == 0

@@ -36,6 +36,7 @@ EXACT = (
     "verification",
     "paper",
     "stress",
+    "bench",
 )
 FLINT_POLYNOMIALS = ("poly", "mpoly", "mpoly_ctx", "mpoly_vec", "series")
 

@@ -20,7 +20,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ptmcad
-from ptmcad.bench import error_time
 from ptmcad.cli import run
 from ptmcad.config import load, slice_from_options
 from ptmcad.errors import ConfigError
@@ -434,17 +433,6 @@ def test_the_error_curve_is_shown_when_there_is_one(shipped: Shipped, tmp_path: 
     (tmp_path / "fig3.error-time.json").rename(tmp_path / "curve.json")
     assert run(["report", str(file), "--bench", str(tmp_path / "curve.json")]) == 0
     assert html.read_text(encoding="utf-8") == beside
-
-
-def test_the_benchmark_writes_such_a_curve(tmp_path: Path) -> None:
-    """Smaller tolerances give smaller errors, and the file is read as it was written."""
-    assert error_time.main([str(CONFIGS / "fig3.yaml"), "--out", str(tmp_path), "--rounds", "1",
-                            "--tolerances", "1e-2,1e-8"]) == 0  # fmt: skip
-    curve = read_error_curve(tmp_path / "fig3.error-time.json")
-    errors = sorted(error for _, error in curve.series[0].points)
-    assert errors[0] <= 1e-8 < errors[1] <= 1e-2
-    assert all(seconds > 0.01 for seconds, _ in curve.series[0].points)
-    assert error_time.main([str(tmp_path / "none.yaml")]) == 2
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,6 @@ from ptmcad.bench.suite import measure
 from ptmcad.config import load
 from ptmcad.errors import PtmcadError
 
-RIVALS = ("fig3", "fig4", "fig5-text", "fig5-caption")
-
 
 def _exact_records(folder: Path) -> list[Path]:
     """The records that the exact engine answers; a map with free lengths takes as long as it is given."""
@@ -24,17 +22,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the benchmark; the exit status is 0, or 2 for bad input."""
     parser = argparse.ArgumentParser(
         prog="python -m ptmcad.bench",
-        description="Time and memory of whole `ptmcad classify` processes, against the machine's floor and QEPCAD.",
+        description="Time and memory of whole `ptmcad classify` processes, against the machine's floor.",
         epilog="example: python -m ptmcad.bench configs/fig4.yaml --rounds 3 --out /tmp",
     )
     parser.add_argument("records", nargs="*", type=Path, help="problem records; default: configs/ without free lengths")
     parser.add_argument("--out", type=Path, help="folder for bench.json and bench.md; default: print the table only")
     parser.add_argument("--rounds", type=int, default=5, help="runs of each job (default 5)")
     parser.add_argument("--picture-rounds", type=int, default=2, help="runs with PNG and SVG too (default 2)")
-    parser.add_argument("--qepcad", default=",".join(RIVALS), help="slices for QEPCAD, by name (default %(default)s)")
-    parser.add_argument("--stable-rounds", type=int, default=1, help="rounds with QEPCAD's stable counts (default 1)")
-    parser.add_argument("--qepcad-timeout", type=float, default=60.0, help="seconds (default 60)")
-    parser.add_argument("--timeout", type=float, default=120.0, help="seconds for each of our own runs (default 120)")
+    parser.add_argument("--timeout", type=float, default=120.0, help="seconds for each run (default 120)")
     parser.add_argument("--seed", type=int, default=1, help="of the order within a round (default 1)")
     parser.add_argument("--date", default="", help="recorded in the report as it is")
     chosen = parser.parse_args(arguments)
@@ -51,9 +46,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             records,
             rounds=chosen.rounds,
             picture_rounds=chosen.picture_rounds,
-            rivals=tuple(filter(None, chosen.qepcad.split(","))),
-            stable_rounds=chosen.stable_rounds,
-            rival_timeout=chosen.qepcad_timeout,
             timeout=chosen.timeout,
             seed=chosen.seed,
             date=chosen.date,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict
 
-from ptmcad.bench.suite import Report, Rival, Row, Summary
+from ptmcad.bench.suite import Report, Row, Summary
 
 _HEADER = (
     "slice",
@@ -13,8 +13,6 @@ _HEADER = (
     "over floor",
     "with PNG and SVG, s",
     "peak MiB, JSON / pictures",
-    "QEPCAD: 6, 4, 2 stable, s",
-    "QEPCAD over ptmcad: one total, both totals, stable",
 )
 
 
@@ -30,11 +28,8 @@ def to_markdown(report: Report) -> str:
         "",
         "Wall seconds of whole processes, start-up included; every round runs each job once, in shuffled order. Ratios",
         "are medians of the ratios within a round. The floor is the time in which the machine's Python imports flint,",
-        "numpy, click and yaml and does nothing else. Written by `make bench`.",
-        "",
-        "QEPCAD gets the sextic in tan(theta2/2) ready made, may be wrong on a set of measure zero, and works in the",
-        "better of its two elimination orders. It needs one run for each count: where are there 6 equilibria, where 4,",
-        "where 2 stable ones? ptmcad answers all of this in its one run.",
+        "numpy, click and yaml and does nothing else. Written by `make bench`. Other programs, and the error of each,",
+        "are on [their own page](error-time.md).",
         "",
         f"Floor: {_times(report.floor)} s. Rounds: {report.rounds}, seed {report.seed}{_date(report)}.",
         "",
@@ -55,16 +50,9 @@ def _date(report: Report) -> str:
 
 def _cells(row: Row) -> tuple[str, ...]:
     peaks = " / ".join(f"{part.peak:.0f}" if isinstance(part, Summary) else "-" for part in (row.text, row.pictures))
-    rival, ratios = row.rival, "-"
-    if isinstance(rival, Rival):
-        text = ", ".join(f"{t.median:.2f}" if isinstance(t, Summary) else t for _, t in rival.tasks)
-        if rival.one_count:
-            ratios = ", ".join(f"{r:.1f}" if r else "-" for r in (rival.one_count, rival.total, rival.stable))
-    else:
-        text = rival
     over = f"{row.over_floor:.2f}" if row.over_floor else "-"
     pictures = f"{row.pictures.median:.2f}" if isinstance(row.pictures, Summary) else row.pictures
-    return (row.name, _times(row.text), over, pictures, peaks, text, ratios)
+    return (row.name, _times(row.text), over, pictures, peaks)
 
 
 def _times(found: Summary | str) -> str:

@@ -20,10 +20,9 @@ from pathlib import Path
 from ptmcad import config
 from ptmcad.bench import qepcad
 from ptmcad.bench.process import Outcome, Usage, run
-from ptmcad.slice import Slice
 
 FLOOR = (sys.executable, "-c", "import flint, numpy, click, yaml")
-PACKAGES = ("ptmcad", "python-flint", "numpy", "click", "PyYAML", "matplotlib", "sympy")
+PACKAGES = ("ptmcad", "python-flint", "numpy", "click", "PyYAML", "matplotlib", "sympy", "numba", "scipy", "gcad")
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,26 +38,6 @@ class Summary:
 
 
 @dataclass(frozen=True, slots=True)
-class Rival:
-    """QEPCAD on one slice.
-
-    Attributes
-    ----------
-    swapped : whether the faster elimination order is that of the swapped axes; it is the one that is timed.
-    tasks : for each task its summary, or the reason why there is none.
-    one_count : QEPCAD's time for the faster of the two total counts over ours, median over the rounds.
-    total : QEPCAD's time for both total counts over ours, median over the rounds.
-    stable : QEPCAD's time for the regions of two stable equilibria over ours, median over the rounds it was run in.
-    """
-
-    swapped: bool
-    tasks: tuple[tuple[str, Summary | str], ...]
-    one_count: float
-    total: float
-    stable: float
-
-
-@dataclass(frozen=True, slots=True)
 class Row:
     """One slice.
 
@@ -67,14 +46,12 @@ class Row:
     text : run with JSON output only, or the reason why there is no figure.
     over_floor : its time over the machine's floor, median over the rounds; 0 without figures.
     pictures : run with PNG and SVG too, or the reason.
-    rival : QEPCAD, or the reason.
     """
 
     name: str
     text: Summary | str
     over_floor: float
     pictures: Summary | str
-    rival: Rival | str
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,9 +72,6 @@ def measure(
     *,
     rounds: int = 5,
     picture_rounds: int = 2,
-    rivals: Sequence[str] = (),
-    stable_rounds: int = 1,
-    rival_timeout: float = 60.0,
     timeout: float = 120.0,
     seed: int = 1,
     date: str = "",
@@ -110,9 +84,7 @@ def measure(
     records : problem records.
     rounds : runs of each job.
     picture_rounds : runs with pictures too.
-    rivals : names of the slices on which QEPCAD is run as well.
-    stable_rounds : the first rounds in which QEPCAD is asked for stable counts too, its longest task by far.
-    rival_timeout, timeout : seconds after which a run of QEPCAD, of ours, is killed and the job given up.
+    timeout : seconds after which a run is killed and the job given up.
     seed : of the order within a round.
     date : recorded as it is.
     progress : told about each round.
@@ -122,35 +94,27 @@ def measure(
     ConfigError
         If a record can not be read.
     """
-    slices = {path: config.load(path) for path in records}
+    for path in records:
+        config.load(path)
     with tempfile.TemporaryDirectory() as folder:
         jobs = [_Job("floor", "", FLOOR, rounds, timeout)]
-        reasons: dict[str, str] = {}
         for path in records:
             jobs.append(_Job("json", path.stem, _classify(path, "json", folder), rounds, timeout))
             jobs.append(_Job("pictures", path.stem, _classify(path, "json,png,svg", folder), picture_rounds, timeout))
             progress(f"warming up: {path.stem}")
             run(jobs[-2].command, timeout=timeout)
-            found: list[_Job] | str = "not asked for"
-            if path.stem in rivals:
-                found = _questions(path, slices[path], rounds, stable_rounds, rival_timeout)
-            if isinstance(found, str):
-                reasons[path.stem] = found
-            else:
-                jobs.extend(found)
         run(FLOOR, timeout=timeout)
         figures = _rounds(jobs, rounds, seed, progress)
     floor = figures[jobs[0]]
     rows = []
     for path in records:
-        ours, pictures, *theirs = [job for job in jobs if job.slice == path.stem]
+        ours, pictures = (job for job in jobs if job.slice == path.stem)
         rows.append(
             Row(
                 name=path.stem,
                 text=summary(figures[ours]),
                 over_floor=_ratio(figures[ours], floor),
                 pictures=summary(figures[pictures]),
-                rival=reasons.get(path.stem) or _rival(figures[ours], {job: figures[job] for job in theirs}),
             )
         )
     return Report(machine(), versions(), date, seed, rounds, summary(floor), tuple(rows))
@@ -209,56 +173,21 @@ def versions() -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class _Job:
-    """A command that is run in the first `rounds` rounds; `text` is its standard input."""
+    """A command that is run in the first `rounds` rounds."""
 
     kind: str
     slice: str
     command: tuple[str, ...]
     rounds: int
     timeout: float
-    text: str = ""
-    swapped: bool = False
 
     def run(self) -> Usage:
-        if self.text:
-            return qepcad.judged(run(self.command, text=self.text, timeout=self.timeout))
         return run(self.command, timeout=self.timeout)
 
 
 def _classify(path: Path, formats: str, folder: str) -> tuple[str, ...]:
     script = Path(sys.executable).with_name("ptmcad")
     return (str(script), "classify", str(path), "--format", formats, "--out", folder)
-
-
-def _questions(path: Path, slice: Slice, rounds: int, stable_rounds: int, timeout: float) -> list[_Job] | str:
-    """QEPCAD's jobs for one slice, in the elimination order that suits it best, or why there are none."""
-    command = qepcad.command()
-    if command is None:
-        return "qepcad is not installed"
-    question = qepcad.question(slice)
-    if isinstance(question, str):
-        return question
-    orders: dict[bool, list[_Job]] = {}
-    seconds: dict[bool, float] = {}
-    for swapped in (False, True):
-        orders[swapped] = [
-            _Job(
-                task.value,
-                path.stem,
-                command,
-                rounds if task in qepcad.TOTAL else min(rounds, stable_rounds),
-                timeout,
-                question.text(task, swapped=swapped),
-                swapped,
-            )
-            for task in qepcad.Task
-        ]
-        trial = orders[swapped][0].run()
-        if trial.outcome is Outcome.DONE:
-            seconds[swapped] = trial.seconds
-    if not seconds:
-        return f"no answer within {timeout:.0f} s in either order of the axes"
-    return orders[min(seconds, key=lambda swapped: seconds[swapped])]
 
 
 def _rounds(jobs: Sequence[_Job], rounds: int, seed: int, progress: Callable[[str], None]) -> dict[_Job, list[Usage]]:
@@ -283,22 +212,3 @@ def _ratio(above: Sequence[Usage], below: Sequence[Usage]) -> float:
     if not above or not below or not _got_through([*above, *below]):
         return 0.0
     return statistics.median(a.seconds / b.seconds for a, b in zip(above, below, strict=False))
-
-
-def _rival(ours: Sequence[Usage], theirs: dict[_Job, list[Usage]]) -> Rival:
-    """QEPCAD's figures for one slice."""
-    ratios = {job.kind: _ratio(runs, ours) for job, runs in theirs.items()}
-    totals = [runs for job, runs in theirs.items() if job.kind in {task.value for task in qepcad.TOTAL}]
-    both = 0.0
-    if ours and _got_through([*ours, *(usage for runs in totals for usage in runs)]):
-        both = statistics.median(
-            sum(usage.seconds for usage in pair) / mine.seconds
-            for mine, pair in zip(ours, zip(*totals, strict=True), strict=True)
-        )
-    return Rival(
-        swapped=next(iter(theirs)).swapped,
-        tasks=tuple((job.kind, summary(runs)) for job, runs in theirs.items()),
-        one_count=min(ratios[task.value] for task in qepcad.TOTAL),
-        total=both,
-        stable=ratios[qepcad.Task.TWO_STABLE.value],
-    )

@@ -24,6 +24,7 @@ from ptmcad.handover import Topic, tell, watched
 from ptmcad.version import __version__
 
 COMMANDS = {
+    "bench": "ptmcad.cli.bench",
     "classify": "ptmcad.cli.classify",
     "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",

@@ -1,0 +1,115 @@
+"""``ptmcad bench``: error against run time of several methods, side by side; and two such studies compared."""
+
+from __future__ import annotations
+
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+
+import click
+
+from ptmcad.config import load
+from ptmcad.errors import ConfigError
+from ptmcad.output import check_writable
+
+METHODS = ("exact", "certified", "companion", "multistart", "qepcad", "gcad")
+DEFAULT = Path("configs") / "fig4.yaml"
+
+
+def _seconds(_context: click.Context, parameter: click.Parameter, value: float) -> float:
+    if not 0 < value < 1e9:
+        raise ConfigError(f"{value} is not a positive number of seconds", key=parameter.opts[0])
+    return value
+
+
+@click.command("bench")
+@click.argument("configs", nargs=-1, type=click.Path(path_type=Path), metavar="[CONFIG]...")
+@click.option("--compare", nargs=2, type=click.Path(path_type=Path), metavar="OLD NEW",
+              help="Compare two JSON files of earlier runs; measure nothing.")  # fmt: skip
+@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@click.option("--method", "methods", multiple=True, type=click.Choice(METHODS), metavar="NAME",
+              help=f"Measure this method only, of {', '.join(METHODS)}; may be repeated.  "
+                   "[default: all that are installed]")  # fmt: skip
+@click.option("--rounds", type=click.IntRange(1, 1000), default=3, show_default=True,
+              help="Runs of each job that takes less than 2 seconds; others are run once.")  # fmt: skip
+@click.option("--seed", type=click.IntRange(0, 2**31), default=1, show_default=True,
+              help="Of the order of the methods, and of the starting points of scipy.")  # fmt: skip
+@click.option("--time-limit", type=float, default=60.0, show_default=True, callback=_seconds, metavar="S",
+              help="Seconds for each method on each slice; what does not fit is left out, and told.")  # fmt: skip
+@click.option("--quick", is_flag=True, help="Fewer and coarser settings.")
+@click.option("--page", is_flag=True, help="Write error-time.md too, a page of all studies in the folder.")
+def command(
+    *,
+    configs: tuple[Path, ...],
+    compare: tuple[Path, Path] | None,
+    out: Path,
+    methods: tuple[str, ...],
+    rounds: int,
+    seed: int,
+    time_limit: float,
+    quick: bool,
+    page: bool,
+) -> int:
+    """Error against run time of several methods on the slice of each CONFIG, side by side.
+
+    Without CONFIG: configs/fig4.yaml. Methods are the exact engine at several area tolerances, the certified engine at
+    falling tolerances, grids of companion matrices and of scipy's root finder, and QEPCAD and gcad where they are
+    installed. Each runs as a process of its own; methods take turns. Errors are measured exactly against the exact map.
+
+    Writes NAME.bench.json, .csv, .svg and .png, and NAME.error-time.json for `ptmcad report`, and prints a table. With
+    --compare the exit status is 1 when something became slower or worse beyond noise.
+
+    \b
+    Examples:
+        ptmcad bench configs/fig4.yaml --quick --out out
+        ptmcad bench --method exact --method companion --rounds 5
+        ptmcad bench --compare docs/benchmarks/fig4.bench.json out/fig4.bench.json
+    """
+    if compare is not None:
+        if configs:
+            raise ConfigError("measures nothing, so it takes no CONFIG", key="--compare")
+        return _compare(*compare)
+    if not configs and not DEFAULT.is_file():
+        raise ConfigError(f"there is no {DEFAULT} here: name a problem record", key="CONFIG")
+    records = configs or (DEFAULT,)
+    slices = [(load(path), path) for path in records]
+    names = [slice.name for slice, _ in slices]
+    if len(set(names)) < len(names):
+        raise ConfigError(f"two records have the name {next(n for n in names if names.count(n) > 1)}", key="CONFIG")
+    if find_spec("scipy") is None:
+        raise ConfigError("measuring distances needs scipy: pip install 'ptmcad[bench]'", key="bench")
+    from ptmcad.bench.files import PAGE, SUFFIXES, save, save_page
+    from ptmcad.bench.measuring import measure
+    from ptmcad.bench.methods import Method
+    from ptmcad.bench.words import terminal
+    from ptmcad.verification import verify
+
+    check_writable(out, (*(f"{name}.{suffix}" for name in names for suffix in SUFFIXES), PAGE))
+    chosen = tuple(Method(name) for name in methods) or tuple(Method)
+    for number, (slice, path) in enumerate(slices):
+        study = measure(
+            slice,
+            path,
+            lambda result: verify(result).ok,
+            methods=chosen,
+            rounds=rounds,
+            seed=seed,
+            time_limit=time_limit,
+            quick=quick,
+            warm_up=number == 0,
+            report=partial(click.echo, err=True),
+        )
+        save(study, out)
+        click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}\n")
+    if page:
+        click.echo(f"written {save_page(out)}")
+    return 0
+
+
+def _compare(old: Path, new: Path) -> int:
+    from ptmcad.bench.compare import BAD, compare, comparison_table
+    from ptmcad.bench.document import read_study
+
+    changes = compare(read_study(old), read_study(new))
+    click.echo(comparison_table(changes))
+    return 1 if any(c.verdict in BAD for c in changes) else 0
