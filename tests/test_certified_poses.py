@@ -154,7 +154,7 @@ def test_range_on_the_command_line() -> None:
     options = ["--along", "l0", "--at", "rho=7/10,L2=3/2", "--range", "l0=1/3:1/2", "--set", "F3=-10"]
     done = CliRunner().invoke(command, options)
     assert done.exit_code == 0 and "min-saddle-max" in done.output
-    for more in (["--path", "2/5"], ["--format", "json"]):
+    for more in (["--path", "2/5"], ["--format", "svg"]):
         assert isinstance(CliRunner().invoke(command, [*options, *more]).exception, ConfigError)
 
 

@@ -273,7 +273,13 @@ def help_examples() -> list[str]:
     return examples
 
 
-@pytest.mark.parametrize("example", [e for e in help_examples() if not e.startswith(("classify", "paper"))])
+LONG = ("bench configs", "bench --method", "stress all", "stress --random")
+
+
+@pytest.mark.parametrize("example", [
+    pytest.param(e, marks=pytest.mark.slow) if e.startswith(LONG) else e
+    for e in help_examples() if not e.startswith(("classify", "paper"))
+])  # fmt: skip
 def test_help_examples_about_a_result_run(
     shipped: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, example: str
 ) -> None:
@@ -281,7 +287,11 @@ def test_help_examples_about_a_result_run(
     monkeypatch.chdir(tmp_path)
     Path("slice-L2-rho.json").write_text(shipped("fig2").to_json(), encoding="utf-8")
     Path("points.csv").write_text("rho,L2\n7/10,3/2\n", encoding="utf-8")
-    Path("configs").symlink_to(ROOT / "configs")
+    for folder in ("configs", "docs"):
+        Path(folder).symlink_to(ROOT / folder)
+    if "--compare" in example:
+        Path("out").mkdir()
+        Path("out/fig4.bench.json").symlink_to(ROOT / "docs" / "benchmarks" / "fig4.bench.json")
     assert run(example.split()) == 0
 
 

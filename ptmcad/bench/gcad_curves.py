@@ -14,12 +14,13 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-import gcad
 import sympy
 
 
 def cells(question: dict[str, Any]) -> int:
     """The number of cells over the window, the first of the question's axes being decomposed first."""
+    import gcad  # an optional package
+
     symbols = sympy.symbols("x y")
     product = sympy.prod(
         sum(sympy.Integer(c) * symbols[0] ** i * symbols[1] ** j for i, j, c in terms) for terms in question["curves"]

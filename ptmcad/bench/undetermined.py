@@ -1,7 +1,7 @@
 """Undetermined area against run time of the certified engine: ``python -m ptmcad.bench.undetermined RECORD...``.
 
-Guarantee: each point is one level of one run in this process, after a run that has loaded the compiled code: wall and
-processor seconds since the run began, and the exact share of the window that was still open, rounded.
+Guarantee: each point is one run in this process, with a tolerance of half that of the run before, after a run that has
+loaded the compiled code: wall and processor seconds, and the exact share of the window that was left, rounded.
 """
 
 from __future__ import annotations
@@ -18,12 +18,18 @@ from typing import Any
 from ptmcad.bench.suite import machine, versions
 from ptmcad.config import load
 from ptmcad.errors import LimitReached, PtmcadError
+from ptmcad.regionmap import RegionMap
 
-FORMAT = "ptmcad-undetermined/1"
+FORMAT = "ptmcad-undetermined/2"
+COARSEST = Fraction(1, 100)
 
 
-def measure(record: Path, tolerance: Fraction, timeout: float, jobs: int) -> dict[str, Any]:
-    """One record's levels as JSON data.
+def measure(record: Path, finest: Fraction, timeout: float, jobs: int) -> dict[str, Any]:
+    """One record's runs as JSON data: tolerances from `COARSEST`, halved until the finest, or until one takes too long.
+
+    Parameters
+    ----------
+    timeout : seconds for a run; what was left undetermined then is a point, too.
 
     Raises
     ------
@@ -33,28 +39,27 @@ def measure(record: Path, tolerance: Fraction, timeout: float, jobs: int) -> dic
     from ptmcad.interval.engine import certified_map
 
     slice = load(record)
-    points: list[list[float]] = []
-    wall, processor = perf_counter(), process_time()
-
-    def reached(share: Fraction) -> None:
-        points.append(
-            [round(perf_counter() - wall, 2), round(process_time() - processor, 2), float(f"{float(share):.3g}")]
-        )
-
-    try:
-        result = certified_map(slice, tolerance=tolerance, deadline=wall + timeout, jobs=jobs, reached=reached)
-    except LimitReached as stopped:
-        assert stopped.partial is not None
-        result = stopped.partial  # type: ignore[assignment]
-    return {
-        "record": slice.name,
-        "status": result.status.value,
-        "undetermined": float(f"{float(result.undetermined):.3g}"),
-        "seconds": round(perf_counter() - wall, 2),
-        "processor": round(process_time() - processor, 2),
-        "cells": len(result.cells),
-        "levels": points,
-    }
+    runs: list[dict[str, Any]] = []
+    tolerance = COARSEST
+    while tolerance >= finest and all(run["status"] == "certified" for run in runs):
+        wall, processor = perf_counter(), process_time()
+        try:
+            result = certified_map(slice, tolerance=tolerance, deadline=wall + timeout, jobs=jobs)
+        except LimitReached as stopped:
+            if not isinstance(stopped.partial, RegionMap):
+                raise
+            result = stopped.partial
+        runs.append({
+            "tolerance": str(tolerance),
+            "status": result.status.value,
+            "undetermined": float(f"{float(result.undetermined):.3g}"),
+            "seconds": round(perf_counter() - wall, 2),
+            "processor": round(process_time() - processor, 2),
+            "cells": len(result.cells),
+            "rectangles": len(result.cover.rectangles) if result.cover else 0,
+        })  # fmt: skip
+        tolerance /= 2
+    return {"record": slice.name, "runs": runs}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -64,22 +69,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("records", nargs="*", type=Path, help="problem records; default: configs/ with free lengths")
     parser.add_argument("--out", type=Path, help="folder for undetermined.json")
-    parser.add_argument("--tolerance", type=Fraction, default=Fraction(1, 5000), help="where to stop (default 1/5000)")
-    parser.add_argument("--timeout", type=float, default=150.0, help="seconds for each record (default 150)")
+    parser.add_argument("--finest", type=Fraction, default=Fraction(1, 25600), help="tolerance (default 1/25600)")
+    parser.add_argument("--timeout", type=float, default=150.0, help="seconds for each run (default 150)")
     parser.add_argument("--jobs", type=int, default=2, help="threads (default 2)")
     chosen = parser.parse_args(arguments)
     try:
         records = chosen.records or [p for p in sorted(Path("configs").glob("*.yaml")) if load(p).has_free_lengths]
         if records:
-            measure(records[0], Fraction(1, 10), 60.0, chosen.jobs)  # loads the compiled code, or compiles it
+            measure(records[0], COARSEST, 60.0, chosen.jobs)  # loads the compiled code, or compiles it
         rows = []
         for record in records:
-            rows.append(measure(record, chosen.tolerance, chosen.timeout, chosen.jobs))
+            rows.append(measure(record, chosen.finest, chosen.timeout, chosen.jobs))
             print(json.dumps(rows[-1]), flush=True)
         if chosen.out is not None:
             data = {
                 "format": FORMAT,
-                "levels": "wall seconds, processor seconds, undetermined share of the window; one run each",
                 "machine": machine(),
                 "versions": versions(),
                 "jobs": chosen.jobs,

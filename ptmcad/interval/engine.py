@@ -68,7 +68,6 @@ class Options:
     jobs: int = 1
     progress: Progress | None = None
     partial: Callable[[RegionMap], None] | None = None
-    reached: Callable[[Fraction], None] | None = None
     keep: frozenset[str] = frozenset()
 
 
@@ -81,7 +80,6 @@ def certified_map(
     progress: Progress | None = None,
     partial: Callable[[RegionMap], None] | None = None,
     resume: Cover | None = None,
-    reached: Callable[[Fraction], None] | None = None,
     keep: frozenset[str] = frozenset(),
 ) -> RegionMap:
     """The region map of a slice by interval methods.
@@ -93,7 +91,6 @@ def certified_map(
     jobs : number of threads, all processors when None. The map does not depend on it.
     progress : called as progress(what, done, total).
     partial : called with maps on the way, each complete but for a larger undetermined area.
-    reached : called after each level with the share of the window that the boxes still cover.
     resume : cover of an earlier map of the same slice and count: what was outside it stays decided.
     keep : names of savings to switch off, of `ptmcad.savings`.
 
@@ -104,7 +101,7 @@ def certified_map(
     """
     if any(max(abs(axis.low), abs(axis.high)) > LARGEST for axis in slice.axes):
         raise ConfigError(f"the certified engine computes in floats: an axis may reach {float(LARGEST):g}, no more")
-    options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial, reached, keep)
+    options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial, keep)
     return _Run(slice, options, resume).run()
 
 
@@ -159,8 +156,6 @@ class _Run:
             thin = None if undetermined <= tolerance else self.thin_cover(undetermined)
             if thin is not None:
                 cover = thin
-            if self.options.reached is not None:
-                self.options.reached(undetermined)
             if thin is not None or undetermined <= tolerance:
                 result = self.map(cover, Status.CERTIFIED)
                 undetermined = result.undetermined
