@@ -20,6 +20,7 @@ from ptmcad.stress.measure import Outcome
 
 FLOOR = 1e-20
 """Errors below are drawn here: enclosures of 12 digits have middles about 1e-19 off."""
+NOTE = "Of poses in radians, of lines relative to the window. At 1e-20: none or less; at the top: no pose found."
 COLUMNS = 4
 RIGHT, WRONG, OURS = "#385880", "#c1440e", "#45917d"
 
@@ -41,10 +42,11 @@ def draw_stress(outcomes: Sequence[Outcome]) -> Figure:
         for k, (family, place) in enumerate(zip(families, axes, strict=True)):
             _family(place, family, [o for o in points if o.case.family == family])
             if k % COLUMNS == 0:
-                place.set_ylabel("error of a pose (rad)", fontsize=8)
+                place.set_ylabel("error", fontsize=8)
         if axes:
             handles, labels = _legend(axes[0])
-            figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=9)
+            figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=9, title=NOTE,
+                          title_fontsize=9)  # fmt: skip
         return figure
 
 
