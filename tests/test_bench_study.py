@@ -312,3 +312,17 @@ def test_page_tells_what_is_left_out_and_what_is_claimed() -> None:
     assert "did NOT pass" in page([replace(STUDY, verified=False)])
     assert "](fig4.bench.svg)" in text
     assert ".svg" not in page([replace(STUDY, measurements=STUDY.measurements[-1:])])  # nothing to draw
+
+
+@pytest.mark.slow
+def test_a_certified_run_that_is_stopped_is_a_point_too(tmp_path: Path) -> None:
+    """free02 at a tolerance that takes longer than the limit: what was left undetermined then, marked."""
+    pytest.importorskip("numba")
+    arguments = ["bench", str(ROOT / "configs" / "free02.yaml"), "--method", "certified", "--rounds", "1"]
+    assert run([*arguments, "--time-limit", "25", "--out", str(tmp_path)]) == 0
+    study = study_of((tmp_path / "free02.bench.json").read_text(encoding="utf-8"))
+    told = [m for m in study.measurements if m.seconds is not None]
+    assert told
+    shares = [figures.undetermined for m in told for figures in m.figures.values()]
+    assert shares == sorted(shares, reverse=True)
+    assert any("stopped" in m.note for m in told) or len(told) == len(study.measurements)
