@@ -52,7 +52,7 @@ _EXACT = (
     Saving("hermite-matrix", Engine.EXACT, "determinant of the Hermite matrix",
            "the norm of det H has the same critical factors and no others"),
     Saving("infinity", Engine.EXACT, "curves over which solutions leave every bounded set",
-           "cosines and sines are bounded: no real solution does"),
+           "near them det H stays away from 0 at every solution, and real ones are bounded"),
     Saving("no-real-points", Engine.EXACT, "components without a point in the window", "no cell touches them"),
     Saving("axis-order", Engine.EXACT, "decomposition over the other axis", "regions do not depend on it"),
     Saving("even-powers", Engine.EXACT, "discriminants and resultants of full degree",

@@ -123,7 +123,7 @@ def table(result: RegionMap) -> str:
     widths = [(high - low) / low for _, (low, high) in bounds if low]
     known = widths and len(widths) == len(bounds) and min(widths) >= 0  # a damaged file may say anything
     error = _short(max(widths)) if known else "unknown"
-    bound = f"area bounds within {error}"
+    bound = "no area bounds" if areas == "not computed" else f"area bounds within {error}"
     if result.cover is not None and bounds:
         # relative to a region that is hardly larger than its border a width says nothing
         bound = f"area bounds at most {_short(max(high - low for _, (low, high) in bounds))} apart"

@@ -25,6 +25,7 @@ _COLUMNS = (
     "peak_mib", "count", "wrong_low", "wrong_high", "undetermined", "wrong_centres", "regions", "missed",
     "faintest_low", "faintest_high", "distance_low", "distance_high", "area_width", "reason",
 )  # fmt: skip
+MOST_COUNTED = 10**12
 
 
 def write_study(study: Study) -> str:
@@ -118,12 +119,20 @@ def _figures(node: Node) -> Figures:
     return Figures(
         wrong=_pair(f["wrong"]),
         undetermined=f["undetermined"].number(),
-        wrong_centres=_optional(f["wrong_centres"], _whole),
-        regions=_optional(f["regions"], _whole),
-        missed=_optional(f["missed"], _whole),
+        wrong_centres=_optional(f["wrong_centres"], _number),
+        regions=_optional(f["regions"], _number),
+        missed=_optional(f["missed"], _number),
         faintest=_optional(f["faintest"], _pair),
         distance=_optional(f["distance"], _pair),
     )
+
+
+def _number(node: Node) -> int:
+    """Of pixels or regions: what nobody can count is not one."""
+    found = _whole(node)
+    if found > MOST_COUNTED:
+        raise node.fault(f"is more than {MOST_COUNTED}")
+    return found
 
 
 def _times(node: Node) -> Times:

@@ -39,6 +39,10 @@ FLOOR = (
 """The reference job: start-up, and some linear algebra that is always the same."""
 LONG = 2.0
 """Seconds from which on a job is not repeated."""
+MOST_PANELS = 10_000
+"""Of all walls together: what is steep takes many, and some slices have walls too steep for the measurement."""
+NO_MAP = "no exact map to compare with: the share is the engine's"
+NO_WALLS = "errors not measured: the true walls are too steep for chains of chords; shares are the engine's"
 GRACE = 1.0
 """Seconds that an engine has to save what it has when its time is over."""
 GROWTH = 4.5
@@ -98,7 +102,7 @@ def measure(
         result = classify(slice, count="index")
         sound = verified(result)
         exact = reference(result)
-        sides = walls(exact)
+        sides = _walls(exact)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "question.json").write_text(
@@ -124,6 +128,26 @@ def measure(
         floor=floor,
         measurements=(*measured, *absent),
     )
+
+
+def _walls(exact: Reference) -> dict[str, Walls] | None:
+    """The exact map's walls as chains of chords; None where that takes more than `MOST_PANELS` panels."""
+    panels = 0
+
+    def count() -> None:
+        nonlocal panels
+        panels += 1
+        if panels > MOST_PANELS:
+            raise _TooManyError
+
+    try:
+        return walls(exact, count)
+    except _TooManyError:
+        return None
+
+
+class _TooManyError(Exception):
+    """More panels than the measurement may take."""
 
 
 def _begin(
@@ -237,19 +261,23 @@ def _measured(r: _Runs, slice: Slice, exact: Reference | None, sides: dict[str, 
         width = outward((Fraction(0), area_width(result)))[1]
         if result.status is Status.PARTIAL:
             note = "stopped at the limit, short of its tolerance"
+        if job.method is Method.EXACT and exact is not None:
+            _agree(result, exact)
         if exact is None or sides is None:
             share = outward((result.undetermined, result.undetermined))
             found[slice.count.value] = Figures(wrong=share, undetermined=share[1])
-            note = "; ".join([note] * bool(note) + ["no exact map to compare with: the share is the engine's"])
+            note = "; ".join([note] * bool(note) + [NO_MAP if exact is None else NO_WALLS])
         elif job.method is Method.EXACT:
-            _agree(result, exact)
             found = {count: figures(exact_error(sides[count])) for count in COUNTS}
         else:
             errors = {count: cover_error(exact, sides[count], result, count) for count in COUNTS}
             found = {count: figures(error) for count, error in errors.items() if error is not None}
     elif job.method in (Method.COMPANION, Method.MULTISTART):
-        assert job.answer is not None and exact is not None and sides is not None
+        assert job.answer is not None and exact is not None
+        if sides is None:
+            return Measurement(job.method.value, job.setting, None, reason=NO_WALLS)
         found = grid_figures(exact, sides, np.load(job.answer))
+        note = qepcad.LOSES_PI if qepcad.question(slice) == qepcad.LOSES_PI else ""
     elif job.method is Method.QEPCAD:
         count = "stable" if "stable" in job.setting else "total"
         found[count] = Figures(wrong=(0.0, 0.0), undetermined=0.0)

@@ -113,6 +113,9 @@ class Question:
         )
 
 
+LOSES_PI = "an equilibrium at theta2 = pi over the whole window: t2 = tan(theta2/2) loses it"
+
+
 def question(slice: Slice) -> Question | str:
     """The sextic of a slice, or the reason why there is none to put to QEPCAD."""
     if slice.mechanism != "ptm":
@@ -123,7 +126,7 @@ def question(slice: Slice) -> Question | str:
         return "a parameter is not a polynomial in the axes"
     polynomial = sextic(slice)
     if len(polynomial) < 7 or not polynomial[6].numerator:
-        return "an equilibrium at theta2 = pi over the whole window: t2 = tan(theta2/2) loses it"
+        return LOSES_PI
     slope = tuple(n * coefficient for n, coefficient in enumerate(polynomial))[1:]
     v, w = _v_and_w(slice)
     return Question(_terms(polynomial), _terms(slope), _terms(v), _terms(w), slice.axes)

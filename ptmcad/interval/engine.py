@@ -210,7 +210,7 @@ class _Run:
         if deadline is None:
             return None
         boxes = sum(len(e.boxes()) for e in self.enclosures)
-        return deadline - max(1.0, 0.08 * (deadline - self.started), 2 * self.slowest, 4 * SECONDS * boxes)
+        return deadline - max(1.0, 0.08 * (deadline - self.started), 2 * self.slowest, 1.5 * SECONDS * boxes)
 
     def _report(self, level: int, undetermined: Fraction) -> Callable[[int, int], None] | None:
         progress = self.options.progress

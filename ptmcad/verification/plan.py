@@ -27,7 +27,7 @@ _GENERAL = (
     ("equal-counts", "areas beside walls that separate no regions",
      "what one cell has too much there its neighbour in the region has too little"),
     ("infinity", "curves over which solutions leave every bounded set",
-     "cosines and sines are bounded: no real solution does"),
+     "near them det H stays away from 0 at every solution, and real ones are bounded"),
 )  # fmt: skip
 """Names, subjects and reasons of the savings that are made on every slice."""
 
