@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf
 from time import perf_counter
@@ -146,6 +146,8 @@ class _Run:
             self.seconds["curves"] += perf_counter() - start
             if not in_time:
                 so_far = self.partial()
+                if so_far.undetermined <= tolerance:  # strips of what the level had reached were enough
+                    return replace(so_far, status=Status.CERTIFIED)
                 raise LimitReached(
                     f"the time limit was reached with {_percent(so_far.undetermined)} undetermined, "
                     f"more than the tolerance of {_percent(tolerance)}",
