@@ -24,7 +24,8 @@ SLACK = 0.9
 """Pieces are made so thin that their areas sum up to this part of what may be left undetermined."""
 WORTHWHILE = 0.5
 """A strip is cut if its finest pieces cover less than this part of its rectangle."""
-HALVINGS = 40
+HALVINGS = 200
+"""Of the area by which a piece may be larger than its strip, at most; below, floats are exhausted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +75,10 @@ class Thinning:
         """
         step = self._step(area, most)
         return self.lattice.cover(np.concatenate([pieces(self.whole, inf), pieces(self.thin, step)]))
+
+    def number(self, area: float) -> int:
+        """About how many rectangles `cover` has."""
+        return len(self.whole) + int(numbers_of_pieces(self.thin, self._step(area, None)).sum())
 
     def _step(self, area: float, most: int | None) -> float:
         wanted = max(SLACK * area, 1.1 * self.least()) - self.whole_area

@@ -45,6 +45,8 @@ FIRST_LEVEL, LAST_LEVEL = 4, 40
 LARGEST = Fraction(10**100)
 """Ends of axes; areas and squares of such numbers are floats still."""
 MOST_BOXES = 6_000_000
+MOST_RECTANGLES = 3_000_000
+"""In a cover made of strips: its JSON has some 40 bytes for each, and Python some 200."""
 OVERLAPPING = 3
 """Where rectangles have this times the area of their union it pays to look for fewer that cover the same."""
 WITHIN = 100
@@ -164,14 +166,18 @@ class _Run:
                 if undetermined <= tolerance:
                     return result
             self._hand_over()
-            if sum(len(e.boxes()) for e in self.enclosures) > MOST_BOXES:
+            if self.boxes() > MOST_BOXES:
                 break
         so_far = self.partial()
         raise LimitReached(
-            f"the search ended with {_percent(so_far.undetermined)} undetermined, more than the tolerance of "
-            f"{_percent(tolerance)}: smaller boxes did not help",
+            f"the search ended at {self.boxes():,} boxes with {_percent(so_far.undetermined)} undetermined, "
+            f"more than the tolerance of {_percent(tolerance)}",
             partial=so_far,
         )
+
+    def boxes(self) -> int:
+        """The number of boxes there are by now."""
+        return sum(len(enclosure.boxes()) for enclosure in self.enclosures)
 
     def thin_cover(self, undetermined: Fraction) -> Cover | None:
         """A cover of strips that are thin enough for the tolerance, if they can be."""
@@ -181,14 +187,15 @@ class _Run:
         start = perf_counter()
         strips = thinning(self.enclosures, self.lattice, self.options.jobs)
         target = float(allowed) * self.area
-        cover = strips.cover(target) if strips.least() <= ENOUGH * target else None
+        enough = strips.least() <= ENOUGH * target and strips.number(target) <= MOST_RECTANGLES
+        cover = strips.cover(target) if enough else None
         self.seconds["curves"] += perf_counter() - start
         return cover
 
     def partial(self) -> RegionMap:
         """The map so far, with strips as thin as they can be for not many more rectangles than boxes."""
         strips = thinning(self.enclosures, self.lattice, self.options.jobs)
-        most, deadline = 4 * len(strips.thin), self.options.deadline
+        most, deadline = min(4 * len(strips.thin), MOST_RECTANGLES), self.options.deadline
         if deadline is not None:
             most = min(most, int((deadline - perf_counter()) / (2 * SECONDS)))
         cover, known = strips.cover(1.5 * strips.least(), most), self.resumed
@@ -211,8 +218,8 @@ class _Run:
         deadline = self.options.deadline
         if deadline is None:
             return None
-        boxes = sum(len(e.boxes()) for e in self.enclosures)
-        return deadline - max(1.0, 0.08 * (deadline - self.started), 2 * self.slowest, 1.5 * SECONDS * boxes)
+        rest = max(1.0, 0.08 * (deadline - self.started), 2 * self.slowest, 1.5 * SECONDS * self.boxes())
+        return deadline - rest
 
     def _report(self, level: int, undetermined: Fraction) -> Callable[[int, int], None] | None:
         progress = self.options.progress

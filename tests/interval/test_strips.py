@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 pytest.importorskip("numba")
 
+from ptmcad.interval.covering import Lattice, Thinning
 from ptmcad.interval.formula import Graph
-from ptmcad.interval.strips import areas_of_pieces, numbers_of_pieces, pieces, strips
+from ptmcad.interval.strips import NONE, areas_of_pieces, numbers_of_pieces, pieces, strips
 from ptmcad.interval.system import System, system
 
 COEFFICIENTS = st.fractions(-3, 3, max_denominator=8)
@@ -110,6 +111,23 @@ def test_the_finest_pieces_of_a_smooth_curve_are_as_thin_as_it_is_bent() -> None
         areas.append(exact)
     assert areas[1] < 0.3 * areas[0]
     assert areas[2] < 0.3 * areas[1]
+
+
+@pytest.mark.parametrize("area", [1e-2, 1e-4, 1e-6, 2e-7])
+def test_covers_of_strips_are_as_thin_as_was_asked(area: float) -> None:
+    """The diagonal of the unit square, in 2^15 strips without thickness; 1/(2n) is the least area of n rectangles."""
+    ends = np.linspace(0, 1, 2**15 + 1)
+    diagonal = np.zeros((2**15, 11))
+    diagonal[:, 0] = diagonal[:, 1] = ends[:-1]
+    diagonal[:, 2] = diagonal[:, 3] = ends[1:]
+    diagonal[:, 4] = 1  # y is enclosed when x is known
+    diagonal[:, 5] = diagonal[:, 6] = (ends[:-1] + ends[1:]) / 2
+    diagonal[:, 9] = diagonal[:, 10] = 1
+    lattice = Lattice(((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1))), 2**30)
+    thin = Thinning(diagonal, NONE, 0.0, lattice)
+    made = pieces(diagonal, thin._step(area, None))
+    assert ((made[:, 2] - made[:, 0]) * (made[:, 3] - made[:, 1])).sum() <= area
+    assert len(made) <= thin.number(area) <= max(2**15, 8 / area)
 
 
 def test_a_box_without_solutions_has_no_strip() -> None:
