@@ -111,7 +111,7 @@ def _rank(state: State, values: Sequence[RealRoot]) -> int:
     bits = 64
     while True:
         with ctx.workprec(bits):
-            ball = state.energy.ball(state.energy.field.generator())
+            ball = state.energy.ball(state.energy.field.evaluation())
             met = [k for k, root in enumerate(values) if not (ball < root.low or ball > root.high)]
         if len(met) == 1:
             return met[0]

@@ -9,12 +9,13 @@ an eigenvalue is a root of a quadratic over it; and an angle is a rational numbe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd, isqrt
+from typing import TypeVar
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, nmod
 
 from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.points import RealPoint, value_at
@@ -24,6 +25,7 @@ from ptmcad.models.ptm import SPRINGS
 from ptmcad.models.system import RationalPolynomial
 from ptmcad.poses import Pose, Spring, Vector
 
+_Ring = TypeVar("_Ring", fmpq, nmod)
 MOST_BITS = 2**22
 """Parameters of a thousand digits need a hundredth of them: a number that is still open is rational unnoticed."""
 _ORDERS = range(3, 43)
@@ -151,10 +153,11 @@ def pose_of(model: Model, state: State, digits: int) -> tuple[Pose, int]:
 
 def _numbers(model: Model, state: State) -> Iterator[_Number]:
     """The numbers of a pose at the context's precision, in the order in which `_assembled` takes them."""
-    at = state.point.field.generator()
+    at = state.point.field.evaluation()
 
     def number(element: Element) -> _Number:
-        return _Number(element.rational, element.ball(at))
+        exact = element.rational
+        return _Number(exact, element.ball(at) if exact is None else _arb(exact))
 
     yield from map(number, state.unknowns)
     for cosine, sine in (state.unknowns[:2], state.unknowns[2:]):
@@ -218,16 +221,25 @@ def _rational_eigenvalue(trace_element: Element, determinant_element: Element) -
 
     With coefficients t_i of the trace and d_i of the determinant in powers of the field's generator, q^2 - q trace +
     determinant = 0 says q t_i = d_i for each i > 0, which leaves one candidate unless the trace is rational. In that
-    case a rational eigenvalue makes the other one rational too.
+    case a rational eigenvalue makes the other one rational too. The equation holds modulo a prime too, q being integral
+    over the numbers without that prime in their denominators; so most often residues modulo the prime exclude it.
     """
-    trace, determinant = trace_element.coefficients(), determinant_element.coefficients()
+    t, d = trace_element.image_coefficients(), determinant_element.image_coefficients()
+    if t is not None and d is not None and any(t[1:]) and _eigenvalue(t, d) is None:
+        return None
+    q = _eigenvalue(trace_element.coefficients(), determinant_element.coefficients())
+    return None if q is None else Fraction(int(q.p), int(q.q))
+
+
+def _eigenvalue(trace: Sequence[_Ring], determinant: Sequence[_Ring]) -> _Ring | None:
+    """The q of the field's ground ring, when the trace's coefficients behind the first are not all zero."""
     for t, d in zip(trace[1:], determinant[1:], strict=True):
-        if t:
+        if t != 0:
             q = d / t
             holds = q * q - q * trace[0] + determinant[0] == 0 and all(
                 q * a == b for a, b in zip(trace[1:], determinant[1:], strict=True)
             )
-            return Fraction(int(q.p), int(q.q)) if holds else None
+            return q if holds else None
     return None
 
 

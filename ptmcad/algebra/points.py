@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from flint import fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 
 from ptmcad.algebra.fibre import Fibre, RationalPolynomial, evaluate, hermite_matrix, signature
-from ptmcad.algebra.number_field import Element, RealField
+from ptmcad.algebra.number_field import Element, Modulus, RealField, Residue, polynomial_at
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 
 
@@ -52,31 +52,24 @@ def points(algebra: Fibre, bound: int = 1) -> Points:
     radical = _product([factor for factor, _ in factors])
     numerators = _trace_polynomials(algebra, matrix, radical)
     limit = fmpq(bound * sum(form) + 1)
-    coordinates: dict[int, tuple[fmpq_poly, list[fmpq_poly]]] = {}
+    coordinates: dict[int, tuple[Modulus, list[Residue]]] = {}
     found = []
     for root in isolate(radical, -limit, limit):
         number = next(n for n, (factor, _) in enumerate(factors) if _owns(factor, root))
         factor, multiplicity = factors[number]
+        interval = RealRoot(factor, root.low, root.high)
         if number not in coordinates:
-            modulus = fmpq_poly(factor)
-            inverse = _inverse(numerators[0], modulus)
-            coordinates[number] = modulus, [p * inverse % modulus for p in numerators[1:]]
+            modulus = Modulus.of(factor)
+            coordinates[number] = modulus, _coordinates(RealField(modulus, interval), numerators)
         modulus, residues = coordinates[number]
-        field = RealField(modulus, RealRoot(factor, root.low, root.high))
+        field = RealField(modulus, interval)
         found.append(RealPoint(field, tuple(Element(field, r) for r in residues), multiplicity))
     return Points(tuple(found), form, distinct, algebra.dimension)
 
 
 def value_at(point: RealPoint, p: RationalPolynomial) -> Element:
     """A polynomial in the unknowns as a number."""
-    total = point.field.constant(fmpq(0))
-    for monomial, c in p.items():
-        term = point.field.constant(c)
-        for unknown, e in zip(point.unknowns, monomial, strict=True):
-            for _ in range(e):
-                term = term * unknown
-        total = total + term
-    return total
+    return polynomial_at(point.field, point.unknowns, p)
 
 
 def real_values(algebra: Fibre, p: RationalPolynomial, bound: fmpq) -> tuple[RealRoot, ...]:
@@ -131,11 +124,11 @@ def _trace(matrix: fmpq_mat) -> fmpq:
     return sum((matrix[i, i] for i in range(matrix.nrows())), fmpq(0))
 
 
-def _inverse(p: fmpq_poly, modulus: fmpq_poly) -> fmpq_poly:
-    common, inverse, _ = p.xgcd(modulus)
-    if common.degree() != 0:
-        raise ArithmeticError("the first trace polynomial vanishes at a point of the fibre")
-    return inverse / common[0] % modulus
+def _coordinates(field: RealField, numerators: Sequence[fmpq_poly]) -> list[Residue]:
+    """The unknowns at the points of one factor: quotients of the trace polynomials by the first of them."""
+    first, *others = map(field.element, numerators)
+    below = first.inverse()  # it vanishes at no point of the fibre
+    return [(other * below).part for other in others]
 
 
 def _owns(factor: fmpz_poly, root: RealRoot) -> bool:

@@ -1,0 +1,135 @@
+"""Elements of real number fields: what a prime tells and what an expression encloses, against residues over Q."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly, nmod
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from ptmcad import statics
+from ptmcad.algebra import number_field
+from ptmcad.algebra.number_field import Element, Modulus, RealField, polynomial_at
+from ptmcad.algebra.real_roots import isolate
+
+NUMBERS = st.fractions(-4, 4, max_denominator=12).map(lambda q: fmpq(q.numerator, q.denominator))
+PRIMES = (2, 3, 5, 7, 11, 2**61 - 1)
+"""Small ones divide denominators and leading coefficients, and vanish where nothing is zero."""
+
+
+@st.composite
+def fields(draw: st.DrawFn) -> RealField:
+    p = fmpz_poly(draw(st.lists(st.integers(-9, 9), min_size=3, max_size=5)))
+    assume(p.degree() > 0)
+    factors = [f for f, _ in p.factor()[1] if f.degree() > 0]
+    factor = draw(st.sampled_from(factors))
+    roots = isolate(factor, fmpq(-100), fmpq(100))
+    assume(roots)
+    return RealField(Modulus.of(factor), draw(st.sampled_from(roots)))
+
+
+@st.composite
+def expressions(draw: st.DrawFn, field: RealField) -> tuple[Element, fmpq_poly]:
+    """An element and its residue, computed step by step over Q."""
+    modulus = field.modulus.polynomial
+
+    def leaf() -> tuple[Element, fmpq_poly]:
+        if draw(st.booleans()):
+            c = draw(NUMBERS)
+            return field.constant(c), fmpq_poly([c])
+        p = fmpq_poly(draw(st.lists(NUMBERS, min_size=1, max_size=4)))
+        return field.element(p), p % modulus
+
+    (e, r), (f, s) = leaf(), leaf()
+    for step in draw(st.lists(st.sampled_from("+-*/t2pc"), max_size=6)):
+        if step == "+":
+            e, r = e + f, r + s
+        elif step == "-":
+            e, r = f - e, s - r
+        elif step == "*":
+            e, r = e * f, r * s % modulus
+        elif step == "/":
+            assume(r != 0)
+            g, u, _ = r.xgcd(modulus)
+            e, r = f * e.inverse(), s * (u / g[0]) % modulus
+        elif step == "t":
+            c = draw(NUMBERS)
+            e, r = e.times(c), r * c
+        elif step == "2":
+            e, r = e * e, r * r % modulus
+        elif step == "c":  # cancels
+            e, r = e - e + f, s
+        else:
+            c = draw(NUMBERS)
+            e = polynomial_at(field, (e, f), {(2, 1): c, (0, 0): fmpq(1), (0, 3): fmpq(-1)})
+            r = (c * r * r * s + 1 - s * s * s) % modulus
+    return e, r
+
+
+@pytest.mark.parametrize("prime", PRIMES)
+def test_zero_rational_and_enclosure_agree_with_residues_over_q(prime: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(number_field, "PRIME", prime)
+
+    @settings(deadline=None, max_examples=150)
+    @given(st.data())
+    def check(data: st.DataObject) -> None:
+        field = data.draw(fields())
+        element, residue = data.draw(expressions(field))
+        assert element.is_zero == (residue == 0)
+        assert (element.rational is not None) == (residue.degree() <= 0)
+        if element.rational is not None:
+            assert fmpq(element.rational.numerator, element.rational.denominator) == residue[0]
+        with ctx.workprec(128):
+            at = field.evaluation()
+            assert element.ball(at).overlaps(arb_poly(residue)(at.generator))
+        assert element.residue == residue
+
+    check()
+
+
+def test_most_elements_are_told_without_a_residue_over_q() -> None:
+    field = RealField(Modulus.of(fmpz_poly([-2, 0, 1])), isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0])
+    root = field.element(fmpq_poly([0, 1]))
+    asked: list[Element] = []
+
+    def forbidden() -> fmpq_poly:
+        asked.append(root)
+        return fmpq_poly([0, 1])
+
+    silent = Element(field, number_field.Residue(root.part.image, forbidden, root.part.enclose))
+    value = (silent * silent * silent + silent).times(fmpq(1, 3)).inverse()
+    assert (value.is_zero, value.rational, asked) == (False, None, [])
+    assert (silent * silent).rational == 2
+    assert asked
+
+
+def test_zero_has_no_inverse() -> None:
+    field = RealField(Modulus.of(fmpz_poly([-2, 0, 1])), isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0])
+    root = field.element(fmpq_poly([0, 1]))
+    with pytest.raises(ZeroDivisionError, match="has no inverse"):
+        (root * root - field.constant(fmpq(2))).inverse()
+
+
+@given(st.lists(NUMBERS, min_size=3, max_size=3), NUMBERS)
+def test_a_rational_eigenvalue_is_found_modulo_a_prime_too(other: list[fmpq], q: fmpq) -> None:
+    """Eigenvalues q and o, o of degree 3: trace q + o, determinant q o, whose products need no field."""
+    assume(any(other[1:]))
+    prime = 2**61 - 1
+    trace, determinant = [other[0] + q, *other[1:]], [q * c for c in other]
+    found: Callable[..., object] = statics._eigenvalue
+    assert found(trace, determinant) == q
+    images = [[nmod(int(c.p), prime) / nmod(int(c.q), prime) for c in cs] for cs in (trace, determinant)]
+    assert found(*images) == nmod(int(q.p), prime) / nmod(int(q.q), prime)
+    wrong = [determinant[0] + 1, *determinant[1:]]
+    assert found(trace, wrong) is None
+
+
+def test_the_generator_is_enclosed_as_narrowly_as_the_precision_says() -> None:
+    field = RealField(Modulus.of(fmpz_poly([-2, 0, 1])), isolate(fmpz_poly([-2, 0, 1]), fmpq(0), fmpq(2))[0])
+    for bits in (64, 1024):
+        with ctx.workprec(bits):
+            ball = field.evaluation().generator
+            assert ball.contains(arb(2).sqrt().mid())
+            assert float(ball.rad()) < 2.0 ** (4 - bits)
