@@ -8,7 +8,7 @@ JOBS ?= 2
 # the paper's loaded slices, on which every method is measured
 PAPER := fig3 fig4 fig5-caption fig5-text
 
-.PHONY: help demo test test-slow fuzz check bench scaling stress docs free-maps clean distclean
+.PHONY: help demo test test-slow fuzz check bench ablation scaling stress docs free-maps clean distclean
 
 help:
 	@echo "make demo       the map of the paper's fig. 4, as out/fig4.png and out/fig4.svg"
@@ -17,6 +17,7 @@ help:
 	@echo "make fuzz       damaged and hostile records, results and points by the ten thousand, guided by coverage"
 	@echo "make check      ruff, its formatter and mypy in strict mode"
 	@echo "make bench      error, run time and memory on every slice in configs/, into docs/benchmarks/: ten minutes"
+	@echo "make ablation   what each saving is worth, into docs/benchmarks/: some minutes"
 	@echo "make scaling    how time and memory grow, into docs/benchmarks/: three minutes"
 	@echo "make stress     stiff and extreme cases against double precision, into docs/benchmarks/: some minutes"
 	@echo "make docs       the manual, as out/docs/html/index.html, and the README's picture, into docs/img/"
@@ -75,6 +76,9 @@ bench: $(VENV)/.installed-bench
 	$(BIN)/ptmcad bench $(PAPER:%=configs/%.yaml) --time-limit 36 --out docs/benchmarks
 	$(BIN)/ptmcad bench $(filter-out $(PAPER:%=configs/%.yaml),$(wildcard configs/*.yaml)) --quick --rounds 1 --time-limit 8 \
 		--method exact --method certified --method companion --page --out docs/benchmarks
+
+ablation: $(VENV)/.installed
+	$(BIN)/python -m ptmcad.bench.ablation --out docs/benchmarks
 
 scaling: $(VENV)/.installed-bench
 	$(BIN)/python -m ptmcad.bench.scaling --out docs/benchmarks

@@ -36,7 +36,6 @@ from ptmcad.counting import DegeneratePoint, Equilibria, equilibria, solutions_a
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
 from ptmcad.models import ParametricSystem, system_of
 from ptmcad.models.elimination import elimination_system
-from ptmcad.models.system import without_parameters
 from ptmcad.models.text import system_text
 from ptmcad.plan import plan_of
 from ptmcad.regionmap import HARMLESS, Component, RegionMap, Status
@@ -155,11 +154,8 @@ def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozen
     ----------
     relative : largest relative width of areas' bounds, None when they are not asked for.
     """
-    mechanism = system_of(slice.mechanism)
-    parameters = {name: from_expression(slice.parameters[name]) for name in mechanism.ring.parameters}
-    system = mechanism
-    if "zero-terms" not in keep:
-        system = without_parameters(mechanism, frozenset(n for n, (a, _) in parameters.items() if a.is_zero()))
+    system = system_of(slice.mechanism)
+    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     window = tuple((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
     clock.report("variety", 0, 1)
     try:
@@ -173,7 +169,7 @@ def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozen
     started = RegionMap(
         slice=slice,
         status=Status.PARTIAL,
-        system=system_text(mechanism),
+        system=system_text(system),
         base=base,
         complex_solutions=variety.complex_solutions,
         components=variety.components,

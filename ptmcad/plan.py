@@ -42,10 +42,9 @@ def beforehand(slice: Slice, keep: frozenset[str], areas: bool = True) -> tuple[
     ----------
     areas : whether they are asked for.
     """
-    zero = zero_parameters(slice)
     return (
         saving_step("imports", keep),
-        *([saving_step("zero-terms", keep, "terms of " + ", ".join(zero))] if zero else []),
+        *zero_terms(zero_parameters(slice)),
         saving_step("sign-curve", keep),
         saving_step("hermite-matrix", keep),
         saving_step("equal-counts", keep) if areas else PlanStep("areas of the regions", False, "not asked for"),
@@ -86,6 +85,11 @@ def plan_of(
 def zero_parameters(slice: Slice) -> list[str]:
     """The parameters that are zero on the whole slice."""
     return [n for n, e in slice.parameters.items() if e.is_constant and e.constant() == 0]
+
+
+def zero_terms(names: Sequence[str]) -> list[PlanStep]:
+    """The step that says so where parameters are zero: nothing is left of them once numbers are put in."""
+    return [PlanStep("terms of " + ", ".join(names), False, "they are zero on this slice")] if names else []
 
 
 def _saving_of(c: Component) -> str:

@@ -46,7 +46,6 @@ class Saving:
 
 
 _EXACT = (
-    Saving("zero-terms", Engine.EXACT, "terms of parameters that are zero", "they are zero on this slice"),
     Saving("sign-curve", Engine.EXACT, "projection of H11 = 0",
            "where it vanishes off the critical curves, det H < 0"),
     Saving("hermite-matrix", Engine.EXACT, "determinant of the Hermite matrix",

@@ -44,7 +44,7 @@ from ptmcad.cli import run
 from ptmcad.config import slice_from_mapping
 from ptmcad.errors import ConfigError, HypothesisError
 from ptmcad.models import system_of
-from ptmcad.models.system import at_point, on_slice, without_parameters
+from ptmcad.models.system import on_slice
 from ptmcad.regionmap import HARMLESS, Kind, RegionMap
 from ptmcad.savings import ALL, SAVINGS, Engine, kept
 from ptmcad.slice import Slice
@@ -212,19 +212,6 @@ def test_samples_keep_off_curves_that_are_no_walls() -> None:
     assert height not in (fmpq(1, 2), fmpq(1, 3))
 
 
-def test_terms_of_parameters_that_are_zero_change_nothing() -> None:
-    system = system_of("ptm")
-    values = dict.fromkeys(system.ring.parameters, fmpq(3, 7)) | {"F3": fmpq(0), "F4x": fmpq(0)}
-    reduced = without_parameters(system, frozenset({"F3", "F4x"}))
-    assert at_point(reduced, values) == at_point(system, values)
-    assert all(len(a) <= len(b) for a, b in zip(reduced.gradient_terms, system.gradient_terms, strict=True))
-    polynomials = (reduced.potential, *reduced.gradient, *reduced.hessian[0], *reduced.hessian[1])
-    assert not [name for p in polynomials for name in ("F3*", "F4x*") if name in str(p)]
-    slice = record("fig2")
-    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
-    assert on_slice(without_parameters(system, frozenset({"F3", "F4x"})), parameters) == on_slice(system, parameters)
-
-
 # ------------------------------------------------------------------------------------------------------------- the plan
 
 
@@ -270,7 +257,7 @@ def test_verify_checks_what_the_plan_says_was_kept(shipped: Shipped) -> None:
 @pytest.mark.parametrize(
     ("names", "part"),
     [
-        (("axis-ordr",), "did you mean 'axis-order'?; there are zero-terms, "),
+        (("axis-ordr",), "did you mean 'axis-order'?; there are sign-curve, "),
         (("leading", "all"), "'leading' is no saving"),
         (("cones-and-creases",), "a saving of the certified engine, and this slice is the exact engine's"),
         ("", "'' is no saving"),

@@ -6,7 +6,7 @@ Guarantee: each saving that is named here is made, or is said to have been switc
 from __future__ import annotations
 
 from ptmcad.interval.parameters import positive_base
-from ptmcad.plan import saving_step, zero_parameters
+from ptmcad.plan import saving_step, zero_parameters, zero_terms
 from ptmcad.regionmap import PlanStep
 from ptmcad.slice import FREE_LENGTHS, Count, Slice
 
@@ -16,8 +16,7 @@ def beforehand(slice: Slice, keep: frozenset[str]) -> tuple[PlanStep, ...]:
     absent = [name for name in FREE_LENGTHS if name not in slice.parameters or not slice.parameters[name].numerator]
     zero = [name for name in zero_parameters(slice) if name not in FREE_LENGTHS]
     steps = [saving_step("imports", keep, "imports of matplotlib and sympy")]
-    if zero or absent:
-        steps.append(PlanStep("terms of " + ", ".join([*zero, *absent]), False, "they are zero on this slice"))
+    steps += zero_terms([*zero, *absent])
     steps.append(PlanStep("discriminant variety", False, "its degree is out of reach when springs have free lengths"))
     if slice.count in (Count.STABLE, Count.ADMISSIBLE):
         steps += [saving_step("folds-of-saddles", keep), saving_step("cones-and-creases", keep)]

@@ -6,7 +6,7 @@ Guarantee: equations and Hessian are derived from the potential by exact differe
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from flint import fmpq
 
@@ -134,27 +134,6 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
 def first_minor(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> UnknownPolynomial:
     """H11 on a slice, up to a factor that vanishes only on the slice's ``boundary``."""
     return _without_denominators(_substitute(system, system.hessian[0][0], parameters))
-
-
-def without_parameters(system: ParametricSystem, zero: frozenset[str]) -> ParametricSystem:
-    """The system without the terms of parameters that are zero; its ring keeps their names."""
-    places = [k for k, name in enumerate(system.ring.parameters) if name in zero]
-
-    def reduced(p: TrigonometricPolynomial) -> TrigonometricPolynomial:
-        return system.ring.context.from_dict({m: c for m, c in p.to_dict().items() if not any(m[k] for k in places)})
-
-    def terms(p: Terms) -> Terms:
-        rest = ((m, tuple(t for t in part if not any(k in places for k, _ in t[0]))) for m, part in p)
-        return tuple((m, part) for m, part in rest if part)
-
-    return replace(
-        system,
-        potential=reduced(system.potential),
-        gradient=tuple(reduced(g) for g in system.gradient),
-        hessian=tuple(tuple(reduced(h) for h in row) for row in system.hessian),
-        gradient_terms=tuple(terms(g) for g in system.gradient_terms),
-        hessian_terms=tuple(tuple(terms(h) for h in row) for row in system.hessian_terms),
-    )
 
 
 def determinant(system: ParametricSystem) -> TrigonometricPolynomial:

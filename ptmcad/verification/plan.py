@@ -20,7 +20,7 @@ _CHOICE = re.compile(rf"predicted cost {_COST} against {_COST}|both orders are p
 _KEPT = "kept, as asked for"
 _GENERAL = (
     ("imports", "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),
-    ("zero-terms", "terms of {zero}", "they are zero on this slice"),
+    ("", "terms of {zero}", "they are zero on this slice"),
     ("sign-curve", "projection of H11 = 0", "where it vanishes off the critical curves, det H < 0"),
     ("hermite-matrix", "determinant of the Hermite matrix",
      "the norm of det H has the same critical factors and no others"),
@@ -29,7 +29,7 @@ _GENERAL = (
     ("infinity", "curves over which solutions leave every bounded set",
      "near them det H stays away from 0 at every solution, and real ones are bounded"),
 )  # fmt: skip
-"""Names, subjects and reasons of the savings that are made on every slice."""
+"""Names, subjects and reasons of the savings that are made on every slice, and of what needs no saving."""
 
 
 _NO_AREAS = PlanStep("areas of the regions", False, "not asked for")
@@ -64,7 +64,7 @@ def _expected(result: RegionMap, keep: frozenset[str]) -> Iterator[PlanStep]:
     for saving, what, why in _GENERAL:
         if saving == "equal-counts" and _NO_AREAS in result.plan:
             yield _NO_AREAS
-        elif zero or saving != "zero-terms":
+        elif zero or saving:
             yield _step(saving, what.format(zero=zero), why, keep)
     if "no-real-points" in keep:
         yield _step("no-real-points", "components without a point in the window", "", keep)
