@@ -39,7 +39,7 @@ FLOOR = (
 """The reference job: start-up, and some linear algebra that is always the same."""
 LONG = 2.0
 """Seconds from which on a job is not repeated."""
-MOST_PANELS = 6_000
+MOST_PANELS = 10_000
 """Of all walls together: what is steep takes many, and some slices have walls too steep for the measurement."""
 NO_MAP = "no exact map to compare with: the share is the engine's"
 NO_WALLS = "errors not measured: the true walls are too steep for chains of chords; shares are the engine's"

@@ -30,7 +30,8 @@ APART = Fraction(1, 2**18)
 """Largest distance between a wall and its chord, as a share of the window's side."""
 GAP = Fraction(1, 2**32)
 """Half of the base's share around a critical value that is left to the gaps."""
-NARROWEST = Fraction(1, 2**36)
+NARROWEST = Fraction(1, 2**24)
+"""Share of the base of the narrowest panels; those on which nothing is proved go to the gaps."""
 DEPTH = 12
 """Halvings of the fibre over a gap."""
 COUNTS = ("stable", "total", "index")
@@ -61,6 +62,10 @@ class Reference:
 
 Gap = tuple[Fraction, Fraction, tuple[tuple[Fraction, Fraction], ...]]
 """A part of the base, and the parts of the fibre that a wall may reach there."""
+
+
+Reaches = dict[tuple[int, Fraction, Fraction], tuple[tuple[Fraction, Fraction], ...]]
+"""For a component and a part of the base, the parts of the fibre that the component may reach there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +124,7 @@ def walls(exact: Reference, check: Callable[[], None] = lambda: None) -> dict[st
     """For each of `COUNTS` the walls that separate its regions."""
     by_component = {c.component: c for c in exact.curves}
     chains: dict[tuple[int, int], tuple[Chord, ...]] = {}
+    reaches: Reaches = {}
     found: dict[str, Walls] = {}
     for count in COUNTS:
         region_of = regions(exact.result, count)
@@ -141,7 +147,7 @@ def walls(exact: Reference, check: Callable[[], None] = lambda: None) -> dict[st
                     chains[s, level] = chords(source, wall.root, span, exact.base, exact.fibre, APART, NARROWEST, check)
                 sides += [(c, below, above) for c in chains[s, level]]
         meeting = [by_component[n] for n in sorted(separating)]
-        gaps = tuple(_gaps(exact, [c for c, _, _ in sides], meeting, check))
+        gaps = tuple(_gaps(exact, [c for c, _, _ in sides], meeting, reaches, check))
         found[count] = Walls(*_told(exact.result, region_of, count), tuple(sides), tuple(tops), gaps)
     return found
 
@@ -161,7 +167,9 @@ def _told(
     return tuple(counts[n] for n in range(number)), tuple(areas)
 
 
-def _gaps(exact: Reference, known: list[Chord], meeting: list[Curve], check: Callable[[], None]) -> Iterator[Gap]:
+def _gaps(
+    exact: Reference, known: list[Chord], meeting: list[Curve], reaches: Reaches, check: Callable[[], None]
+) -> Iterator[Gap]:
     """Around the critical values, and where a wall's distance to its chord is not proved."""
     places = [x for low, high in exact.spans if low < high for x in (low, high)]
     around = zip([Fraction(0), *places[1::2]], [*places[::2], Fraction(1)], strict=True)
@@ -179,7 +187,11 @@ def _gaps(exact: Reference, known: list[Chord], meeting: list[Curve], check: Cal
                for p in exact.lines):  # fmt: skip
             yield left, right, ((Fraction(0), Fraction(1)),)
             continue
-        reached = sorted(r for c in meeting for r in reaching(c, (left, right), exact.base, exact.fibre, DEPTH))
+        for met in meeting:
+            if (met.component, left, right) not in reaches:
+                parts = reaching(met, (left, right), exact.base, exact.fibre, DEPTH)
+                reaches[met.component, left, right] = tuple(_joined(sorted(parts)))
+        reached = sorted(part for met in meeting for part in reaches[met.component, left, right])
         # a wall that goes on into the gap stays in the part in which it enters; the others are no boundary
         entries = [*ends.get(left, ()), *ends.get(right, ())]
         yield (
