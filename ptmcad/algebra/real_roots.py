@@ -14,10 +14,10 @@ Mehlhorn, Computing real roots of real polynomials, J. Symb. Comp. 73 (2016).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from flint import fmpq, fmpz, fmpz_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpz, fmpz_poly
 
 _SHIFT = fmpz_poly([1, 1])
 _TOGETHER = 3
@@ -28,6 +28,8 @@ _ROOM = 4
 """How much longer than the estimate an interval around a cluster is: Descartes' rule sees complex roots in a lens."""
 _SHORT = fmpq(1, 16)
 """Half the length up to which such an interval is better than bisection."""
+_LONG = 1000
+"""Bits of coefficients from which on values are not computed exactly where a ball will do."""
 _SLOWEST = 2
 """The first step towards an end is to the part 2^-4 of the interval; each further one is twice as many bits long."""
 
@@ -285,19 +287,20 @@ def refine(root: RealRoot, width: fmpq) -> RealRoot:
     p, low, high = root.polynomial, root.low, root.high
     if low == high or high - low < width:
         return root
-    at_low, at_high = fmpq(p(low)), fmpq(p(high))
+    value_at = _values(p, low, high, width)
     pieces = 4
+    at_low, at_high = value_at(low, pieces), value_at(high, pieces)
     while high - low >= width:
         step = (high - low) / pieces
         slope = at_low / (at_low - at_high)
         k = (slope * pieces + fmpq(1, 2)).floor()
         left = low + step * k
-        value = at_low if k == 0 else at_high if k == pieces else fmpq(p(left))
+        value = at_low if k == 0 else at_high if k == pieces else value_at(left, pieces)
         if value == 0:
             return RealRoot(p, left, left)
         right = left + step if sign(value) == sign(at_low) else left - step
         if low <= right <= high:
-            other = at_low if right == low else at_high if right == high else fmpq(p(right))
+            other = at_low if right == low else at_high if right == high else value_at(right, pieces)
             if other == 0:
                 return RealRoot(p, right, right)
             if sign(other) != sign(value):
@@ -309,7 +312,7 @@ def refine(root: RealRoot, width: fmpq) -> RealRoot:
                 continue
         pieces = 4
         middle = (low + high) / 2
-        value = fmpq(p(middle))
+        value = value_at(middle, pieces)
         if value == 0:
             return RealRoot(p, middle, middle)
         if sign(value) == sign(at_low):
@@ -317,6 +320,29 @@ def refine(root: RealRoot, width: fmpq) -> RealRoot:
         else:
             high, at_high = middle, value
     return RealRoot(p, low, high)
+
+
+def _values(p: fmpz_poly, low: fmpq, high: fmpq, width: fmpq) -> Callable[[fmpq, int], fmpq]:
+    """p at points of [low, high], for so many pieces: exact, or with the right sign and short if p is long.
+
+    A short value comes from a ball that does not contain zero and is known more precisely than one piece of the secant.
+    """
+    depth = int((max(abs(low), abs(high)) / width).ceil()).bit_length()
+    precision = 3 * depth + 64
+    if p.height_bits() < max(_LONG, 2 * precision):
+        return lambda at, pieces: fmpq(p(at))
+    with ctx.workprec(precision):
+        rounded = arb_poly(p)
+
+    def value_at(at: fmpq, pieces: int) -> fmpq:
+        with ctx.workprec(precision):
+            ball = rounded(arb(at))
+        if ball.rel_accuracy_bits() < pieces.bit_length() + 8:
+            return fmpq(p(at))
+        mantissa, exponent = ball.mid().man_exp()
+        return fmpq(mantissa) * fmpq(2) ** int(exponent)
+
+    return value_at
 
 
 def has_root_between(p: fmpz_poly, low: fmpq, high: fmpq) -> bool:
