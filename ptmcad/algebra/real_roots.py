@@ -327,10 +327,17 @@ def _values(p: fmpz_poly, low: fmpq, high: fmpq, width: fmpq) -> Callable[[fmpq,
 
     A short value comes from a ball that does not contain zero and is known more precisely than one piece of the secant.
     """
+
+    def exact(at: fmpq, pieces: int) -> fmpq:
+        return fmpq(p(at))
+
+    bits = p.height_bits()
+    if bits < _LONG:
+        return exact
     depth = int((max(abs(low), abs(high)) / width).ceil()).bit_length()
     precision = 3 * depth + 64
-    if p.height_bits() < max(_LONG, 2 * precision):
-        return lambda at, pieces: fmpq(p(at))
+    if bits < 2 * precision:
+        return exact
     with ctx.workprec(precision):
         rounded = arb_poly(p)
 
