@@ -165,6 +165,8 @@ def _enclosed(
         for root in roots:
             short = refine(root, fmpq(1, 2 ** (bits - 8)) * (abs(root.middle) + 1))
             unknowns = coordinates_at(representation, arb(short.low).union(arb(short.high)))
+            if unknowns is None:
+                return None
             negative = _negative_eigenvalues(point, unknowns)
             box = _decimal_box(unknowns)
             if negative is None or box is None:

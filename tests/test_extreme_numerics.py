@@ -6,16 +6,22 @@ from fractions import Fraction
 from itertools import pairwise
 
 import pytest
-from flint import arb, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ptmcad
 from ptmcad.algebra import real_roots
 from ptmcad.algebra.arcs import arc_integral
+from ptmcad.algebra.fibre import Fibre, coordinates_at, univariate_representation
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
+from ptmcad.algebra.resultants import balanced, discriminant, resultant
+from ptmcad.cad import area
+from ptmcad.counting import point_system
+from ptmcad.models import system_of
 from ptmcad.stress.measure import work_of
 from ptmcad.stress.slices import FIG4, LOADED, MapQuestion, ten
+from ptmcad.verification.sturm import roots_between
 
 
 def polynomial(roots: list[Fraction]) -> fmpz_poly:
@@ -78,6 +84,141 @@ def test_a_cluster_takes_steps_like_the_logarithm_of_its_digits(monkeypatch: pyt
         taken[digits] = calls
     assert taken[400] < 100
     assert taken[400] <= 2 * taken[50]
+
+
+def far_cluster(center: int, pairs: list[tuple[int, int]], real: list[int]) -> fmpz_poly:
+    """Roots center + r and center + a +- b i, and the same mirrored, as the fibres of a map in a vast window have."""
+    p = polynomial([Fraction(center + r) for r in real])
+    for a, b in set(pairs):
+        p *= fmpz_poly([(center + a) ** 2 + b * b, -2 * (center + a), 1])
+    return p * p(fmpz_poly([0, -1]))
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.integers(2, 30),
+    st.integers(1, 10**6),
+    st.lists(st.tuples(st.integers(-5, 5), st.integers(1, 5)), max_size=3),
+    st.lists(st.integers(-5, 5), min_size=1, max_size=3),
+    st.booleans(),
+)
+def test_clusters_far_out_are_isolated(
+    e: int, n: int, pairs: list[tuple[int, int]], real: list[int], both: bool
+) -> None:
+    """Real and complex roots together, 10^e away from their mirrored ones: known by construction, and Sturm's count."""
+    center = n * 10 ** max(e - 6, 1)
+    p = far_cluster(center, pairs, real)
+    low, high = fmpq(-(10**31) if both else 0), fmpq(10**31)
+    known = sorted({s * (center + r) for r in real for s in ((1, -1) if both else (1,))})
+    found = isolate(p, low, high)
+    assert len(found) == len(known) == roots_between(p, low, high)
+    for root, value in zip(found, known, strict=True):
+        assert root.low == value if root.is_rational else root.low < value < root.high
+
+
+def test_a_cluster_far_out_takes_few_tests_at_any_distance(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bisection with steps that only follow Newton's method from the ends took 70 at 10^27."""
+    calls = 0
+    bound = real_roots._descartes_bound
+
+    def counted(q: fmpz_poly, degree: int) -> int:
+        nonlocal calls
+        calls += 1
+        return bound(q, degree)
+
+    monkeypatch.setattr(real_roots, "_descartes_bound", counted)
+    for e in (9, 18, 27):
+        calls = 0
+        assert len(isolate(far_cluster(67 * 10**e, [(2, 1), (-2, 1)], [-1, 1]), fmpq(0), fmpq(10**30))) == 2
+        assert calls <= 40
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(1, 60), st.integers(10**299, 10**300), st.integers(10**299, 10**300), st.integers(0, 2))
+def test_long_polynomials_are_refined_to_the_same_root(digits: int, n: int, m: int, pairs: int) -> None:
+    """The root m/n with complex pairs beside it, for which balls are too wide: exact values have to stand in."""
+    line = fmpz_poly([-m, n])
+    p = line * (line**2 + 1 if pairs > 0 else fmpz_poly([10**310, 1])) * (line**2 + 2 if pairs > 1 else 1)
+    width = fmpq(1, 10**digits)
+    short = refine(RealRoot(p, fmpq(0), fmpq(11)), width)
+    assert short.high - short.low < width
+    assert short.low == fmpq(m, n) if short.is_rational else short.low < fmpq(m, n) < short.high
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.lists(st.lists(st.integers(-99, 99), min_size=1, max_size=4), min_size=3, max_size=5),
+    st.integers(1, 40), st.integers(0, 40),
+)  # fmt: skip
+def test_balanced_units_change_discriminants_and_resultants_by_a_factor(rows: list[list[int]], a: int, b: int) -> None:
+    """p(10^a u, 10^b v), whose coefficients are long: with and without other units."""
+    p = tuple(fmpz_poly([c * 10 ** (a * j + b * i) for j, c in enumerate(row)]) for i, row in enumerate(rows))
+    q = tuple(fmpz_poly([7, 10**a]) * 10 ** (b * i) for i in range(3))
+    if not p[-1] or not any(p):
+        return
+    for own, long in ((lambda f: discriminant(f[0]), [p]), (lambda f: resultant(*f), [p, q])):
+        short, unit = balanced(long)
+        left, right = own(long), own(short)
+        stretched = fmpz_poly([c * unit**j for j, c in enumerate(right.coeffs())])
+        assert left * stretched.leading_coefficient() == stretched * left.leading_coefficient() if left else not right
+        assert sum(int(c.height_bits()) for f in short for c in f) <= sum(int(c.height_bits()) for f in long for c in f)
+    ((shorter, *_), unit) = balanced([q])
+    assert unit == 10**a and max(c.height_bits() for c in shorter) < 4
+
+
+def by_solving(algebra: Fibre, form: tuple[int, ...]) -> list[fmpq_poly]:
+    """The unknowns as polynomials in a form, from the linear system for its powers."""
+    size = algebra.dimension
+    step = fmpq_mat(size, size)
+    for weight, matrix in zip(form, algebra.multiplication, strict=True):
+        step = step + matrix * fmpq(weight)
+    powers = [fmpq_mat(size, 1, [fmpq(int(i == 0)) for i in range(size)])]
+    for _ in range(size - 1):
+        powers.append(step * powers[-1])
+    change = fmpq_mat(size, size, [powers[j][i, 0] for i in range(size) for j in range(size)])
+    targets = fmpq_mat(size, len(form), [m[i, 0] for i in range(size) for m in algebra.multiplication])
+    solved = change.solve(targets)
+    return [fmpq_poly([solved[i, k] for i in range(size)]) for k in range(len(form))]
+
+
+@pytest.mark.parametrize("digits", [1, 40])
+def test_quotients_and_polynomials_give_the_same_points(digits: int) -> None:
+    share = fmpq(int("1234567891" * 4) % 10**digits, 10**digits)
+    forces = {"F3": -10 + share, "F4": -10 - share}
+    values = {"L1": 1, "L2": 1 + share, "rho": 1 - share / 3, "k1": 100, "k2": 100 + share, "k3": 100, **forces}
+    system = system_of("ptm")
+    algebra = point_system(system, {n: fmpq(values.get(n, 0)) for n in (*values, "F3x", "F4x")}).algebra
+    found = univariate_representation(algebra)
+    assert found is not None
+    modulus = fmpq_poly(found.minimal)
+    for quotient, solved in zip(found.coordinates, by_solving(algebra, found.form), strict=True):
+        assert (quotient - solved * found.slope) % modulus == 0
+    with ctx.workprec(60):
+        assert coordinates_at(found, arb(0, 100)) is None
+
+
+def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each fibre is isolated once; strips as wide as a window of 1e30 asks for are seen to be too wide beforehand."""
+    seen: list[tuple[object, ...]] = []
+    rounds: list[int] = []
+
+    def counted(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
+        seen.append((str(p), low, high))
+        return isolate(p, low, high)
+
+    refined = area._refine
+
+    def followed(*arguments: object) -> object:
+        rounds.append(len(seen))
+        return refined(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(area, "isolate", counted)
+    monkeypatch.setattr(area, "_refine", followed)
+    s = ten(30)
+    vast = MapQuestion(LOADED, {"rho": (Fraction(0), s), "L2": (Fraction(0), s)})
+    ptmcad.classify(ptmcad.slice_from_mapping(vast.record("vast")))
+    assert len(rounds) == 1
+    assert len(seen) == len(set(seen))
 
 
 def test_multiple_roots_are_refused() -> None:

@@ -12,7 +12,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from flint import Ordering, arb, arb_poly, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpoly_vec, fmpz_poly
+from flint import (
+    Ordering,
+    arb,
+    arb_poly,
+    fmpq,
+    fmpq_mat,
+    fmpq_poly,
+    fmpz,
+    fmpz_mat,
+    fmpz_mpoly_ctx,
+    fmpz_mpoly_vec,
+    fmpz_poly,
+)
 
 from ptmcad.algebra.groebner import Monomial, shifted
 from ptmcad.algebra.quotient import standard_monomials
@@ -98,17 +110,19 @@ def evaluate(algebra: Fibre, p: RationalPolynomial) -> fmpq_mat:
 
 @dataclass(frozen=True, slots=True)
 class UnivariateRepresentation:
-    """The points of a fibre as values of polynomials at the roots of one.
+    """The points of a fibre as values of quotients of polynomials at the roots of one.
 
     Attributes
     ----------
     minimal : squarefree, in Z[T]; its roots are the values of a linear form that separates the solutions.
-    coordinates : one polynomial in Q[T] for each unknown: its value at a root is the unknown's value there.
+    coordinates : one polynomial in Q[T] for each unknown: its value at a root, over that of ``slope``, is the unknown.
+    slope : in Q[T]; not zero at the roots.
     form : the coefficients of the linear form, one for each unknown.
     """
 
     minimal: fmpz_poly
     coordinates: tuple[fmpq_poly, ...]
+    slope: fmpq_poly
     form: tuple[int, ...]
 
 
@@ -117,29 +131,65 @@ def univariate_representation(algebra: Fibre) -> UnivariateRepresentation | None
 
     A form separates simple solutions exactly when its characteristic polynomial is squarefree; if the solutions are
     all simple, one of more than d^2/2 forms of this list does (Rouillier 1999, lemma 2.1).
+
+    The coordinates are quotients (theorem 3.1 there): for an unknown v, the sum over the points of v times the product
+    of (T - value of the form) over the other points has the coefficients trace(v form^j), and for v = 1 it is the
+    derivative of the characteristic polynomial. Polynomials without a denominator would be several times as long.
     """
     size, count = algebra.dimension, len(algebra.multiplication)
     for trial in range(1, size * (size - 1) // 2 * (count - 1) + 2):
+        weights = tuple(trial**k for k in range(count))  # points on a moment curve
         form = fmpq_mat(size, size)
-        for k, matrix in enumerate(algebra.multiplication):
-            form = form + matrix * fmpq(trial**k)  # points on a moment curve
-        characteristic = form.charpoly()
-        if characteristic.gcd(characteristic.derivative()).degree() > 0:
+        for matrix, weight in zip(algebra.multiplication, weights, strict=True):
+            form = form + matrix * fmpq(weight)
+        # in integers over common denominators: reducing every fraction on the way would take most of the time
+        step, below = form.numer_denom()
+        characteristic = step.charpoly()
+        stretched = fmpz_poly([c * below**i for i, c in enumerate(characteristic.coeffs())])
+        minimal = stretched // stretched.content()
+        if minimal.gcd(minimal.derivative()).degree() > 0:
             continue
-        powers = [fmpq_mat(size, 1, [fmpq(int(i == 0)) for i in range(size)])]
+        row, below_row = _basis_traces(algebra)
+        rows = [row]
         for _ in range(size - 1):
-            powers.append(form * powers[-1])
-        change = fmpq_mat(size, size, [powers[j][i, 0] for i in range(size) for j in range(size)])
-        targets = fmpq_mat(size, count, [m[i, 0] for i in range(size) for m in algebra.multiplication])
-        solved = change.solve(targets)
-        coordinates = tuple(fmpq_poly([solved[i, k] for i in range(size)]) for k in range(count))
-        return UnivariateRepresentation(characteristic.numer(), coordinates, tuple(trial**k for k in range(count)))
+            rows.append(rows[-1] * step)
+        columns, below_columns = fmpq_mat(
+            size, count, [m[i, 0] for i in range(size) for m in algebra.multiplication]
+        ).numer_denom()
+        traces = fmpz_mat(size, size, [x for r in rows for x in r.entries()]) * columns
+        # rows of coefficients: the quotients of the characteristic polynomial by T, T^2, and so on
+        hankel = fmpz_mat(size, size, [characteristic[i + j + 1] for i in range(size) for j in range(size)])
+        totals = hankel * traces
+        scale = fmpq(1, below_row * below_columns)
+        powers = [below**i for i in range(size)]
+        coordinates = tuple(
+            fmpq_poly(fmpz_poly([totals[i, k] * powers[i] for i in range(size)])) * scale for k in range(count)
+        )
+        slope = fmpq_poly(fmpz_poly([c * b for c, b in zip(characteristic.derivative().coeffs(), powers, strict=True)]))
+        return UnivariateRepresentation(minimal, coordinates, slope, weights)
     return None
 
 
-def coordinates_at(representation: UnivariateRepresentation, value: arb) -> list[arb]:
-    """Enclosures of the unknowns at the roots of ``minimal`` that a ball contains."""
-    return [arb_poly(p)(value) for p in representation.coordinates]
+def _basis_traces(algebra: Fibre) -> tuple[fmpz_mat, fmpz]:
+    """The traces of the multiplications by the basis monomials: a row of integers, and their common denominator."""
+    size = algebra.dimension
+    products = {algebra.basis[0]: fmpq_mat(size, size, [fmpq(int(i == j)) for i in range(size) for j in range(size)])}
+    for monomial in algebra.basis[1:]:  # a divisor of a basis monomial is one too, and comes before it
+        k = next(k for k, e in enumerate(monomial) if e)
+        rest = shifted(monomial, k, -1)
+        step = algebra.multiplication[k]
+        products[monomial] = products[rest] * step if any(rest) else step
+    traces = [sum((m[i, i] for i in range(size)), fmpq(0)) for m in (products[b] for b in algebra.basis)]
+    row, below = fmpq_mat(1, size, traces).numer_denom()
+    return row, below
+
+
+def coordinates_at(representation: UnivariateRepresentation, value: arb) -> list[arb] | None:
+    """Enclosures of the unknowns at the roots of ``minimal`` that a ball contains; None when the ball is too wide."""
+    slope = arb_poly(representation.slope)(value)
+    if slope.contains(0):
+        return None
+    return [arb_poly(p)(value) / slope for p in representation.coordinates]
 
 
 def hermite_matrix(algebra: Fibre, weight: fmpq_mat) -> fmpq_mat:

@@ -3,9 +3,10 @@
 Guarantee: exact. Isolation finds every root in the open interval; isolating intervals have rational ends, are disjoint
 and contain one root each, an interval of length zero being the root itself.
 
-Intervals are bisected; where several bisections in a row have not parted some roots, Newton's method says where their
-cluster may be, and Descartes' rule whether it is. So the steps that a cluster takes grow with the logarithm of its
-number of leading digits, not with that number.
+Intervals are bisected; where several bisections in a row have not parted some roots, Newton's method is run on to where
+their cluster may be, Taylor coefficients tell how long it may be, and Descartes' rule whether it is. Where the roots
+keep to one end of the interval, but too near to others for that, steps towards the end get longer while they are right.
+So the steps that a cluster takes grow with the logarithm of its number of leading digits, not with that number.
 
 References: Collins & Akritas, SYMSAC 1976; Rouillier & Zimmermann, J. Comput. Appl. Math. 162 (2004); Sagraloff &
 Mehlhorn, Computing real roots of real polynomials, J. Symb. Comp. 73 (2016).
@@ -13,20 +14,24 @@ Mehlhorn, Computing real roots of real polynomials, J. Symb. Comp. 73 (2016).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from flint import fmpq, fmpz, fmpz_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpz, fmpz_poly
 
 _SHIFT = fmpz_poly([1, 1])
-_PATIENCE = 50
-"""Cuts without a change of Descartes' bound after which `isolate` asks at the latest whether p is squarefree."""
 _TOGETHER = 3
-"""Cuts without such a change after which the roots are taken for a cluster."""
-_FAST = 6
-"""Steps to a cluster that are longer than 2^64 are taken only when the polynomial is known to be squarefree."""
+"""Cuts without a change of Descartes' bound after which the roots are taken for a cluster."""
+_COARSE = 8
+"""Bits with which a cluster is looked for at first."""
+_ROOM = 4
+"""How much longer than the estimate an interval around a cluster is: Descartes' rule sees complex roots in a lens."""
+_SHORT = fmpq(1, 16)
+"""Half the length up to which such an interval is better than bisection."""
+_LONG = 1000
+"""Bits of coefficients from which on values are not computed exactly where a ball will do."""
 _SLOWEST = 2
-"""The first step to a cluster is to a quarter of the interval; each further one is twice as many bits long."""
+"""The first step towards an end is to the part 2^-4 of the interval; each further one is twice as many bits long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,42 +119,46 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
             return ()
     width = high - low
     found: list[tuple[fmpq, fmpq]] = []
-    asked = False
-    stack = [_Part(_on_unit_interval(p, low, high), fmpq(0), fmpq(1), -1, 0, _SLOWEST)]
+    squarefree = False
+    stack = [_Part(_on_unit_interval(p, low, high), fmpq(0), fmpq(1), -1, 0, 0, _SLOWEST)]
     while stack:
         part = stack.pop()
-        q = part.polynomial
+        q, left, size = part.polynomial, part.left, part.width
         while q[0] == 0:
             q = q.right_shift(1)
         bound = _descartes_bound(q, q.degree())
         if bound == 0:
             continue
         if bound == 1:
-            found.append((low + width * part.left, low + width * (part.left + part.width)))
+            found.append((low + width * left, low + width * (left + size)))
             continue
-        unchanged = part.unchanged + 1 if bound == part.bound else 0
-        if not asked and (unchanged >= _PATIENCE or part.speed > _FAST):
-            asked = True
-            if p.gcd(p.derivative()).degree() > 0:
-                raise ValueError(f"a polynomial of degree {p.degree()} is not squarefree")
-        speed = part.speed
+        unchanged, run, speed = (part.unchanged + 1, part.run, part.speed) if bound == part.bound else (0, 0, _SLOWEST)
         if unchanged >= _TOGETHER:
-            cluster = _cluster(q, bound, 2 ** (2**speed))
-            if cluster is not None:
-                narrow, start, size = cluster
-                left, piece = part.left + start * part.width, size * part.width
-                stack.append(_Part(narrow, left, piece, bound, unchanged, speed + 1))
-                continue
-            speed = max(_SLOWEST, speed - 1)
+            if not squarefree and p.gcd(p.derivative()).degree() > 0:
+                raise ValueError(f"a polynomial of degree {p.degree()} is not squarefree")
+            squarefree = True
+            narrow = _cluster(q, bound)
+            if narrow is not None:
+                unchanged, run = 0, 0
+            elif abs(run) >= _TOGETHER:
+                narrow = _edge(q, bound, run > 0, 2**speed)
+                if narrow is not None:
+                    speed += 1
+                elif speed > _SLOWEST:
+                    speed -= 1
+                else:
+                    run = 0
+            if narrow is not None:
+                q, left, size = narrow[0], left + narrow[1] * size, narrow[2] * size
         n = q.degree()
         half = fmpz_poly([c << (n - i) for i, c in enumerate(q.coeffs())])
         other = half(_SHIFT)
-        piece = part.width / 2
-        middle = part.left + piece
+        piece = size / 2
+        middle = left + piece
         if other[0] == 0:
             found.append((low + width * middle, low + width * middle))
-        stack.append(_Part(half, part.left, piece, bound, unchanged, speed))
-        stack.append(_Part(other, middle, piece, bound, unchanged, speed))
+        stack.append(_Part(half, left, piece, bound, unchanged, min(run, 0) - 1, speed))
+        stack.append(_Part(other, middle, piece, bound, unchanged, max(run, 0) + 1, speed))
     return tuple(_tidy(p, left, right) for left, right in sorted(found))
 
 
@@ -163,7 +172,8 @@ class _Part:
     left, width : of the part, the whole interval being (0, 1).
     bound : Descartes' bound for the part that it was cut from.
     unchanged : for how many cuts the bound has been the same.
-    speed : a cluster is looked for in a part that is narrower by the factor 2^(2^speed) / 4.
+    run : for how many cuts the part has been the right half (positive) or the left one (negative).
+    speed : roots are looked for in the share 2^-(2^speed) beside an end of the part.
     """
 
     polynomial: fmpz_poly
@@ -171,32 +181,61 @@ class _Part:
     width: fmpq
     bound: int
     unchanged: int
+    run: int
     speed: int
 
 
-def _cluster(q: fmpz_poly, bound: int, pieces: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
-    """Four of so many pieces of (0, 1) which hold all roots of q there: q on them, their start and their width.
+def _cluster(q: fmpz_poly, bound: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
+    """A much shorter interval in (0, 1) which holds all roots of q there: q on it, its start and its width.
 
-    None when that is not proved. It is when Descartes' bound for the pieces is that for (0, 1), as the sum of the
-    bounds for disjoint parts never exceeds the bound for the whole. Roots that lie together far from all others look
-    like a multiple one to Newton's method, from the left end as from the right.
+    None when that is not proved. It is when Descartes' bound for the interval is that for (0, 1), as the sum of the
+    bounds for disjoint parts never exceeds the bound for the whole. Where the interval may be is told by Newton's
+    method, to which roots that lie together look like a multiple one, from the left end as from the right; how long,
+    by the Taylor coefficients there, whose first ones are those of a polynomial with about these roots only.
     """
     slope = q.derivative()
-    estimates = []
-    for end in (0, 1):
-        below = slope(end)
-        if below == 0:
-            return None
-        estimates.append(end * pieces - bound * q(end) * pieces // below)
-    if abs(estimates[0] - estimates[1]) > max(2, pieces // 8) or not 0 <= estimates[0] <= pieces:
+    # in whole numbers: reducing fractions of thousands of bits would take most of the time
+    values = [(q(end), slope(end)) for end in (0, 1)]
+    if any(value == 0 or below == 0 for value, below in values):
         return None
-    for estimate in dict.fromkeys(estimates):
-        start = min(max(int(estimate) - 2, 0), max(pieces - 4, 0))
-        left, right = fmpq(start, pieces), fmpq(min(start + 4, pieces), pieces)
-        narrow = _on_unit_interval(q, left, right)
-        if narrow[0] != 0 and _descartes_bound(narrow, q.degree()) == bound:
-            return narrow, left, right - left
-    return None
+    steps = [int((bound * value << _COARSE) // below) for value, below in values]
+    targets = -steps[0], 2**_COARSE - steps[1]
+    if abs(targets[0] - targets[1]) > 2**_COARSE // 4 or not -1 < targets[0] >> (_COARSE - 2) < 5:
+        return None
+    last, centre = min((abs(step), target) for step, target in zip(steps, targets, strict=True))
+    bits, contracted = _COARSE, False
+    while True:
+        at = fmpq(centre, 2**bits)
+        value, below = fmpq(q(at)), fmpq(slope(at))
+        if value == 0 or below == 0:
+            break
+        more = 2 * (bits - last.bit_length()) + _COARSE
+        step = int((bound * value.p * below.q << more) // (value.q * below.p))
+        if 2 * abs(step) > last << (more - bits):
+            break
+        centre, last, bits, contracted = (centre << (more - bits)) - step, abs(step), more, True
+    if not contracted:
+        return None
+    centre, unit = at, fmpq(2) ** (last.bit_length() - bits)
+    around = _on_unit_interval(q, centre, centre + unit)
+    radius = _ROOM * unit * _root_bound(fmpz_poly(around.coeffs()[: bound + 1]))
+    if radius > _SHORT:
+        return None
+    left, right = max(centre - radius, fmpq(0)), min(centre + radius, fmpq(1))
+    return _holding(q, bound, left, right) if left < right else None
+
+
+def _edge(q: fmpz_poly, bound: int, right: bool, bits: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
+    """The same for the part 2^-bits of (0, 1) at its right or left end, unless it does not hold all the roots."""
+    share = fmpq(1, 2**bits)
+    return _holding(q, bound, 1 - share if right else fmpq(0), fmpq(1) if right else share)
+
+
+def _holding(q: fmpz_poly, bound: int, left: fmpq, right: fmpq) -> tuple[fmpz_poly, fmpq, fmpq] | None:
+    """q on (left, right), its start and its width, if that is proved to hold all roots of q in (0, 1)."""
+    narrow = _on_unit_interval(q, left, right)
+    held = narrow[0] != 0 and _descartes_bound(narrow, q.degree()) == bound
+    return (narrow, left, right - left) if held else None
 
 
 def _root_bound(p: fmpz_poly) -> fmpq:
@@ -248,19 +287,20 @@ def refine(root: RealRoot, width: fmpq) -> RealRoot:
     p, low, high = root.polynomial, root.low, root.high
     if low == high or high - low < width:
         return root
-    at_low, at_high = fmpq(p(low)), fmpq(p(high))
+    value_at = _values(p, low, high, width)
     pieces = 4
+    at_low, at_high = value_at(low, pieces), value_at(high, pieces)
     while high - low >= width:
         step = (high - low) / pieces
         slope = at_low / (at_low - at_high)
         k = (slope * pieces + fmpq(1, 2)).floor()
         left = low + step * k
-        value = at_low if k == 0 else at_high if k == pieces else fmpq(p(left))
+        value = at_low if k == 0 else at_high if k == pieces else value_at(left, pieces)
         if value == 0:
             return RealRoot(p, left, left)
         right = left + step if sign(value) == sign(at_low) else left - step
         if low <= right <= high:
-            other = at_low if right == low else at_high if right == high else fmpq(p(right))
+            other = at_low if right == low else at_high if right == high else value_at(right, pieces)
             if other == 0:
                 return RealRoot(p, right, right)
             if sign(other) != sign(value):
@@ -272,7 +312,7 @@ def refine(root: RealRoot, width: fmpq) -> RealRoot:
                 continue
         pieces = 4
         middle = (low + high) / 2
-        value = fmpq(p(middle))
+        value = value_at(middle, pieces)
         if value == 0:
             return RealRoot(p, middle, middle)
         if sign(value) == sign(at_low):
@@ -280,6 +320,36 @@ def refine(root: RealRoot, width: fmpq) -> RealRoot:
         else:
             high, at_high = middle, value
     return RealRoot(p, low, high)
+
+
+def _values(p: fmpz_poly, low: fmpq, high: fmpq, width: fmpq) -> Callable[[fmpq, int], fmpq]:
+    """p at points of [low, high], for so many pieces: exact, or with the right sign and short if p is long.
+
+    A short value comes from a ball that does not contain zero and is known more precisely than one piece of the secant.
+    """
+
+    def exact(at: fmpq, pieces: int) -> fmpq:
+        return fmpq(p(at))
+
+    bits = p.height_bits()
+    if bits < _LONG:
+        return exact
+    depth = int((max(abs(low), abs(high)) / width).ceil()).bit_length()
+    precision = 3 * depth + 64
+    if bits < 2 * precision:
+        return exact
+    with ctx.workprec(precision):
+        rounded = arb_poly(p)
+
+    def value_at(at: fmpq, pieces: int) -> fmpq:
+        with ctx.workprec(precision):
+            ball = rounded(arb(at))
+        if ball.rel_accuracy_bits() < pieces.bit_length() + 8:
+            return fmpq(p(at))
+        mantissa, exponent = ball.mid().man_exp()
+        return fmpq(mantissa) * fmpq(2) ** int(exponent)
+
+    return value_at
 
 
 def has_root_between(p: fmpz_poly, low: fmpq, high: fmpq) -> bool:

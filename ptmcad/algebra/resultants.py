@@ -9,6 +9,7 @@ polynomial of degree m with the bound B. The a that gives the smallest bound is 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import pairwise
@@ -66,6 +67,36 @@ def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_
         return value
 
     return interpolate(at, bound, check)
+
+
+def balanced(polynomials: Sequence[Coefficients]) -> tuple[list[tuple[fmpz_poly, ...]], int]:
+    """The polynomials with u and v in other units, in which their coefficients are short, and the unit of u.
+
+    Numbers of many decimals put high powers of ten into the coefficients: where m^j divides every coefficient of u^j,
+    the substitution of u / m for u is one in integers. Discriminants and resultants with respect to v then have the
+    roots m times those before.
+    """
+    powers_of_v = range(max(map(len, polynomials)))
+    unit = _unit([math.gcd(*(int(c.content()) for p in polynomials for c in p[i : i + 1])) for i in powers_of_v])
+    rows = [[c // unit**i for i, c in enumerate(p)] for p in polynomials]
+    length = max(len(c) for p in rows for c in p)
+    unit = _unit([math.gcd(*(int(c[j]) for p in rows for c in p)) for j in range(length)])
+    if unit == 1:
+        return [tuple(p) for p in rows], 1
+    powers = [unit**j for j in range(length)]
+    return [tuple(fmpz_poly([c[j] // powers[j] for j in range(len(c))]) for c in p) for p in rows], unit
+
+
+def _unit(common: Sequence[int]) -> int:
+    """A number whose j-th power divides the j-th of these (0 is divided by all), as large as is easily found."""
+    unit = 0
+    for j, g in enumerate(common):
+        if j == 0 or g == 0:
+            continue
+        unit = unit or g
+        while unit > 1 and g % unit**j:
+            unit = math.gcd(unit, g // math.gcd(g, unit ** (j - 1)))
+    return max(unit, 1)  # made smaller for a later one, it is a divisor of what did for the earlier ones
 
 
 def _offset(p: Coefficients, slope: Fraction) -> Fraction:

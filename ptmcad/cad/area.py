@@ -13,6 +13,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 
 from flint import arb, ctx, fmpq
@@ -28,19 +29,21 @@ from ptmcad.cad.stacks import StackData
 
 @dataclass(frozen=True, slots=True)
 class _Effort:
-    """Degree of the polynomial on a panel, and what is worth trying on panels of which width.
+    """Degree of the polynomial on a panel, what is worth trying on panels of which width, and what is known already.
 
     Attributes
     ----------
     width : of the base.
     broad : on panels broader than this horizontals would be too coarse to be worth their time.
     narrowest : narrower panels would need a higher precision.
+    roots : of a component over an abscissa within the window; isolated once for all of a stack's walls.
     """
 
     order: int
     width: fmpq
     broad: fmpq
     narrowest: fmpq
+    roots: Callable[[int, fmpq], tuple[RealRoot, ...]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,8 +100,16 @@ def region_areas(
     bits += _bits_lost(base) + _bits_lost(fibre)
     narrowest = min(map(_isolated, stacks))
     finer, even = 20, True
+    by_component = {c.component: c for c in curves}
+
+    @lru_cache(maxsize=_KEPT)
+    def roots(component: int, u: fmpq) -> tuple[RealRoot, ...]:
+        # walls over the same stack are cut at the same places, and again when an attempt is repeated
+        return isolate(by_component[component].fibre(u), *fibre)
+
     while True:
-        effort = _Effort(digits + 2, width, width * fmpq(1, 2 ** (3 * digits // 2)), narrowest / 2 ** (bits // 2))
+        broad = width * fmpq(1, 2 ** (3 * digits // 2))
+        effort = _Effort(digits + 2, width, broad, narrowest / 2 ** (bits // 2), roots)
         try:
             with ctx.workprec(bits):
                 bounds = _areas(stacks, regions, curves, (strip, even), fibre, tolerance * 3 / 4, count, effort, check)
@@ -136,6 +147,10 @@ _FASTEST = 10
 """The fastest cut is to the part 2^-32 of a panel."""
 _LONG = 128
 """Bits granted at first to long coefficients."""
+_VASTLY = 2**8
+"""So much larger than allowed are strips against rough areas, when it is pointless to find out about the exact ones."""
+_KEPT = 1024
+"""Fibres whose roots are remembered."""
 _AT_FIRST = 20
 """Bits to which the height of a branch is asked for before the regions' areas are known roughly."""
 
@@ -176,6 +191,11 @@ def _areas(
     )
     spans = [_span(s, a * strips[0], b * strips[0]) for s, (a, b) in zip(stacks, sides, strict=True)]
     gaps = sum((b[0] - a[1] for a, b in pairwise(spans)), fmpq(0))
+    lost = gaps * (fibre[1] - fibre[0])
+    if strips[1]:
+        rough = _rough(spans, stacks, regions, fibre, count, effort)
+        if lost * 4 > from_fraction(tolerance) * min(rough) * _VASTLY:
+            raise _Unreachable(strips=True)
     fixed = _edges(spans, regions, fibre, count)
     wanted = (fibre[1] - fibre[0]) / 2**_AT_FIRST
     panels = []
@@ -185,7 +205,7 @@ def _areas(
                 check()
                 source = by_component[wall.component]
                 panels.append(_panel(source, wall.root, low, high, row[j], row[j + 1], fibre, effort, wanted))
-    return _refine(panels, fixed, gaps * (fibre[1] - fibre[0]), fibre, tolerance, effort, check)
+    return _refine(panels, fixed, lost, fibre, tolerance, effort, check)
 
 
 def _isolated(stack: StackData) -> fmpq:
@@ -209,6 +229,27 @@ def _span(stack: StackData, left_strip: fmpq, right_strip: fmpq) -> Interval:
         if not root.is_rational:
             right = simplest_between(max(right - right_strip / 2, stack.sample), right)
     return left, right
+
+
+def _rough(
+    spans: Sequence[Interval],
+    stacks: Sequence[StackData],
+    regions: Sequence[Sequence[int]],
+    fibre: Interval,
+    count: int,
+    effort: _Effort,
+) -> list[fmpq]:
+    """Each region's area as if its cells were as high everywhere as in the middle; it proves nothing."""
+    total = [fmpq(0)] * count
+    for (low, high), stack, row in zip(spans, stacks, regions, strict=True):
+        bottom = fibre[0]
+        for j, wall in enumerate(stack.walls):
+            if row[j] != row[j + 1]:
+                at_middle = effort.roots(wall.component, (low + high) / 2)[wall.root]
+                total[row[j]] += (at_middle.high - bottom) * (high - low)
+                bottom = at_middle.low
+        total[row[-1]] += (fibre[1] - bottom) * (high - low)
+    return total
 
 
 def _edges(spans: Sequence[Interval], regions: Sequence[Sequence[int]], fibre: Interval, count: int) -> list[fmpq]:
@@ -318,7 +359,7 @@ def _panel(
     ``wanted`` is an error of the branch's height that would do.
     """
     middle = (low + high) / 2
-    at_middle = isolate(curve.fibre(middle), *fibre)[root]
+    at_middle = effort.roots(curve.component, middle)[root]
     integral = None
     if singular == 0:
         integral = _smooth(curve, root, at_middle, low, high, fibre, effort, wanted)
@@ -351,7 +392,7 @@ def _smooth(
         return series
 
     def branch(u: fmpq) -> RealRoot:
-        return at_middle if u == middle else isolate(curve.fibre(u), *fibre)[root]
+        return at_middle if u == middle else effort.roots(curve.component, u)[root]
 
     between = arc_integral(curve.in_v, branch, middle, radius, fibre, wanted)
     if between is None and obstacle:

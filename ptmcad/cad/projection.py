@@ -18,7 +18,7 @@ from math import gcd
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine
-from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
+from ptmcad.algebra.resultants import Check, balanced, discriminant, nothing, resultant
 from ptmcad.algebra.window import Interval
 from ptmcad.cad.curves import Curve, base_deflation, deflation
 
@@ -67,17 +67,15 @@ def project(
     deflate = "even-powers" not in keep
     found: dict[tuple[int, ...], tuple[UnivariatePolynomial, str]] = {}
 
-    def adopt(p: UnivariatePolynomial, origin: str) -> None:
-        if p.degree() < 1:
-            return
-        for factor, _ in p.factor()[1]:
+    def adopt(factors: list[UnivariatePolynomial], origin: str) -> None:
+        for factor in factors:
             found.setdefault(tuple(int(c) for c in factor.coeffs()), (factor, origin))
 
     for line in verticals:
-        adopt(line, "vertical line")
+        adopt(_factors(line), "vertical line")
     for c in curves:
-        for p, origin in _of_one(c, fibre, check, deflate):
-            adopt(p, origin)
+        for factors, origin in _of_one(c, fibre, check, deflate):
+            adopt(factors, origin)
     for i, c in enumerate(curves):
         for d in curves[i + 1 :]:
             adopt(_of_two(c, d, check, deflate), f"components {c.component} and {d.component} meet")
@@ -88,25 +86,49 @@ def project(
     return Projection(tuple(found.values()), inside(disjoint(short), base))
 
 
-def _of_one(c: Curve, fibre: Interval, check: Check, deflate: bool) -> list[tuple[UnivariatePolynomial, str]]:
-    k = deflation(c.in_v) if deflate else 1
-    (deflated,), inflation = _deflated([c.in_v[::k]], deflate)
-    name = f"component {c.component}"
-    result = [(discriminant(deflated, check).inflate(inflation), f"{name}: turning or singular point")]
-    if k > 1 and fibre[0] < 0 < fibre[1]:
-        result.append((c.in_v[0], f"{name}: turning point on the axis"))
-    for edge in fibre:
-        result.append((c.trace(edge), f"{name}: crosses the window's edge"))
+def _factors(p: UnivariatePolynomial, unit: int = 1, inflation: int = 1) -> list[UnivariatePolynomial]:
+    """The irreducible factors of p(unit u^inflation) that are not constant."""
+    if p.degree() < 1:
+        return []
+    if unit == 1:
+        return [factor for factor, _ in p.inflate(inflation).factor()[1]]
+    result = []
+    for factor, _ in p.factor()[1]:
+        stretched = UnivariatePolynomial([c * unit**j for j, c in enumerate(factor.coeffs())])
+        result += _factors(stretched // stretched.content(), 1, inflation)
     return result
 
 
-def _of_two(c: Curve, d: Curve, check: Check, deflate: bool) -> UnivariatePolynomial:
+def _of_one(c: Curve, fibre: Interval, check: Check, deflate: bool) -> list[tuple[list[UnivariatePolynomial], str]]:
+    k = deflation(c.in_v) if deflate else 1
+    (deflated,), unit, inflation = _shortened([c.in_v[::k]], deflate)
+    name = f"component {c.component}"
+    result = [(_factors(discriminant(deflated, check), unit, inflation), f"{name}: turning or singular point")]
+    if k > 1 and fibre[0] < 0 < fibre[1]:
+        result.append((_factors(c.in_v[0]), f"{name}: turning point on the axis"))
+    for edge in fibre:
+        result.append((_factors(c.trace(edge)), f"{name}: crosses the window's edge"))
+    return result
+
+
+def _of_two(c: Curve, d: Curve, check: Check, deflate: bool) -> list[UnivariatePolynomial]:
     k = gcd(deflation(c.in_v), deflation(d.in_v)) if deflate else 1
-    (first, second), inflation = _deflated([c.in_v[::k], d.in_v[::k]], deflate)
-    return resultant(first, second, check).inflate(inflation)
+    (first, second), unit, inflation = _shortened([c.in_v[::k], d.in_v[::k]], deflate)
+    return _factors(resultant(first, second, check), unit, inflation)
 
 
 Coefficients = tuple[UnivariatePolynomial, ...]
+_LONG = 1000
+"""Bits of coefficients from which on other units for u and v are looked for."""
+
+
+def _shortened(polynomials: list[Coefficients], deflate: bool) -> tuple[list[Coefficients], int, int]:
+    """The polynomials with u in place of unit u^inflation, unit, and inflation."""
+    deflated, inflation = _deflated(polynomials, deflate)
+    if max(c.height_bits() for p in deflated for c in p) < _LONG:
+        return deflated, 1, inflation
+    shorter, unit = balanced(deflated)
+    return shorter, unit, inflation
 
 
 def _deflated(polynomials: list[Coefficients], deflate: bool) -> tuple[list[Coefficients], int]:
