@@ -25,7 +25,7 @@ from ptmcad.bench.error import grid_error, wrong_areas
 from ptmcad.bench.methods import question
 from ptmcad.bench.reference import COUNTS, Reference, Walls, centres, reference, regions, shown_count, walls
 from ptmcad.cad.curves import curve
-from ptmcad.cad.polyline import Chord, chords
+from ptmcad.cad.polyline import FLAT, Chord, chords
 from ptmcad.cad.stacks import roots_over
 from ptmcad.plane import PlanePolynomial
 
@@ -139,6 +139,26 @@ def test_disc_of_known_area() -> None:
         (low, high), _ = wrong_areas(found, np.full((3, 3), shown, dtype=np.int16))
         assert low <= Fraction(wrong) + Fraction(1, 10**14) and Fraction(wrong) - Fraction(1, 10**14) <= high
         assert high - low < Fraction(1, 10**4)
+
+
+def test_walls_that_leave_a_cusp_side_by_side_are_shut_in() -> None:
+    """(2 v - 1)^2 = u^7: near 0 the walls are too close together for slopes to be proved, but not for heights."""
+    source = curve(0, from_plane(PlanePolynomial.of([(0, 2, 4), (0, 1, -4), (0, 0, 1), (7, 0, -1)])), 0)
+    unit = (fmpq(0), fmpq(1))
+    span = (Fraction(1, 2**32), 1 - Fraction(1, 2**32))
+    for root, side in ((0, -1), (1, 1)):
+        found = chords(source, root, span, unit, unit, Fraction(1, 2**18), Fraction(1, 2**24))
+        assert len(found) < 2000
+        assert max(c.apart for c in found) <= FLAT
+        assert sum(c.apart * (c.right - c.left) for c in found) < Fraction(1, 2**17)
+        for c in found:
+            for part in (Fraction(1, 9), Fraction(1, 2), Fraction(8, 9)):
+                x = c.left + (c.right - c.left) * part
+                line = c.at_left + (c.at_right - c.at_left) * part
+                # the wall's v is 1/2 + side sqrt(u^7) / 2: both ends of the chord's band, squared exactly
+                ends = [2 * side * (line + s * c.apart - Fraction(1, 2)) for s in (-1, 1)]
+                low, high = min(ends), max(ends)
+                assert (low < 0 or low**2 <= x**7) and high > 0 and x**7 <= high**2
 
 
 def test_chords_hold_their_walls() -> None:

@@ -260,6 +260,9 @@ def test_a_fixed_cost_is_told_from_growth(p: float, share: float) -> None:
     if found.verdict is Verdict.FIXED_COST:
         assert abs(found.growth - p) < 0.05 * p
         assert abs(found.fixed - a) < 0.05 * (a + sizes[0] ** p)
+        assert found.growth_low <= found.growth <= found.growth_high
+        assert abs(found.growth_high - p) < 0.2 * p
+        assert abs(found.growth_low - p) < 0.2 * p
     if share > 1.5:
         assert found.verdict is Verdict.FIXED_COST
 

@@ -5,7 +5,9 @@ lies over no chord is a part of the base of at most the width that was asked for
 
 On a panel that holds no critical value a wall is the graph of a function with two derivatives. If its second derivative
 is at most K in modulus there, a panel of width w has the graph within K w^2 / 8 of the chord between its ends;
-`algebra.chords.slope_over` encloses the derivative. Panels on which that is not proved, or too far, are halved.
+`algebra.chords.slope_over` encloses the derivative. Where that proves nothing, near singular points and where walls run
+close together, a wall that no root of p(., v) lets pass two heights v stays between them. Panels on which the distance
+is not proved, or too large, are halved.
 """
 
 from __future__ import annotations
@@ -28,6 +30,9 @@ _PLACES = 2**60
 """Ends of chords are rounded to this part of the fibre."""
 ROUNDING = Fraction(2, _PLACES)
 """By which distances are made larger for that."""
+SHORT, FLAT, LITTLE = Fraction(1, 2**12), Fraction(1, 2**12), Fraction(1, 2**34)
+"""Between two heights a wall is shut in on panels of at most the first width; that does when they are the second apart,
+and the third is the largest area between them."""
 UNPROVED = Fraction(1)
 """The distance where nothing is proved: two points of a fibre are no further apart."""
 
@@ -65,7 +70,8 @@ def chords(
     Parameters
     ----------
     span : where, as shares of the base; no critical value lies in it, its ends included.
-    apart : the largest distance wanted, as a share of the fibre.
+    apart : the largest distance wanted, as a share of the fibre; it may be exceeded on panels where the wall is shut in
+        between two heights, see `FLAT` and `LITTLE`.
     narrowest : panels of at most this share of the base are not halved. Where nothing is proved on one, the distance to
         its chord is `UNPROVED`, which always holds.
     check : called between panels; may raise to stop.
@@ -88,7 +94,11 @@ def chords(
         left, right = waiting.pop()
         middle = (left + right) / 2
         distance = _distance(curve, root, left, right, base, fibre)
-        if right - left > narrowest and (distance is None or distance > apart):
+        enough = distance is not None and distance <= apart
+        if distance is None and right - left <= SHORT:
+            distance = _between_heights(curve, (left, right), (place(left), place(right)), base, fibre)
+            enough = distance is not None and distance <= FLAT and distance * (right - left) <= LITTLE
+        if right - left > narrowest and not enough:
             waiting += [(middle, right), (left, middle)]
         else:
             known = UNPROVED if distance is None else min(distance + ROUNDING, UNPROVED)
@@ -110,6 +120,33 @@ def _distance(
     mantissa, exponent = (abs(slope.second) * arb(radius * radius / 2 / height)).upper().man_exp()
     distance = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
     return -((-distance * _PLACES).__floor__()) * Fraction(1, _PLACES)
+
+
+def _between_heights(
+    curve: Curve, panel: tuple[Fraction, Fraction], ends: tuple[Fraction, Fraction], base: Interval, fibre: Interval
+) -> Fraction | None:
+    """How far apart two heights are between which a wall with these ends is shut in over a panel; None: not proved.
+
+    The wall does not leave the window, and it can not cross a height at which p has no zero over the panel.
+    """
+    width, height = base[1] - base[0], fibre[1] - fibre[0]
+    u = base[0] + width * fmpq((panel[0] + panel[1]).numerator, (panel[0] + panel[1]).denominator) / 2
+    radius = width * fmpq((panel[1] - panel[0]).numerator, (panel[1] - panel[0]).denominator) / 2
+    found = []
+    for end, side in ((min(ends), -1), (max(ends), 1)):
+        margin = max(abs(ends[1] - ends[0]), ROUNDING)
+        while True:
+            at = end + side * margin
+            if not 0 < at < 1:
+                found.append(min(max(at, Fraction(0)), Fraction(1)))
+                break
+            if _absent(curve, u, radius, fibre[0] + height * fmpq(at.numerator, at.denominator), fmpq(0)):
+                found.append(at)
+                break
+            margin *= 4
+            if margin > FLAT:
+                return None
+    return found[1] - found[0]
 
 
 def reaching(

@@ -12,13 +12,14 @@ y = a + c x^p fits well, a being what every run costs and p how the rest grows.
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from math import exp, log
 from statistics import median
 
-RESAMPLES = 500
+RESAMPLES, FEW_RESAMPLES = 500, 100
+"""Drawings of points for bounds; with a fixed cost each takes as long as hundreds without."""
 BEND, SHARE = 0.35, 0.15
 """The halves' slopes differ when their difference exceeds both the first and this share of the larger."""
 STRAIGHT, GOOD = 0.9, 0.98
@@ -27,8 +28,8 @@ BETTER, NOTICEABLE, CURVED = 0.4, 0.05, 0.2
 """A fixed cost has to lessen the sum of squares to the first part, to be the second part of the smallest y, and the
 halves' slopes have to differ by the third: a little noise is explained by it too."""
 LEAST_SIZES = 4
-PARTS = 400
-"""Fixed costs that are tried."""
+PARTS, COARSE_PARTS = 400, 40
+"""Fixed costs that are tried, and for points that were drawn for the bounds."""
 FLAT = 1.3
 """A quantity whose largest value is less than this many times its smallest does not grow."""
 
@@ -60,6 +61,7 @@ class Fit:
     first, last : the range of x.
     points : number of different x.
     fixed, growth : a and p of y = a + c x^p where that is the verdict; else 0 and the exponent.
+    growth_low, growth_high : bounds for that p, of the same kind as those of the exponent.
     """
 
     exponent: float
@@ -74,6 +76,8 @@ class Fit:
     points: int
     fixed: float
     growth: float
+    growth_low: float
+    growth_high: float
     verdict: Verdict
 
 
@@ -94,7 +98,8 @@ def fit(points: Points, seed: int = 1) -> Fit | None:
         return None
     logs = [(log(x), log(y)) for x, y in middle]
     slope, height = _line(logs)
-    low, high = _bounds([(log(x), log(y)) for x, y in points if y > 0], seed)
+    low, high = _bounds([(log(x), log(y)) for x, y in points if y > 0], (RESAMPLES, 2), seed, lambda p: _line(p)[0])
+    between = low, high
     # both halves hold the point next to the middle, so that they are joined
     centre = (logs[0][0] + logs[-1][0]) / 2
     joint = min(range(1, len(logs) - 1), key=lambda i: abs(logs[i][0] - centre), default=0)
@@ -104,23 +109,27 @@ def fit(points: Points, seed: int = 1) -> Fit | None:
     spread = sum((v - mean) ** 2 for _, v in logs)
     left = sum((v - height - slope * u) ** 2 for u, v in logs)
     determination = 1 - left / spread if spread > 0 else 1.0
-    misfit, fixed, growth, height_beyond = _beyond_fixed_cost(middle)
+    misfit, fixed, growth, height_beyond = _beyond_fixed_cost(middle, PARTS)
     better = misfit < min(BETTER * left, (1 - GOOD) * spread) and fixed > NOTICEABLE * middle[0][1]
     verdict = _verdict(middle, lower, upper, determination, better)
-    if verdict is not Verdict.FIXED_COST:
+    if verdict is Verdict.FIXED_COST:
+        wanted = FEW_RESAMPLES, LEAST_SIZES
+        between = _bounds(points, wanted, seed, lambda p: _beyond_fixed_cost(medians(p), COARSE_PARTS)[2])
+    else:
         fixed, growth, height_beyond = 0.0, slope, height
     return Fit(
         slope, min(low, slope), max(high, slope), exp(height_beyond), determination, lower, upper,
-        middle[0][0], middle[-1][0], len(middle), fixed, growth, verdict,
+        middle[0][0], middle[-1][0], len(middle), fixed, growth,
+        min(between[0], growth), max(between[1], growth), verdict,
     )  # fmt: skip
 
 
-def _beyond_fixed_cost(middle: Points) -> tuple[float, float, float, float]:
+def _beyond_fixed_cost(middle: Points, parts: int) -> tuple[float, float, float, float]:
     """The misfit, a, p and log c of y = a + c x^p with the least squares of log y; a is a part of the smallest y."""
     least = min(y for _, y in middle)
     tried = []
-    for part in range(PARTS):
-        fixed = least * part / PARTS
+    for part in range(parts):
+        fixed = least * part / parts
         slope, height = _line([(log(x), log(y - fixed)) for x, y in middle])
         misfit = sum((log(fixed + exp(height + slope * log(x))) - log(y)) ** 2 for x, y in middle)
         tried.append((misfit, fixed, slope, height))
@@ -151,13 +160,15 @@ def _line(points: Points) -> tuple[float, float]:
     return slope, y0 - slope * x0
 
 
-def _bounds(points: Points, seed: int) -> tuple[float, float]:
-    """The 5 % and 95 % quantiles of the slopes of resampled points."""
+def _bounds(
+    points: Points, wanted: tuple[int, int], seed: int, slope: Callable[[Points], float]
+) -> tuple[float, float]:
+    """The 5 % and 95 % quantiles of the slopes of resampled points: how often, and of how many different sizes."""
     source = random.Random(seed)
     slopes: list[float] = []
-    while len(slopes) < RESAMPLES:
+    while len(slopes) < wanted[0]:
         drawn = source.choices(points, k=len(points))
-        if len({x for x, _ in drawn}) > 1:
-            slopes.append(_line(drawn)[0])
+        if len({x for x, _ in drawn}) >= wanted[1]:
+            slopes.append(slope(drawn))
     slopes.sort()
-    return slopes[RESAMPLES // 20], slopes[-RESAMPLES // 20 - 1]
+    return slopes[wanted[0] // 20], slopes[-wanted[0] // 20 - 1]

@@ -17,7 +17,7 @@ def to_markdown(report: Mapping[str, Any]) -> str:
         "",
         "Exponents p of cost = c x^p, by least squares in logarithms, with 5 % and 95 % bounds from resampled runs.",
         "Lower and upper are the slopes over the two halves of the range; where they differ, one exponent says little;",
-        "where cost = a + c x^p fits, the fixed cost a is given, and the exponent beyond it.",
+        "where cost = a + c x^p fits, the fixed cost a is given, and the exponent beyond it with its bounds.",
         "Seconds are processor time unless they are called wall time; memory is the growth of the resident set.",
         "[What grows and why](../scaling.md) explains it. Written by `python -m ptmcad.bench.scaling`.",
         "",
@@ -51,7 +51,7 @@ def _beyond(f: Mapping[str, Any]) -> str:
     if not f["fixed"]:
         return ""
     fixed = f"{f['fixed']:,.0f}" if f["fixed"] >= MANY else f"{f['fixed']:.2g}"
-    return f"; beyond a fixed {fixed}: {f['growth']:.2f}"
+    return f"; beyond a fixed {fixed}: {f['growth']:.2f} ({f['growth_low']:.2f} to {f['growth_high']:.2f})"
 
 
 def _runs(family: Mapping[str, Any]) -> Iterator[str]:
