@@ -22,8 +22,10 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
+from flint import fmpq
 from numpy.typing import NDArray
 
+from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.bench.distance import Distances, distances, grid_boundary
 from ptmcad.bench.reference import Column, Reference, Walls, regions
 
@@ -116,28 +118,31 @@ def wrong_areas(walls: Walls, picture: Counts) -> tuple[Bounds, tuple[Bounds, ..
     """
     n = len(picture)
     sums = {c: _sums(picture, c) for c in set(walls.counts)}
-    parts, doubts = [Fraction(0)] * len(walls.counts), [Fraction(0)] * len(walls.counts)
-    doubt = sum((right - left for left, right, _ in walls.gaps), Fraction(0))
+    parts = [fmpq(0)] * len(walls.counts)
+    doubt = sum((from_fraction(gap[1] - gap[0]) for gap in walls.gaps), fmpq(0))
     doubts = [doubt] * len(walls.counts)
-    for left, right, top in walls.tops:
+    for low_end, high_end, top in walls.tops:
         below = sums[walls.counts[top]][:, n]
-        parts[top] += sum(((b - a) * int(below[k]) for k, a, b in _columns(left, right, n)), Fraction(0)) / n
+        columns = _columns(from_fraction(low_end), from_fraction(high_end), n)
+        parts[top] += sum(((b - a) * int(below[k]) for k, a, b in columns), fmpq(0)) / n
     for chord, lower, upper in walls.chords:
-        blurred = chord.apart * (chord.right - chord.left)
+        left, right = from_fraction(chord.left), from_fraction(chord.right)
+        at_left = from_fraction(chord.at_left)
+        blurred = from_fraction(chord.apart) * (right - left)
         doubt += blurred
         doubts[lower] += blurred
         doubts[upper] += blurred
-        rise = (chord.at_right - chord.at_left) / (chord.right - chord.left)
-        for k, a, b in _columns(chord.left, chord.right, n):
-            ends = (chord.at_left + (a - chord.left) * rise, chord.at_left + (b - chord.left) * rise)
+        rise = (from_fraction(chord.at_right) - at_left) / (right - left)
+        for k, a, b in _columns(left, right, n):
+            ends = (at_left + (a - left) * rise, at_left + (b - left) * rise)
             low, high = min(ends) * n, max(ends) * n
             parts[lower] += (b - a) * _mean(sums[walls.counts[lower]][k], low, high, n) / n
             parts[upper] -= (b - a) * _mean(sums[walls.counts[upper]][k], low, high, n) / n
-    return _around(sum(parts, Fraction(0)), doubt), tuple(map(_around, parts, doubts))
+    return _around(sum(parts, fmpq(0)), doubt), tuple(map(_around, parts, doubts))
 
 
-def _around(value: Fraction, doubt: Fraction) -> Bounds:
-    return max(value - doubt, Fraction(0)), min(value + doubt, Fraction(1))
+def _around(value: fmpq, doubt: fmpq) -> Bounds:
+    return max(to_fraction(value - doubt), Fraction(0)), min(to_fraction(value + doubt), Fraction(1))
 
 
 def _sums(picture: Counts, count: int) -> Any:
@@ -148,25 +153,25 @@ def _sums(picture: Counts, count: int) -> Any:
     return sums
 
 
-def _columns(left: Fraction, right: Fraction, n: int) -> list[tuple[int, Fraction, Fraction]]:
+def _columns(left: fmpq, right: fmpq, n: int) -> list[tuple[int, fmpq, fmpq]]:
     """The parts of an interval in the columns of a grid."""
-    first, last = (left * n).__floor__(), -((-right * n).__floor__()) - 1
-    return [(k, max(left, Fraction(k, n)), min(right, Fraction(k + 1, n))) for k in range(first, last + 1)]
+    first, end = int((left * n).floor()), int((right * n).ceil())
+    return [(k, max(left, fmpq(k, n)), min(right, fmpq(k + 1, n))) for k in range(first, end)]
 
 
-def _mean(sums: Any, low: Fraction, high: Fraction, n: int) -> Fraction:
+def _mean(sums: Any, low: fmpq, high: fmpq, n: int) -> fmpq:
     """The mean of n G over the heights from low to high, which are in pixels; G is linear in each pixel."""
-    first = min(low.__floor__(), n - 1)
-    last = min(max(-((-high).__floor__()) - 1, first), n - 1)
+    first = min(int(low.floor()), n - 1)
+    last = min(max(int(high.ceil()) - 1, first), n - 1)
 
-    def at(j: int, height: Fraction) -> Fraction:
+    def at(j: int, height: fmpq) -> fmpq:
         below = int(sums[j])
         return below + (height - j) * (int(sums[j + 1]) - below)
 
     if first == last:
         return at(first, (low + high) / 2)
-    total = Fraction(0)
+    total = fmpq(0)
     for j in range(first, last + 1):
-        a, b = max(low, Fraction(j)), min(high, Fraction(j + 1))
+        a, b = max(low, fmpq(j)), min(high, fmpq(j + 1))
         total += (b - a) * at(j, (a + b) / 2)
     return total / (high - low)
