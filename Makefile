@@ -74,7 +74,7 @@ $(VENV)/.installed-bench: $(VENV)/.installed
 bench: $(VENV)/.installed-bench
 	$(BIN)/python -m ptmcad.bench --rounds 3 --picture-rounds 1 --out docs/benchmarks
 	$(BIN)/ptmcad bench $(PAPER:%=configs/%.yaml) --time-limit 36 --out docs/benchmarks
-	$(BIN)/ptmcad bench $(filter-out $(PAPER:%=configs/%.yaml),$(wildcard configs/*.yaml)) --quick --rounds 1 --time-limit 8 \
+	$(BIN)/ptmcad bench $(filter-out $(PAPER:%=configs/%.yaml),$(wildcard configs/*.yaml)) --quick --rounds 1 --time-limit 6 \
 		--method exact --method certified --method companion --page --out docs/benchmarks
 
 ablation: $(VENV)/.installed

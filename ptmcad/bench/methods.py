@@ -42,7 +42,7 @@ TITLES = {
 AREA_TOLERANCES = ("1e-2", "1e-4", "1e-6", "1e-8", "1e-10", "1e-12")
 TOLERANCES = ("1e-1", "1e-2", "1e-3", "1e-4")
 GRIDS = (25, 50, 100, 200, 400, 800, 1600)
-START_GRIDS = (25, 50, 100)
+START_GRIDS = (12, 25)
 TRIAL_SECONDS = 20.0
 
 
