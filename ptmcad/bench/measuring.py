@@ -7,12 +7,15 @@ once, in an order drawn from the seed, beside the reference job. Nothing is meas
 from __future__ import annotations
 
 import json
+import os
 import random
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
+from multiprocessing import get_all_start_methods, get_context
 from pathlib import Path
 
 import numpy as np
@@ -114,7 +117,7 @@ def measure(
         report(f"{slice.name}: {len(started)} jobs")
         floor = _rounds(started, rounds, seed, time_limit, report)
         report(f"{slice.name}: errors")
-        measured = tuple(_measured(r, slice, exact, sides) for r in started)
+        measured = _all_measured(started, slice, exact, sides)
     return Study(
         slice=slice.name,
         heading=slice.heading,
@@ -248,6 +251,31 @@ def _run_until(r: _Runs, left: float, time_limit: float) -> float:
             else f"{usage.outcome.value}: {message[-1] if message else 'no message'}"
         )
     return usage.seconds
+
+
+def _all_measured(
+    started: Sequence[_Runs], slice: Slice, exact: Reference | None, sides: dict[str, Walls] | None
+) -> tuple[Measurement, ...]:
+    """The errors of all jobs' answers, computed side by side where a system can fork: nothing is timed by now."""
+    processes = min(os.cpu_count() or 1, len(started))
+    if processes < 2 or "fork" not in get_all_start_methods():
+        return tuple(_measured(r, slice, exact, sides) for r in started)
+    known = (started, slice, exact, sides)
+    with ProcessPoolExecutor(processes, get_context("fork"), _inherit, (known,)) as pool:
+        return tuple(pool.map(_measured_here, range(len(started))))
+
+
+_inherited: list[tuple[Sequence[_Runs], Slice, Reference | None, dict[str, Walls] | None]] = []
+"""In a forked process, what it computes with: far too much to be sent to it."""
+
+
+def _inherit(known: tuple[Sequence[_Runs], Slice, Reference | None, dict[str, Walls] | None]) -> None:
+    _inherited[:] = [known]
+
+
+def _measured_here(number: int) -> Measurement:
+    started, slice, exact, sides = _inherited[0]
+    return _measured(started[number], slice, exact, sides)
 
 
 def _measured(r: _Runs, slice: Slice, exact: Reference | None, sides: dict[str, Walls] | None) -> Measurement:
