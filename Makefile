@@ -17,7 +17,7 @@ help:
 	@echo "make fuzz       damaged and hostile records, results and points by the ten thousand, guided by coverage"
 	@echo "make check      ruff, its formatter and mypy in strict mode"
 	@echo "make bench      error, run time and memory on every slice in configs/, into docs/benchmarks/: ten minutes"
-	@echo "make ablation   what each saving is worth, into docs/benchmarks/: some minutes"
+	@echo "make ablation   what each saving is worth, into docs/benchmarks/: nine minutes"
 	@echo "make scaling    how time and memory grow, into docs/benchmarks/: three minutes"
 	@echo "make stress     stiff and extreme cases against double precision, into docs/benchmarks/: some minutes"
 	@echo "make docs       the manual, as out/docs/html/index.html, and the README's picture, into docs/img/"
@@ -74,7 +74,7 @@ $(VENV)/.installed-bench: $(VENV)/.installed
 bench: $(VENV)/.installed-bench
 	$(BIN)/python -m ptmcad.bench --rounds 3 --picture-rounds 1 --out docs/benchmarks
 	$(BIN)/ptmcad bench $(PAPER:%=configs/%.yaml) --time-limit 36 --out docs/benchmarks
-	$(BIN)/ptmcad bench $(filter-out $(PAPER:%=configs/%.yaml),$(wildcard configs/*.yaml)) --quick --rounds 1 --time-limit 6 \
+	$(BIN)/ptmcad bench $(filter-out $(PAPER:%=configs/%.yaml),$(wildcard configs/*.yaml)) --quick --rounds 1 --time-limit 5 \
 		--method exact --method certified --method companion --page --out docs/benchmarks
 
 ablation: $(VENV)/.installed
