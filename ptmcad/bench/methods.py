@@ -39,7 +39,7 @@ TITLES = {
     Method.QEPCAD: "QEPCAD on the sextic made by hand",
     Method.GCAD: "gcad on the finished curves, no counts",
 }
-AREA_TOLERANCES = ("1e-2", "1e-4", "1e-6", "1e-8", "1e-10", "1e-12")
+AREA_TOLERANCES = ("1e-2", "1e-4", "1e-8", "1e-12")
 TOLERANCES = ("1e-1", "1e-2", "1e-3", "1e-4")
 GRIDS = (25, 50, 100, 200, 400, 800, 1600)
 START_GRIDS = (12, 25)
