@@ -303,3 +303,18 @@ def test_areas_next_to_a_limit_are_confirmed_by_verification() -> None:
     """The checker integrates power series; it shares no code with arcs."""
     nearly = MapQuestion({"F3": ten(-12), "F4": ten(-12)}, FIG4.axes)
     assert ptmcad.verify(ptmcad.classify(ptmcad.slice_from_mapping(nearly.record("nearly")))).ok
+
+
+@pytest.mark.parametrize("roots", [(0, 0, 1), (1, 1, 1), (-1, -1, 0), (0, 0, 0, 1, 1)], ids=str)
+def test_multiple_roots_are_refused_at_an_end_of_the_interval_too(roots: tuple[int, ...]) -> None:
+    product = fmpz_poly([-1, 3])  # and a simple root inside, at 1/3
+    for r in roots:
+        product *= fmpz_poly([-r, 1])
+    for low, high in ((-1, 1), (0, 1), (-1, 0), (0, 2), (-2, 1)):
+        if roots.count(low) > 1 or roots.count(high) > 1 or any(low < r < high and roots.count(r) > 1 for r in roots):
+            try:
+                found = isolate(product, fmpq(low), fmpq(high))
+            except ValueError as error:
+                assert "not squarefree" in str(error)
+            else:  # the multiple root at an end was no obstacle
+                assert [low < r.middle < high for r in found] == [True] * len(found)

@@ -254,6 +254,8 @@ def _tidy(p: fmpz_poly, low: fmpq, high: fmpq) -> RealRoot:
         s, t = sign_at(p, low), sign_at(p, high)
         s = s or sign_at(derivative, low)
         t = t or -sign_at(derivative, high)
+        if s == 0 or t == 0:
+            raise ValueError(f"a polynomial of degree {p.degree()} is not squarefree")
         if sign_at(p, low) and sign_at(p, high):
             return RealRoot(p, low, high)
         middle = (low + high) / 2

@@ -11,6 +11,8 @@ import os
 import random
 import sys
 import tempfile
+import threading
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
@@ -261,7 +263,7 @@ def _all_measured(
     if processes < 2 or "fork" not in get_all_start_methods():
         return tuple(_measured(r, slice, exact, sides) for r in started)
     known = (started, slice, exact, sides)
-    with ProcessPoolExecutor(processes, get_context("fork"), _inherit, (known,)) as pool:
+    with ProcessPoolExecutor(processes, get_context("fork"), _inherit, (known, os.getpid())) as pool:
         return tuple(pool.map(_measured_here, range(len(started))))
 
 
@@ -269,8 +271,16 @@ _inherited: list[tuple[Sequence[_Runs], Slice, Reference | None, dict[str, Walls
 """In a forked process, what it computes with: far too much to be sent to it."""
 
 
-def _inherit(known: tuple[Sequence[_Runs], Slice, Reference | None, dict[str, Walls] | None]) -> None:
+def _inherit(known: tuple[Sequence[_Runs], Slice, Reference | None, dict[str, Walls] | None], parent: int) -> None:
     _inherited[:] = [known]
+    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: int) -> None:
+    """End this process when its parent has ended, however that did: the other processes keep its pipes open."""
+    while os.getppid() == parent:
+        time.sleep(0.2)
+    os._exit(1)
 
 
 def _measured_here(number: int) -> Measurement:

@@ -159,7 +159,7 @@ def page(studies: Sequence[Study]) -> str:
         "# Error against run time",
         "",
         "What the errors are is defined in [Error](../error.md). Seconds are of whole processes, start-up included,",
-        "medians of repeated runs that took turns; a run of more than two seconds was not repeated. Written by",
+        "medians of repeated runs that took turns; a run of more than 1.25 seconds was not repeated. Written by",
         "`make bench`, as are the CSV and JSON files of each slice beside this page.",
         "",
     ]

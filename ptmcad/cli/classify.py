@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
@@ -25,11 +26,16 @@ from ptmcad.savings import check_names, kept
 from ptmcad.slice import Count, Slice
 
 FORMATS = ("json", "png", "svg", "pdf")
+SHORTEST = 0.01
+"""Seconds that are left in any case, so that the result from which to go on is handed on."""
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What is asked of the engine and of the output, beside the slice."""
+    """What is asked of the engine and of the output, beside the slice.
+
+    ``spent`` is the part of ``timeout``, in seconds, that was needed to read and check the map from which to go on.
+    """
 
     engine: str = "auto"
     out: Path = Path()
@@ -44,6 +50,7 @@ class Request:
     timings: bool = True
     keep: tuple[str, ...] = ()
     areas: bool = True
+    spent: float = 0.0
 
 
 def classify_to_files(slice: Slice, request: Request) -> Any:
@@ -64,13 +71,14 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
     target = request.out / f"{slice.name}.json"
     if "json" in request.formats:
         tell(Topic.TARGET, str(target))
-    tell_deadline(request.timeout)  # anew: the time that the import took is not the computation's
+    tell_deadline(request.timeout, request.spent)  # anew: the time that the import took is not the computation's
+    left = None if request.timeout is None else max(request.timeout - request.spent, SHORTEST)
     with ProgressBar() as progress:
         try:
             result = classify(
                 slice,
                 engine=request.engine,
-                timeout=request.timeout,
+                timeout=left,
                 tolerance=request.tolerance,
                 area_tolerance=request.area_tolerance,
                 jobs=request.jobs,
@@ -272,14 +280,17 @@ def command(
         timeout=timeout,
         tolerance=tolerance,
         area_tolerance=area_tolerance,
-        resume=None if resume is None else _resumed(slice, resume),
         samples=samples,
         timings=not no_timings,
         keep=keep,
         areas=not no_areas,
     )
-    steps = announced(slice, request) if explain else ()
     with limits(timeout, max_memory):
+        if resume is not None:
+            begun = time.monotonic()
+            earlier = _resumed(slice, resume)  # of many rectangles that takes a while, which is part of the limit
+            request = replace(request, resume=earlier, spent=time.monotonic() - begun)
+        steps = announced(slice, request) if explain else ()
         result = classify_to_files(slice, request)
     further = [step for step in result.plan if step not in steps]
     if explain and further:

@@ -39,10 +39,10 @@ def limit_options(command: F) -> F:
                         help="Stop after S seconds (exit status 3).")(command)  # fmt: skip
 
 
-def tell_deadline(timeout: float | None) -> None:
-    """The time limit starts now."""
+def tell_deadline(timeout: float | None, spent: float = 0.0) -> None:
+    """The time limit starts now, or started so many seconds ago."""
     if timeout is not None:
-        tell(Topic.DEADLINE, repr(time.monotonic() + timeout), f"{timeout:g} s")
+        tell(Topic.DEADLINE, repr(time.monotonic() + timeout - spent), f"{timeout:g} s")
 
 
 @contextmanager
