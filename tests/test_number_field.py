@@ -72,7 +72,7 @@ def expressions(draw: st.DrawFn, field: RealField) -> tuple[Element, fmpq_poly]:
 def test_zero_rational_and_enclosure_agree_with_residues_over_q(prime: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(number_field, "PRIME", prime)
 
-    @settings(deadline=None, max_examples=150)
+    @settings(deadline=None, max_examples=50)
     @given(st.data())
     def check(data: st.DataObject) -> None:
         field = data.draw(fields())
