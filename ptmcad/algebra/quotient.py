@@ -8,8 +8,10 @@ References: Lazard & Rouillier, J. Symb. Comp. 42 (2007); Le & Safey El Din, arX
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Sequence
+import random
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from operator import add
 
@@ -229,32 +231,43 @@ def poles_at_points(algebra: QuotientAlgebra, asked: Sequence[Coefficient], unkn
 
     Guarantee: every polynomial that is returned divides the denominator of a power trace. For at an integer point the
     traces' denominators consist of primes of the values of the normal forms' denominators there; a prime that among
-    these divides only the value of one factor, and is there, comes from that factor. Not guaranteed is that none is
-    missed, which takes a numerator that vanishes modulo these primes at all points.
+    these divides only the value of one factor, and is there, comes from that factor. One that is not returned had no
+    such prime among those of values with a product of `_LARGE` or more, at as many points as that takes. That none is
+    missed is not proved: where a numerator vanishes modulo all these primes, which has a probability near 1/`_LARGE`.
     """
     denominator = multiplication_denominator(algebra)
     content = math.gcd(*(int(c) for _, c in denominator.terms()))
     every = irreducible_factors(denominator)
-    open, found = list(asked), list[Coefficient]()
-    for point in _POINTS:
+    # of each polynomial in which no pole was seen so far, the product of its values' parts with primes of their own
+    products, found = [1] * len(asked), [False] * len(asked)
+    points = _points()
+    while any(p < _LARGE and not pole for p, pole in zip(products, found, strict=True)):
+        point = next(points)
         values = [abs(int(f(*point))) for f in every]
-        if not open or 0 in values:
+        if 0 in values:
             continue
-        below = math.lcm(*(_trace_denominator(algebra, k, point) for k in range(0, unknowns, 2)))
-        for f in tuple(open):
+        denominators = math.lcm(*(_trace_denominator(algebra, k, point) for k in range(0, unknowns, 2)))
+        for k, f in enumerate(asked):
             others = content * math.prod(v for g, v in zip(every, values, strict=True) if g != f)
             own = _without_primes_of(abs(int(f(*point))), others)
-            if math.gcd(own, below) > 1:
-                found.append(f)
-            if own > _LARGE or f in found:
-                open.remove(f)
-    return [f for f in asked if f in found]
+            products[k] *= own
+            found[k] = found[k] or math.gcd(own, denominators) > 1
+    return [f for f, pole in zip(asked, found, strict=True) if pole]
 
 
-_LARGE = 2**16
-"""A value of a factor from which on it is no accident that no trace has a pole."""
-_POINTS = ((1_000_003, 998_244_353), (2_147_483_647, 179_424_673))
-"""Any integers do; large ones, so that the values at them have prime factors of their own."""
+_LARGE = 2**96
+"""A product of a factor's values from which on it is no accident that no trace has a pole."""
+
+
+def _points() -> Iterator[tuple[int, int]]:
+    """Integer points without end, the same in every run.
+
+    Any do, but at large ones values have more primes of their own. They grow, so that any curve is left in the end.
+    """
+    yield from ((1_000_003, 998_244_353), (2_147_483_647, 179_424_673))
+    source = random.Random("points")
+    for bits in itertools.count(32):
+        yield source.getrandbits(bits), source.getrandbits(bits)
 
 
 def _trace_denominator(algebra: QuotientAlgebra, k: int, point: tuple[int, int]) -> int:

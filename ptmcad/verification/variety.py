@@ -1,24 +1,33 @@
 """Checks of the discriminant variety: nothing is missing, nothing is foreign.
 
 The norm N of det H is compared with the product of the stored components at random integer points, of 48 bits in each
-coordinate. If N = c A_1^e1 ... / B_1^f1 ..., its exponents are read off at the first point and the identity is checked
-at the others. A false identity of degree d agrees at one random point with probability under d/2^47.
+coordinate. If N = c A_1^e1 ... / B_1^f1 ..., its exponents follow from its values at a few of these points
+(`_exponent`) and the identity is checked at the others. A false identity of degree d agrees at one random point with
+probability under d/2^47.
 
-The points are drawn from a hash of the claims themselves, so that no one can choose claims to fit the points.
+The points are drawn from a hash of the claims themselves, so that no one can choose claims to fit the points. They lie
+on no stored component: a point on one, where the fibre degenerates, is drawn again.
 
 Guarantee: up to that probability, every CRITICAL component is a factor of N, and no other curve is a factor of it but
 BOUNDARY components; the poles of the unknowns' characteristic polynomials lie on stored components, and every INFINITY
 component consists of such poles. Where one is left out as harmless, the values of det H at the solutions stay away from
 0 near almost all of its points.
+
+Conversely, whatever the points are, no true claim about N is rejected: each rejection is a contradiction between exact
+values. Claims about poles, which are told by the primes that values have in common, are decided by half of the bits
+of a value of at least 200 bits; a true one is rejected, or a false one accepted, when primes that make up 100 of these
+bits divide further values too, which has a probability near 2^-100.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
-from math import gcd, lcm
+from itertools import permutations
+from math import gcd, lcm, prod
 
 from flint import fmpq, fmpz_poly
 
@@ -29,9 +38,13 @@ from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.fibre import Fibre
 from ptmcad.verification.report import Violation
 
-POINTS = 12
+POINTS, BITS = 12, 48
+FRESH_POINTS = 10
+"""Of these, points at least that no exponent was read off at."""
 FAR_POINTS, FAR_BITS = 3, 400
 """For poles: a value of so many bits is not made of small primes by accident, nor by trying."""
+CLEAR_BITS = FAR_BITS // 2
+"""A value's part with primes of its own tells something from this size on."""
 
 
 def check_irreducible(claims: Claims) -> str:
@@ -75,76 +88,156 @@ def factors(p: object) -> list[PlanePolynomial]:
     return found
 
 
-def _random_fibres(claims: Claims, seed: str, number: int, bits: int) -> list[tuple[Fraction, Fraction, Fibre]]:
-    source = random.Random(f"{bits} {seed}")
-    found = []
-    for _ in range(number):
-        x, y = (Fraction(source.getrandbits(bits) - 2 ** (bits - 1)) for _ in range(2))
-        found.append((x, y, claims.fibre_at(x, y)))
-    return found
+@dataclass(frozen=True, slots=True)
+class Place:
+    """The fibre over a random integer point that lies on no stored component.
+
+    Attributes
+    ----------
+    values : of the components' polynomials there, none zero.
+    form : coefficients of a random linear form in the unknowns.
+    """
+
+    x: Fraction
+    y: Fraction
+    values: tuple[int, ...]
+    form: tuple[int, int, int, int]
+    fibre: Fibre
+
+    def norm(self) -> Fraction:
+        """The product of det H over the solutions."""
+        n = self.fibre.norm()
+        return Fraction(int(n.p), int(n.q))
+
+    def own(self, k: int, *others: int) -> int:
+        """The value of component k without the primes of the other components' values here, and of other numbers."""
+        return _without(abs(self.values[k]), prod(v for j, v in enumerate(self.values) if j != k) * prod(others))
+
+
+def random_places(claims: Claims, seed: str, bits: int) -> Iterator[Place]:
+    """Random points, without end.
+
+    Components vanish on a share of at most (sum of degrees)/2^bits of the points, and on a point where one does,
+    nothing can be told: it is drawn again from one bit more, so that a point is found whatever the degrees are.
+    """
+    source, forms = random.Random(f"{bits} {seed}"), random.Random(f"form {bits} {seed}")
+    polynomials = [PlaneCurve.of(n, c.polynomial, 0).flint() for n, c in enumerate(claims.result.components)]
+    while True:
+        x, y = (source.getrandbits(bits) - 2 ** (bits - 1) for _ in range(2))
+        values = tuple(int(p(x, y)) for p in polynomials)
+        if 0 in values:
+            bits += 1
+        else:
+            a, b, c, d = (1 + forms.getrandbits(16) for _ in range(4))
+            yield Place(Fraction(x), Fraction(y), values, (a, b, c, d), claims.fibre_at(Fraction(x), Fraction(y)))
 
 
 def check_norm(claims: Claims, seed: str) -> str:
     """Norm of det H and poles against the stored components."""
+    number, exponents = check_identity(claims, random_places(claims, seed, BITS))
+    _check_poles(claims, random_places(claims, seed, FAR_BITS))
+    return f"{number} points of {BITS} bits, seed {seed}; multiplicities {exponents}"
+
+
+def check_identity(claims: Claims, places: Iterator[Place]) -> tuple[int, list[int]]:
+    """The number of points, and the exponents with which the norm is a product of the components."""
     result = claims.result
-    fibres = _random_fibres(claims, seed, POINTS, 48)
-    for x, y, f in fibres:
-        if f.dimension != result.complex_solutions:
-            raise Violation(f"there are {f.dimension} complex solutions at {_at(claims, x, y)}, "
+    norms: list[tuple[Place, Fraction]] = []
+
+    def draw() -> None:
+        place = next(places)
+        if place.fibre.dimension != result.complex_solutions:
+            raise Violation(f"there are {place.fibre.dimension} complex solutions at {_at(claims, place)}, "
                             f"not {result.complex_solutions}")  # fmt: skip
-    exponents: list[int] | None = None
-    constant = Fraction(0)
-    for x, y, f in fibres:
-        norm = f.norm()
-        n = Fraction(int(norm.p), int(norm.q))
-        values = [c.polynomial(x, y) for c in result.components]
-        if n == 0 or 0 in values:
-            raise Violation(f"det H vanishes at the random point {_at(claims, x, y)}")
-        if exponents is None:
-            exponents = _exponents(n, [int(v) for v in values])
-            for k, (e, c) in enumerate(zip(exponents, result.components, strict=True)):
-                if c.kind is Kind.CRITICAL and e < 1:
-                    raise Violation(f"component {k} is said to be critical, but is no factor of the norm of det H "
-                                    f"at {_at(claims, x, y)}")  # fmt: skip
-                if c.kind is Kind.INFINITY and e > 0:
-                    raise Violation(f"component {k} is said to be at infinity, but det H vanishes on it")
-        rest = n
-        for v, e in zip(values, exponents, strict=True):
-            rest /= v**e
-        if constant == 0:
-            constant = rest
-        if rest != constant:
-            raise Violation(f"the norm of det H at {_at(claims, x, y)} is no constant times powers of the stored "
-                            "components: a curve of the variety is missing or wrong")  # fmt: skip
-    far = _random_fibres(claims, seed, FAR_POINTS, FAR_BITS)
+        norm = place.norm()
+        if norm == 0:
+            raise Violation(f"det H vanishes at {_at(claims, place)}, which is on no stored component")
+        norms.append((place, norm))
+
+    draw()
+    exponents: list[int] = []
     for k, c in enumerate(result.components):
-        if c.kind is Kind.INFINITY and not _has_poles(c.polynomial, claims, far):
-            raise Violation(f"component {k} is said to be at infinity, but solutions have no pole on it: "
-                            f"{c.polynomial.text(result.slice.axis_names)[:60]}")  # fmt: skip
-        if c.left_out == HARMLESS and not _is_harmless(c.polynomial, claims, far):
-            raise Violation(f"component {k} is said to be harmless, but det H may vanish at solutions near it: "
-                            f"{c.polynomial.text(result.slice.axis_names)[:60]}")  # fmt: skip
-    poles = [_foreign_poles(claims, *point) for point in far]
-    if max(poles) // gcd(*poles) > 2**20:  # a curve that is missing has values of some hundred bits
+        while (pair := _telling(k, norms)) is None:
+            draw()
+        exponents.append(e := _exponent(claims, k, *pair))
+        if c.kind is Kind.CRITICAL and e < 1:
+            raise Violation(f"component {k} is said to be critical, but is no factor of the norm of det H "
+                            f"at {_at(claims, pair[0][0])}")  # fmt: skip
+        if c.kind is Kind.INFINITY and e > 0:
+            raise Violation(f"component {k} is said to be at infinity, but det H vanishes on it")
+    for _ in range(max(POINTS - len(norms), FRESH_POINTS)):
+        draw()
+    constants = [n / prod(Fraction(v) ** e for v, e in zip(p.values, exponents, strict=True)) for p, n in norms]
+    for (place, _), constant in zip(norms, constants, strict=True):
+        if constant != constants[0]:
+            raise Violation(f"the norm of det H at {_at(claims, place)} is no constant times powers of the stored "
+                            "components: a curve of the variety is missing or wrong")  # fmt: skip
+    return len(norms), exponents
+
+
+_Pair = tuple[tuple[Place, Fraction], tuple[Place, Fraction], int]
+
+
+def _telling(k: int, norms: Sequence[tuple[Place, Fraction]]) -> _Pair | None:
+    """Two points that tell component k's exponent: its value at the first has primes that divide no other value at
+    either, which are returned as their product with multiplicities. None when there are no such points yet.
+
+    Irreducible polynomials that differ have large primes in common only by accident, so few points are needed; which
+    ones is decided by the components alone.
+    """
+    for first, second in permutations(norms, 2):
+        own = first[0].own(k, *second[0].values)
+        if own > 1:
+            return first, second, own
+    return None
+
+
+def _exponent(claims: Claims, k: int, first: tuple[Place, Fraction], second: tuple[Place, Fraction], own: int) -> int:
+    """The exponent e of component k, if the norm is a constant times powers of the components.
+
+    The norms' quotient at the two points is free of the constant, and its part with primes of ``own`` is own^e: these
+    primes divide no other value. Where it is no power of ``own``, the norm is no such product.
+
+    Raises
+    ------
+    Violation
+    """
+    quotient = first[1] / second[1]
+    for part, sign in ((quotient.numerator, 1), (quotient.denominator, -1)):
+        shared, e = abs(part) // _without(abs(part), own), 0
+        while shared % own == 0:
+            shared, e = shared // own, e + 1
+        if shared > 1:
+            raise Violation(f"the norm of det H at {_at(claims, first[0])} is no constant times powers of the stored "
+                            f"components, as its prime factors show: component {k}, or another one, is wrong or "
+                            "missing")  # fmt: skip
+        if e:
+            return sign * e
+    return 0
+
+
+def _check_poles(claims: Claims, places: Iterator[Place]) -> None:
+    result = claims.result
+    far: list[Place] = []
+    while len(far) < FAR_POINTS:
+        far.append(next(places))
+    for k, c in enumerate(result.components):
+        asked = []
+        if c.kind is Kind.INFINITY:
+            asked.append((_has_poles, "at infinity, but solutions have no pole on it"))
+        if c.left_out == HARMLESS:
+            asked.append((_is_harmless, "harmless, but det H may vanish at solutions near it"))
+        for told, message in asked:
+            while len(clear := [p for p in far if _far_part(k, p).bit_length() > CLEAR_BITS]) < FAR_POINTS:
+                far.append(next(places))
+            if not any(told(k, place) for place in clear):
+                text = c.polynomial.text(result.slice.axis_names)[:60]
+                raise Violation(f"component {k} is said to be {message}: {text}")
+    foreign = [_foreign_poles(claims, place) for place in far]
+    # constant factors of denominators have their primes at every point, but for accidents
+    own = [_without(f, prod(g for j, g in enumerate(foreign) if j != i)) for i, f in enumerate(foreign)]
+    if all(f.bit_length() > CLEAR_BITS for f in own):  # a curve that is missing has values of some hundred bits
         raise Violation("solutions have a pole on no stored component")
-    return f"{POINTS} points of 48 bits, seed {seed}; multiplicities {exponents}"
-
-
-def _exponents(n: Fraction, values: Sequence[int]) -> list[int]:
-    exponents = []
-    for k, value in enumerate(values):
-        own = abs(value)
-        for j, other in enumerate(values):
-            if j != k:
-                own = _without(own, other)
-        own = _without(own, _SMALL_PRIMES)
-        above, below, e = n.numerator, n.denominator, 0
-        while own > 1 and above % own == 0:
-            above, e = above // own, e + 1
-        while own > 1 and below % own == 0:
-            below, e = below // own, e - 1
-        exponents.append(e)
-    return exponents
 
 
 _SMALL_PRIMES = reduce(lambda a, b: a * b, (p for p in range(2, 2000) if all(p % q for q in range(2, p))))
@@ -157,54 +250,43 @@ def _without(n: int, other: int) -> int:
     return n
 
 
-def _has_poles(p: PlanePolynomial, claims: Claims, points: Sequence[tuple[Fraction, Fraction, Fibre]]) -> bool:
-    """Whether the value of p at each integer point consists, but for small primes, of primes in denominators of traces.
+def _far_part(k: int, place: Place) -> int:
+    return place.own(k, _SMALL_PRIMES)
 
-    For a curve without poles that would need a value of 400 bits or more to be made of such primes by accident.
+
+def _has_poles(k: int, place: Place) -> bool:
+    """Whether most of component k's own part of its value consists of primes in denominators of traces.
+
+    For a curve without poles it would have to consist of primes of constants.
     """
-    for x, y, f in points:
-        own = abs(int(p(x, y)))
-        for c in claims.result.components:
-            if c.polynomial != p:
-                own = _without(own, int(c.polynomial(x, y)))
-        if _without(_without(own, _SMALL_PRIMES), _denominator(f)) > 2**20:
-            return False
-    return True
+    own = _far_part(k, place)
+    return _without(own, _denominator(place)) ** 2 < own
 
 
-def _is_harmless(p: PlanePolynomial, claims: Claims, points: Sequence[tuple[Fraction, Fraction, Fibre]]) -> bool:
-    """Whether the primes of p's value do not divide the constant coefficient of det H's characteristic polynomial.
+def _is_harmless(k: int, place: Place) -> bool:
+    """Whether most of component k's own part is no divisor of the constant coefficient of det H's characteristic
+    polynomial.
 
     That polynomial is made integral and primitive first. On a curve that divides its constant coefficient as a
-    polynomial in the axes, all primes of p's values divide it.
+    polynomial in the axes, all primes of the curve's values divide it.
     """
-    for x, y, f in points:
-        own = abs(int(p(x, y)))
-        for c in claims.result.components:
-            if c.polynomial != p:
-                own = _without(own, int(c.polynomial(x, y)))
-        own = _without(own, _SMALL_PRIMES)
-        coefficients = f.jacobian.charpoly().coeffs()
-        constant = fmpq(coefficients[0]) * lcm(*(int(fmpq(c).q) for c in coefficients))
-        if own // gcd(own, int(constant.p)) > 2**20:
-            return True
-    return False
+    own = _far_part(k, place)
+    coefficients = place.fibre.jacobian.charpoly().coeffs()
+    constant = fmpq(coefficients[0]) * lcm(*(int(fmpq(c).q) for c in coefficients))
+    return (own // gcd(own, int(constant.p))) ** 2 > own
 
 
-def _denominator(f: Fibre) -> int:
+def _denominator(place: Place) -> int:
     """The common denominator of the power traces of a linear form."""
-    return lcm(*(int(t.q) for t in f.form_traces((3, 5, 7, 11))))
+    return lcm(*(int(t.q) for t in place.fibre.form_traces(place.form)))
 
 
-def _foreign_poles(claims: Claims, x: Fraction, y: Fraction, f: Fibre) -> int:
-    """Denominator of the power traces at an integer point, without the primes of the stored components."""
-    below = _denominator(f)
-    for c in claims.result.components:
-        if c.kind is not Kind.AUXILIARY:
-            below = _without(below, int(c.polynomial(x, y)))
-    return _without(below, _SMALL_PRIMES)
+def _foreign_poles(claims: Claims, place: Place) -> int:
+    """Denominator of the power traces without the primes of the stored components."""
+    components = zip(claims.result.components, place.values, strict=True)
+    return _without(_denominator(place), prod(v for c, v in components if c.kind is not Kind.AUXILIARY) * _SMALL_PRIMES)
 
 
-def _at(claims: Claims, x: Fraction, y: Fraction) -> str:
+def _at(claims: Claims, place: Place) -> str:
     names = claims.result.slice.axis_names
-    return f"{names[0]}={text_of(x)}, {names[1]}={text_of(y)}"
+    return f"{names[0]}={text_of(place.x)}, {names[1]}={text_of(place.y)}"
