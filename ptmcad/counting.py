@@ -1,7 +1,8 @@
 """Equilibria at a rational point of a slice, counted by two independent methods.
 
 Guarantee: `count_by_isolation` and `count_by_signature` are exact; both raise `DegeneratePoint` when an equilibrium
-there has a singular Hessian, so no count is ever given on the discriminant variety.
+there has a singular Hessian, so no count is ever given on the discriminant variety, and `DimensionError` for a system
+that does not have two angles.
 
 By isolation: the real roots of a univariate representation, then the Hessian's signs there by ball arithmetic, with
 precision doubled until every sign is certain (the Hessian is nonsingular, so this ends). By signature: Hermite forms
@@ -28,7 +29,7 @@ from ptmcad.algebra.fibre import (
 )
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine
 from ptmcad.errors import HypothesisError
-from ptmcad.models.system import ParametricSystem, RationalPolynomial, at_point
+from ptmcad.models.system import ParametricSystem, RationalPolynomial, at_point, require_two_angles
 
 
 class DegeneratePoint(HypothesisError):
@@ -125,6 +126,8 @@ def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
     ------
     DegeneratePoint
         When some solution, real or not, is singular, or there are infinitely many.
+    DimensionError
+        When the system does not have two angles.
     """
     return equilibria(system, values).counts
 
@@ -136,7 +139,10 @@ def equilibria(system: ParametricSystem, values: Mapping[str, fmpq]) -> Equilibr
     ------
     DegeneratePoint
         When some solution, real or not, is singular, or there are infinitely many.
+    DimensionError
+        When the system does not have two angles.
     """
+    require_two_angles(system, "numbers of minima, saddles and maxima")
     point = point_system(system, values)
     representation = univariate_representation(point.algebra)
     if representation is None:
@@ -243,7 +249,10 @@ def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> 
     ------
     DegeneratePoint
         When some real solution has a singular Hessian, or there are infinitely many.
+    DimensionError
+        When the system does not have two angles.
     """
+    require_two_angles(system, "numbers of minima, saddles and maxima")
     point = point_system(system, values)
     h11, h12, h22 = (evaluate(point.algebra, point.hessian[i][j]) for i, j in ((0, 0), (0, 1), (1, 1)))
     determinant, trace = h11 * h22 - h12 * h12, h11 + h22

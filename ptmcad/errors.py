@@ -7,6 +7,7 @@
   * HypothesisError        -- the input is well formed but a hypothesis of the method fails
     * DegenerateSliceError -- the whole slice lies inside the discriminant variety: exit status 2
     * InfiniteSolutionsError -- infinitely many equilibria at every point of the slice: exit status 2
+    * DimensionError       -- a formula for two angles was asked about a system that has more, or one
     * GeometryError        -- a length or a stiffness is not positive somewhere in the window: exit status 2
   * OutputError            -- a result could not be written: exit status 2
   * LimitReached           -- a time limit stopped the computation: exit status 3 (so does the memory limit, which the
@@ -111,6 +112,10 @@ class DegenerateSliceError(HypothesisError):
 
 class InfiniteSolutionsError(HypothesisError):
     """Every point of the slice has infinitely many equilibria."""
+
+
+class DimensionError(HypothesisError):
+    """The system does not have two angles, and what was asked of it is known for two only."""
 
 
 class GeometryError(HypothesisError):

@@ -69,6 +69,8 @@ def discriminant_variety(
     ------
     InfiniteSolutionsError, DegenerateSliceError
         When every point of the slice is exceptional.
+    DimensionError
+        When the saving "sign-curve" is switched off and the system does not have two angles.
     """
     equations = on_slice(system, parameters)
     algebra = _algebra(equations)
@@ -136,7 +138,7 @@ def _harmless(
     """
     proved = [f for f in suspects if bounded_away_from_zero(rows, jacobian_norm, f)]
     for permutation in _OTHER_ORDERS:
-        if len(proved) < len(suspects):
+        if len(proved) < len(suspects) and len(permutation) == equations.unknowns:
             other = quotient_algebra(groebner_basis(equations.equations, MonomialOrder(permutation)))
             assert other is not None  # the ideal is zero-dimensional in any order
             rows = multiples(other, equations.jacobian)
@@ -145,7 +147,9 @@ def _harmless(
 
 
 _OTHER_ORDERS = ((2, 0, 3, 1),)
-"""Orders of (cos th1, sin th1, cos th2, sin th2). Where the first order's basis degenerates, these have not, so far."""
+"""Orders of (cos th1, sin th1, cos th2, sin th2); there are none for other numbers of angles, where less is proved.
+
+Where the first order's basis degenerates, these have not, so far."""
 
 
 def _algebra(equations: SliceSystem) -> QuotientAlgebra:

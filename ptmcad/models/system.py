@@ -22,6 +22,7 @@ from ptmcad.algebra.polynomials import (
     ratio,
 )
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
+from ptmcad.errors import DimensionError
 
 RationalPolynomial = dict[tuple[int, ...], fmpq]
 """A polynomial in the unknowns with rational coefficients: exponent vector -> coefficient."""
@@ -58,6 +59,24 @@ class ParametricSystem:
     def dimension(self) -> int:
         """The number of angles."""
         return len(self.ring.angles)
+
+
+def require_two_angles(system: ParametricSystem, what: str) -> None:
+    """Refuse a system to which a formula for 2 x 2 Hessians does not apply.
+
+    Parameters
+    ----------
+    what : the quantity that the formula gives, for the message.
+
+    Raises
+    ------
+    DimensionError
+        When the system does not have two angles.
+    """
+    if system.dimension != 2:
+        angles = ", ".join(system.ring.angles)
+        raise DimensionError(f"{what}: known for systems of two angles only, and this one has {system.dimension} "
+                             f"({angles})")  # fmt: skip
 
 
 def from_potential(
@@ -132,7 +151,14 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
 
 
 def first_minor(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> UnknownPolynomial:
-    """H11 on a slice, up to a factor that vanishes only on the slice's ``boundary``."""
+    """H11 on a slice, up to a factor that vanishes only on the slice's ``boundary``.
+
+    Raises
+    ------
+    DimensionError
+        When the system does not have two angles: then its sign does not tell minima from maxima.
+    """
+    require_two_angles(system, "the curve on which minima and maxima could change places")
     return _without_denominators(_substitute(system, system.hessian[0][0], parameters))
 
 

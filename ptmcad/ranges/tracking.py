@@ -18,7 +18,7 @@ from flint import arb, ctx, fmpq
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.expressions import Expression, Term
-from ptmcad.models.system import ParametricSystem, Terms
+from ptmcad.models.system import ParametricSystem, Terms, require_two_angles
 
 Pair = tuple[arb, arb]
 Matrix = tuple[Pair, Pair]
@@ -31,10 +31,19 @@ _MOST_STEPS = 3000
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """The mechanism on a line: its parameters as expressions in one unknown, the first axis."""
+    """The mechanism on a line: its parameters as expressions in one unknown, the first axis.
+
+    Raises
+    ------
+    DimensionError
+        When the system does not have two angles.
+    """
 
     system: ParametricSystem
     parameters: Mapping[str, Expression]
+
+    def __post_init__(self) -> None:
+        require_two_angles(self.system, "paths of equilibria")
 
     def at(self, low: Fraction, high: Fraction) -> Instance:
         """The equations for all parameters from low to high, with their derivatives by the parameter."""

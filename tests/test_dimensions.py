@@ -1,0 +1,103 @@
+"""Systems of one and of three angles: what is general answers, and what has two angles' formulas inside refuses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+
+import pytest
+from flint import fmpq
+
+from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
+from ptmcad.algebra.trigonometric import TrigonometricRing
+from ptmcad.counting import count_by_isolation, count_by_signature, equilibria, solutions_at
+from ptmcad.errors import DimensionError
+from ptmcad.models import ParametricSystem, system_of
+from ptmcad.models.system import first_minor, from_potential
+from ptmcad.ranges.tracking import Family
+from ptmcad.regionmap import Kind
+from ptmcad.variety import discriminant_variety
+
+VALUES = {"k": fmpq(1, 100), "F": fmpq(1)}
+
+
+def chain(angles: int) -> ParametricSystem:
+    """Pendulums, neighbours joined by springs between their ends: U = sum of F cos th_i - k cos(th_i - th_i+1).
+
+    Where k is small against F, the equilibria are the 2^n with all sines zero, one for each choice of signs, and a
+    cosine of -1 (up) adds one to the index: binomial numbers of each index.
+    """
+    names = tuple(f"th{i}" for i in range(1, angles + 1))
+    ring = TrigonometricRing(("k", "F"), names)
+    energy = ring.context.constant(0)
+    for name in names:
+        energy -= ring.parameter("F") * ring.cos(name)
+    for one, two in pairwise(names):
+        energy -= ring.parameter("k") * (ring.cos(one) * ring.cos(two) + ring.sin(one) * ring.sin(two))
+    return from_potential(ring, ring.reduce(energy), positive=("k",), nonnegative=())
+
+
+COUNTS = (equilibria, count_by_isolation, count_by_signature)
+
+
+def test_two_angles_are_counted() -> None:
+    """The same chain with two angles, whose counts are known: so its refusal with three is about the dimension."""
+    assert count_by_isolation(chain(2), VALUES).index == (1, 2, 1)
+    assert count_by_signature(chain(2), VALUES).index == (1, 2, 1)
+
+
+@pytest.mark.parametrize("angles", [1, 3])
+@pytest.mark.parametrize("count", COUNTS, ids=lambda f: f.__name__)
+def test_counts_of_other_dimensions_are_refused(count: Callable[..., object], angles: int) -> None:
+    """Three angles have (1, 3, 3, 1), and the formulas for two would say (2, 4, 2)."""
+    with pytest.raises(DimensionError, match=f"two angles only, and this one has {angles}"):
+        count(chain(angles), VALUES)
+
+
+@pytest.mark.parametrize("angles", [1, 3])
+def test_what_is_made_of_2_by_2_hessians_is_refused(angles: int) -> None:
+    system = chain(angles)
+    with pytest.raises(DimensionError, match="paths of equilibria"):
+        Family(system, {})
+    with pytest.raises(DimensionError, match="minima and maxima could change places"):
+        first_minor(system, ratios())
+
+
+def ratios() -> dict[str, Ratio]:
+    """k = x and F = y."""
+    x, y = PLANE.gens()
+    return {"k": (x, ONE), "F": (y, ONE)}
+
+
+def test_numbers_of_complex_solutions_are_general() -> None:
+    different, multiplicity = solutions_at(chain(3), VALUES)
+    assert different == multiplicity
+    assert multiplicity >= 8
+    assert solutions_at(chain(1), VALUES) == (2, 2)
+
+
+def test_the_variety_is_general() -> None:
+    """For one pendulum det H is F cos, and vanishes at the solutions where F does."""
+    window = ((fmpq(1), fmpq(2)), (fmpq(-1), fmpq(1)))
+    found = discriminant_variety(chain(1), ratios(), window)
+    assert found.complex_solutions == 2
+    assert {c.polynomial.text(("k", "F")) for c in found.components} == {"F"}
+    assert {c.kind for c in found.components} == {Kind.BOUNDARY}  # there the equation vanishes identically
+    with pytest.raises(DimensionError):
+        discriminant_variety(chain(1), ratios(), window, keep=frozenset({"sign-curve"}))
+
+
+def test_the_variety_of_three_angles() -> None:
+    """Of the Hessian at each choice of signs: F times the signs, and k times a path's signed Laplacian.
+
+    Its determinant is 0 only on lines through the origin, F = m k; by F to -F (all angles turned by pi) with each line
+    comes its mirror image.
+    """
+    found = discriminant_variety(chain(3), ratios(), ((fmpq(1), fmpq(2)), (fmpq(-1), fmpq(1))))
+    critical = {c.polynomial.text(("k", "F")) for c in found.components if c.kind is Kind.CRITICAL}
+    assert critical == {"F", "k - F", "k + F", "3*k - F", "3*k + F"}
+    assert found.complex_solutions == 10
+
+
+def test_the_mechanism_has_two_angles() -> None:
+    assert system_of("ptm").dimension == 2
