@@ -26,6 +26,7 @@ from ptmcad.bench.suite import machine, versions
 from ptmcad.config import load
 from ptmcad.errors import LimitReached, PtmcadError
 from ptmcad.expressions import Expression
+from ptmcad.extras import require_numba
 from ptmcad.regionmap import RegionMap
 from ptmcad.savings import ALL, SAVINGS, Engine
 from ptmcad.slice import Slice
@@ -67,6 +68,8 @@ def ablation(records: Sequence[Path], rounds: int = 3, seed: int = 1, told: Told
     """
     order = random.Random(seed)
     slices = {path: load(path) for path in records}
+    if any(slice.name in CERTIFIED for slice in slices.values() if slice.has_free_lengths):
+        require_numba()
     rows, free = [], []
     for slice in slices.values():
         told(slice.name)

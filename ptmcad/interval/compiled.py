@@ -15,16 +15,14 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from ptmcad.errors import ConfigError
+from ptmcad.extras import NUMBA_MISSING
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 try:
     from numba import config, njit
 except ImportError as missing:
-    raise ConfigError(
-        "the certified engine, which springs with a free length need, runs on the package numba, "
-        "which is not installed: pip install 'ptmcad[certified]'"
-    ) from missing
+    raise ConfigError(NUMBA_MISSING) from missing
 
 
 _CONFIG: Any = config

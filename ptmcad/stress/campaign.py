@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 
+from ptmcad.extras import require_numba
 from ptmcad.stress.case import Case
 from ptmcad.stress.judgement import judge
 from ptmcad.stress.measure import Outcome, run
@@ -71,7 +72,14 @@ def campaign(
     repeats : runs of each case and of its sibling, in turns, for the medians of their times; one of slow cases.
     deadline : reading of `time.perf_counter` after which no further case is begun.
     progress : called as progress(name, done, total).
+
+    Raises
+    ------
+    ConfigError
+        Before the first case, when one has springs with free lengths and numba is not installed.
     """
+    if any(case.has_free_lengths for case in cases):
+        require_numba()
     outcomes = []
     for k, case in enumerate(cases):
         if deadline is not None and perf_counter() > deadline:

@@ -117,3 +117,9 @@ class Case:
     expected: Answer
     source: str
     slow: bool = field(default=False)
+
+    @property
+    def has_free_lengths(self) -> bool:
+        """Whether a question is for the certified engine."""
+        given = (*self.question.parameters.items(), *self.sibling.parameters.items())
+        return any(name.startswith("l0") and value not in (0, "0") for name, value in given)

@@ -1,0 +1,27 @@
+"""Packages that only some questions need: asked for before anything is computed, so that no work is lost.
+
+Guarantee: nothing is imported to find out; a package counts as there when Python would find it.
+"""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+from ptmcad.errors import ConfigError
+
+NUMBA_MISSING = (
+    "the certified engine, which springs with a free length need, runs on the package numba, "
+    "which is not installed: pip install 'ptmcad[certified]'"
+)
+
+
+def require_numba() -> None:
+    """Refuse at once what the certified engine would refuse later.
+
+    Raises
+    ------
+    ConfigError
+        When numba is not installed.
+    """
+    if find_spec("numba") is None:
+        raise ConfigError(NUMBA_MISSING)
