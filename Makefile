@@ -8,12 +8,13 @@ JOBS ?= 2
 # the paper's loaded slices, on which every method is measured
 PAPER := fig3 fig4 fig5-caption fig5-text
 
-.PHONY: help demo test test-slow fuzz check bench ablation scaling stress docs free-maps clean distclean
+.PHONY: help demo test test-slow test-oldest fuzz check bench ablation scaling stress docs free-maps clean distclean
 
 help:
 	@echo "make demo       the map of the paper's fig. 4, as out/fig4.png and out/fig4.svg"
 	@echo "make test       the fast tests"
 	@echo "make test-slow  the thorough tests"
+	@echo "make test-oldest  the fast tests with the oldest versions of all packages that pyproject.toml states"
 	@echo "make fuzz       damaged and hostile records, results and points by the ten thousand, guided by coverage"
 	@echo "make check      ruff, its formatter and mypy in strict mode"
 	@echo "make bench      error, run time and memory on every slice in configs/, into docs/benchmarks/: ten minutes"
@@ -41,7 +42,22 @@ $(VENV)/.installed-fuzz: $(VENV)/.installed-test
 	$(PIP) --only-binary atheris --editable '.[test,fuzz]' || echo "atheris can not be installed here, see above"
 	@touch $@
 
-$(VENV)/.installed-check: $(VENV)/.installed-test
+$(VENV)/.installed-# The oldest versions that pyproject.toml states, on the oldest Python that it does where that is installed: a version's
+# wheels are for the Pythons of its time.
+OLDEST := .venv-oldest
+OLDEST_PYTHON := $(or $(shell command -v python3.11),python3)
+
+$(OLDEST)/.installed: pyproject.toml scripts/setup-venv scripts/oldest-versions
+	PYTHON=$(OLDEST_PYTHON) scripts/setup-venv $(OLDEST)
+	$(OLDEST)/bin/python scripts/oldest-versions > $(OLDEST)/constraints.txt
+	$(OLDEST)/bin/python -m pip --disable-pip-version-check --quiet install --constraint $(OLDEST)/constraints.txt \
+		--editable '.[test]'
+	@touch $@
+
+test-oldest: $(OLDEST)/.installed
+	$(OLDEST)/bin/python -m pytest --numprocesses $(JOBS)
+
+check: $(VENV)/.installed-test
 	$(PIP) --editable '.[test,check]'
 	@touch $@
 
@@ -96,7 +112,7 @@ free-maps: $(VENV)/.installed-test
 
 clean:
 	rm -rf out build dist docs/generated .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info
-	find . -name __pycache__ -type d -not -path './$(VENV)/*' -prune -exec rm -rf {} +
+	find . -name __pycache__ -type d -not -path './$(VENV)*/*' -prune -exec rm -rf {} +
 
 distclean: clean
-	rm -rf $(VENV)
+	rm -rf $(VENV) $(OLDEST)
