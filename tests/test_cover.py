@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ptmcad.cover import MOST_STEPS, Cover, Rectangle, components, from_boxes, union_area
-from ptmcad.cover.borders import area_bounds, borders
+from ptmcad.cover.borders import area_bounds
 from ptmcad.cover.filling import filled, gathered, pockets, simplified
 from ptmcad.cover.outlines import outlines
-from ptmcad.cover.samples import rectangle_of, samples, simplest_between
+from ptmcad.cover.samples import samples, simplest_between
 
 UNIT = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))
 WINDOW = ((Fraction(1, 20), Fraction(2)), (Fraction(-7, 3), Fraction(5)))
@@ -107,9 +107,6 @@ def check_against_flood(cover: Cover) -> None:
             meet = ~grid.closed[a] & grid.closed[b] & (grid.label[a] >= 0)
             near |= set(zip(grid.label[a][meet].tolist(), grid.label[b][meet].tolist(), strict=True))
     assert {(label_of[c], cluster_label[k]) for c, k in found.touching} == near
-    by_rectangle = borders(found)
-    for number, touched in enumerate(by_rectangle):
-        assert {found.cluster_of[k] for k in touched} == set(found.clusters_at[number])
 
 
 @settings(deadline=None, max_examples=80)
@@ -167,10 +164,10 @@ def test_samples_are_in_their_components_and_rectangles_can_not_grow(cover: Cove
             a, b, c, d = grown
             assert min(grown) < 0 or max(grown) > cover.steps or grid.closed[2 * a + 1 : 2 * b, 2 * c + 1 : 2 * d].any()
         (x0, x1), (y0, y1) = WINDOW
-        at = rectangle_of((left, right, bottom, top), cover.steps, WINDOW)
+        across, up = (x1 - x0) / cover.steps, (y1 - y0) / cover.steps
         for x, y in samples(found, number, WINDOW):
             assert found.locate((x - x0) / (x1 - x0) * cover.steps, (y - y0) / (y1 - y0) * cover.steps) == number
-            assert at[0] < x < at[1] and at[2] < y < at[3]
+            assert left * across < x - x0 < right * across and bottom * up < y - y0 < top * up
 
 
 @settings(deadline=None, max_examples=50)

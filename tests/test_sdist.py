@@ -28,7 +28,7 @@ def test_the_source_distribution_has_every_file(tmp_path: Path) -> None:
     code = f"from setuptools import setup; setup(script_args=['-q', 'egg_info', '--egg-base', {str(tmp_path)!r}])"
     subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True)
     (listing,) = tmp_path.glob("*.egg-info/SOURCES.txt")
-    listed = set(listing.read_text(encoding="utf-8").splitlines())
+    listed = {name.removeprefix("./") for name in listing.read_text(encoding="utf-8").splitlines()}
     assert set(wanted()) - listed == set()
     foreign = {name for name in listed - set(wanted()) if ".egg-info/" not in name and name != "setup.cfg"}
     assert foreign == set()

@@ -1,4 +1,4 @@
-"""What a component borders on: clusters, rectangles, and the area that a region may have at most.
+"""What a component borders on: clusters, and the area that a region may have at most.
 
 Guarantee: exact.
 """
@@ -7,10 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Container
 
-import numpy as np
-
 from ptmcad.cover.complement import Components
-from ptmcad.cover.subdivision import FREE, rectangle_array
 
 
 def area_bounds(components: Components, number: int, known: Container[int]) -> tuple[int, int]:
@@ -32,16 +29,3 @@ def area_bounds(components: Components, number: int, known: Container[int]) -> t
                 waiting += more
     high = sum(components.areas[m] for m in reached) + sum(components.cluster_areas[cluster] for cluster in clusters)
     return components.areas[number], high
-
-
-def borders(components: Components) -> tuple[tuple[int, ...], ...]:
-    """For each component the numbers of the rectangles that it touches along a segment or in a point, ascending."""
-    tree = components.subdivision
-    rectangle, leaf = tree.meeting(rectangle_array(components.cover), closed=True)
-    free = tree.state[leaf] == FREE
-    number = len(components.cover.rectangles)
-    found: list[list[int]] = [[] for _ in components.areas]
-    for code in np.unique(components.owner[leaf[free]] * number + rectangle[free]).tolist():
-        n, k = divmod(code, number)
-        found[n].append(k)
-    return tuple(map(tuple, found))

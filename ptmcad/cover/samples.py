@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
-from ptmcad.cover import Rectangle, Window
+from ptmcad.cover import Window
 from ptmcad.cover.complement import Components
 
 _PLACES = ((Fraction(1, 2), Fraction(1, 2)), (Fraction(1, 3), Fraction(3, 7)), (Fraction(3, 5), Fraction(2, 7)))
@@ -55,11 +55,3 @@ def simplest_between(low: Fraction, high: Fraction) -> Fraction:
     while terms:
         value = terms.pop() + 1 / value
     return value
-
-
-def rectangle_of(rectangle: Rectangle, steps: int, window: Window) -> tuple[Fraction, Fraction, Fraction, Fraction]:
-    """A rectangle's left, right, bottom and top in the axes' own units."""
-    (x0, x1), (y0, y1) = window
-    left, right, bottom, top = rectangle
-    across, up = (x1 - x0) / steps, (y1 - y0) / steps
-    return x0 + left * across, x0 + right * across, y0 + bottom * up, y0 + top * up

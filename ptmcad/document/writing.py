@@ -12,7 +12,7 @@ from typing import Any
 
 from ptmcad.cover import Cover
 from ptmcad.numerals import decimal, integer_text, shortest_text, text_of
-from ptmcad.regionmap import RegionMap, Segment, Solution
+from ptmcad.regionmap import RegionMap, Segment
 from ptmcad.slice import Point
 
 FORMAT = "ptmcad-region-map/2"
@@ -167,10 +167,6 @@ def _decimals(area: tuple[Fraction, Fraction]) -> list[str]:
 
 def _point(point: Point) -> dict[str, str]:
     return {name: text_of(point[name]) for name in point.names}
-
-
-def _solution_data(s: Solution) -> dict[str, Any]:
-    return {"center": [shortest_text(x) for x in s.center], "radius": shortest_text(s.radius), "signs": s.signs}
 
 
 def _segment(segment: Segment | None) -> list[str] | None:
