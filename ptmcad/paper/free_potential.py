@@ -77,7 +77,7 @@ def engine_gradient() -> tuple[Expr, Expr]:
     """
     graph = Graph()
     variables = [graph.variable(n) for n in range(len(NAMES) + 2)]
-    formulas = mechanism(graph, dict(zip(NAMES, variables, strict=False)), *variables[-2:])
+    formulas = mechanism(graph, dict(zip(NAMES, variables, strict=False)), variables[-2], variables[-1])
     known: dict[int, Expr] = {v.number: _PARAMETERS[name] for v, name in zip(variables, NAMES, strict=False)}
     first, second = (sp.expand(_translated(e, known)) for e in formulas.equilibrium)
     return sp.expand(L1 * first), sp.expand(L2 * second)
