@@ -57,7 +57,7 @@ class Node:
             raise self.fault(f"has more than {MAX_ITEMS} keys")
         for key in self.value:
             if not key.isprintable():
-                raise self.fault(f"has the key {key[:40]!r} with a character that cannot be shown")
+                raise self.fault(f"has the key {key[:40]!r} with a character that is not printable")
         start = f"{self.place}." if self.place else ""
         return {key: Node(value, start + key[:40]) for key, value in self.value.items()}
 
@@ -78,7 +78,7 @@ class Node:
         if not isinstance(self.value, str):
             raise self.fault("is not a text")
         if not self.value.isprintable() and not self.value.replace("\t", " ").isprintable():
-            raise self.fault("has a character that cannot be shown")
+            raise self.fault("has a character that is not printable")
         return self.value
 
     def data(self) -> dict[str, Any]:
