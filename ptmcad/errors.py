@@ -45,6 +45,11 @@ def shown(text: str, most: int = LONGEST) -> str:
     return text
 
 
+def shown_path(path: object) -> str:
+    """A path as a terminal can show it; whole, because the next command may be given it."""
+    return shown(str(path), 5 * LONGEST)
+
+
 class PtmcadError(Exception):
     """Base of every exception that ptmcad raises on purpose."""
 

@@ -6,14 +6,29 @@ rational function of the two axes), its window is a nonempty rectangle, and no n
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
 from typing import Any
+from unicodedata import category
 
 from ptmcad.errors import ConfigError
 from ptmcad.expressions import Expression
+
+
+def unstorable(data: Any) -> str | None:
+    """A character that a result has no place for, in the texts and keys of a reference; None when there is none.
+
+    Those are control characters, but for line breaks and tabs, and halves of surrogate pairs, which are not in UTF-8.
+    """
+    if isinstance(data, str):
+        return next((c for c in data if category(c) in ("Cc", "Cs") and c not in "\n\r\t"), None)
+    if isinstance(data, Mapping):
+        parts: Iterable[Any] = (part for entry in data.items() for part in entry)
+    else:
+        parts = data if isinstance(data, list | tuple) else ()
+    return next((found for part in parts if (found := unstorable(part)) is not None), None)
 
 
 class Count(Enum):

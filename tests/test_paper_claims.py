@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -29,7 +30,9 @@ from ptmcad.paper.claims import (
     all_claims,
     basics,
     extensions,
+    free_springs,
     general,
+    overall,
     symmetric,
     symmetric_map,
     unloaded,
@@ -37,7 +40,7 @@ from ptmcad.paper.claims import (
 )
 from ptmcad.paper.free_lengths import FreeLengthDesign, proved_equilibrium
 from ptmcad.paper.slices import FIGURES, region_map, slice_of
-from ptmcad.regionmap import Merge
+from ptmcad.regionmap import Merge, Status
 
 CLAIMS = {claim.name: claim for claim in all_claims()}
 OUTCOMES: dict[str, Outcome] = {}
@@ -53,13 +56,12 @@ CORRECTED = (
     "1-always-six", "2-fixed-point", "2-eq2", "2-eq4", "3-eq6", "3-degree-6", "3-linear", "3.1-singular", "3.1-eq9",
     "3.1-always", "3.2-eqs-used", "3.3-three-flat", "3.3-eq13", "4-parameters", "4.1-three-flat", "4.1-non-flat",
     "4.3-curves", "4.3-fig5-values", "5.1-terms", "5.1-nature", "5.2-degree-328", "c-width", "c-parallelogram",
-    "c-singular", "c-four-unsymmetric",
+    "c-singular", "c-four-unsymmetric", "a-one-dof", "3.3-others", "5.2-real", "5.2-difficult",
 )  # fmt: skip
 REFUTED = ("5.2-six", "c-six-free")
 NOT_CHECKED = (
-    "a-one-dof", "1-references", "2-dof", "2-zero-free-length", "3.3-large", "3.3-others", "4-tools", "4.1-geometric",
-    "1-complicated", "5.2-eq17", "5.2-specialise", "c-tools", "5.2-crane", "5.2-real", "5.2-acceptable",
-    "5.2-difficult", "c-store",
+    "1-references", "2-zero-free-length", "3.3-large", "4-tools", "1-complicated", "5.2-specialise", "5.2-crane",
+    "c-store",
 )  # fmt: skip
 
 
@@ -235,6 +237,15 @@ FACTS: dict[str, dict[str, Any]] = {
     "5.2-spurious": {"real roots": 94, "real, any signs": 48, "equilibria": 6, "proved": 6, "stable": 2},
     "5.2-six": {"l0 = 0.2": (12, 12, 2, 2), "l0 = 1.01487": (26, 26, 8, 0), "l0 = 1.43487": (30, 30, 10, 0),
                 "at the eliminated design": 6},
+    "2-dof": {"by coordinates": 3, "by constraints": 3, "A2 by rho alone": True},
+    "a-one-dof": {"degrees of freedom": 3, "equilibria at most": 6},
+    "3.3-others": {"(total, stable, saddles)": ("4,1,2", "6,1,3", "6,2,3"), "seen are allowed": True},
+    "4.1-geometric": {"Heron": True},
+    "5.2-eq17": {"(1) for l0 = 0": True, "derivatives": (1, 1), "coefficient of l1": "-k*l0"},
+    "5.2-real": {"real roots": (94, 68, 66, 31, 27, 3), "within 12 to 30": (27,)},
+    "5.2-acceptable": {"rho = 0.7": (2, 0, 4), "rho = 0.96859": (2, 0, 1), "rho = 1.20609": (8, 8, 1)},
+    "5.2-difficult": {"stable counts": (1, 2), "fine enough": True, "at the eliminated design": (2, 2)},
+    "c-tools": {"exact maps": 5, "all counted": True},
     "c-four-unsymmetric": {"bound": 2, "not symmetric": 2, "unstable": 4, "totals": (4, 6)},
 }  # fmt: skip
 
@@ -428,6 +439,97 @@ def test_slices_are_those_of_the_shipped_records(figure: str) -> None:
     assert (ours.axes, ours.parameters, ours.title) == (shipped.axes, shipped.parameters, shipped.title)
 
 
+def test_three_degrees_of_freedom_at_rational_points() -> None:
+    """2-dof: the positions' derivatives by rho, th1 and th2 are independent, by dual numbers and elimination."""
+    for p in POINTS:
+        (c1, s1), (c2, s2) = angle(p["t1"], 1), angle(p["t2"], 2)
+        moving = (p["rho"] - p["L2"] * c2, p["L2"] * s2, p["L1"] * c1, p["L1"] * s1)
+        by_angle = [[Fraction(0)] + [Dual.of(x).parts[n] for x in moving] for n in (1, 2)]
+        rows = [[Fraction(x) for x in (1, 1, 0, 0, 0)], *by_angle]
+        assert sp.Matrix(3, 5, lambda i, j: sp.Rational(*rows[i][j].as_integer_ratio())).rank() == 3  # noqa: B023
+
+
+def elastic_energy(design: tuple[str, ...], angles: tuple[float, float]) -> tuple[float, tuple[float, ...]]:
+    """U/k of (17) in floating point, and the springs' lengths."""
+    rho, length1, length2, free, f3, f4 = map(float, design)
+    a, b = angles
+    x3, y3 = length1 * math.cos(a), length1 * math.sin(a)
+    x4, y4 = rho - length2 * math.cos(b), length2 * math.sin(b)
+    lengths = (math.hypot(x4, y4), math.hypot(x3 - rho, y3), math.hypot(x4 - x3, y4 - y3))
+    return sum((n - free) ** 2 for n in lengths) / 2 - f3 * y3 - f4 * y4, lengths
+
+
+def test_engine_gradient_by_difference_quotients() -> None:
+    """5.2-eq17: the translated formulas of the certified engine are the slope of (17)."""
+    from ptmcad.paper.free_potential import LENGTHS, engine_gradient, l0
+
+    design, (a, b), h = extensions.TWELVE, (0.7, -2.1), 1e-6
+    rho, length1, length2, free, f3, f4 = map(float, design)
+    values = {"rho": rho, "L1": length1, "L2": length2, "k": 1.0, "F3": f3, "F4": f4, "F3x": 0.0, "F4x": 0.0,
+              "c1": math.cos(a), "s1": math.sin(a), "c2": math.cos(b), "s2": math.sin(b)}  # fmt: skip
+    at = {symbol: n for symbol, n in zip(LENGTHS, elastic_energy(design, (a, b))[1], strict=True)} | {l0: free}
+    for n, slope in enumerate(engine_gradient()):
+        up, down = ((a + h * (n == 0) * e, b + h * (n == 1) * e) for e in (1, -1))
+        found = (elastic_energy(design, up)[0] - elastic_energy(design, down)[0]) / (2 * h)
+        there = at | {s: values[s.name] for s in slope.free_symbols if s.name in values}
+        assert float(slope.subs(there)) == pytest.approx(found, abs=1e-8)
+
+
+@pytest.mark.parametrize("design", [extensions.AT_ELIMINATED, extensions.TWELVE, extensions.TWENTY_SIX])
+def test_stable_and_tense_by_difference_quotients(design: tuple[str, ...]) -> None:
+    """5.2-acceptable: stability and lengths at the poses, from the energy alone."""
+    h, found = 1e-4, [0, 0, 0]
+    for e in extensions.equilibria_with(design):
+        a, b = map(float, e.angles)
+        u = {(i, j): elastic_energy(design, (a + i * h, b + j * h))[0] for i in (-1, 0, 1) for j in (-1, 0, 1)}
+        h11, h22 = u[1, 0] + u[-1, 0] - 2 * u[0, 0], u[0, 1] + u[0, -1] - 2 * u[0, 0]
+        h12 = (u[1, 1] + u[-1, -1] - u[1, -1] - u[-1, 1]) / 4
+        stable, tense = h11 > 0 and h11 * h22 > h12**2, min(elastic_energy(design, (a, b))[1]) > float(design[3])
+        found[0] += stable
+        found[1] += stable and not tense
+        found[2] += tense and not stable
+    assert outcome("5.2-acceptable").facts[f"rho = {design[0]}"] == tuple(found)
+
+
+def test_real_roots_by_complex_roots() -> None:
+    """5.2-real: all complex roots, of which real ones are told by their enclosures; no root isolation on the line."""
+    from ptmcad.algebra.polynomials import coefficients_in
+    from ptmcad.algebra.resultants import resultant
+
+    _, rods, free, _ = extensions.ELIMINATED
+    first, second = squared_equations(free_springs.WITHOUT_LOADS[1], rods, free, (Fraction(0), Fraction(0)))
+    roots = resultant(coefficients_in(first, 0), coefficients_in(second, 0)).complex_roots()
+    assert sum(root.imag == 0 for root, _ in roots) == outcome("5.2-real").facts["real roots"][4]
+
+
+def test_maps_with_free_lengths_at_points() -> None:
+    """5.2-difficult: as many stable equilibria as Krawczyk's test proves from a grid of starting points."""
+    from ptmcad.locate import locate
+    from ptmcad.paper.free_lengths import proved_equilibria
+
+    half, draw, seen = Fraction(3, 2), Random(7), []
+    map_ = free_springs.certified("L2 = 3/2")
+    while len(seen) < 5:
+        rho, free = Fraction(draw.randint(26, 124), 100), Fraction(draw.randint(1, 49), 200)
+        there = locate(map_, {"rho": rho, "l0": free})
+        if there.stable is not None:
+            load = Fraction(-1, 10)
+            poses = proved_equilibria(FreeLengthDesign(rho, Fraction(1), half, free, load, load))
+            assert there.stable == sum(e.stable for e in poses)
+            seen.append(there.stable)
+    assert set(seen) == {1, 2}
+
+
+def test_half_are_saddles_by_the_oracle() -> None:
+    """3.3-others, at points that the check does not use."""
+    draw = Random(33)
+    for _ in range(4):
+        loads = {n: draw.randint(-90, 90) for n in ("F3", "F4", "F3x", "F4x")}
+        at = {n: Fraction(draw.randint(20, 250), 100) for n in ("L2", "rho")}
+        minima, saddles, maxima = count(**at, **loads)
+        assert minima in (1, 2) and saddles == minima + maxima
+
+
 # --- verdicts follow the evidence: each check is broken once ----------------------------------------------------------
 
 
@@ -488,6 +590,72 @@ def test_an_elimination_without_spurious_roots_would_not_confirm(monkeypatch: py
     found = dataclasses.replace(extensions.elimination(), real_roots=6)
     monkeypatch.setattr(extensions, "elimination", lambda: found)
     assert extensions.spurious().verdict is Verdict.UNDECIDED
+
+
+def test_a_wrong_potential_is_not_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """5.2-eq17, with the free length added to the lengths."""
+    right = printed.potential_17
+    monkeypatch.setattr(printed, "potential_17", lambda lengths, free, work: right(lengths, -free, work))
+    assert free_springs.potential_17().verdict is Verdict.UNDECIDED
+
+
+@pytest.mark.parametrize(("numbers", "verdict"), [
+    ((12, 30, 20), Verdict.CONFIRMED), ((11, 20), Verdict.CORRECTED), ((20, 31), Verdict.CORRECTED),
+    ((11, 31), Verdict.REFUTED),
+])  # fmt: skip
+def test_verdict_on_real_roots_follows_the_numbers(
+    monkeypatch: pytest.MonkeyPatch, numbers: tuple[int, ...], verdict: Verdict
+) -> None:
+    monkeypatch.setattr(free_springs, "real_roots", lambda: {f"design {n}": n for n in numbers})
+    assert free_springs.twelve_to_thirty().verdict is verdict
+
+
+def test_tense_springs_everywhere_would_not_confirm(monkeypatch: pytest.MonkeyPatch) -> None:
+    """5.2-acceptable says that both conditions have to be verified: were all stable poses tense, one would do."""
+    whole = extensions.equilibria_with
+    tense = lambda design: tuple(dataclasses.replace(e, tense=True) for e in whole(design))  # noqa: E731
+    monkeypatch.setattr(free_springs, "equilibria_with", tense)
+    assert free_springs.acceptable().verdict is Verdict.UNDECIDED
+
+
+@pytest.mark.parametrize("change", [
+    {"status": Status.PARTIAL}, {"undetermined": Fraction(1, 5)},
+])  # fmt: skip
+def test_an_unfinished_map_decides_nothing(monkeypatch: pytest.MonkeyPatch, change: dict[str, Any]) -> None:
+    """5.2-difficult stays undecided when a map was stopped or leaves too much open."""
+    whole = free_springs.certified
+    monkeypatch.setattr(free_springs, "certified", lambda name: dataclasses.replace(whole(name), **change))
+    assert free_springs.difficult().verdict is Verdict.UNDECIDED
+
+
+def test_without_numba_the_forecast_is_not_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """5.2-difficult needs an optional package, and says so where it is missing."""
+    monkeypatch.setitem(sys.modules, "numba", None)
+    monkeypatch.delitem(sys.modules, "ptmcad.interval.compiled", raising=False)
+    found = free_springs.difficult()
+    assert found.verdict is Verdict.NOT_CHECKED
+    assert "numba" in found.reason
+
+
+def test_a_general_count_that_is_not_general_corrects_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """3.3-others: a count seen that the theorem does not allow would show one of the two wrong."""
+    allowed, seen = overall.allowed_and_seen()
+    monkeypatch.setattr(symmetric, "allowed_and_seen", lambda: (allowed, seen | {(5, 2)}))
+    assert symmetric.general_result().verdict is Verdict.UNDECIDED
+
+
+@pytest.mark.parametrize("found", [(-1, 3), (3, -1), (2, 2)])
+def test_other_numbers_of_freedom_are_not_confirmed(monkeypatch: pytest.MonkeyPatch, found: tuple[int, int]) -> None:
+    monkeypatch.setattr(basics, "degrees_of_freedom", lambda: found)
+    assert basics.three_dof().verdict is Verdict.UNDECIDED
+
+
+def test_a_rod_that_stretches_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """2-dof rests on the model's nodes."""
+    at = dict(basics.coordinates())
+    at["A3"] = (2 * at["A3"][0], at["A3"][1])
+    monkeypatch.setattr(basics, "coordinates", lambda: at)
+    assert basics.degrees_of_freedom() == (-1, -1)
 
 
 def test_a_failed_derivation_confirms_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from ptmcad.config import load
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, shown_path
 from ptmcad.output import check_writable
 
 METHODS = ("exact", "certified", "companion", "multistart", "qepcad", "gcad")
@@ -102,7 +102,7 @@ def command(
         save(study, out)
         click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}\n")
     if page:
-        click.echo(f"written {save_page(out)}")
+        click.echo(f"written {shown_path(save_page(out))}")
     return 0
 
 

@@ -8,6 +8,7 @@ import click
 
 from ptmcad.cli.limits import limit_options, limits, tell_deadline
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.errors import shown_path
 from ptmcad.memory import Bound
 from ptmcad.output import check_writable
 
@@ -36,5 +37,5 @@ def command(*, out: Path, timeout: float | None, max_memory: Bound | None) -> in
         with ProgressBar() as progress:
             found = reproduce(out, progress)
         click.echo(found.table())
-        click.echo(f"written to {out}: begin with {out / 'index.html'}")
+        click.echo(f"written to {shown_path(out)}: begin with {shown_path(out / 'index.html')}")
     return 1 if found.number(Verdict.UNDECIDED) else 0

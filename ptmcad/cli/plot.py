@@ -10,7 +10,7 @@ import click
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.stored import read_result
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, shown_path
 from ptmcad.memory import Bound
 from ptmcad.output import Writer, check_writable, write_files
 
@@ -58,4 +58,4 @@ def command(
             reason = f"the map contradicts itself ({error}); check it with ptmcad verify"
             raise ConfigError(reason, file=str(result)) from error
     for path in written:
-        click.echo(path)
+        click.echo(shown_path(path))

@@ -8,7 +8,7 @@ import click
 
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.stored import read_result
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, shown_path
 from ptmcad.memory import Bound
 from ptmcad.output import check_writable, text_writer, write_files
 
@@ -67,4 +67,4 @@ def command(
         except ConfigError as error:
             raise ConfigError(error.message, key=error.key, file=str(result)) from error
         (written,) = write_files(folder, {file: text_writer(text)})
-    click.echo(f"{written}  {len(text.encode()) / 1e6:.2f} MB")
+    click.echo(f"{shown_path(written)}  {len(text.encode()) / 1e6:.2f} MB")

@@ -9,6 +9,7 @@ import click
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.slices import slice_options
 from ptmcad.config import slice_from_options
+from ptmcad.errors import shown_path
 from ptmcad.export import FORMATS
 from ptmcad.memory import Bound
 from ptmcad.output import check_writable, text_writer, write_files
@@ -58,4 +59,4 @@ def command(
         click.echo(text, nl=False)
     else:
         write_files(out.parent, {out.name: text_writer(text)})
-        click.echo(f"written   {out}")
+        click.echo(f"written   {shown_path(out)}")

@@ -12,7 +12,7 @@ from typing import Any
 
 from ptmcad.config.parameters import PARAMETERS, unknown_parameter
 from ptmcad.expressions import NAME, did_you_mean
-from ptmcad.slice import Count
+from ptmcad.slice import Count, unstorable
 from ptmcad.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
 RECORD_KEYS = ("name", "title", "notes", "mechanism", "parameters", "axes", "count", "reference")
@@ -172,4 +172,6 @@ def _reference(node: Node) -> dict[str, Any]:
         return {}
     if not isinstance(data, dict):
         raise node.place.error("expected a mapping of published answers")
+    if (found := unstorable(data)) is not None:
+        raise node.place.error(f"it has the character U+{ord(found):04X}, which a result cannot store: remove it")
     return data

@@ -14,6 +14,7 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from ptmcad.numerals import fraction_of
+from ptmcad.slice import unstorable
 
 # Limits far beyond any slice's result; they bound the time in which a damaged document is refused.
 MAX_ITEMS = 100_000
@@ -54,6 +55,9 @@ class Node:
             raise self.fault("is not an object")
         if len(self.value) > MAX_ITEMS:
             raise self.fault(f"has more than {MAX_ITEMS} keys")
+        for key in self.value:
+            if not key.isprintable():
+                raise self.fault(f"has the key {key[:40]!r} with a character that is not printable")
         start = f"{self.place}." if self.place else ""
         return {key: Node(value, start + key[:40]) for key, value in self.value.items()}
 
@@ -70,8 +74,19 @@ class Node:
         return tuple(read(item) for item in self.items(length))
 
     def text(self) -> str:
+        """A text that can be shown as it is, on a terminal or in a page; in an expression, tabs are blanks."""
         if not isinstance(self.value, str):
             raise self.fault("is not a text")
+        if not self.value.isprintable() and not self.value.replace("\t", " ").isprintable():
+            raise self.fault("has a character that is not printable")
+        return self.value
+
+    def data(self) -> dict[str, Any]:
+        """An object of any shape, whose texts and keys can be stored (`ptmcad.slice.unstorable`)."""
+        if not isinstance(self.value, dict):
+            raise self.fault("is not an object")
+        if (found := unstorable(self.value)) is not None:
+            raise self.fault(f"has the character U+{ord(found):04X}")
         return self.value
 
     def line(self, most: int) -> str:

@@ -164,7 +164,7 @@ def _slice(node: Node) -> Slice:
         count=head["count"].choice(Count),
         title=head["title"].line(MAX_TITLE),
         text={name: value.text() for name, value in head["text"].mapping().items()},
-        reference={name: value.value for name, value in head["reference"].mapping().items()},
+        reference=head["reference"].data(),
     )
 
 

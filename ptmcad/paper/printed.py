@@ -7,6 +7,8 @@ Equations with F3' = F3/k are multiplied by k, so that the symbols are those of 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ptmcad.paper.symbolic import F3, F4, L1, L2, Expr, F3x, F4x, c1, c2, k, rho, s1, s2, t1, t2
 
 SIN_SUM, COS_SUM = s1 * c2 + c1 * s2, c1 * c2 - s1 * s2
@@ -18,6 +20,11 @@ def potential_2(factor: Expr) -> Expr:
         3 * rho**2 - 4 * L1 * rho * c1 + 2 * L1**2 + 2 * L2**2 - 4 * L2 * rho * c2 + 2 * L1 * L2 * COS_SUM
     )  # fmt: skip
     return k / 2 * lengths - F3 * L1 * factor * s1 - F4 * L2 * factor * s2
+
+
+def potential_17(lengths: Sequence[Expr], free: Expr, work: Expr) -> Expr:
+    """(17): the springs' lengths, their common free length, and the work F3 y3 + F4 y4."""
+    return k / 2 * sum((length - free) ** 2 for length in lengths) - work
 
 
 EQUATION_3 = k * L1 * SIN_SUM - 2 * k * rho * s2 + F4 * c2

@@ -14,7 +14,7 @@ from typing import Any
 
 import sympy as sp
 
-from ptmcad.models.ptm import ptm_system
+from ptmcad.models.ptm import nodes, ptm_system
 
 Expr = Any
 """A SymPy expression; SymPy has no types of its own for a type checker."""
@@ -51,6 +51,18 @@ def _expression(p: Any) -> Expr:
 def potential() -> Expr:
     """U in c1, s1, c2, s2; Wenger & Chablat (1) with horizontal forces added."""
     return _expression(ptm_system().potential)
+
+
+@lru_cache(maxsize=1)
+def coordinates() -> Mapping[str, tuple[Expr, Expr]]:
+    """The nodes A1, A2, A3 and A4 of the model."""
+    return {name: (_expression(x), _expression(y)) for name, (x, y) in nodes(ptm_system().ring).items()}
+
+
+def by_angle(expression: Expr, number: int) -> Expr:
+    """The derivative of a polynomial in cosines and sines by th1 or th2."""
+    cosine, sine = ((c1, s1), (c2, s2))[number - 1]
+    return sp.expand(sp.diff(expression, sine) * cosine - sp.diff(expression, cosine) * sine)
 
 
 @lru_cache(maxsize=1)

@@ -6,21 +6,30 @@ Guarantee: names are unique; each check is independent of the others, so they ma
 from __future__ import annotations
 
 from ptmcad.paper.claim import Claim
-from ptmcad.paper.claims import basics, extensions, general, overall, symmetric, symmetric_map, unloaded, unloaded_map
+from ptmcad.paper.claims import (
+    basics,
+    extensions,
+    free_springs,
+    general,
+    overall,
+    symmetric,
+    symmetric_map,
+    unloaded,
+    unloaded_map,
+)
 
 SECTIONS = (
     "abstract", "1", "2", "3", "3.1", "3.2", "3.3", "4", "4.1", "4.2", "4.3", "5.1", "5.2", "conclusions",
 )  # fmt: skip
 """Sections with claims, as they follow each other."""
+_MODULES = (
+    overall, basics, unloaded, unloaded_map, symmetric, symmetric_map, general, extensions, free_springs,
+)  # fmt: skip
 
 
 def all_claims() -> tuple[Claim, ...]:
     """Every claim, sorted by section and, within one, as listed."""
-    listed = [
-        c
-        for module in (overall, basics, unloaded, unloaded_map, symmetric, symmetric_map, general, extensions)
-        for c in module.CLAIMS
-    ]
+    listed = [c for module in _MODULES for c in module.CLAIMS]
     return tuple(sorted(listed, key=lambda c: SECTIONS.index(c.section)))
 
 

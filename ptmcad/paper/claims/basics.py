@@ -11,6 +11,7 @@ from ptmcad.models import system_of
 from ptmcad.models.ptm import nodes
 from ptmcad.paper import printed
 from ptmcad.paper.claim import Claim, Outcome, judge, unchecked
+from ptmcad.paper.claims.overall import when_infinite
 from ptmcad.paper.slices import equilibria_at, heights, region_map
 from ptmcad.paper.symbolic import (
     F3,
@@ -19,9 +20,11 @@ from ptmcad.paper.symbolic import (
     L2,
     UNLOADED,
     VERTICAL,
+    by_angle,
     c1,
     c2,
     cleared,
+    coordinates,
     determinant,
     equal,
     gradient,
@@ -37,6 +40,7 @@ from ptmcad.paper.symbolic import (
     sextic,
     t1,
     t2,
+    vanishes,
 )
 
 
@@ -52,6 +56,66 @@ def fixed_point() -> Outcome:
         {"moving": moving},
         corrected=moving == ("A2",),
         right="point A1 is fixed; A2 moves along the x-axis",
+    )
+
+
+def degrees_of_freedom() -> tuple[int, int]:
+    """How many numbers the nodes' positions depend on, by coordinates and by constraints; both are exact.
+
+    The nodes move with rho, th1 and th2, and the Gram determinant of their derivatives is L1^2 L2^2 (1 + c2^2) > 0, so
+    positions are a manifold of dimension 3. A2 on the axis, A3 and A4 anywhere have five coordinates; the rods' lengths
+    are two constraints, whose gradients are independent where both rods have a length.
+    """
+    at = coordinates()
+    moving = [p for name in ("A2", "A3", "A4") for p in at[name]]
+    columns = ([sp.diff(p, rho) for p in moving], [by_angle(p, 1) for p in moving], [by_angle(p, 2) for p in moving])
+    gram = sp.Matrix(3, 3, lambda i, j: sum(p * q for p, q in zip(columns[i], columns[j], strict=True)))
+    regular = vanishes(gram.det() - L1**2 * L2**2 * (1 + c2**2))
+    (x1, y1), (x2, y2), (x3, y3), (x4, y4) = (at[name] for name in ("A1", "A2", "A3", "A4"))
+    free = sp.symbols("x2 x3 y3 x4 y4")
+    rods = ((free[1] - x1) ** 2 + (free[2] - y1) ** 2, (free[3] - free[0]) ** 2 + (free[4] - y2) ** 2)
+    there = dict(zip(free, (x2, x3, y3, x4, y4), strict=True))
+    rows = sp.Matrix(2, 5, lambda i, j: sp.diff(rods[i], free[j]).subs(there))
+    independent = vanishes((rows[:, [1, 2]].row(0) * rows[:, [1, 2]].row(0).T)[0] - 4 * L1**2) and vanishes(
+        (rows[:, [3, 4]].row(1) * rows[:, [3, 4]].row(1).T)[0] - 4 * L2**2
+    )
+    separate = rows[0, 3] == rows[0, 4] == rows[1, 1] == rows[1, 2] == 0
+    return (3 if regular else -1, 5 - 2 if independent and separate else -1)
+
+
+def three_dof() -> Outcome:
+    by_coordinates, by_constraints = degrees_of_freedom()
+    at = coordinates()
+    actuated = all(p.free_symbols <= {rho} for p in at["A2"]) and at["A2"][0] == rho
+    return judge(
+        by_coordinates == by_constraints == 3 and actuated,
+        (
+            "the nodes' positions have independent derivatives by rho, th1 and th2: their Gram determinant is "
+            "L1^2 L2^2 (1 + cos^2 th2)",
+            f"A2 on its axis, A3 and A4 have five coordinates, and the rods are two independent constraints: "
+            f"{by_constraints} degrees of freedom",
+            "A2, which the actuator moves, depends on rho alone",
+        ),
+        {"by coordinates": by_coordinates, "by constraints": by_constraints, "A2 by rho alone": actuated},
+    )
+
+
+def one_dof() -> Outcome:
+    whole, _ = degrees_of_freedom()
+    bound = len(sextic()) - 1
+    _, only_there = when_infinite()
+    return judge(
+        whole == 1,
+        (
+            f"the rods and the slider leave {whole} degrees of freedom, as section 2 says",
+            f"for a given rho there are at most {bound} equilibria (finitely many but for rho = 0 without loads): in "
+            "equilibrium the input decides, up to a choice among finitely many poses",
+        ),
+        {"degrees of freedom": whole, "equilibria at most": bound, "finite": only_there},
+        corrected=whole == 3 and bound == 6 and only_there,
+        right="three degrees of freedom, one of them actuated; equilibrium leaves one, for it fixes the other two up "
+        "to a choice among at most six poses (but for rho = 0 without loads)",
+        witness="section 2 of the paper counts three",
     )
 
 
@@ -202,7 +266,7 @@ def large_minors() -> Outcome:
     short = equal(h11, L1 * (2 * k * rho * c1 + F3 * s1 - k * L2 * printed.COS_SUM))
     above = sp.numer(sp.together(half_angles(determinant().subs(VERTICAL))))
     return unchecked(
-        "how long is large is no question of mathematics",
+        "how long an expression has to be to be large is no question of mathematics",
         f"as trigonometric polynomials H(1,1) has {terms} terms: L1 (2 k rho cos th1 + F3 sin th1 - k L2 "
         "cos(th1 + th2)) "
         f"({'checked' if short else 'NOT the case'}), det H has {whole}",
@@ -228,7 +292,9 @@ def cleared_equations_agree() -> Outcome:
 CLAIMS = (
     Claim("2-fixed-point", "2", "Point A1A2 is fixed", "A1 is fixed while A2 slides.", fixed_point),
     Claim("2-dof", "2", "This mechanism has three dof", "One actuated and two compliant degrees of freedom.",
-          unchecked("a definition; the abstract calls the same mechanism one-dof, counting the actuated one")),
+          three_dof),
+    Claim("a-one-dof", "abstract", "planar one-degree-of-freedom (dof) tensegrity mechanisms",
+          "The mechanism has one degree of freedom.", one_dof),
     Claim("2-zero-free-length", "2", "equivalent zero free lengths springs can be designed",
           "Springs of free length zero can be built.", unchecked("a statement about hardware, taken from references")),
     Claim("2-eq1", "2", "U = k/2 sum l_i^2 - F3 y3 - F4 y4", "Equation (1), the potential.", potential_1),

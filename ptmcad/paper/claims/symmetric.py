@@ -8,7 +8,8 @@ from __future__ import annotations
 import sympy as sp
 
 from ptmcad.paper import printed
-from ptmcad.paper.claim import Claim, Outcome, judge, unchecked
+from ptmcad.paper.claim import Claim, Outcome, judge
+from ptmcad.paper.claims.overall import allowed_and_seen
 from ptmcad.paper.slices import equilibria_at, region_map
 from ptmcad.paper.symbolic import (
     F4,
@@ -225,6 +226,34 @@ def half_angle_form() -> Outcome:
     )
 
 
+def general_result() -> Outcome:
+    allowed, seen = allowed_and_seen()
+    # minima - saddles + maxima = 0: half of the equilibria are saddles
+    saddles = {(total, stable): total // 2 for total, stable in allowed}
+    maxima = {(total, stable): total - total // 2 - stable for total, stable in allowed}
+    listed = "; ".join(
+        f"of {t} equilibria {s} stable, {saddles[t, s]} saddles, {maxima[t, s]} of maximal energy"
+        for t, s in sorted(allowed)
+    )
+    general = allowed == {(4, 1), (6, 1), (6, 2)}
+    return judge(
+        False,  # that there is no general result can only be refuted, by giving one
+        (
+            "from the degree of the eliminated polynomial and the Euler characteristic of the torus, for all lengths, "
+            f"inputs, stiffnesses and forces at which no equilibrium is degenerate: {listed}",
+            f"seen in the cells of the five maps and at random points: {sorted(seen)}",
+            "without loads the non-flat equilibria are stable wherever they exist (4.1-non-flat)",
+        ),
+        {
+            "(total, stable, saddles)": tuple(f"{t},{s},{saddles[t, s]}" for t, s in sorted(allowed)),
+            "seen are allowed": seen <= allowed,
+        },
+        corrected=general and seen <= allowed,
+        right="where no equilibrium is degenerate, exactly half of the equilibria are saddles, one or two are stable, "
+        "and there are 4, of which 1 is stable, or 6, of which 1 or 2 are",
+    )  # fmt: skip
+
+
 CLAIMS = (
     Claim("3.2-arsenault", "3.2", "resulting in a 4th degree polynomial equation",
           "With th1 = th2 there is one equation of degree 4.", one_equation),
@@ -249,7 +278,7 @@ CLAIMS = (
           always_negative),
     Claim("3.3-others", "3.3", "symbolic calculations did not succeed",
           "No general result on stability in the other cases.",
-          unchecked("a report of what was tried; theorem 1 of docs/method.md is a general result")),
+          general_result),
     Claim("4.2-unequal", "4.2", "the two solutions th1 != th2 are always unstable",
           "Solutions with distinct angles are unstable.", always_negative),
     Claim("c-four-unsymmetric", "conclusions", "4 unstable, non-symmetric solutions",

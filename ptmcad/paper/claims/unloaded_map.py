@@ -10,7 +10,7 @@ from fractions import Fraction
 import sympy as sp
 
 from ptmcad.paper import printed
-from ptmcad.paper.claim import Claim, Outcome, judge, unchecked
+from ptmcad.paper.claim import Claim, Outcome, judge
 from ptmcad.paper.claims.unloaded import COS1, flat_determinants, on_triangle
 from ptmcad.paper.slices import curves, equilibria_at, heights, ranges, region_map
 from ptmcad.paper.symbolic import (
@@ -129,6 +129,24 @@ def fig2_right() -> Outcome:
     )
 
 
+def by_triangle() -> Outcome:
+    square = L1**2 * (1 - COS1**2)  # of the triangle's height over the side 2 rho
+    lines = sp.Integer(1)
+    for line in printed.UNLOADED_LINES:
+        lines *= line
+    # Heron: 16 area^2 = 4 (2 rho)^2 height^2
+    heron = bool(sp.expand(sp.cancel((4 * (2 * rho) ** 2 * square).subs(L1, 1) + (2 * rho + L2 + 1) * lines)) == 0)
+    return judge(
+        heron,
+        (
+            "the non-flat equilibria are the triangle with sides L1, L2 and 2 rho; by Heron's formula 16 times the "
+            "square of its area is -(2 rho + L2 + 1) times the product of the three lines, for L1 = 1",
+            "so on the lines, and nowhere else, the triangle is flat",
+        ),
+        {"Heron": heron},
+    )
+
+
 CLAIMS = (
     Claim("4.1-non-flat", "4.1", "no general information regarding the two non-flat solutions",
           "The stability of the non-flat equilibria has no general answer.", non_flat_stable),
@@ -144,5 +162,5 @@ CLAIMS = (
     Claim("4.1-fig2", "4.1", "stable solutions for rho = 1, L2 = 3/2", "Two stable poses at the point of fig. 2.",
           fig2_right),
     Claim("4.1-geometric", "4.1", "easily verified with geometric arguments", "The lines follow from geometry.",
-          unchecked("an argument that the paper does not give; 4.1-boundaries-flat proves the result")),
+          by_triangle),
 )  # fmt: skip
