@@ -47,8 +47,8 @@ from ptmcad.algebra.real_roots import (
 from ptmcad.algebra.resultants import discriminant
 from ptmcad.algebra.window import Interval
 
-MAX_WORK = 2 * 10**9
-"""Of a discriminant: values, times the cube of the degree, times the bits of a coefficient; about ten seconds."""
+MAX_WORK = 2 * 10**10
+"""Of a discriminant: values, times the cube of the degree, times the bits of a coefficient; some twenty seconds."""
 BITS = 400
 """To which the distance of a polynomial from zero over a singular abscissa is looked at."""
 _HALVINGS = 60
@@ -129,11 +129,20 @@ class _Crossing:
 
     def zero(self, x: Interval, y: Interval) -> Found:
         """The zero itself."""
-        window = (x, y)[self.across]
-        (root,) = inside([refine(self.root, (window[1] - window[0]) / 2**40)], window)
+        root = _narrow(self.root, (x, y)[self.across])
         held, there = simplest_between(*self.held), root.middle
         point = (there, held) if self.across == 0 else (held, there)
         return Found(point, root.is_rational, root.high - root.low)
+
+
+def _narrow(root: RealRoot, window: Interval) -> RealRoot:
+    """The root inside of the window, enclosed to 2^-40 of it; exactly where it is a rational number of few digits."""
+    (near,) = inside([refine(root, (window[1] - window[0]) / 2**40)], window)
+    if not near.is_rational:
+        simple = simplest_between(near.low, near.high)
+        if sign_at(near.polynomial, simple) == 0:
+            return RealRoot(near.polynomial, simple, simple)
+    return near
 
 
 def _crossing(f: Coefficient, x: Interval, y: Interval) -> _Crossing | Answer:
@@ -230,8 +239,7 @@ def _isolated_zero(f: Coefficient, x: Interval, y: Interval) -> Found | Near | N
             found = _over_rational(rows, m, fibre) if m.degree() == 1 else _over_irrational(rows, root, fibre)
             if found is not None:
                 heights, exact = found
-                (here,) = inside([refine(root, (window[1] - window[0]) / 2**40)], window)
-                u, v = (here.middle, heights.middle) if m.degree() > 1 else (_only_root(m), heights.middle)
+                u, v = (_narrow(root, window).middle if m.degree() > 1 else _only_root(m)), heights.middle
                 point = (u, v) if base == 0 else (v, u)
                 return Found(point, heights.is_rational, heights.high - heights.low) if exact else Near(point)
     return None
@@ -245,10 +253,7 @@ def _over_rational(
     rows: Sequence[UnivariatePolynomial], m: UnivariatePolynomial, fibre: Interval
 ) -> tuple[RealRoot, bool] | None:
     roots = isolate(squarefree_part(univariate(tuple(rows), _only_root(m))), *fibre)
-    if not roots:
-        return None
-    (root,) = inside([refine(roots[0], (fibre[1] - fibre[0]) / 2**40)], fibre)
-    return root, True
+    return (_narrow(roots[0], fibre), True) if roots else None
 
 
 def _over_irrational(
