@@ -91,6 +91,7 @@ def negative_or_zero(p: Coefficient, x: Interval, y: Interval, zero: bool) -> Fo
     Parameters
     ----------
     p : not the zero polynomial.
+    x, y : intervals; one may be a single number if p does not depend on that axis.
     zero : whether a zero counts.
     """
     factors = factors_with_multiplicity(p)
@@ -130,9 +131,14 @@ class _Crossing:
     def zero(self, x: Interval, y: Interval) -> Found:
         """The zero itself."""
         root = _narrow(self.root, (x, y)[self.across])
-        held, there = simplest_between(*self.held), root.middle
+        held, there = _simple(self.held), root.middle
         point = (there, held) if self.across == 0 else (held, there)
         return Found(point, root.is_rational, root.high - root.low)
+
+
+def _simple(interval: Interval) -> fmpq:
+    """A number in an open interval; or the only one in a closed one, on a line across which nothing varies."""
+    return interval[0] if interval[0] == interval[1] else simplest_between(*interval)
 
 
 def _narrow(root: RealRoot, window: Interval) -> RealRoot:
@@ -197,7 +203,7 @@ def _negative_beside(p: Coefficient, crossing: _Crossing, x: Interval, y: Interv
     rows = coefficients_in(p, across)
     low, high = crossing.held
     while True:  # the curve is met by other factors' curves over finitely many values
-        held = simplest_between(low, high)
+        held = _simple((low, high))
         on_line = univariate(rows, held)
         for there in _between_roots(on_line, window):
             if sign_at(on_line, there) < 0:
