@@ -199,9 +199,7 @@ def _is_proved(part: _Part, window: Box, strict: bool) -> bool:
         return True
     degrees = len(rows) - 1, len(rows[0]) - 1
     # for each axis: the indices of coefficients inside, and those of the ends that are inside of the window
-    faces = [
-        [slice(None), *_inner_ends(part.box[k], window[k], degrees[k])] for k in (0, 1)
-    ]
+    faces = [[slice(None), *_inner_ends(part.box[k], window[k], degrees[k])] for k in (0, 1)]
     return all(any(any(row[across]) for row in rows[along]) for along in faces[0] for across in faces[1])
 
 
