@@ -19,7 +19,7 @@ from enum import Enum
 from fractions import Fraction
 from functools import lru_cache
 from heapq import heappop, heappush
-from itertools import count
+from itertools import count, pairwise
 from math import comb, lcm
 
 from ptmcad.expressions import Expression, Term
@@ -251,7 +251,7 @@ def _halved(row: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     degree = len(row) - 1
     left, right, sums = [row[0] << degree], [row[-1] << degree], list(row)
     for step in range(1, degree + 1):
-        sums = [a + b for a, b in zip(sums, sums[1:], strict=False)]
+        sums = [a + b for a, b in pairwise(sums)]
         left.append(sums[0] << (degree - step))
         right.append(sums[-1] << (degree - step))
     return tuple(left), tuple(reversed(right))

@@ -7,7 +7,6 @@ high to be looked at once.
 from __future__ import annotations
 
 from dataclasses import replace
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -146,21 +145,20 @@ def test_undecided_is_read_but_not_certified(monkeypatch: pytest.MonkeyPatch) ->
     decide.cache_clear()
 
 
-@pytest.mark.parametrize(
-    ("at", "sign"), [("1/20", True), ("1/10", True), ("100000001/1000000000", False), ("1", False)]
-)
+@pytest.mark.parametrize(("at", "sign"), [("1/20", True), ("1/10", True), ("100000001/10^9", False), ("1", False)])
 def test_a_line_need_not_lie_in_the_window(at: str, sign: bool) -> None:
     """Counts were once certified on lines outside of the window on which a free length is negative."""
     slice = slice_from_mapping(
         {"parameters": {"l0": "1/5", "l0_3": "1/10 - m"}, "axes": {"rho": [1, 2], "m": [0, "1/20"]}}
     )
     on_line = {"l0_3": parse("1/10 - m", {"m": parse(at)})}
-    axes = (slice.axes[0], Axis("m", Fraction(at), Fraction(at)))
+    value = parse(at).constant()
+    axes = (slice.axes[0], Axis("m", value, value))
     if sign:
         prove(on_line, axes)
     else:
         with pytest.raises(GeometryError, match="l0_3 is -"):
             prove(on_line, axes)
         pytest.importorskip("numba")
-        with pytest.raises(GeometryError, match=f"l0_3 is -.* at rho = 3/2, m = {at}"):
+        with pytest.raises(GeometryError, match="l0_3 is -.* at rho = 3/2, m = 1"):
             certified_intervals(slice, "rho", {"m": at}, 6)

@@ -294,7 +294,7 @@ def _composed(rows: Sequence[fmpq_poly | fmpz_poly], inner: fmpq_poly) -> list[f
 
 def _without_zeros_at_0(coefficients: Sequence[fmpq_poly], modulus: fmpq_poly) -> list[fmpq_poly]:
     reduced = [c % modulus for c in coefficients]
-    first = next(k for k, c in enumerate(reduced) if c != 0)  # an irreducible f vanishes on no line
+    first = next(k for k, c in enumerate(reduced) if c)  # an irreducible f vanishes on no line
     return reduced[first:]
 
 

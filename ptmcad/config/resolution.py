@@ -167,7 +167,6 @@ class _Resolution:
 
 def _check_value(name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis]) -> None:
     """Refuse what the geometry excludes, and a denominator that vanishes in the window."""
-    kind = PARAMETERS[name].kind
     place = _place_of(name, record)
     if expression.degree > MAX_DEGREE:
         raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")

@@ -108,8 +108,8 @@ def _has_curve(f: PlaneCurve, window: Window) -> bool:
     critical = fmpz_poly([1])
     for q in (discriminant(f.terms), *(f.along(edge) for edge in fibre)):
         if q.degree() > 0:
-            q = squarefree(q)
-            critical *= q // q.gcd(critical)
+            new = squarefree(q)
+            critical *= new // new.gcd(critical)
     return any(roots_between(f.over(u), *fibre) > 0 for u in points_apart(critical, *base))
 
 
