@@ -160,5 +160,5 @@ def test_a_line_need_not_lie_in_the_window(at: str, sign: bool) -> None:
         with pytest.raises(GeometryError, match="l0_3 is -"):
             prove(on_line, axes)
         pytest.importorskip("numba")
-        with pytest.raises(GeometryError, match="l0_3 is -.* at rho = 3/2, m = 1"):
+        with pytest.raises(GeometryError, match=r"l0_3 is -.* at rho = 3/2, m = 1"):
             certified_intervals(slice, "rho", {"m": at}, 6)

@@ -45,7 +45,7 @@ def test_limits_of_length_are_exact() -> None:
     """The longest number is read, one digit more is not; so for exponents, fractions and decimals."""
     nines = "9" * MAX_DIGITS
     assert fraction_of(nines) == 10**MAX_DIGITS - 1
-    with pytest.raises(ValueError, match="the number 99999999999999999999... is too long"):
+    with pytest.raises(ValueError, match="the number 99999999999999999999"):
         fraction_of(nines + "9")
     assert fraction_of(f"1e{MAX_EXPONENT}") == 10**MAX_EXPONENT
     assert fraction_of(f"1e-{MAX_EXPONENT}") == Fraction(1, 10**MAX_EXPONENT)
@@ -68,7 +68,7 @@ def test_limits_of_length_are_exact() -> None:
     "text", ["", "-", "1/", "/2", "1.", ".5", "1e", "e3", "1e1234567", "+1", "1/2e3", "1/-2", "١", "1 "]
 )
 def test_what_is_no_exact_number(text: str) -> None:
-    with pytest.raises(ValueError, match="is not an exact number such as 7/10 or 0.25"):
+    with pytest.raises(ValueError, match="is not an exact number such as 7"):
         fraction_of(text)
 
 
