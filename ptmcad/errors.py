@@ -124,7 +124,7 @@ class DimensionError(HypothesisError):
 
 
 class GeometryError(HypothesisError):
-    """A length or stiffness is not positive at some point of the window."""
+    """A length or stiffness is not positive at some point of the window, or it could not be proved to be."""
 
 
 class OutputError(PtmcadError):

@@ -11,7 +11,7 @@ import re
 from fractions import Fraction
 
 MAX_DIGITS = 200_000
-"""Longer numbers are refused when reading."""
+"""Of a numerator, a denominator or a decimal: longer ones are refused when reading."""
 MAX_EXPONENT = 20_000
 _PIECE = 4000
 
@@ -82,7 +82,8 @@ def fraction_of(text: str) -> Fraction:
     if match is None:
         raise ValueError(f"{text[:40]!r} is not an exact number such as 7/10 or 0.25")
     sign, whole, below, decimals, exponent = match.groups()
-    if len(whole) > MAX_DIGITS or (exponent is not None and abs(int(exponent)) > MAX_EXPONENT):
+    digits = max(len(whole + (decimals or "")), len(below or ""))
+    if digits > MAX_DIGITS or (exponent is not None and abs(int(exponent)) > MAX_EXPONENT):
         raise ValueError(f"the number {text[:20]}... is too long")
     value = Fraction(integer_of(whole + (decimals or "")))
     scale = int(exponent or 0) - len(decimals or "")

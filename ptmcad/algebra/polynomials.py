@@ -61,13 +61,18 @@ _RATIONAL_PLANE: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("x", "y"), Ordering.degrev
 
 
 def irreducible_factors(p: Coefficient) -> list[Coefficient]:
-    """The irreducible factors over Q that are not constant, primitive and without multiplicity.
+    """The irreducible factors over Q that are not constant, primitive and without multiplicity."""
+    return [factor for factor, _ in factors_with_multiplicity(p)]
+
+
+def factors_with_multiplicity(p: Coefficient) -> list[tuple[Coefficient, int]]:
+    """The irreducible factors over Q that are not constant, primitive, each with its multiplicity.
 
     The factorisation goes through Q[x, y], because python-flint 0.9 sorts the factors over Z[x, y] by coefficients as
     machine integers and raises OverflowError for longer ones.
     """
     over_q = _RATIONAL_PLANE.from_dict({(int(i), int(j)): c for (i, j), c in p.terms()})
-    return [from_plane(_primitive(factor)) for factor, _ in over_q.factor()[1]]
+    return [(from_plane(_primitive(factor)), int(power)) for factor, power in over_q.factor()[1]]
 
 
 def _primitive(p: fmpq_mpoly) -> PlanePolynomial:

@@ -1,12 +1,12 @@
 """From a problem record (YAML), a mapping or command-line options to a `Slice`.
 
 Guarantee: a `Slice` that leaves here is complete and exact: every parameter of the mechanism is a rational function
-of the two axes, its window is a nonempty rectangle, and no length or stiffness was found out of the range that the
+of the two axes, its window is a nonempty rectangle, and no length or stiffness is known to be out of the range that the
 geometry needs. Whatever is wrong with the input is a `ConfigError` that names file, line and key, and the remedy;
 nothing unknown is ignored.
 
-Not guaranteed: that a length given by an expression is positive in the whole window, where `ptmcad.positivity` could
-not decide it (see there).
+Not guaranteed: that a length given by an expression is positive in the whole window, where `ptmcad.positivity` answers
+that it is undecided. The certified engine refuses such a slice, the exact one decides it with its cells.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """From a record's texts to exact expressions and numbers.
 
-Guarantee: what leaves here is complete and exact; no length or stiffness was found out of the range that the geometry
-needs (see `ptmcad.positivity` for what can be found).
+Guarantee: what leaves here is complete and exact; no length or stiffness is known to be out of the range that the
+geometry needs. Where its sign could not be decided (see `ptmcad.positivity`) it is left to the engines, which decide or
+refuse: `ptmcad.domain.prove`, and the exact engine's samples.
 """
 
 from __future__ import annotations
@@ -11,9 +12,9 @@ from fractions import Fraction
 
 from ptmcad.config.parameters import PARAMETERS, Kind
 from ptmcad.config.record import Record, Window
+from ptmcad.domain import fault
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.expressions import Expression, axis, did_you_mean, names_in, parse
-from ptmcad.positivity import find_negative, find_nonpositive, find_pole
 from ptmcad.slice import FREE_LENGTHS, Axis, Slice
 from ptmcad.yamltree import Place, Scalar
 
@@ -166,24 +167,15 @@ class _Resolution:
 
 def _check_value(name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis]) -> None:
     """Refuse what the geometry excludes, and a denominator that vanishes in the window."""
-    kind = PARAMETERS[name].kind
     place = _place_of(name, record)
     if expression.degree > MAX_DEGREE:
         raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
     if expression.is_constant:
         _check_number(name, expression.constant(), place)
         return
-    pole = find_pole(expression, axes)
-    if pole is not None:
-        raise place.error(f"division by zero inside the window: the denominator of {name} vanishes {pole}")
-    if kind is Kind.FORCE:
-        return
-    witness = find_negative(expression, axes) if kind is Kind.FREE_LENGTH else find_nonpositive(expression, axes)
-    if witness is not None:
-        least = "not be negative" if kind is Kind.FREE_LENGTH else "be positive"
-        raise place.error(
-            f"a {kind.value} must {least} in the whole window, but {name} is {witness}: narrow the window"
-        )
+    problem = fault(name, expression, axes)
+    if problem:
+        raise place.error(problem)
 
 
 def _place_of(name: str, record: Record) -> Place:

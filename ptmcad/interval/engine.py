@@ -20,6 +20,7 @@ import numpy as np
 
 from ptmcad.cover import MOST_STEPS, Cover, Rectangle, components, union_area
 from ptmcad.cover.filling import gathered, simplified
+from ptmcad.domain import prove_slice
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.interval.assembly import Assembler
 from ptmcad.interval.covering import Lattice, box_rectangles, thinning
@@ -98,11 +99,14 @@ def certified_map(
 
     Raises
     ------
+    GeometryError
+        When a parameter is not in the whole window what the proofs ask for, or that could not be proved.
     LimitReached
         At the deadline, or when doubles are exhausted, with the map so far as ``partial``.
     """
     if any(max(abs(axis.low), abs(axis.high)) > LARGEST for axis in slice.axes):
         raise ConfigError(f"the certified engine computes in floats: an axis may reach {float(LARGEST):g}, no more")
+    prove_slice(slice)
     options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial, keep)
     return _Run(slice, options, resume).run()
 

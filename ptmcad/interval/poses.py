@@ -16,6 +16,7 @@ from typing import Any
 from flint import arb, ctx, fmpq
 
 from ptmcad.balls import enclosed
+from ptmcad.domain import prove_slice
 from ptmcad.enclosure import Enclosure
 from ptmcad.expressions import axis
 from ptmcad.interval.arb_evaluation import ball
@@ -47,8 +48,15 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     ----------
     parameters : all of `ptmcad.interval.mechanism.NAMES`.
     digits : significant digits that every enclosure settles.
+
+    Raises
+    ------
+    GeometryError
+        When a length or a stiffness is not positive, or the base or a free length is negative.
     """
-    counter = point_counter(_point_slice(parameters))
+    slice = _point_slice(parameters)
+    prove_slice(slice)
+    counter = point_counter(slice)
     counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
     if not counts.decided:
         return Poses("ptm", parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)

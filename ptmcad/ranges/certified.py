@@ -6,10 +6,11 @@ Guarantee: every digit is right; what was not decided is called undecided and ha
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from ptmcad.domain import prove
 from ptmcad.enclosure import Enclosure
 from ptmcad.errors import ExpressionError
 from ptmcad.expressions import rational
@@ -85,11 +86,17 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
     ------
     ConfigError
         When ``along`` is no axis, or ``at`` does not name exactly the other one with an exact number.
+    GeometryError
+        When a parameter is not on the whole line what the proofs ask for, or that could not be proved. The line need
+        not lie in the slice's window, so nothing that is known of the window is used.
     """
     from ptmcad.interval.line import line_counts
 
     varying, other, value = varying_axis(slice, along, at)
-    found = line_counts(slice, varying, value, 64 + 4 * digits)
+    on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
+    prove(on_line, (slice.axes[varying], Axis(other, value, value)))
+    line = replace(slice, axes=(slice.axes[varying], Axis(other, value, value)), parameters=on_line)
+    found = line_counts(line, 0, value, 64 + 4 * digits)
     ends = {gap.low: Enclosure(gap.low, gap.high) for gap in found.gaps}
     ends |= {gap.high: Enclosure(gap.low, gap.high) for gap in found.gaps}
 

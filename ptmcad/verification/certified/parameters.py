@@ -11,20 +11,50 @@ from fractions import Fraction
 from flint import arb, fmpq
 
 from ptmcad.expressions import Expression
+from ptmcad.regionmap import RegionMap
 from ptmcad.slice import FREE_LENGTHS, Slice
 from ptmcad.verification.certified.energy import NAMES, Energy
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
+from ptmcad.verification.signs import Sign, has_no_pole, is_in_domain
 
 POSITIVE = ("L1", "L2", "k1", "k2", "k3")
 NOT_NEGATIVE = ("rho", *FREE_LENGTHS)
 Values = dict[str, Fraction]
 
 
+def check_domain(result: RegionMap) -> str:
+    """Every parameter is in the whole open window what the certified engine's proofs ask for.
+
+    Returns
+    -------
+    What was proved, and of which parameters it was not.
+    """
+    window = [(_rational(a.low), _rational(a.high)) for a in result.slice.axes]
+    here, unchecked = (window[0], window[1]), []
+    for name, expression in result.slice.parameters.items():
+        pole = has_no_pole(expression, here)
+        if pole is Sign.WRONG:
+            raise Violation(f"{name} has a pole in the window")
+        sign = Sign.PROVED
+        if name in (*POSITIVE, *NOT_NEGATIVE):
+            strict = name in POSITIVE or (name == "rho" and bool(expression.numerator))
+            sign = is_in_domain(expression, here, strict)
+            if sign is Sign.WRONG:
+                raise Violation(f"{name} is {'not positive' if strict else 'negative'} somewhere in the window")
+        if Sign.UNCHECKED in (pole, sign):
+            unchecked.append(name)
+    return f"signs of {', '.join(unchecked)} not checked" if unchecked else "signs proved"
+
+
 def exact(value: Fraction) -> arb:
     """The ball of a rational number, as narrow as the precision allows."""
-    return arb(fmpq(value.numerator, value.denominator))
+    return arb(_rational(value))
+
+
+def _rational(value: Fraction) -> fmpq:
+    return fmpq(value.numerator, value.denominator)
 
 
 def values_at(claims: Claims, x: Fraction, y: Fraction) -> Values:

@@ -1,0 +1,340 @@
+"""Whether a polynomial is negative, or zero, somewhere in an open rectangle: decided, not sampled.
+
+Guarantee: `PROVED` and a `Found` point are theorems. `OPEN` is returned only where the work would be more than
+`MAX_WORK`, or a zero at a point with algebraic coordinates can neither be proved nor excluded to `BITS` bits.
+
+Why this decides. Write p as a constant times powers of different irreducible factors over Q. An irreducible f that
+changes sign does so across a curve; two factors meet in finitely many points; so p changes sign in the rectangle if and
+only if a factor of odd multiplicity does, and p has one sign everywhere else, that of one sample. An irreducible f in
+both variables has simple roots over every abscissa that is not a root of its discriminant, and their number in the
+fibre is constant between abscissae that are roots of it or of f on the two long edges. So f changes sign in the open
+rectangle if and only if it has a root over the sample of one of these intervals. When it has none, its only zeros are
+isolated ones, where its gradient vanishes; over these the discriminant has a multiple root, because its derivative by
+the coefficients of f is there a multiple of (1, v, v^2, ...), v being the double root.
+
+References: McCallum, J. Symb. Comp. 5 (1988), on projections; Gelfand, Kapranov and Zelevinsky, Discriminants,
+Resultants and Multidimensional Determinants, chapter 1, on the derivative of the discriminant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from itertools import pairwise
+from math import comb
+
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
+
+from ptmcad.algebra.polynomials import (
+    Coefficient,
+    UnivariatePolynomial,
+    coefficients_in,
+    evaluate,
+    factors_with_multiplicity,
+    univariate,
+)
+from ptmcad.algebra.real_roots import (
+    RealRoot,
+    disjoint,
+    inside,
+    isolate,
+    refine,
+    sign_at,
+    simplest_between,
+    squarefree_part,
+)
+from ptmcad.algebra.resultants import discriminant
+from ptmcad.algebra.window import Interval
+
+MAX_WORK = 2 * 10**10
+"""Of a discriminant: values, times the cube of the degree, times the bits of a coefficient; some twenty seconds."""
+BITS = 400
+"""To which the distance of a polynomial from zero over a singular abscissa is looked at."""
+_HALVINGS = 60
+
+Point = tuple[fmpq, fmpq]
+
+
+class Answer(Enum):
+    """What is known when no point was found."""
+
+    PROVED = "there is none"
+    OPEN = "not decided"
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A point of the open rectangle.
+
+    Attributes
+    ----------
+    exact : whether the polynomial has the sign at the point itself; else it is zero somewhere within ``distance`` of it
+        in each coordinate.
+    """
+
+    point: Point
+    exact: bool
+    distance: fmpq
+
+
+@dataclass(frozen=True, slots=True)
+class Near:
+    """Not decided: the polynomial is zero, or nearly so, at a place near this point."""
+
+    point: Point
+
+
+def negative_or_zero(p: Coefficient, x: Interval, y: Interval, zero: bool) -> Found | Near | Answer:
+    """A point of the open rectangle where p is negative or, if asked for, zero; or that there is none.
+
+    Parameters
+    ----------
+    p : not the zero polynomial.
+    x, y : intervals; one may be a single number if p does not depend on that axis.
+    zero : whether a zero counts.
+    """
+    factors = factors_with_multiplicity(p)
+    undecided: Near | Answer | None = None
+    for f, multiplicity in factors:
+        odd = multiplicity % 2 == 1
+        if not odd and not zero:
+            continue
+        crossing = _crossing(f, x, y)
+        if crossing is Answer.OPEN:
+            undecided = crossing
+        elif isinstance(crossing, _Crossing):
+            return _negative_beside(p, crossing, x, y) if odd else crossing.zero(x, y)
+    if undecided is not None:
+        return undecided
+    # now p has one sign wherever it is not zero
+    sample = _nonzero_point(p, x, y)
+    if evaluate(p, *sample) < 0:
+        return Found(sample, True, fmpq(0))
+    if zero:
+        for f, _ in factors:
+            touching = _isolated_zero(f, x, y)
+            if touching is not None:
+                return touching
+    return Answer.PROVED
+
+
+@dataclass(frozen=True, slots=True)
+class _Crossing:
+    """A place where a factor has a simple zero: on the line on which axis ``across`` varies and the other one is in an
+    open interval over whose values the line meets the same zeros."""
+
+    across: int
+    held: Interval
+    root: RealRoot
+
+    def zero(self, x: Interval, y: Interval) -> Found:
+        """The zero itself."""
+        root = _narrow(self.root, (x, y)[self.across])
+        held, there = _simple(self.held), root.middle
+        point = (there, held) if self.across == 0 else (held, there)
+        return Found(point, root.is_rational, root.high - root.low)
+
+
+def _simple(interval: Interval) -> fmpq:
+    """A number in an open interval; or the only one in a closed one, on a line across which nothing varies."""
+    return interval[0] if interval[0] == interval[1] else simplest_between(*interval)
+
+
+def _narrow(root: RealRoot, window: Interval) -> RealRoot:
+    """The root inside of the window, enclosed to 2^-40 of it; exactly where it is a rational number of few digits."""
+    (near,) = inside([refine(root, (window[1] - window[0]) / 2**40)], window)
+    if not near.is_rational:
+        simple = simplest_between(near.low, near.high)
+        if sign_at(near.polynomial, simple) == 0:
+            return RealRoot(near.polynomial, simple, simple)
+    return near
+
+
+def _crossing(f: Coefficient, x: Interval, y: Interval) -> _Crossing | Answer:
+    """Where an irreducible polynomial changes sign in the open rectangle, if it does."""
+    degrees = [int(d) for d in f.degrees()]
+    if min(degrees) == 0:
+        across = 0 if degrees[1] == 0 else 1
+        roots = isolate(coefficients_in(f, 1 - across)[0], *((x, y)[across]))
+        return _Crossing(across, (y, x)[across], roots[0]) if roots else Answer.PROVED
+    base = _base(f)
+    if _work(f, base) > MAX_WORK:
+        return Answer.OPEN
+    window, fibre = ((x, y), (y, x))[base]
+    rows = coefficients_in(f, 1 - base)
+    for held in _open_intervals(f, base, window, fibre):
+        roots = isolate(univariate(rows, simplest_between(*held)), *fibre)
+        if roots:
+            return _Crossing(1 - base, held, roots[0])
+    return Answer.PROVED
+
+
+def _base(f: Coefficient) -> int:
+    """The axis along which the discriminant is: the one for which it takes less work."""
+    return 0 if _work(f, 0) <= _work(f, 1) else 1
+
+
+def _work(f: Coefficient, base: int) -> int:
+    degree, other = (int(f.degrees()[k]) for k in (1 - base, base))
+    bits = max(int(c).bit_length() for c in f.coeffs()) + 8 * other
+    return 2 * degree * max(other, 1) * degree**3 * bits
+
+
+def _open_intervals(f: Coefficient, base: int, window: Interval, fibre: Interval) -> Iterator[Interval]:
+    """Open intervals of the base between all places at which the number of roots of f in the fibre can change."""
+    along = coefficients_in(f, base)
+    critical = [discriminant(coefficients_in(f, 1 - base)), *(univariate(along, edge) for edge in fibre)]
+    roots: list[RealRoot] = []
+    known = fmpz_poly([1])
+    for q in map(squarefree_part, critical):
+        if q.degree() > 0:
+            new = q // q.gcd(known)
+            known *= new
+            roots += isolate(new, *window)
+    separate = inside(disjoint(roots), window)
+    ends = [window[0], *(end for r in separate for end in (r.low, r.high)), window[1]]
+    return ((ends[k], ends[k + 1]) for k in range(0, len(ends), 2))
+
+
+def _negative_beside(p: Coefficient, crossing: _Crossing, x: Interval, y: Interval) -> Found:
+    """A point at which p is negative, on a line across a curve on which it changes sign."""
+    across, window = crossing.across, (x, y)[crossing.across]
+    rows = coefficients_in(p, across)
+    low, high = crossing.held
+    while True:  # the curve is met by other factors' curves over finitely many values
+        held = _simple((low, high))
+        on_line = univariate(rows, held)
+        for there in _between_roots(on_line, window):
+            if sign_at(on_line, there) < 0:
+                return Found((there, held) if across == 0 else (held, there), True, fmpq(0))
+        low = held
+
+
+def _between_roots(q: UnivariatePolynomial, window: Interval) -> Iterator[fmpq]:
+    """A point of each open interval into which the roots of q cut the window."""
+    if not q:
+        return
+    separate = inside(disjoint(isolate(squarefree_part(q), *window)), window)
+    ends = [window[0], *(end for r in separate for end in (r.low, r.high)), window[1]]
+    for k in range(0, len(ends), 2):
+        yield simplest_between(ends[k], ends[k + 1])
+
+
+def _nonzero_point(p: Coefficient, x: Interval, y: Interval) -> Point:
+    """A point of the rectangle at which p is not zero."""
+    u, v = _middle(x), _middle(y)
+    by_v = coefficients_in(p, 0)
+    while not any(c(v) for c in by_v):  # p is zero on finitely many lines
+        v = (v + y[1]) / 2
+    while evaluate(p, u, v) == 0:
+        u = (u + x[1]) / 2
+    return u, v
+
+
+def _isolated_zero(f: Coefficient, x: Interval, y: Interval) -> Found | Near | None:
+    """A zero of an irreducible polynomial that changes sign nowhere in the open rectangle, if there is one."""
+    if min(int(d) for d in f.degrees()) == 0:
+        return None  # its roots are simple
+    base = _base(f)
+    window, fibre = ((x, y), (y, x))[base]
+    rows = coefficients_in(f, 1 - base)
+    d = discriminant(rows)
+    for m, _ in d.gcd(d.derivative()).factor()[1]:
+        for root in isolate(m, *window):
+            found = _over_rational(rows, m, fibre) if m.degree() == 1 else _over_irrational(rows, root, fibre)
+            if found is not None:
+                heights, exact = found
+                u, v = (_narrow(root, window).middle if m.degree() > 1 else _only_root(m)), heights.middle
+                point = (u, v) if base == 0 else (v, u)
+                return Found(point, heights.is_rational, heights.high - heights.low) if exact else Near(point)
+    return None
+
+
+def _only_root(m: UnivariatePolynomial) -> fmpq:
+    return fmpq(-m[0], m[1])
+
+
+def _over_rational(
+    rows: Sequence[UnivariatePolynomial], m: UnivariatePolynomial, fibre: Interval
+) -> tuple[RealRoot, bool] | None:
+    roots = isolate(squarefree_part(univariate(tuple(rows), _only_root(m))), *fibre)
+    return (_narrow(roots[0], fibre), True) if roots else None
+
+
+def _over_irrational(
+    rows: Sequence[UnivariatePolynomial], root: RealRoot, fibre: Interval
+) -> tuple[RealRoot, bool] | None:
+    """Where in the open fibre over an algebraic abscissa no sign is proved; None when it is proved everywhere.
+
+    Zeros at the fibre's ends are divided out first, exactly: they are outside of the open rectangle.
+    """
+    modulus = fmpq_poly(root.polynomial)
+    width = fibre[1] - fibre[0]
+    along = _composed(rows, fmpq_poly([fibre[0], width]))
+    there = _without_zeros_at_0(_composed(_without_zeros_at_0(along, modulus), fmpq_poly([1, -1])), modulus)
+    coefficients = _at(there, root)
+    place = _undecided_part(coefficients)
+    if place is None:
+        return None
+    v = fibre[1] - width * place  # the second composition turned the fibre round
+    return RealRoot(root.polynomial, v, v), False
+
+
+def _composed(rows: Sequence[fmpq_poly | fmpz_poly], inner: fmpq_poly) -> list[fmpq_poly]:
+    """sum_j c_j(u) inner(t)^j as coefficients of powers of t, each a polynomial in u."""
+    result: list[fmpq_poly] = [fmpq_poly([0]) for _ in rows]
+    power = fmpq_poly([1])
+    for row in rows:
+        for i, c in enumerate(power.coeffs()):
+            result[i] += fmpq_poly(row) * c
+        power *= inner
+    return result
+
+
+def _without_zeros_at_0(coefficients: Sequence[fmpq_poly], modulus: fmpq_poly) -> list[fmpq_poly]:
+    reduced = [c % modulus for c in coefficients]
+    first = next(k for k, c in enumerate(reduced) if c)  # an irreducible f vanishes on no line
+    return reduced[first:]
+
+
+def _at(coefficients: Sequence[fmpq_poly], root: RealRoot) -> list[arb]:
+    """The coefficients' values at an algebraic number, in balls."""
+    near = refine(root, fmpq(1, 2**BITS))
+    with ctx.workprec(2 * BITS):
+        ball = (arb(near.low)).union(arb(near.high))
+        return [arb_poly(c)(ball) for c in coefficients]
+
+
+def _undecided_part(coefficients: Sequence[arb]) -> fmpq | None:
+    """The middle of a part of [0, 1] on which no sign is proved; None when there is no zero in it."""
+    n = len(coefficients) - 1
+    with ctx.workprec(2 * BITS):
+        bernstein = [
+            sum((coefficients[i] * fmpq(comb(k, i), comb(n, i)) for i in range(k + 1)), arb(0)) for k in range(n + 1)
+        ]
+        parts = [(bernstein, fmpq(0), fmpq(1))]
+        while parts:
+            b, low, width = parts.pop()
+            if all(c > 0 for c in b) or all(c < 0 for c in b):
+                continue
+            if width < fmpq(1, 2**_HALVINGS):
+                return low + width / 2
+            left, right = _halved(b)
+            parts.append((left, low, width / 2))
+            parts.append((right, low + width / 2, width / 2))
+    return None
+
+
+def _halved(b: Sequence[arb]) -> tuple[list[arb], list[arb]]:
+    """De Casteljau's subdivision."""
+    left, right, row = [b[0]], [b[-1]], list(b)
+    while len(row) > 1:
+        row = [(s + t) / 2 for s, t in pairwise(row)]
+        left.append(row[0])
+        right.append(row[-1])
+    return left, right[::-1]
+
+
+def _middle(interval: Interval) -> fmpq:
+    return (interval[0] + interval[1]) / 2

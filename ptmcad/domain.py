@@ -1,0 +1,86 @@
+"""The domain of the geometry: what each parameter of the mechanism needs to be in the whole open window.
+
+Guarantee: `prove` returns only when every parameter is, by proof, what it needs to be: hypotheses (H1) and (H2) of
+docs/soundness.md. Nothing is concluded from not having found a counterexample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ptmcad.errors import GeometryError
+from ptmcad.expressions import Expression
+from ptmcad.positivity import Axes, Need, Undecided, Witness, decide, named, number, place
+from ptmcad.slice import FREE_LENGTHS, Slice
+
+POSITIVE = ("L1", "L2", "k1", "k2", "k3", "k")
+BASE = "rho"
+"""Positive, or zero everywhere."""
+
+
+def need(name: str, expression: Expression) -> Need:
+    """What a parameter needs to be, besides having no pole."""
+    if name in POSITIVE or (name == BASE and expression.numerator):
+        return Need.POSITIVE
+    return Need.NOT_NEGATIVE if name in (BASE, "l0", *FREE_LENGTHS) else Need.NO_POLE
+
+
+def fault(name: str, expression: Expression, axes: Axes) -> str:
+    """What a point of the window contradicts, in words; empty when there is no such point, or none was found."""
+    pole = decide(expression, axes, Need.NO_POLE)
+    if isinstance(pole, Witness):
+        return f"division by zero inside the window: the denominator of {name} vanishes {_pole_place(pole, axes)}"
+    verdict = decide(expression, axes, need(name, expression))
+    if isinstance(verdict, Witness):
+        value = number(verdict.value)
+        least = "not be negative" if need(name, expression) is Need.NOT_NEGATIVE else "be positive"
+        return (
+            f"a {_KINDS[name]} must {least} in the whole window, but {name} is {value} {place(verdict, axes)}: "
+            "narrow the window"
+        )
+    return ""
+
+
+def unproved(name: str, expression: Expression, axes: Axes) -> str:
+    """What is not proved of a parameter, in words; empty when all is."""
+    for asked in dict.fromkeys((Need.NO_POLE, need(name, expression))):
+        verdict = decide(expression, axes, asked)
+        if isinstance(verdict, Undecided):
+            return (
+                f"it is not proved that {name} is {asked.value} in the whole window: its sign is not decided "
+                f"{place(verdict, axes)}; narrow the window or simplify the expression"
+            )
+    return ""
+
+
+def prove(parameters: Mapping[str, Expression], axes: Axes) -> None:
+    """Prove of every parameter that it is in the whole open window what it needs to be.
+
+    Raises
+    ------
+    GeometryError
+        With the parameter and the place where it is not, or where that could not be decided.
+    """
+    for name, expression in parameters.items():
+        problem = fault(name, expression, axes) or unproved(name, expression, axes)
+        if problem:
+            raise GeometryError(problem)
+
+
+def prove_slice(slice: Slice) -> None:
+    """The same for a slice."""
+    prove(slice.parameters, slice.axes)
+
+
+def _pole_place(pole: Witness, axes: Axes) -> str:
+    if pole.other is None:
+        return place(pole, axes)
+    return f"between {named(pole.other, axes)} and {named(pole.point, axes)}"
+
+
+_KINDS = {
+    **dict.fromkeys(("L1", "L2"), "length"),
+    **dict.fromkeys(("k", "k1", "k2", "k3"), "stiffness"),
+    BASE: "base length",
+    **dict.fromkeys(("l0", *FREE_LENGTHS), "free length"),
+}

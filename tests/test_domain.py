@@ -1,0 +1,164 @@
+"""What each parameter needs to be, in records, in slices made by hand and on lines: narrow violations are refused.
+
+The slices break one hypothesis of docs/soundness.md each, in a dip of width 1e-9 or less, or of a degree that was too
+high to be looked at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ptmcad.algebra import definite
+from ptmcad.cli import run
+from ptmcad.config import slice_from_mapping
+from ptmcad.domain import prove, prove_slice, unproved
+from ptmcad.errors import ConfigError, GeometryError
+from ptmcad.expressions import axis, parse
+from ptmcad.positivity import decide
+from ptmcad.ranges.certified import certified_intervals
+from ptmcad.slice import Axis, Slice
+
+DIPS = {
+    "degree 20": "(m - 1/3)^20 - 1e-180",
+    "middle": "(m - 1/3)^2 + (n + 1/7)^2 - 1e-18",
+    "across": "(m - n - 1/3)^2 - 1e-18",
+    "edge": "m + (n + 1/7)^2 - 1e-18",
+    "corner": "m + n + 3 - 1e-9",
+}
+TOUCHING = {  # zero only at the window's edge
+    "edge": "m + (n + 1/7)^2",
+    "corner": "m + n + 3",
+    "two edges": "m^3*(n + 3)",
+}
+ZERO_INSIDE = {"line": "(m - 1/3)^2", "point": "(m - 1/3)^2 + (n + 1/7)^2"}
+POSITIVE = {"L1": "length", "L2": "length", "rho": "base length", "k": "stiffness", "k1": "stiffness",
+            "k2": "stiffness", "k3": "stiffness"}  # fmt: skip
+FREE = ("l0", "l0_1", "l0_2", "l0_3")
+
+
+def record(**parameters: object) -> dict[str, Any]:
+    return {"parameters": {"F3": "-m", "F4": "n", **parameters}, "axes": {"m": [0, 2], "n": [-3, 1]}}
+
+
+def refused(**parameters: object) -> str:
+    with pytest.raises(ConfigError) as caught:
+        slice_from_mapping(record(**parameters))
+    return str(caught.value)
+
+
+def test_the_reviewed_slice_ends_with_the_place_and_status_2(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It gave a certified cell with 0 stable poses around a point with 2: l0_3 is negative there."""
+    path = tmp_path / "reviewed.yaml"
+    path.write_text(
+        'parameters: {L1: 1, L2: 1, k: 100, F3: -3, F4: -5, l0_1: 0, l0_2: 0, l0_3: "1/10 - m^13"}\n'
+        "axes: {rho: [1, 3/2], m: [1/2, 11/10]}\ncount: stable\n"
+    )
+    assert run(["classify", str(path), "--tolerance", "1/50", "--out", str(tmp_path)]) == 2
+    told = capsys.readouterr().err
+    assert "parameters.l0_3: a free length must not be negative in the whole window, but l0_3 is -" in told
+    assert "at rho = 5/4, m = " in told
+    assert not list(tmp_path.glob("*.json"))
+
+
+@pytest.mark.parametrize("dip", DIPS)
+@pytest.mark.parametrize("name", [*POSITIVE, *FREE])
+def test_a_narrow_dip_is_refused_with_the_place(name: str, dip: str) -> None:
+    text = refused(**{name: DIPS[dip]})
+    assert text.startswith(f"parameters.{name}: a {POSITIVE.get(name, 'free length')} must ")
+    assert f"but {name} is " in text
+    assert " at m = " in text
+
+
+@pytest.mark.parametrize("dip", DIPS)
+@pytest.mark.parametrize("name", ["F3", "L1", "l0_2", "rho"])
+def test_a_denominator_that_vanishes_narrowly_is_refused(name: str, dip: str) -> None:
+    text = refused(**{name: f"1/({DIPS[dip]})"})
+    assert "division by zero inside the window: the denominator" in text
+    assert " between m = " in text
+
+
+@pytest.mark.parametrize("zero", ZERO_INSIDE)
+@pytest.mark.parametrize("name", [*POSITIVE, *FREE])
+def test_a_zero_inside_is_refused_where_it_may_not_be(name: str, zero: str) -> None:
+    if name in FREE:
+        assert slice_from_mapping(record(**{name: ZERO_INSIDE[zero]})).has_free_lengths
+    else:
+        assert " is 0 at m = 1/3, n = " in refused(**{name: ZERO_INSIDE[zero]})
+
+
+@pytest.mark.parametrize("edge", TOUCHING)
+@pytest.mark.parametrize("name", [*POSITIVE, *FREE, "F3"])
+def test_a_zero_on_the_edge_is_no_fault(name: str, edge: str) -> None:
+    slice = slice_from_mapping(record(**{name: f"1/({TOUCHING[edge]})" if name == "F3" else TOUCHING[edge]}))
+    prove_slice(slice)
+
+
+def test_a_base_that_is_zero_everywhere_is_in_the_domain() -> None:
+    prove_slice(slice_from_mapping(record(rho=0, L2=2, l0="1/5")))
+
+
+def bare(**parameters: str) -> Slice:
+    """A slice that no reader has looked at."""
+    names = {"m": axis(0), "n": axis(1)}
+    slice = slice_from_mapping(record(l0="1/5"))
+    given = {name: parse(text, names) for name, text in parameters.items()}
+    return replace(slice, parameters={**slice.parameters, **given})
+
+
+@pytest.mark.parametrize("name", ["L1", "L2", "rho", "k1", "k2", "k3", "l0_1", "l0_2", "l0_3"])
+def test_the_certified_engine_trusts_no_reader(name: str) -> None:
+    engine = pytest.importorskip("ptmcad.interval.engine")
+    with pytest.raises(GeometryError, match=f"but {name} is -.* at m = "):
+        engine.certified_map(bare(**{name: DIPS["middle"]}))
+    with pytest.raises(GeometryError, match=f"the denominator of {name} vanishes between m = "):
+        engine.certified_map(bare(**{name: f"1/({DIPS['across']})"}))
+
+
+def test_a_zero_function_is_no_length() -> None:
+    with pytest.raises(
+        GeometryError, match="a length must be positive in the whole window, but L1 is 0 at m = 1, n = -1"
+    ):
+        prove_slice(bare(L1="0"))
+    with pytest.raises(GeometryError, match="stiffness must be positive"):
+        prove_slice(bare(k3="0*m - 2"))
+    with pytest.raises(GeometryError, match="base length must be positive"):
+        prove_slice(bare(rho="0*m - 2"))
+
+
+def test_undecided_is_read_but_not_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The exact engine proves signs at a sample of each cell itself; the certified one asks for a proof first."""
+    engine = pytest.importorskip("ptmcad.interval.engine")
+    decide.cache_clear()
+    monkeypatch.setattr(definite, "MAX_WORK", 0)
+    slice = slice_from_mapping(record(L1="(m^3 + n^3 - m*n - 1/7)^2 + 1e-40", l0="1/5"))
+    assert unproved("L1", slice.parameters["L1"], slice.axes).startswith(
+        "it is not proved that L1 is positive in the whole window: its sign is not decided near m = "
+    )
+    with pytest.raises(GeometryError, match="not proved that L1 is positive"):
+        engine.certified_map(slice)
+    decide.cache_clear()
+
+
+@pytest.mark.parametrize(("at", "sign"), [("1/20", True), ("1/10", True), ("100000001/10^9", False), ("1", False)])
+def test_a_line_need_not_lie_in_the_window(at: str, sign: bool) -> None:
+    """Counts were once certified on lines outside of the window on which a free length is negative."""
+    slice = slice_from_mapping(
+        {"parameters": {"l0": "1/5", "l0_3": "1/10 - m"}, "axes": {"rho": [1, 2], "m": [0, "1/20"]}}
+    )
+    on_line = {"l0_3": parse("1/10 - m", {"m": parse(at)})}
+    value = parse(at).constant()
+    axes = (slice.axes[0], Axis("m", value, value))
+    if sign:
+        prove(on_line, axes)
+    else:
+        with pytest.raises(GeometryError, match="l0_3 is -"):
+            prove(on_line, axes)
+        pytest.importorskip("numba")
+        with pytest.raises(GeometryError, match=r"l0_3 is -.* at rho = 3/2, m = 1"):
+            certified_intervals(slice, "rho", {"m": at}, 6)
