@@ -21,30 +21,22 @@ without locks, where what is left of a dead process cannot be told from what a l
 
 from __future__ import annotations
 
-import json
 import os
-import re
-import stat
 import sys
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 from ptmcad.errors import OutputError
 from ptmcad.handover import Topic, tell, undisturbed
+from ptmcad.journal import REDO, UNDO, Journal, Move, as_text, hidden, journals, read_journal
 
 if sys.platform != "win32":
     import fcntl
 
-HIDDEN = re.compile(r"\.(?P<stem>.*)\.[0-9a-f]{8}\.(?P<kind>tmp|old)(?P<suffix>\.[^.]+)?", re.DOTALL)
-REDO, UNDO = ".redo", ".undo"
-_JOURNAL = re.compile(r"\..*\.[0-9a-f]{8}\.(?:redo|undo)", re.DOTALL)
 UNCHANGED = "earlier files are as they were"
 UNFINISHED = "the next ptmcad that reads or writes results in this folder completes this"
-_FORMAT = "ptmcad-journal-1"
-_MAX_BYTES = 1_000_000
 _PAUSE = 0.01
 
 
@@ -65,34 +57,6 @@ class Disk:
 
 
 disk = Disk()
-
-
-@dataclass(frozen=True, slots=True)
-class Move:
-    """One file: ``new`` becomes ``target``, and what is there now is ``old`` meanwhile (empty: there is nothing)."""
-
-    target: Path
-    new: Path
-    old: Path | None
-
-
-@dataclass(frozen=True, slots=True)
-class Journal:
-    """The moves of a set, the voucher's last, and where they are written down."""
-
-    path: Path
-    moves: tuple[Move, ...]
-
-    @property
-    def names(self) -> frozenset[str]:
-        """All names that it is about."""
-        paths = (path for move in self.moves for path in (move.target, move.new, move.old))
-        return frozenset(path.name for path in paths if path is not None)
-
-
-def hidden(target: Path, kind: str = "tmp") -> Path:
-    """A new hidden name in the target's folder with the target's suffix."""
-    return target.with_name(f".{target.stem}.{os.urandom(4).hex()}.{kind}{target.suffix}")
 
 
 @contextmanager
@@ -208,7 +172,7 @@ def finish(journal: Path, patience: float) -> None:
     """
     with suppress(BlockingIOError), locked(journal.parent, patience), undisturbed():
         for path in (journal, journal.with_suffix(UNDO)):
-            found = _read(path)
+            found = read_journal(path)
             if found is not None:
                 _carry_out(found)
 
@@ -227,15 +191,6 @@ def discard(paths: Iterable[Path]) -> None:
         for path in paths:
             if path.parent == folder and path.name not in needed:
                 disk.unlink(path)
-
-
-def journals(folder: Path) -> tuple[Journal, ...]:
-    """The journals in a folder, as far as it may be listed."""
-    try:
-        names = sorted(entry.name for entry in os.scandir(folder) if _JOURNAL.fullmatch(entry.name))
-    except OSError:
-        return ()
-    return tuple(journal for name in names if (journal := _read(folder / name)) is not None)
 
 
 def identity(path: Path) -> str:
@@ -357,13 +312,12 @@ def _there(path: Path) -> bool:
 
 def _write(journal: Path, moves: tuple[Move, ...]) -> None:
     """Put the journal into place, whole and on disk."""
-    rows = [[move.target.name, move.new.name, None if move.old is None else move.old.name] for move in moves]
     temporary = hidden(moves[-1].target.with_suffix(REDO))
     olds = [str(move.old) for move in moves if move.old is not None]
     tell(Topic.TEMPORARY, str(temporary), *olds)
     try:
         with temporary.open("x", encoding="utf-8") as stream:
-            json.dump({"format": _FORMAT, "moves": rows}, stream)
+            stream.write(as_text(moves))
             stream.flush()
             os.fsync(stream.fileno())
         disk.replace(temporary, journal)
@@ -376,39 +330,3 @@ def _write(journal: Path, moves: tuple[Move, ...]) -> None:
 def _is_ours(path: Path) -> bool:
     """Whether this user has made it: nobody else tells this program what to rename."""
     return sys.platform == "win32" or os.lstat(path).st_uid == os.geteuid()
-
-
-def _read(path: Path) -> Journal | None:
-    """A journal; None when there is none, or it is not one that this program writes."""
-    try:
-        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
-        with open(descriptor, "rb") as stream:
-            if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-                return None
-            stored = json.loads(stream.read(_MAX_BYTES))
-    except (OSError, ValueError, RecursionError):
-        return None
-    rows = stored.get("moves") if isinstance(stored, dict) and stored.get("format") == _FORMAT else None
-    if not isinstance(rows, list) or not rows or not all(_is_row(row) for row in rows):
-        return None
-    moves = (
-        Move(path.with_name(target), path.with_name(new), None if old is None else path.with_name(old))
-        for target, new, old in rows
-    )
-    return Journal(path, tuple(moves))
-
-
-def _is_row(row: object) -> bool:
-    """Whether a row names a visible file and hidden ones that are made for it: a journal reaches nothing else."""
-    if not isinstance(row, list) or len(row) != 3 or not all(isinstance(name, str) for name in row[:2]):
-        return False
-    target, new, old = row
-    if target in ("", ".", "..") or target.startswith(".") or any(c in "/\\\0" for c in target):
-        return False
-    names = [(new, "tmp")] if old is None else [(new, "tmp"), (old, "old")]
-    stem, suffix = os.path.splitext(target)
-    for name, kind in names:
-        match = HIDDEN.fullmatch(name) if isinstance(name, str) else None
-        if match is None or (match["stem"], match["kind"], match["suffix"] or "") != (stem, kind, suffix):
-            return False
-    return True

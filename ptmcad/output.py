@@ -19,21 +19,10 @@ from contextlib import suppress
 from itertools import chain, count
 from pathlib import Path
 
-from ptmcad.commit import (
-    HIDDEN,
-    REDO,
-    UNCHANGED,
-    discard,
-    hidden,
-    identity,
-    journals,
-    locked,
-    put_into_place,
-    reason,
-    settle,
-)
+from ptmcad.commit import UNCHANGED, discard, identity, locked, put_into_place, reason, settle
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.handover import Topic, tell, undisturbed
+from ptmcad.journal import HIDDEN, REDO, hidden, journals
 from ptmcad.textfile import read_text
 
 if sys.platform != "win32":

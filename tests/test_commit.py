@@ -17,8 +17,9 @@ from hypothesis import strategies as st
 
 from ptmcad import commit
 from ptmcad.cli.stored import read_result
-from ptmcad.commit import UNCHANGED, UNFINISHED, journals, recover
+from ptmcad.commit import UNCHANGED, UNFINISHED, recover
 from ptmcad.errors import ConfigError, OutputError
+from ptmcad.journal import REDO, UNDO, journals
 from ptmcad.output import check_writable, save_stopped, text_writer, where_saved, write_files
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="without locks nothing is recovered")
@@ -162,7 +163,7 @@ def test_errors_at_every_step(tmp_path: Path, links: bool, olds: tuple[tuple[str
             ends.add(ended)
             if ended == UNFINISHED:
                 (journal,) = journals(case.folder)
-                case.check_settled((case.new if journal.path.suffix == commit.REDO else case.old,))
+                case.check_settled((case.new if journal.path.suffix == REDO else case.old,))
                 continue
             assert visible(case.folder) == (case.old if ended == UNCHANGED else case.new), (failing, said)
             assert not journals(case.folder) or ended == ""  # one whose removal failed has no effect
@@ -263,7 +264,7 @@ def test_journals_that_this_program_has_not_written(tmp_path: Path) -> None:
     texts = [json.dumps({"format": "ptmcad-journal-1", "moves": [row]}) for row in rows]
     texts += ["", "[", "[]", "{}", "[" * 10**5, json.dumps({"format": "other", "moves": [["fig2.json", new, None]]})]
     for text in texts:
-        for suffix in (commit.REDO, commit.UNDO):
+        for suffix in (REDO, UNDO):
             fill(tmp_path, {"fig2.json": "old", "fig3.json": "other", new: "new", f".fig2.00000001{suffix}": text})
             recover(tmp_path)
             assert visible(tmp_path) == {"fig2.json": "old", "fig3.json": "other"}, text
