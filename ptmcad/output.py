@@ -1,37 +1,41 @@
-"""The files of a result: all of them written beside their places first, then renamed together.
+"""The files of a result: all of them written under hidden names first, then put into place together.
 
-Guarantee: at every moment each target file is whole, and all that are there belong to one result: the old one or the
-new one. The file that vouches for the others is always there; the others may be missing for the moment of the renames,
-because old pictures beside new numbers would lie. Nothing is renamed before everything is written and on disk.
-Whatever stops the writing (an error, Ctrl-C, a signal that raises) leaves no temporary file; a process that is killed
-outright may leave a hidden ``.NAME.*.tmp.*`` file and nothing else, and the next `check_writable` for the same name
-removes it. Files of live processes are told by the lock that these hold.
+Guarantee: every file under its own name is whole, and the files of one run replace those of another all or none, as
+`ptmcad.commit` says. Nothing is put into place before everything is written and on disk. Whatever stops the writing (an
+error, Ctrl-C, a signal that raises) leaves no temporary file; a process that is killed outright may leave hidden
+``.NAME.*.tmp.*`` and ``.NAME.*.old.*`` files and nothing else, and the next `check_writable` for the same name removes
+them. Files of live processes are told by the lock that these hold. A result that a limit has stopped replaces no
+complete one.
 """
 
 from __future__ import annotations
 
 import json
 import os
-import re
 import stat
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from itertools import chain, count
 from pathlib import Path
 
+from ptmcad.commit import UNCHANGED, discard, identity, locked, put_into_place, reason, settle
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.handover import Topic, tell, undisturbed
+from ptmcad.journal import HIDDEN, REDO, hidden, journals
 from ptmcad.textfile import read_text
 
 if sys.platform != "win32":
     import fcntl
 
 Writer = Callable[[Path], None]
+Placing = Callable[[Path, Mapping[Path, Path]], tuple[Path, ...]]
 
-_TEMPORARY = re.compile(r"\.(?P<stem>.*)\.[0-9a-f]{8}\.tmp(?P<suffix>\.[a-z]+)?", re.DOTALL)
 _PROBE = "probe"
-MOST_BYTES = 60_000_000
+MAX_BYTES = 60_000_000
 """Of an older result that is looked at."""
+LOCK_PATIENCE = 1.0
+"""Seconds that the parts of a program that must come to an end wait for the lock."""
 
 
 def text_writer(text: str) -> Writer:
@@ -46,7 +50,7 @@ def text_writer(text: str) -> Writer:
 def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
     """Create the folder if it is missing and prove, by writing, that files of these names can be put there.
 
-    To be called before a long computation.
+    To be called before a long computation. What killed runs have left there is completed or removed.
 
     Raises
     ------
@@ -56,23 +60,26 @@ def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        raise OutputError(
-            f"the folder {folder} can not be made: {_reason(error)}; choose another with --out"
-        ) from error
+        raise OutputError(f"the folder {folder} can not be made: {reason(error)}; choose another with --out") from error
     for name in names:
         if (folder / name).is_dir():
             raise OutputError(f"{folder / name} is a folder, so no file can be written there; choose another --out")
-    _remove_stale(folder, (*names, _PROBE))
     try:
-        probe, lock = _create(folder / _PROBE)
-        try:
-            probe.write_text("writable", encoding="utf-8")
-        finally:
-            probe.unlink(missing_ok=True)
-            os.close(lock)
+        with suppress(BlockingIOError), locked(folder, LOCK_PATIENCE) as alone:
+            if alone:  # otherwise what is left of a dead process cannot be told from what a live one uses
+                settle(folder)
+                _check_free(folder, names)
+                _remove_stale(folder, (*names, _PROBE))
+        for name in (_PROBE, *(f"{Path(name).stem}{REDO}" for name in names)):  # no hidden name is longer
+            probe, lock = _create(folder / name)
+            try:
+                probe.write_text("writable", encoding="utf-8")
+            finally:
+                probe.unlink(missing_ok=True)
+                os.close(lock)
     except OSError as error:
         raise OutputError(
-            f"the folder {folder} can not be written to: {_reason(error)}; choose another with --out"
+            f"the folder {folder} can not be written to: {reason(error)}; choose another with --out"
         ) from error
 
 
@@ -90,6 +97,20 @@ def write_files(folder: Path, writers: Mapping[str, Writer]) -> tuple[Path, ...]
     OutputError
         If a file can not be written or renamed.
     """
+    return _write(folder, writers, _under_own_names)
+
+
+def _under_own_names(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Path, ...]:
+    with locked(folder) as alone:
+        if alone:
+            settle(folder)
+            _check_free(folder, [target.name for target in temporaries])
+        put_into_place(temporaries)
+    return tuple(temporaries)
+
+
+def _write(folder: Path, writers: Mapping[str, Writer], place: Placing) -> tuple[Path, ...]:
+    """Write the files under hidden names, have them put into place, and return where they are."""
     temporaries: dict[Path, Path] = {}
     locks = []
     current = folder
@@ -101,88 +122,97 @@ def write_files(folder: Path, writers: Mapping[str, Writer]) -> tuple[Path, ...]
             locks.append(lock)
             write(temporary)
             _flush_to_disk(temporary)
-        _put_into_place(temporaries)
+        return place(folder, temporaries)
     except OSError as error:
-        raise OutputError(f"{current} can not be written: {_reason(error)}; earlier files are as they were") from error
+        raise OutputError(f"{current} can not be written: {reason(error)}; {UNCHANGED}") from error
     finally:
-        for temporary in temporaries.values():
-            temporary.unlink(missing_ok=True)
-        for lock in locks:
-            os.close(lock)
-    return tuple(temporaries)
+        try:
+            with suppress(OSError):  # hidden, and removed by a later run; there is a result or another error to report
+                discard(temporaries.values())
+        finally:
+            for lock in locks:
+                os.close(lock)
 
 
-def _put_into_place(temporaries: Mapping[Path, Path]) -> None:
-    """Rename the files, the last one first, while the older files of the others are out of the way.
+def _check_free(folder: Path, names: Iterable[str]) -> None:
+    """Refuse to write what an unfinished journal would write over later.
 
     Raises
     ------
     OutputError
-        When a file can not be renamed.
+        With the journal's path.
     """
-    *others, (voucher, temporary) = temporaries.items()
-    tell(Topic.RENAMES, str(temporary), str(voucher), *(str(path) for pair in others for path in reversed(pair)))
-    aside = {target: _name_beside(target) for target, _ in others if target.exists()}
-    if aside:
-        tell(Topic.TEMPORARY, *map(str, aside.values()))
-    current = voucher
-    with undisturbed(), _one_at_a_time(voucher.parent):
-        try:
-            for current, place in aside.items():
-                current.replace(place)
-            current = voucher
-            temporary.replace(voucher)
-        except OSError as error:
-            for target, place in aside.items():
-                if place.exists():
-                    place.replace(target)
+    wanted = set(names)
+    for journal in journals(folder):
+        if journal.names & wanted:
             raise OutputError(
-                f"{current} can not be written: {_reason(error)}; earlier files are as they were"
-            ) from error
-        try:
-            for current, new in others:
-                new.replace(current)
-        except OSError as error:
-            raise OutputError(f"{current} can not be written: {_reason(error)}; {voucher} is new") from error
-        finally:
-            for place in aside.values():
-                place.unlink(missing_ok=True)
+                f"{journal.path} holds files that a killed run could not put into place, and this one cannot either: "
+                "see to it that this user may rename files there, or choose another --out"
+            )
 
 
-@contextmanager
-def _one_at_a_time(folder: Path) -> Iterator[None]:
-    """Keep other processes of this program from renaming files in the folder, where the file system has locks."""
-    if sys.platform == "win32":
-        yield
-        return
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        with suppress(OSError):  # a file system without locks
-            fcntl.flock(descriptor, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(descriptor)
-
-
-def save_stopped(target: Path, text: str) -> Path:
+def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterable[str] = ()) -> Path:
     """Save the result of a computation that a limit has stopped, and return where.
 
-    Guarantee: a whole older result stays. Only a file that is marked as partial is replaced; when anything else has
-    the target's name, the result goes to ``NAME.partial.json`` beside it.
+    Guarantee: a whole older result stays, and so do its pictures. Only a file that is marked as partial is replaced,
+    and only where none of the pictures is there that the run would have replaced. Otherwise the result goes to
+    ``NAME.partial.json``, or ``NAME.complete.json`` if all but its pictures is done, or the first of
+    ``NAME.partial-2.json``, ``NAME.partial-3.json`` ... that holds nothing or a partial result.
+
+    Parameters
+    ----------
+    whole : whether the result itself is complete.
+    beside : names of the other files that the run was to write.
 
     Raises
     ------
     OutputError
         If the file can not be written.
     """
-    place = target if _replaceable(target) else target.with_name(f"{target.stem}.partial{target.suffix}")
-    write_files(place.parent, {place.name: text_writer(text)})
-    return place
+    label = "complete" if whole else "partial"
+    further = chain([label], (f"{label}-{number}" for number in count(2)))
+    names = (target.with_name(f"{target.stem}.{end}{target.suffix}") for end in further)
+
+    def place(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Path, ...]:
+        (temporary,) = temporaries.values()
+        try:
+            with locked(folder, LOCK_PATIENCE) as alone:
+                if alone:
+                    settle(folder)
+                free = not any(os.path.lexists(folder / name) for name in beside) and _replaceable(target)
+                chosen = target if free else next(name for name in names if _replaceable(name))
+                if alone:
+                    _check_free(folder, [chosen.name])
+                put_into_place({chosen: temporary})
+                return (chosen,)
+        except BlockingIOError:  # a process that does not move on has it: a name that nothing has needs no lock
+            return (_put_at_new_name(temporary, names),)
+
+    return _write(target.parent, {target.name: text_writer(text)}, place)[0]
 
 
-def where_saved(target: Path, place: Path) -> str:
+def _put_at_new_name(temporary: Path, names: Iterable[Path]) -> Path:
+    for name in names:
+        tell(Topic.RENAMES, "", str(name), identity(temporary))
+        try:
+            with undisturbed():
+                os.link(temporary, name)
+        except FileExistsError:
+            continue
+        return name
+    raise AssertionError("there are infinitely many names")
+
+
+def where_saved(target: Path, place: Path, beside: Iterable[str] = ()) -> str:
     """Why a stopped result is not in the file that was asked for, as the end of a sentence."""
-    return "" if place == target else f", because {target.name} holds an older result that is not partial"
+    if place == target:
+        return ""
+    if not _replaceable(target):
+        return f", because {target.name} holds an older result that is not partial"
+    pictures = [name for name in beside if os.path.lexists(target.with_name(name))]
+    if pictures:
+        return f", because {pictures[0]} shows an older result"
+    return f", because another process is writing {target.name}"
 
 
 def _replaceable(target: Path) -> bool:
@@ -190,20 +220,25 @@ def _replaceable(target: Path) -> bool:
     if not os.path.lexists(target):
         return True
     try:
-        stored = json.loads(read_text(target, MOST_BYTES, "a result"))
+        stored = json.loads(read_text(target, MAX_BYTES, "a result"))
     except (ConfigError, ValueError, RecursionError):  # not a result: not ours to replace unasked
         return False
     return isinstance(stored, dict) and stored.get("status") == "partial"
 
 
 def _remove_stale(folder: Path, names: Iterable[str]) -> None:
-    """Remove temporary files for these names whose process has ended: one that lives holds a lock on its files."""
+    """Remove hidden files for these names whose process has ended: one that lives holds a lock on its files.
+
+    The caller holds the folder's lock: hidden old files are used under it only.
+    """
     if sys.platform == "win32":
         return
     kinds = {(Path(name).stem, Path(name).suffix) for name in names}
+    kinds |= {(stem, REDO) for stem, _ in kinds}
+    needed = {name for journal in journals(folder) for name in journal.names}
     try:
-        found = [entry for entry in os.scandir(folder) if (match := _TEMPORARY.fullmatch(entry.name))
-                 and (match["stem"], match["suffix"] or "") in kinds]  # fmt: skip
+        found = [entry for entry in os.scandir(folder) if (match := HIDDEN.fullmatch(entry.name))
+                 and (match["stem"], match["suffix"] or "") in kinds and entry.name not in needed]  # fmt: skip
     except OSError:  # a folder one may write to but not list
         return
     for entry in found:
@@ -221,18 +256,13 @@ def _remove_stale(folder: Path, names: Iterable[str]) -> None:
             os.close(descriptor)
 
 
-def _name_beside(target: Path) -> Path:
-    """A new hidden name in the target's folder with the target's suffix."""
-    return target.with_name(f".{target.stem}.{os.urandom(4).hex()}.tmp{target.suffix}")
-
-
 def _create(target: Path) -> tuple[Path, int]:
     """Create a hidden file in the target's folder with the target's suffix and the permissions that the umask gives.
 
     Returns its path and an open descriptor that holds a lock on it.
     """
     while True:
-        path = _name_beside(target)
+        path = hidden(target)
         tell(Topic.TEMPORARY, str(path))
         descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
         if sys.platform == "win32" or _locked(descriptor):
@@ -252,7 +282,3 @@ def _locked(descriptor: int) -> bool:
 def _flush_to_disk(path: Path) -> None:
     with path.open("rb+") as stream:
         os.fsync(stream.fileno())
-
-
-def _reason(error: OSError | ValueError) -> str:
-    return (error.strerror if isinstance(error, OSError) else None) or str(error)

@@ -161,7 +161,7 @@ class _Watch:
         """Leave nothing behind, say what there is to say, and return the exit status."""
         # a library may call exit() when memory runs out: then the child has not said that it was done
         deserted = ended >= 0 and Topic.DONE not in self.told and ended <= 128
-        if ended < 0 or deserted or self.caught or self.out_of_time:
+        if ended < 0 or deserted or self.caught or self.out_of_time or Topic.EXHAUSTED in self.told:
             self._tidy()
         if self.caught:
             if Topic.RESUMABLE in self.told and Topic.RESULT in self.told:
@@ -186,16 +186,24 @@ class _Watch:
         return 128 - ended
 
     def _tidy(self) -> None:
-        """What the child would have done: complete the renames it had begun, or remove its files; clear its line."""
-        renames = self.told.get(Topic.RENAMES, [])
-        for temporary, target in zip(renames[::2], renames[1::2], strict=True):
-            if os.path.exists(temporary):
-                os.replace(temporary, target)
-        for temporary in self.temporaries:
-            if os.path.lexists(temporary):
-                os.unlink(temporary)
+        """Do what the child would have done: clear its line, put into place what it has begun to, remove its files."""
         if Topic.PROGRESS in self.told:
             _say(_CLEAR_LINE.decode())
+        journal = self.told.get(Topic.RENAMES, [""])[0]
+        temporaries = [path for path in self.temporaries if os.path.lexists(path)]
+        if not journal and not temporaries:
+            return
+        from pathlib import Path  # not before it is needed: every start would pay for it
+
+        from ptmcad.commit import discard, finish
+        from ptmcad.errors import OutputError
+
+        try:
+            if journal:
+                finish(Path(journal), GRACE)
+            discard(map(Path, temporaries))
+        except (OSError, OutputError) as error:
+            _say(f"error: {error}\n")
 
     def _stopped(self, why: str) -> int:
         """Save the result that was handed over last, unless the child had come to that itself."""
@@ -207,17 +215,22 @@ class _Watch:
             return 3
         from pathlib import Path  # not before it is needed: every start would pay for it
 
+        from ptmcad.commit import identity
         from ptmcad.errors import OutputError
         from ptmcad.output import save_stopped, where_saved
 
-        target = Path(self.told[Topic.TARGET][0])
+        target, beside = Path(self.told[Topic.TARGET][0]), self.told[Topic.TARGET][1:]
         state, text = self.told[Topic.RESULT]
+        _, placed, mark = self.told.get(Topic.RENAMES, ("", "", ""))
         try:
-            place = Path(self.told[Topic.RENAMES][1]) if Topic.RENAMES in self.told else save_stopped(target, text)
+            if mark and identity(Path(placed)) == mark:
+                place = Path(placed)
+            else:
+                place = save_stopped(target, text, whole=state == "complete", beside=beside)
         except OutputError as error:
             _say(f"error: {why}, and the {state} result was lost: {error}\n")
             return 2
-        _say(f"stopped: {why}; the {state} result is in {place}{where_saved(target, place)}\n")
+        _say(f"stopped: {why}; the {state} result is in {place}{where_saved(target, place, beside)}\n")
         return 3
 
 

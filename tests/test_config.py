@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from ptmcad.cli import run
 from ptmcad.config import PARAMETERS, load, slice_from_mapping, slice_from_options
 from ptmcad.errors import ConfigError
 from ptmcad.expressions import axis, constant
@@ -157,6 +158,11 @@ BAD = [
     ("mechanism", AXES + "mechanism: {rods: 3}", 2, "mechanism", "unknown mechanism"),
     ("name with a path", AXES + "name: ../x", 2, "name", "can not name a file"),
     ("name that hides", AXES + "name: .x", 2, "name", "can not name a file"),
+    *(
+        (f"device {name}", f'{AXES}name: "{name}"', 2, "name", "can not name a file: Windows keeps")
+        for name in ("con", "NUL", "Com1", "aux", "LPT1.x", "lpt0", "PRN", "com³", "nul.tar.gz")
+    ),
+    *((f"end of {name!r}", f'{AXES}name: "{name}"', 2, "name", "can not name a file") for name in ("a.", "a ", "con ")),
     ("reference as text", AXES + "reference: text", 2, "reference", "expected a mapping"),
     ("parameters as a list", AXES + "parameters: [F3]", 2, "parameters", "expected a mapping"),
     ("anchor", AXES + "parameters: {F3: &a 1, F4: *a}", 2, "parameters.F3", "anchors"),
@@ -206,6 +212,33 @@ def test_files_that_are_no_records(tmp_path: Path) -> None:
         load(binary)
     binary.write_bytes("\ufeff".encode() + AXES.encode())
     assert load(binary).axis_names == ("rho", "L2")
+
+
+@pytest.mark.parametrize("file", ["con.yaml", "Aux.v2.yaml", "COM1.yaml"])
+def test_a_record_whose_name_is_a_device_has_to_give_another(tmp_path: Path, file: str) -> None:
+    """Its results would have names that Windows cannot read."""
+    (tmp_path / file).write_text(AXES)
+    with pytest.raises(ConfigError, match="Windows keeps") as caught:
+        load(tmp_path / file)
+    assert (caught.value.key, caught.value.file) == ("name", str(tmp_path / file))
+    (tmp_path / file).write_text(f"name: mine\n{AXES}")
+    assert load(tmp_path / file).name == "mine"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "key"),
+    [
+        (["variety", "--slice", "L2,rho", "--out", "nul.mpl"], "--out"),
+        (["variety", "--slice", "L2,rho", "--out", "curves."], "--out"),
+        (["variety", "--slice", "L2,rho", "--out", "curves.mpl "], "--out"),
+        (["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", "lpt9"], "--name"),
+        (["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", "../x"], "--name"),
+        (["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", ""], "--name"),
+    ],
+)
+def test_options_that_cannot_name_a_file(capfd: pytest.CaptureFixture[str], arguments: list[str], key: str) -> None:
+    assert run(arguments) == 2
+    assert capfd.readouterr().err.startswith(f"error: {key}: ")
 
 
 def test_options_alone() -> None:

@@ -17,6 +17,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,7 @@ from hypothesis import strategies as st
 
 import ptmcad
 from ptmcad.cli import run
+from ptmcad.commit import recover
 from ptmcad.errors import ConfigError
 from ptmcad.handover import Receiver, Topic, connect, disconnect, tell
 from ptmcad.memory import bound_of, default_bound
@@ -297,6 +299,71 @@ def test_the_progress_bar_leaves_no_half_line(tmp_path: Path) -> None:
     assert shown.endswith(b"\r\x1b[K")
 
 
+# Waiting for the folder
+
+WAITING = """
+flock = fcntl.flock
+def waiting(descriptor, operation):
+    if stat.S_ISDIR(os.fstat(descriptor).st_mode) and draws:
+        arrived()
+    return flock(descriptor, operation)
+fcntl.flock, draws = waiting, []
+def draw(result, path, samples):
+    path.write_text("half a picture")
+    draws.append(path)
+"""
+"""The computation says when it has drawn and waits for the folder's lock."""
+
+
+ENDS = ("SIGINT", "SIGTERM", "SIGHUP", "time limit", "kill -9", "kill -9 of the program")
+OLDER = {"json": "old", "png": "old picture"}
+
+
+@linux
+@pytest.mark.parametrize(
+    ("ended", "certified", "old"),
+    [
+        ("SIGINT", False, OLDER),
+        ("SIGTERM", True, OLDER),
+        *(
+            pytest.param(*case, marks=pytest.mark.slow)
+            for case in product(ENDS, (False, True), ({}, OLDER))
+            if case not in (("SIGINT", False, OLDER), ("SIGTERM", True, OLDER))
+        ),
+    ],
+)
+def test_waiting_for_the_folder(tmp_path: Path, ended: str, certified: bool, old: dict[str, str]) -> None:
+    """Nothing is put into place without the lock; what can be gone on from, or a limit ends, goes to a new name."""
+    before = put(tmp_path, **old)
+    held = os.open(tmp_path / "out", os.O_RDONLY)
+    work = "import fcntl, stat\n" + WAITING + (CERTIFIED if certified else "")
+    options = ["--timeout", "1"] if ended == "time limit" else []
+    running = Running(tmp_path, work, *options, formats="png,json")
+    fcntl.flock(held, fcntl.LOCK_EX)  # meanwhile the program starts; it can look at the folder later, too
+    try:
+        computing = running.arrive()
+        if ended == "kill -9":
+            os.kill(computing, signal.SIGKILL)
+        elif ended == "kill -9 of the program":
+            running.process.kill()
+        elif ended != "time limit":
+            running.process.send_signal(signal.Signals[ended])
+        _, errors = running.process.communicate(timeout=60)
+        until(lambda: not lives(computing))
+    finally:
+        os.close(held)
+    files = {name: text for name, text in running.files().items() if not name.startswith(".")}
+    saved = {"fig2.complete.json": NEW["fig2.json"]}
+    if ended == "kill -9 of the program" or (ended.startswith("SIG") and not certified):
+        assert (files, errors) == (before, b"")
+    else:
+        assert files == {**before, **saved}
+        assert b"; the complete result is in " in errors
+        assert b"fig2.complete.json, because " in errors
+    check_writable(running.out, ("fig2.png", "fig2.json"))
+    assert set(os.listdir(running.out)) == set(files)
+
+
 # kill -9
 
 
@@ -310,19 +377,26 @@ def test_a_killed_program_takes_its_computation_along(tmp_path: Path) -> None:
 
 
 KILLER = """
-replace, steps = Path.replace, []
-def step_and_kill(path, target):
-    replace(path, target)
-    steps.append(target)
-    if len(steps) == {step}:
-        arrived()
-        for process in ({victims}):
-            os.kill(process, signal.SIGKILL)
-        time.sleep(0.5)
-Path.replace = step_and_kill
+from ptmcad import commit
+program = os.getpid()
+class Killing(commit.Disk):
+    steps = 0
+    def __getattribute__(self, name):
+        if name not in ("replace", "link", "unlink") or os.getpid() == program:
+            return object.__getattribute__(self, name)
+        Killing.steps += 1
+        if Killing.steps == {step}:
+            arrived()
+            for process in ({victims}):
+                os.kill(process, signal.SIGKILL)
+            time.sleep(0.5)
+        return object.__getattribute__(self, name)
+commit.disk = Killing()
 def engine(progress, partial):
     pass
 """
+OLD = {"fig2.json": "old", "fig2.png": "old picture", "fig2.svg": "old picture"}
+"""Eleven steps: the journal, two old pictures, the old JSON's second name, JSON, two pictures, and four removals."""
 NEW = {
     "fig2.json": '{"status": "exact", "stage": "variety"}',
     "fig2.png": "half a picture",
@@ -330,8 +404,8 @@ NEW = {
 }
 
 
-def killed_in_step(folder: Path, step: int, victims: str) -> tuple[Running, int, bytes]:
-    """Kill processes after one of the renames that put a result into place."""
+def killed_before_step(folder: Path, step: int, victims: str) -> tuple[Running, int, bytes]:
+    """Kill processes before one of the steps that put a result into place."""
     put(folder, json="old", png="old picture", svg="old picture")
     work = KILLER.replace("{step}", str(step)).replace("{victims}", victims)
     running = Running(folder, work, formats="png,svg,json")
@@ -344,26 +418,39 @@ def killed_in_step(folder: Path, step: int, victims: str) -> tuple[Running, int,
 
 
 @linux
-@pytest.mark.parametrize("step", range(1, 6))
-@pytest.mark.parametrize("victim", ["os.getpid(),", "os.getppid(),"], ids=["computation", "program"])
-def test_a_kill_between_two_renames(tmp_path: Path, victim: str, step: int) -> None:
-    """Whichever of the two processes is left completes them."""
-    running, status, errors = killed_in_step(tmp_path, step, victim)
-    assert running.files() == NEW
-    if status != -signal.SIGKILL:
-        assert status == 3
-        assert errors.decode().endswith(f"the complete result is in {running.out / 'fig2.json'}\n")
+@pytest.mark.parametrize("step", [1, 5, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3, 4, 6, 7, 8, 11))])
+def test_a_killed_computation_between_two_steps(tmp_path: Path, step: int) -> None:
+    """The program completes what was begun, or saves the result beside the older one, and says which."""
+    running, status, errors = killed_before_step(tmp_path, step, "os.getpid(),")
+    assert status == 3
+    place = running.out / ("fig2.complete.json" if step == 1 else "fig2.json")
+    why = ", because fig2.json holds an older result that is not partial" if step == 1 else ""
+    assert errors.decode().endswith(f"; the complete result is in {place}{why}\n")
+    assert running.files() == (OLD | {"fig2.complete.json": NEW["fig2.json"]} if step == 1 else NEW)
 
 
 @linux
-@pytest.mark.parametrize("step", range(1, 6))
-def test_a_kill_of_both_between_two_renames(tmp_path: Path, step: int) -> None:
-    """Never a new picture beside an old result, nor the other way round: the pictures may be missing then."""
-    running, _, _ = killed_in_step(tmp_path, step, "os.getppid(), os.getpid()")
+@pytest.mark.parametrize("step", [5, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 3, 4, 6, 7, 8, 11))])
+def test_a_killed_program_between_two_steps(tmp_path: Path, step: int) -> None:
+    """The computation completes what was begun, and ends then."""
+    running, _, _ = killed_before_step(tmp_path, step, "os.getppid(),")
+    assert running.files() == NEW
+
+
+@linux
+@pytest.mark.parametrize("step", [1, 6, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3, 4, 5, 7, 8, 9, 11))])
+def test_a_kill_of_both_between_two_steps(tmp_path: Path, step: int) -> None:
+    """Never a picture beside the JSON of another run; and who comes next completes the set."""
+    running, _, _ = killed_before_step(tmp_path, step, "os.getppid(), os.getpid()")
     files = {name: text for name, text in running.files().items() if not name.startswith(".")}
-    old = {"fig2.json": "old", "fig2.png": "old picture", "fig2.svg": "old picture"}
     assert "fig2.json" in files
-    assert files.items() <= (old if step <= 2 else NEW).items()
+    assert files.items() <= (OLD if files["fig2.json"] == "old" else NEW).items()
+    recover(running.out)
+    assert {name: text for name, text in running.files().items() if not name.startswith(".")} == (
+        OLD if step == 1 else NEW
+    )
+    check_writable(running.out, tuple(NEW))
+    assert running.files() == (OLD if step == 1 else NEW)
 
 
 def killed_at_random(folder: Path, formats: str, times: int, seed: int) -> None:

@@ -144,7 +144,9 @@ def test_verification_loads_nothing_of_the_engine(tmp_path: Path) -> None:
 
 WATCHING = {
     "__main__": {"cli", "supervisor"},
-    "supervisor": {"handover", "streams", "output", "errors"},
+    "supervisor": {"handover", "streams", "output", "commit", "errors"},
+    "commit": {"handover", "journal", "errors"},
+    "journal": set(),
     "handover": set(),
     "streams": set(),
     "memory": {"errors"},

@@ -398,7 +398,7 @@ def test_the_command_writes_one_file(shipped: Shipped, tmp_path: Path, capsys: p
     assert "other.html" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("name", ["../x", "", "a/b", ".hidden", "x" * 101, "a\nb"])
+@pytest.mark.parametrize("name", ["../x", "", "a/b", ".hidden", "x" * 101, "a\nb", "nul", "Aux.html", "a. "])
 def test_names_that_are_no_file_names(shipped: Shipped, tmp_path: Path, name: str) -> None:
     file = tmp_path / "fig3.json"
     file.write_text(shipped("fig3").to_json(), encoding="utf-8")

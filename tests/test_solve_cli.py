@@ -90,6 +90,7 @@ def test_special_points_are_answers(at: str, tmp_path: Path, capsys: pytest.Capt
         (["--at", "rho=1", "--digits", "1001"], "'--digits'"),
         (["--at", "rho=1", "--format", "gif"], "gif is not among table, json, png, svg, pdf"),
         (["--at", "rho=1", "--format", "json", "--name", "../x"], "error: --name: '../x' can not name a file"),
+        (["--at", "rho=1", "--format", "json", "--name", "COM1"], "error: --name: 'COM1' can not name a file: Windows"),
         (["missing.yaml", "--at", "rho=1"], "missing.yaml"),
         ([FIG4, "--at", "rho=1"], "error: --at: L2 is an axis of "),
         ([FIG3, "--at", "rho=1,F=L2"], "error: --at F: the value of this axis is a number"),

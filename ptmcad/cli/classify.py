@@ -69,8 +69,9 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
     from ptmcad.pipeline import classify
 
     target = request.out / f"{slice.name}.json"
+    beside = tuple(f"{slice.name}.{suffix}" for suffix in request.formats if suffix != "json")
     if "json" in request.formats:
-        tell(Topic.TARGET, str(target))
+        tell(Topic.TARGET, str(target), *beside)
     tell_deadline(request.timeout, request.spent)  # anew: the time that the import took is not the computation's
     left = None if request.timeout is None else max(request.timeout - request.spent, SHORTEST)
     with ProgressBar() as progress:
@@ -91,8 +92,8 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
         except LimitReached as stopped:
             if stopped.partial is None or "json" not in request.formats:
                 raise
-            place = save_stopped(target, _text(stopped.partial, request))
-            where = f"the partial result is in {place}{where_saved(target, place)}"
+            place = save_stopped(target, _text(stopped.partial, request), beside=beside)
+            where = f"the partial result is in {place}{where_saved(target, place, beside)}"
             raise LimitReached(f"{stopped}; {where}") from stopped
         _save(result, slice.name, request.formats, request)
     return result

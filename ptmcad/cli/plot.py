@@ -10,6 +10,7 @@ import click
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.stored import read_result
+from ptmcad.config import portable_file
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.memory import Bound
 from ptmcad.output import Writer, check_writable, write_files
@@ -46,6 +47,7 @@ def command(
     with limits(timeout, max_memory):
         stored = read_result(result)
         folder = result.parent if out is None else out
+        portable_file(f"{result.stem}.{formats[0]}", "RESULT")
         check_writable(folder, tuple(f"{result.stem}.{suffix}" for suffix in formats))
         from ptmcad.render import draw  # brings matplotlib
 

@@ -15,7 +15,7 @@ from click.core import ParameterSource
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.locate import point_of
-from ptmcad.config import PARAMETERS, load, slice_from_options
+from ptmcad.config import PARAMETERS, file_name, load, slice_from_options
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.expressions import rational
 from ptmcad.memory import Bound
@@ -233,7 +233,7 @@ def command(
         raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
     if pose is not None and start is None:
         raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
-    stem = name or f"{slice.name}-range"
+    stem = f"{slice.name}-range" if name is None else file_name(name, "--name")
     with limits(timeout, max_memory):
         if formats and slice.has_free_lengths:
             from ptmcad.ranges.certified import has_free_lengths

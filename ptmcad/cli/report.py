@@ -8,18 +8,14 @@ import click
 
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.stored import read_result
+from ptmcad.config import file_name, portable_file
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.memory import Bound
 from ptmcad.output import check_writable, text_writer, write_files
 
 
 def _file_name(_context: click.Context, _parameter: click.Parameter, value: str | None) -> str | None:
-    if value is None:
-        return None
-    name = value.removesuffix(".html")
-    if not name or not name[0].isalnum() or not all(c.isalnum() or c in "._-" for c in name) or len(name) > 100:
-        raise ConfigError("is no name for a file: use letters, digits, '.', '_' and '-'", key="--name")
-    return name
+    return None if value is None else file_name(value.removesuffix(".html"), "--name")
 
 
 @click.command("report")
@@ -54,7 +50,7 @@ def command(
     with limits(timeout, max_memory):
         stored = read_result(result)
         folder = result.parent if out is None else out
-        file = f"{name or result.stem}.html"
+        file = portable_file(f"{name or result.stem}.html", "--name")
         check_writable(folder, (file,))
         from ptmcad.report import page
         from ptmcad.report.error_curve import read_error_curve

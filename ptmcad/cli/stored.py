@@ -1,12 +1,14 @@
 """Reading a stored result for the commands that ask something of it.
 
-Guarantee: a file that is missing, unreadable, too large or damaged gives one `ConfigError` with the file's name.
+Guarantee: a file that is missing, unreadable, too large or damaged gives one `ConfigError` with the file's name. Where
+a killed run has not put all of its files into place, that is done first, if this user may.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from ptmcad.commit import recover
 from ptmcad.document import FORMAT
 from ptmcad.errors import ConfigError, PtmcadError, shown
 from ptmcad.regionmap import RegionMap
@@ -24,6 +26,7 @@ def read_result(path: Path) -> RegionMap:
     ConfigError
         When there is no such file, or it is not a whole region map.
     """
+    recover(path.parent)
     text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
     try:
         return RegionMap.from_json(text)

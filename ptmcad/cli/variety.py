@@ -8,7 +8,7 @@ import click
 
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.slices import slice_options
-from ptmcad.config import slice_from_options
+from ptmcad.config import portable_file, slice_from_options
 from ptmcad.errors import shown_path
 from ptmcad.export import FORMATS
 from ptmcad.memory import Bound
@@ -50,6 +50,7 @@ def command(
     """
     slice = slice_from_options(config, axes, sets, ranges)
     if out is not None:
+        portable_file(out.name, "--out")
         check_writable(out.parent, (out.name,))
     with limits(timeout, max_memory):
         from ptmcad.exactmap import slice_variety

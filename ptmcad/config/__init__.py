@@ -20,7 +20,7 @@ from typing import Any
 
 from ptmcad.config.options import ranges_of, settings_of, with_axes
 from ptmcad.config.parameters import PARAMETERS, Kind, Parameter, unknown_parameter
-from ptmcad.config.record import RECORD_KEYS, Record, count_of, file_name, number_text, record_of
+from ptmcad.config.record import RECORD_KEYS, Record, count_of, file_name, number_text, portable_file, record_of
 from ptmcad.config.resolution import MAX_DEGREE, number_of, point_of, slice_of
 from ptmcad.errors import ConfigError
 from ptmcad.expressions import Expression, constant, did_you_mean
@@ -37,6 +37,7 @@ __all__ = [
     "load",
     "point_from_mapping",
     "point_from_options",
+    "portable_file",
     "slice_from_mapping",
     "slice_from_options",
 ]

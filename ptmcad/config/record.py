@@ -18,6 +18,9 @@ from ptmcad.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 RECORD_KEYS = ("name", "title", "notes", "mechanism", "parameters", "axes", "count", "reference")
 _MAX_NAME = 100
 _MAX_TITLE = 300
+_PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
+_DEVICES = frozenset(("CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$", *_PORTS))
+"""Windows takes a file of such a name, in any case and with any suffix, for a device."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,13 +107,40 @@ def _file_name(node: Node) -> str:
         raise node.place.error(
             f"{name!r} can not name a file: use letters, digits, '.', '_' and '-', starting with a letter or digit"
         )
+    return _portable(name, node.place)
+
+
+def portable_file(file: str, option: str) -> str:
+    """The name of a file that an option gives, with its suffix: any that no system gives another meaning.
+
+    Raises
+    ------
+    ConfigError
+        When Windows keeps the name for a device, or would drop its end.
+    """
+    if file.endswith((".", " ")):
+        raise Place(option).error(f"{file!r} can not name a file: Windows drops dots and spaces at the end")
+    return _portable(file, Place(option))
+
+
+def _portable(name: str, place: Place) -> str:
+    device = name.partition(".")[0].rstrip(" ").upper()
+    if device in _DEVICES:
+        raise place.error(f"{name!r} can not name a file: Windows keeps {device} for a device, whatever the suffix")
     return name
 
 
 def _name_of_file(file: str | None) -> str:
-    """The file's stem, with what `_file_name` refuses replaced; empty when there is no file."""
+    """The file's stem, with characters that `_file_name` refuses replaced; empty when there is no file.
+
+    Raises
+    ------
+    ConfigError
+        When Windows keeps the name for a device.
+    """
     stem = Path(file).stem if file else ""
-    return "".join(c if c.isalnum() or c in "._-" else "-" for c in stem).strip(".-_")[:_MAX_NAME]
+    name = "".join(c if c.isalnum() or c in "._-" else "-" for c in stem).strip(".-_")[:_MAX_NAME]
+    return _portable(name, Place("name", file))
 
 
 def _values(node: Node) -> dict[str, Scalar]:

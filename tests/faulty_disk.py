@@ -1,0 +1,65 @@
+"""A disk that stops or fails at chosen steps, and looks at the folder after each one."""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Callable, Collection
+from pathlib import Path
+
+from ptmcad.commit import Disk
+
+
+class Killed(BaseException):
+    """The process is gone: from here on no step is done, whatever the code under test tries."""
+
+
+class FaultyDisk(Disk):
+    """Steps are counted from 1 on, also those that fail.
+
+    Parameters
+    ----------
+    killed : the step before which the process is killed.
+    failing : the steps that raise an OSError instead of being done.
+    links : whether the file system has hard links.
+    look : called after each step that was done.
+    """
+
+    def __init__(
+        self,
+        killed: int | None = None,
+        failing: Collection[int] = (),
+        links: bool = True,
+        look: Callable[[], None] = lambda: None,
+    ) -> None:
+        self.killed = killed
+        self.failing = failing
+        self.links = links
+        self.look = look
+        self.steps = 0
+        self.dead = False
+
+    def _step(self, path: Path) -> None:
+        if not self.dead:
+            self.steps += 1
+        if self.dead or self.steps == self.killed:
+            self.dead = True
+            raise Killed
+        if self.steps in self.failing:
+            raise OSError(errno.EIO, "Input/output error", str(path))
+
+    def replace(self, source: Path, target: Path) -> None:
+        self._step(target)
+        super().replace(source, target)
+        self.look()
+
+    def link(self, source: Path, target: Path) -> None:
+        self._step(target)
+        if not self.links:
+            raise OSError(errno.EPERM, "Operation not permitted", str(source))
+        super().link(source, target)
+        self.look()
+
+    def unlink(self, path: Path) -> None:
+        self._step(path)
+        super().unlink(path)
+        self.look()
