@@ -23,7 +23,8 @@ class Topic(Enum):
         b"R"  # temporary file, target, temporary file, target, ...: all written, about to be renamed in this order
     )
     DEADLINE = b"D"  # reading of time.monotonic() at which the time is over, the limit in words
-    MEMORY = b"M"  # the memory limit in words
+    MEMORY = b"M"  # the memory limit in bytes, in words, and "asked" or "default"
+    LOADING = b"L"  # the libraries that are about to be loaded, or nothing when they are
     TARGET = b"F"  # path of the result file
     RESULT = b"P"  # "partial" or "complete", and the result's text as it is by now
     RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work

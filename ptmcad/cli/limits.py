@@ -51,8 +51,9 @@ def limits(timeout: float | None, max_memory: Bound | None) -> Iterator[None]:
     tell_deadline(timeout)
     bound = max_memory or (default_bound() if watched() else None)
     if bound is not None:
-        tell(Topic.MEMORY, bound.text)
+        tell(Topic.MEMORY, str(bound.size), bound.text, "default" if max_memory is None else "asked")
         # numpy's linear algebra, which nothing here uses, would reserve memory for every processor of the machine
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    tell(Topic.LOADING, "")  # the program itself is there
     with nullcontext() if bound is None else bounded(bound):
         yield
