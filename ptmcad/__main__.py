@@ -41,6 +41,8 @@ def _refuse(error: Exception) -> "NoReturn":
 
 
 def _command_line() -> int:
+    # pictures go to files, by the program's own settings: the caller's backend or settings may not work here
+    os.environ["MPLBACKEND"], os.environ["MATPLOTLIBRC"] = "agg", os.devnull
     from ptmcad.cli import run
 
     return run()

@@ -171,12 +171,12 @@ def _without_bound() -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_DATA, kept)
 
 
-def missing_room() -> int | None:
-    """The least bound that would do, in bytes, if the libraries that are loaded by now leave too little; else None."""
+def missing_room(room: int = ROOM) -> int | None:
+    """The least bound that would do, in bytes, if the libraries that are loaded by now leave less room; else None."""
     bound, usage = _InForce.bound, usage_of(os.getpid())
-    if bound is None or usage is None or usage.data + ROOM <= bound.size:
+    if bound is None or usage is None or usage.data + room <= bound.size:
         return None
-    return usage.data + ROOM
+    return usage.data + room
 
 
 def check_room(what: str) -> None:

@@ -133,7 +133,7 @@ class Waiting:
         if usage is None:
             return False
         most = self.most or usage
-        self.most = Usage(*(max(pair) for pair in zip(most, usage, strict=True)))
+        self.most = usage._replace(data=max(most.data, usage.data), space=max(most.space, usage.space))
         if self._same is None or self._same[:3] != usage[:3]:
             self._same, self._since = usage, now
         if not any(limit.room(usage) < LITTLE for limit in limits):
