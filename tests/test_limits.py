@@ -33,6 +33,12 @@ from ptmcad.streams import quiet_stream
 pytestmark = linux
 MIB = 1 << 20
 
+
+def limited(which: int, soft: int, hard: int | None = None) -> Callable[[], None]:
+    """What a shell's ``ulimit`` does, to be called in the new process."""
+    return lambda: resource.setrlimit(which, (soft, soft if hard is None else hard))
+
+
 # Memory
 
 
@@ -40,7 +46,7 @@ MIB = 1 << 20
 def test_the_limit_that_was_reached_is_named(tmp_path: Path, which: int, option: str) -> None:
     """The caller's own, though the program has one too."""
     work = "def engine(progress, partial):\n    time.sleep(0.4)\n    bytes(1 << 30)\n"
-    running = Running(tmp_path, work, preexec_fn=lambda: resource.setrlimit(which, (300 * MIB, 300 * MIB)))
+    running = Running(tmp_path, work, preexec_fn=limited(which, 300 * MIB))
     place = tmp_path / "out" / "fig2.json"
     assert running.end() == (
         3,
@@ -98,7 +104,7 @@ def test_a_bound_that_the_libraries_exceed_is_refused() -> None:
             assert resource.getrlimit(resource.RLIMIT_DATA) == before
         assert resource.getrlimit(resource.RLIMIT_DATA) != before
         with pytest.raises(
-            ConfigError, match="100M is too little for the engine, which has .*: at least [0-9]+M"
+            ConfigError, match=r"100M is too little for the engine, which has .*: at least [0-9]+M"
         ) as caught:
             check_room("the engine")
     least = int(re.findall("at least ([0-9]+)M", str(caught.value))[0])
@@ -148,16 +154,18 @@ def test_a_library_that_sleeps_for_ever() -> None:
 @pytest.mark.parametrize("phase", ["loading", "computing"])
 def test_what_waits_for_memory_is_ended(tmp_path: Path, phase: str) -> None:
     """As OpenBLAS does."""
-    asking = "while True:\n            try:\n                mmap.mmap(-1, 1 << 30)\n            except OSError:\n                pass"
     work = (
         "import mmap\nfrom ptmcad.memory import loading\nfrom contextlib import nullcontext\n"
         "def engine(progress, partial):\n"
         "    kept = bytearray(100 << 20)\n"
         f"    with {'loading(chr(97))' if phase == 'loading' else 'nullcontext()'}:\n"
-        f"        {asking}\n"
+        "        while True:\n"
+        "            try:\n"
+        "                mmap.mmap(-1, 1 << 30)\n"
+        "            except OSError:\n"
+        "                pass\n"
     )
-    limit = 200 * MIB
-    running = Running(tmp_path, work, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+    running = Running(tmp_path, work, preexec_fn=limited(resource.RLIMIT_AS, 200 * MIB))
     status, errors = running.end()
     assert status == 3
     assert errors.startswith("stopped: the memory limit of 200M that the caller has set (ulimit -v) was reached; ")
@@ -170,7 +178,7 @@ def test_the_callers_limit_on_processor_time(tmp_path: Path) -> None:
         work = "def engine(progress, partial):\n    while True:\n        pass\n"
         folder = tmp_path / str(limits[1])
         folder.mkdir()
-        running = Running(folder, work, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, limits))
+        running = Running(folder, work, preexec_fn=limited(resource.RLIMIT_CPU, *limits))
         status, errors = running.end()
         assert status == 3
         assert errors.startswith(
@@ -181,7 +189,10 @@ def test_the_callers_limit_on_processor_time(tmp_path: Path) -> None:
 
 SIZES = [round(20 * (1024 / 20) ** (k / 39)) for k in range(40)]
 """In MiB: from 20M to 1G."""
-FREE = "--slice rho,L2 --range rho=1/20:2 --range L2=0:2 --set l0=1/5 --set F3=-10 --set F4=-10 --tolerance 1/2".split()
+FREE = [
+    *("--slice", "rho,L2", "--range", "rho=1/20:2", "--range", "L2=0:2"),
+    *("--set", "l0=1/5", "--set", "F3=-10", "--set", "F4=-10", "--tolerance", "1/2"),
+]
 WITHOUT_SCIPY = """
 import sys
 class Hidden:
@@ -200,11 +211,12 @@ def ended(folder: Path, engine: str, scipy: bool, options: list[str], **popen: A
     for path in folder.glob("out/*"):
         path.unlink()
     slice = FREE if engine == "certified" else [str(FIG2)]
+    arguments = ["classify", *slice, "--out", str(folder / "out"), "--format", "json,png", *options]
+    popen["env"] = {**os.environ, "PYTHONPATH": str(hiding)}
     started = time.monotonic()
     done = subprocess.run(
-        [sys.executable, "-m", "ptmcad", "classify", *slice, "--out", str(folder / "out"), "--format", "json,png", *options],
-        cwd=ROOT, env={**os.environ, "PYTHONPATH": str(hiding)}, capture_output=True, text=True, check=False, **popen,
-    )  # fmt: skip
+        [sys.executable, "-m", "ptmcad", *arguments], cwd=ROOT, capture_output=True, text=True, check=False, **popen
+    )
     return done.returncode, done.stderr, time.monotonic() - started
 
 
@@ -237,8 +249,7 @@ def campaign(folder: Path, engine: str, scipy: bool, sizes: list[int]) -> Iterat
 
 def callers(folder: Path, engine: str, which: int, sizes: list[int]) -> Iterator[tuple[int, int, str, float]]:
     for size in sizes:
-        limit = (size * MIB, size * MIB)
-        status, errors, seconds = ended(folder, engine, True, [], preexec_fn=lambda: resource.setrlimit(which, limit))
+        status, errors, seconds = ended(folder, engine, True, [], preexec_fn=limited(which, size * MIB))
         yield size, status, judge(folder, status, errors, "that the caller has set"), seconds
 
 
@@ -294,7 +305,7 @@ def test_what_the_caller_made_of_signals(tmp_path: Path, caller: Callable[[], No
 
 
 def test_few_descriptors(tmp_path: Path) -> None:
-    status, errors = classified(tmp_path, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (8, 8)))
+    status, errors = classified(tmp_path, preexec_fn=limited(resource.RLIMIT_NOFILE, 8))
     assert (status, errors) == (2, "error: Too many open files: ptmcad needs 16 more than are open (ulimit -n)\n")
     assert not list(tmp_path.iterdir())
 
@@ -303,10 +314,9 @@ def test_few_descriptors(tmp_path: Path) -> None:
 
 
 def test_no_room_for_messages(tmp_path: Path) -> None:
-    for arguments in (["classify", "nothing.yaml"], ["classify", str(FIG2), "--format", "wrong"]):
-        with open("/dev/full", "w") as full:
-            done = subprocess.run([sys.executable, "-m", "ptmcad", *arguments], cwd=ROOT, stderr=full, check=False)
-        assert done.returncode == 2
+    arguments = [sys.executable, "-m", "ptmcad", "classify", "nothing.yaml"]
+    with open("/dev/full", "w") as full:
+        assert subprocess.run(arguments, cwd=ROOT, stderr=full, check=False).returncode == 2
 
 
 def test_a_stream_that_does_not_block() -> None:
@@ -338,18 +348,26 @@ def test_a_stream_that_does_not_block() -> None:
 # Pictures
 
 
-def test_pictures_whatever_the_environment_says(tmp_path: Path) -> None:
-    """A notebook's backend, settings that are no text, no folder for caches: as without, and without a word."""
+NOTEBOOK = {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
+NO_FOLDERS = {"HOME": "/proc", "XDG_CACHE_HOME": "/proc", "XDG_CONFIG_HOME": "/proc"}
+PECULIAR = {
+    "MPLBACKEND": "nonsense", "TERM": "dumb", "COLUMNS": "1", "LC_ALL": "C", "PYTHONWARNINGS": "error",
+    "PYTHONOPTIMIZE": "2",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "environment",
+    [NOTEBOOK, *(pytest.param(each, marks=pytest.mark.slow) for each in (NO_FOLDERS, PECULIAR))],
+    ids=["notebook", "no folders", "peculiar"],
+)
+def test_pictures_whatever_the_environment_says(tmp_path: Path, environment: dict[str, str]) -> None:
+    """Another backend, settings that are no text, no folder for caches: pictures as usual, and without a word."""
     settings = tmp_path / "settings"
     settings.write_bytes(b"backend: \xff\n")
-    wrong = {
-        "MPLBACKEND": "module://matplotlib_inline.backend_inline", "MATPLOTLIBRC": str(settings), "HOME": "/proc",
-        "XDG_CACHE_HOME": "/proc", "XDG_CONFIG_HOME": "/proc", "TERM": "dumb", "COLUMNS": "1", "LC_ALL": "C",
-        "PYTHONWARNINGS": "error", "PYTHONOPTIMIZE": "2",
-    }  # fmt: skip
-    usual = classified(tmp_path / "usual", formats="json,png")
-    assert classified(tmp_path / "wrong", formats="json,png", env={**os.environ, **wrong}) == usual == (0, "")
-    assert (tmp_path / "wrong" / "fig2.png").read_bytes() == (tmp_path / "usual" / "fig2.png").read_bytes()
+    environment = {**os.environ, "MATPLOTLIBRC": str(settings), **environment}
+    assert classified(tmp_path / "out", formats="json,png", env=environment) == (0, "")
+    assert sorted(os.listdir(tmp_path / "out")) == ["fig2.json", "fig2.png"]
 
 
 @pytest.mark.parametrize("error", [KeyError("font"), OSError(28, "No space left on device"), RuntimeError("x\ny")])
