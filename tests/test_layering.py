@@ -144,10 +144,11 @@ def test_verification_loads_nothing_of_the_engine(tmp_path: Path) -> None:
 
 WATCHING = {
     "__main__": {"cli", "supervisor"},
-    "supervisor": {"handover", "streams", "output", "errors"},
+    "supervisor": {"handover", "streams", "shortage", "output", "errors"},
     "handover": set(),
     "streams": set(),
-    "memory": {"errors"},
+    "shortage": set(),
+    "memory": {"errors", "handover", "shortage"},
 }
 
 

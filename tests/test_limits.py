@@ -190,8 +190,8 @@ def test_the_callers_limit_on_processor_time(tmp_path: Path) -> None:
 SIZES = [round(20 * (1024 / 20) ** (k / 39)) for k in range(40)]
 """In MiB: from 20M to 1G."""
 FREE = [
-    *("--slice", "rho,L2", "--range", "rho=1/20:2", "--range", "L2=0:2"),
-    *("--set", "l0=1/5", "--set", "F3=-10", "--set", "F4=-10", "--tolerance", "1/2"),
+    *("--slice", "rho,L2", "--range", "rho=1/2:3/5", "--range", "L2=1:11/10"),
+    *("--set", "l0=1/5", "--set", "F3=-10", "--set", "F4=-10", "--tolerance", "9/10"),
 ]
 WITHOUT_SCIPY = """
 import sys

@@ -109,8 +109,11 @@ def _hand_over(request: Request, result: Any) -> None:
     if "json" in request.formats:
         if result.cover is not None:
             tell(Topic.RESUMABLE)
-        state = "partial" if result.status.value == "partial" else "complete"
-        tell(Topic.RESULT, state, _text(result, request))
+        tell(Topic.RESULT, _state(result), _text(result, request))
+
+
+def _state(result: Any) -> str:
+    return "partial" if result.status.value == "partial" else "complete"
 
 
 def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) -> None:
@@ -126,6 +129,8 @@ def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) ->
         writers[file] = picture(file, draw)
     if "json" in formats:
         text = _text(result, request)
+        if len(formats) > 1:  # if this process ends while it draws, the result is saved
+            tell(Topic.RESULT, _state(result), text)
         writers[f"{name}.json"] = text_writer(text)
         write_result(request.out, writers, f"{name}.json", text)
     else:

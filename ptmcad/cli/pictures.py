@@ -21,9 +21,6 @@ def picture(name: str, draw: Callable[[Path], None]) -> Writer:
 
     def write(path: Path) -> None:
         try:
-            from ptmcad.render.backend import load_matplotlib
-
-            load_matplotlib()
             draw(path)
         except MemoryError:
             raise

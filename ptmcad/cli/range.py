@@ -162,7 +162,10 @@ def _enclosed(slice: Slice, request: Request) -> Answer:
 
 
 def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
-    from ptmcad.render import ranges as pictures  # brings matplotlib
+    from ptmcad.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.render import ranges as pictures
     from ptmcad.render.printing import save
 
     if kind == "line":

@@ -52,7 +52,10 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
 
 
 def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
-    from ptmcad.render.landscape import draw_landscape  # brings matplotlib
+    from ptmcad.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.render.landscape import draw_landscape
     from ptmcad.render.poses import draw_poses
     from ptmcad.render.printing import save as save_figure
 

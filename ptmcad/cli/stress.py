@@ -55,7 +55,10 @@ def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> None:
 
 
 def _draw(found: Campaign, path: Path) -> None:
-    from ptmcad.render.printing import save as save_figure  # brings matplotlib
+    from ptmcad.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.render.printing import save as save_figure
     from ptmcad.render.stress import draw_stress
 
     save_figure(draw_stress(found.outcomes), path)
