@@ -19,7 +19,7 @@ from pathlib import Path
 
 from ptmcad.errors import ConfigError
 from ptmcad.handover import Topic, tell
-from ptmcad.shortage import in_units, speaks_of_memory, usage_of
+from ptmcad.shortage import SMALL, caller_limits, in_units, speaks_of_memory, usage_of
 
 SHARE = Fraction(9, 10)
 """The part of the machine's memory that is the bound where none is asked for."""
@@ -143,14 +143,17 @@ def loading(what: str) -> Iterator[None]:
     Raises
     ------
     MemoryError
-        When a library says that it can not be loaded for lack of memory, whatever it raises.
+        When a library says that it can not be loaded for lack of memory, whatever it raises, or just that it can not be
+        loaded, under a small limit of the caller's.
     """
     tell(Topic.LOADING, what)
     try:
         with _without_bound():
             yield
     except (ImportError, OSError) as error:
-        if speaks_of_memory(str(error)):
+        missing = isinstance(error, ModuleNotFoundError)
+        small = any(limit.size < SMALL for limit in caller_limits())  # of which many loaders say nothing, as LLVM's
+        if speaks_of_memory(str(error)) or (small and not missing):
             raise MemoryError(str(error)) from error
         raise
     tell(Topic.LOADING, "")

@@ -18,6 +18,8 @@ from typing import NamedTuple
 
 LITTLE = 64 << 20
 """Bytes: what OpenBLAS asks for at once, for each thread, is half of this."""
+SMALL = 1 << 30
+"""Below so many bytes a memory limit may keep the libraries from being loaded."""
 LOADING, COMPUTING = 5.0, 10.0
 """Seconds of processor time without any change, while libraries are loaded and later."""
 IDLE = 30.0

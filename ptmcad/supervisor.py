@@ -44,9 +44,6 @@ LOOK = 0.25
 SPARE = 16
 """Descriptors that there must be beside the open ones: for pipes, for imports, for the files of a result."""
 
-SMALL = 1 << 30
-"""Below so many bytes a memory limit may keep the libraries from being loaded."""
-
 _CHUNK = 1 << 16
 _CLEAR_LINE = b"\r\x1b[K"
 
@@ -264,6 +261,8 @@ class _Watch:
 
         That is: while libraries were loaded under a small limit, or when half of a limit had been used.
         """
+        from ptmcad.shortage import SMALL
+
         most = self._most()
         if self._loading() and any(limit.size < SMALL for limit in self._limits(lifted=True)):
             return True

@@ -118,6 +118,17 @@ def test_a_library_that_says_it_lacks_memory() -> None:
         raise ImportError("libx.so: no such file")
 
 
+def test_a_library_that_does_not_say_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    """LLVM's loader says under a low limit on address space that its file is not found."""
+    failure = OSError("Could not find/load shared object file 'libllvmlite.so'")
+    for size, expected in ((200 * MIB, MemoryError), (1 << 40, OSError)):
+        monkeypatch.setattr("ptmcad.memory.caller_limits", lambda size=size: (Limit(size, True, "a limit"),))
+        with pytest.raises(expected), loading("a library"):
+            raise failure
+        with pytest.raises(ModuleNotFoundError), loading("a library"):
+            raise ModuleNotFoundError("No module named 'numba'")
+
+
 def usage(user: float = 0.0, kernel: float = 0.0, data: int = 90 * MIB, resident: int = 50 * MIB) -> Usage:
     return Usage(data, 300 * MIB, resident, user, kernel)
 

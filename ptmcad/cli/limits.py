@@ -33,8 +33,8 @@ def _bound(_context: click.Context, _parameter: click.Parameter, value: str | No
 def limit_options(command: F) -> F:
     """Add the options ``timeout`` (seconds or None) and ``max_memory`` (a `Bound` or None)."""
     command = click.option("--max-memory", callback=_bound, metavar="SIZE",
-                           help="Stop before using more memory, such as 500M or 2G (exit status 3; 2 when it is too little "
-                                "to start with).  "
+                           help="Stop before using more memory, such as 500M or 2G (exit status 3; 2 when it is "
+                                "too little to start with).  "
                                 "[default: 9/10 of the machine's]")(command)  # fmt: skip
     return click.option("--timeout", type=float, callback=_seconds, metavar="S",
                         help="Stop after S seconds (exit status 3).")(command)  # fmt: skip

@@ -13,6 +13,7 @@ from typing import Any
 from ptmcad.enclosure import Enclosure
 from ptmcad.errors import ExpressionError
 from ptmcad.expressions import rational
+from ptmcad.memory import check_room, loading
 from ptmcad.numerals import shortest_text
 from ptmcad.ranges.line import restricted, varying_axis
 from ptmcad.ranges.table import aligned
@@ -86,8 +87,9 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
     ConfigError
         When ``along`` is no axis, or ``at`` does not name exactly the other one with an exact number.
     """
-    from ptmcad.interval.line import line_counts
-
+    with loading("the certified engine"):
+        from ptmcad.interval.line import line_counts
+    check_room("the certified engine")
     varying, other, value = varying_axis(slice, along, at)
     found = line_counts(slice, varying, value, 64 + 4 * digits)
     ends = {gap.low: Enclosure(gap.low, gap.high) for gap in found.gaps}
