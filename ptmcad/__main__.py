@@ -25,12 +25,24 @@ def main() -> "NoReturn":
     heeded = tuple(number for number in STOPPING if signal.getsignal(number) is not signal.SIG_IGN)
     for number in heeded:
         signal.signal(number, lambda caught, _frame: os._exit(128 + caught))  # there is nothing to tidy up yet
-    from ptmcad.supervisor import supervise
-
+    try:
+        from ptmcad.supervisor import supervise
+    except (MemoryError, OSError, ImportError, SystemError) as error:  # the caller's limits, or a broken installation
+        _refuse(error)
     supervise(_command_line, heeded)
 
 
+def _refuse(error: Exception) -> "NoReturn":
+    """Say that not even what watches can be loaded, with as little as there is, and exit."""
+    try:
+        os.write(2, f"error: ptmcad cannot start: {type(error).__name__} {error}\n".encode(errors="replace"))
+    finally:
+        os._exit(2)
+
+
 def _command_line() -> int:
+    # pictures go to files, by the program's own settings: the caller's backend or settings may not work here
+    os.environ["MPLBACKEND"], os.environ["MATPLOTLIBRC"] = "agg", os.devnull
     from ptmcad.cli import run
 
     return run()

@@ -10,6 +10,7 @@
     * DimensionError       -- a formula for two angles was asked about a system that has more, or one
     * GeometryError        -- a length or a stiffness is not positive somewhere in the window: exit status 2
   * OutputError            -- a result could not be written: exit status 2
+    * PictureError         -- a picture could not be drawn; the result itself is saved: exit status 2
   * LimitReached           -- a time limit stopped the computation: exit status 3 (so does the memory limit, which the
                               operating system enforces: a MemoryError, or an abort that `supervisor` sees)
 
@@ -129,6 +130,10 @@ class GeometryError(HypothesisError):
 
 class OutputError(PtmcadError):
     """A result could not be written."""
+
+
+class PictureError(OutputError):
+    """A picture could not be drawn."""
 
 
 class LimitReached(PtmcadError):

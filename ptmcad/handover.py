@@ -21,7 +21,8 @@ class Topic(Enum):
     TEMPORARY = b"T"  # paths of temporary files that are about to be made
     RENAMES = b"R"  # the journal of a set of files about to be put into place, its last file, and that file's identity
     DEADLINE = b"D"  # reading of time.monotonic() at which the time is over, the limit in words
-    MEMORY = b"M"  # the memory limit in words
+    MEMORY = b"M"  # the memory limit in bytes, in words, and "asked" or "default"
+    LOADING = b"L"  # the libraries that are about to be loaded, or nothing when they are
     TARGET = b"F"  # path of the result file, names of the other files that are to be written
     RESULT = b"P"  # "partial" or "complete", and the result's text as it is by now
     RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work

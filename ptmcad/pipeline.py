@@ -16,6 +16,7 @@ from time import perf_counter
 
 from ptmcad.errors import ConfigError
 from ptmcad.expressions import did_you_mean
+from ptmcad.memory import check_room, loading
 from ptmcad.plan import is_certified
 from ptmcad.regionmap import RegionMap
 from ptmcad.savings import kept, load_all
@@ -124,10 +125,12 @@ def _certified(
         )
     if resume is not None:
         check_resumable(slice, resume)
-    import_module("ptmcad.interval.compiled")  # first: where numba is missing, it says so
-    if "imports" in keep:
-        load_all()
-    from ptmcad.interval.engine import certified_map
+    with loading("the certified engine"):
+        import_module("ptmcad.interval.compiled")  # first: where numba is missing, it says so
+        if "imports" in keep:
+            load_all()
+        from ptmcad.interval.engine import certified_map
+    check_room("the certified engine")
 
     cover = None if resume is None else resume.cover
     return certified_map(

@@ -17,6 +17,7 @@ from ptmcad.algebra.fibre import Fibre
 from ptmcad.algebra.points import RealPoint, points, real_values
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.counting import DegeneratePoint, point_system
+from ptmcad.memory import check_room, loading
 from ptmcad.models.ptm import ptm_nodes, ptm_system
 from ptmcad.models.system import polynomial_at
 from ptmcad.poses import Pose, Poses
@@ -43,8 +44,9 @@ def poses_at(parameters: Mapping[str, Fraction], digits: int) -> Poses:
         When two ways to the same fact disagree, which would be a fault of this program.
     """
     if any(parameters.get(name) for name in FREE_LENGTHS):
-        from ptmcad.interval.poses import certified_poses
-
+        with loading("the certified engine"):
+            from ptmcad.interval.poses import certified_poses
+        check_room("the certified engine")
         return certified_poses(parameters, digits)
     system = ptm_system()
     values = {name: fmpq(v.numerator, v.denominator) for name, v in parameters.items()}

@@ -1,11 +1,13 @@
 """A standard stream whose reader may leave, as in ``ptmcad locate ... | head``.
 
-Guarantee: once the reader of the pipe has gone, what is written is dropped and nothing fails; every other failure,
-such as a full disk, is raised as for any file.
+Guarantee: once the reader of the pipe has gone, what is written is dropped and nothing fails. Every other failure, such
+as a full disk, is raised as for any file, unless the stream is the one for messages: there is no third place to tell
+that they can not be told, so there they are dropped. A descriptor that its owner has made non-blocking is waited for.
 """
 
 import io
 import os
+import select
 from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
@@ -16,21 +18,29 @@ class _Pipe(io.FileIO):
     """An open file descriptor for writing that knows whether its reader has left."""
 
     reader_left = False
+    for_messages = False
 
     def write(self, data: "ReadableBuffer", /) -> int:
         try:
-            return super().write(data)
+            while (written := super().write(data)) is None:  # it is full, and does not block
+                select.select([], [self], [])
+            return written
         except BrokenPipeError:
             self.reader_left = True
             null = os.open(os.devnull, os.O_WRONLY)
             os.dup2(null, self.fileno(), inheritable=True)
             os.close(null)
             return memoryview(data).nbytes
+        except OSError:
+            if not self.for_messages:
+                raise
+            return memoryview(data).nbytes
 
 
-def quiet_stream(descriptor: int, like: TextIO) -> TextIO:
+def quiet_stream(descriptor: int, like: TextIO, for_messages: bool = False) -> TextIO:
     """A text stream for the descriptor with the encoding and the line buffering of another."""
     raw = _Pipe(descriptor, "w", closefd=False)
+    raw.for_messages = for_messages
     return io.TextIOWrapper(
         io.BufferedWriter(raw), like.encoding, like.errors, line_buffering=bool(like.line_buffering)
     )

@@ -144,12 +144,13 @@ def test_verification_loads_nothing_of_the_engine(tmp_path: Path) -> None:
 
 WATCHING = {
     "__main__": {"cli", "supervisor"},
-    "supervisor": {"handover", "streams", "output", "commit", "errors"},
+    "supervisor": {"handover", "streams", "shortage", "output", "commit", "errors"},
     "commit": {"handover", "journal", "errors"},
     "journal": set(),
     "handover": set(),
     "streams": set(),
-    "memory": {"errors"},
+    "shortage": set(),
+    "memory": {"errors", "handover", "shortage"},
 }
 
 

@@ -13,6 +13,7 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from errno import ENOMEM
 from importlib import import_module
 from types import FrameType
 from typing import NoReturn
@@ -101,19 +102,26 @@ def run(arguments: Sequence[str] | None = None) -> int:
         click.echo(f"stopped: {error}", err=True)
         return 3
     except MemoryError:
-        tell(Topic.EXHAUSTED)
-        if not watched():  # otherwise the other process says so, and saves what there is
-            click.echo("stopped: memory ran out", err=True)
-        return 3
+        return _exhausted()
     except PtmcadError as error:
         click.echo(f"error: {error}", err=True)
         return 2
     except OSError as error:  # mostly standard output that is full; files of results raise OutputError
+        if error.errno == ENOMEM:
+            return _exhausted()
         place = f": {error.filename}" if error.filename else ""
         click.echo(shown(f"error: {error.strerror or error}{place}"), err=True)
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - so that the exit does not try again
         return 2
     return status if isinstance(status, int) else 0
+
+
+def _exhausted() -> int:
+    """Tell that memory has run out, and return the exit status."""
+    tell(Topic.EXHAUSTED)
+    if not watched():  # otherwise the other process says so, and saves what there is
+        click.echo("stopped: memory ran out", err=True)
+    return 3
 
 
 def _show(error: click.ClickException) -> None:

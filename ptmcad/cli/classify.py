@@ -14,6 +14,7 @@ import click
 
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits, tell_deadline
+from ptmcad.cli.pictures import picture, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import slice_options
 from ptmcad.config import slice_from_options
@@ -109,22 +110,32 @@ def _hand_over(request: Request, result: Any) -> None:
     if "json" in request.formats:
         if result.cover is not None:
             tell(Topic.RESUMABLE)
-        state = "partial" if result.status.value == "partial" else "complete"
-        tell(Topic.RESULT, state, _text(result, request))
+        tell(Topic.RESULT, _state(result), _text(result, request))
+
+
+def _state(result: Any) -> str:
+    return "partial" if result.status.value == "partial" else "complete"
 
 
 def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) -> None:
     """Write the pictures and, last, the JSON."""
     writers: dict[str, Writer] = {}
-    pictures = [suffix for suffix in formats if suffix != "json"]
-    if pictures:
-        from ptmcad.render import draw  # brings matplotlib
 
-        for suffix in pictures:
-            writers[f"{name}.{suffix}"] = partial(draw, result, samples=request.samples)
+    def draw(path: Path) -> None:
+        from ptmcad import render  # brings matplotlib
+
+        render.draw(result, path, samples=request.samples)
+
+    for file in (f"{name}.{suffix}" for suffix in formats if suffix != "json"):
+        writers[file] = picture(file, draw)
     if "json" in formats:
-        writers[f"{name}.json"] = text_writer(_text(result, request))
-    write_files(request.out, writers)
+        text = _text(result, request)
+        if len(formats) > 1:  # if this process ends while it draws, the result is saved
+            tell(Topic.RESULT, _state(result), text)
+        writers[f"{name}.json"] = text_writer(text)
+        write_result(request.out, writers, f"{name}.json", text)
+    else:
+        write_files(request.out, writers)
 
 
 def explanation(steps: Iterable[Any]) -> str:

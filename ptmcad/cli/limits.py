@@ -33,7 +33,8 @@ def _bound(_context: click.Context, _parameter: click.Parameter, value: str | No
 def limit_options(command: F) -> F:
     """Add the options ``timeout`` (seconds or None) and ``max_memory`` (a `Bound` or None)."""
     command = click.option("--max-memory", callback=_bound, metavar="SIZE",
-                           help="Stop before using more memory, such as 500M or 2G (exit status 3).  "
+                           help="Stop before using more memory, such as 500M or 2G (exit status 3; 2 when it is "
+                                "too little to start with).  "
                                 "[default: 9/10 of the machine's]")(command)  # fmt: skip
     return click.option("--timeout", type=float, callback=_seconds, metavar="S",
                         help="Stop after S seconds (exit status 3).")(command)  # fmt: skip
@@ -51,8 +52,9 @@ def limits(timeout: float | None, max_memory: Bound | None) -> Iterator[None]:
     tell_deadline(timeout)
     bound = max_memory or (default_bound() if watched() else None)
     if bound is not None:
-        tell(Topic.MEMORY, bound.text)
+        tell(Topic.MEMORY, str(bound.size), bound.text, "default" if max_memory is None else "asked")
         # numpy's linear algebra, which nothing here uses, would reserve memory for every processor of the machine
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    tell(Topic.LOADING, "")  # the program itself is there
     with nullcontext() if bound is None else bounded(bound):
         yield

@@ -9,11 +9,12 @@ import click
 
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.pictures import picture
 from ptmcad.cli.stored import read_result
 from ptmcad.config import portable_file
-from ptmcad.errors import ConfigError, shown_path
+from ptmcad.errors import ConfigError, PictureError, shown_path
 from ptmcad.memory import Bound
-from ptmcad.output import Writer, check_writable, write_files
+from ptmcad.output import check_writable, write_files
 
 FORMATS = ("png", "svg", "pdf")
 
@@ -49,15 +50,20 @@ def command(
         folder = result.parent if out is None else out
         portable_file(f"{result.stem}.{formats[0]}", "RESULT")
         check_writable(folder, tuple(f"{result.stem}.{suffix}" for suffix in formats))
-        from ptmcad.render import draw  # brings matplotlib
 
-        writers: dict[str, Writer] = {
-            f"{result.stem}.{suffix}": partial(draw, stored, samples=samples, dpi=dpi) for suffix in formats
-        }
+        def draw(path: Path) -> None:
+            from ptmcad import render  # brings matplotlib
+
+            render.draw(stored, path, samples=samples, dpi=dpi)
+
+        names = [f"{result.stem}.{suffix}" for suffix in formats]
         try:
-            written = write_files(folder, writers)
-        except (ValueError, IndexError, ArithmeticError) as error:
-            reason = f"the map contradicts itself ({error}); check it with ptmcad verify"
+            written = write_files(folder, {name: picture(name, draw) for name in names})
+        except PictureError as error:
+            cause = error.__cause__
+            if not isinstance(cause, (ValueError, IndexError, ArithmeticError)):
+                raise
+            reason = f"the map contradicts itself ({cause}); check it with ptmcad verify"
             raise ConfigError(reason, file=str(result)) from error
     for path in written:
         click.echo(shown_path(path))

@@ -15,6 +15,7 @@ from click.core import ParameterSource
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.locate import point_of
+from ptmcad.cli.pictures import picture, write_result
 from ptmcad.config import PARAMETERS, file_name, load, slice_from_options
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.expressions import rational
@@ -161,7 +162,10 @@ def _enclosed(slice: Slice, request: Request) -> Answer:
 
 
 def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
-    from ptmcad.render import ranges as pictures  # brings matplotlib
+    from ptmcad.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.render import ranges as pictures
     from ptmcad.render.printing import save
 
     if kind == "line":
@@ -249,13 +253,18 @@ def command(
         click.echo(found.text)
         if names:
             writers: dict[str, Writer] = {
-                f"{stem}{part}.{suffix}": draw for part, draw in found.pictures.items() for suffix in pictures
+                name: picture(name, draw)
+                for part, draw in found.pictures.items()
+                for name in (f"{stem}{part}.{suffix}" for suffix in pictures)
             }
             if "json" in formats:
                 from ptmcad.ranges.document import document
 
-                writers[f"{stem}.json"] = text_writer(document(slice.name, slice.mechanism, dict(found.parts)))
-            write_files(out, writers)
+                text = document(slice.name, slice.mechanism, dict(found.parts))
+                writers[f"{stem}.json"] = text_writer(text)
+                write_result(out, writers, f"{stem}.json", text)
+            else:
+                write_files(out, writers)
 
 
 def _parts(request: Request) -> list[str]:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import click
 
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits, tell_deadline
 from ptmcad.cli.locate import point_of
+from ptmcad.cli.pictures import picture, write_result
 from ptmcad.config import file_name, point_from_options
 from ptmcad.errors import ConfigError
 from ptmcad.memory import Bound
@@ -43,19 +42,24 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
     for file in names:
         if file.endswith(".json"):
             writers[file] = text_writer(poses.to_json())
-            continue
-        from ptmcad.render.landscape import draw_landscape  # brings matplotlib
-        from ptmcad.render.poses import draw_poses
+        else:
+            landscape = file.startswith(f"{name}-landscape.")
+            writers[file] = picture(file, partial(_write_picture, landscape, poses))
+    if f"{name}.json" in writers:
+        write_result(folder, writers, f"{name}.json", poses.to_json())
+    else:
+        write_files(folder, writers)
 
-        draw = draw_landscape if file.startswith(f"{name}-landscape.") else draw_poses
-        writers[file] = partial(_write_picture, draw, poses)
-    write_files(folder, writers)
 
+def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
+    from ptmcad.render.backend import load_matplotlib
 
-def _write_picture(draw: Callable[[Poses], Any], poses: Poses, path: Path) -> None:
+    load_matplotlib()
+    from ptmcad.render.landscape import draw_landscape
+    from ptmcad.render.poses import draw_poses
     from ptmcad.render.printing import save as save_figure
 
-    save_figure(draw(poses), path)
+    save_figure((draw_landscape if landscape else draw_poses)(poses), path)
 
 
 @click.command("solve")

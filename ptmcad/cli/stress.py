@@ -11,6 +11,7 @@ import click
 
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.pictures import picture, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.memory import Bound
@@ -44,15 +45,20 @@ def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> None:
         elif suffix == "md":
             writers[f"{name}.md"] = text_writer(markdown(found))
         elif suffix in ("png", "svg"):
-            writers[f"{name}.{suffix}"] = partial(_draw, found)
+            writers[f"{name}.{suffix}"] = picture(f"{name}.{suffix}", partial(_draw, found))
     if "json" in formats:
-        writers[f"{name}.json"] = text_writer(to_json(found))
-    if writers:
+        text = to_json(found)
+        writers[f"{name}.json"] = text_writer(text)
+        write_result(folder, writers, f"{name}.json", text)
+    elif writers:
         write_files(folder, writers)
 
 
 def _draw(found: Campaign, path: Path) -> None:
-    from ptmcad.render.printing import save as save_figure  # brings matplotlib
+    from ptmcad.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.render.printing import save as save_figure
     from ptmcad.render.stress import draw_stress
 
     save_figure(draw_stress(found.outcomes), path)

@@ -21,7 +21,10 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 try:
     from numba import config, njit
+    from numba.np import arraymath as _linear_algebra  # noqa: F401 - loads scipy's if there is one, now and not later
 except ImportError as missing:
+    if not isinstance(missing, ModuleNotFoundError):  # it is installed, and does not work
+        raise
     raise ConfigError(NUMBA_MISSING) from missing
 
 

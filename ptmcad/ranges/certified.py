@@ -14,6 +14,7 @@ from ptmcad.domain import prove
 from ptmcad.enclosure import Enclosure
 from ptmcad.errors import ExpressionError
 from ptmcad.expressions import rational
+from ptmcad.memory import check_room, loading
 from ptmcad.numerals import shortest_text
 from ptmcad.ranges.line import restricted, varying_axis
 from ptmcad.ranges.table import aligned
@@ -90,8 +91,9 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
         When a parameter is not on the whole line what the proofs ask for, or that could not be proved. The line need
         not lie in the slice's window, so nothing that is known of the window is used.
     """
-    from ptmcad.interval.line import line_counts
-
+    with loading("the certified engine"):
+        from ptmcad.interval.line import line_counts
+    check_room("the certified engine")
     varying, other, value = varying_axis(slice, along, at)
     on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
     prove(on_line, (slice.axes[varying], Axis(other, value, value)))

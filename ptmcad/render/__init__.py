@@ -13,6 +13,9 @@ __all__ = ["draw"]
 def __getattr__(name: str) -> Any:
     """`draw`, when it is first used: the report needs outlines and colours only."""
     if name == "draw":
+        from ptmcad.render.backend import load_matplotlib
+
+        load_matplotlib()
         from ptmcad.render import regionmap
 
         return regionmap.draw

@@ -1,0 +1,57 @@
+"""Pictures beside the JSON of a result.
+
+Guarantee: whatever a picture fails of, its result is saved as JSON, where that is asked for; the message names the
+picture and where the result is, and the exit status is 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from ptmcad.errors import PictureError
+from ptmcad.output import Writer, save_stopped, where_saved, write_files
+
+
+def picture(name: str, draw: Callable[[Path], None]) -> Writer:
+    """A writer of the picture of this name, which is drawn by a function of the path.
+
+    Its failures are of one kind, `PictureError`, but for lack of memory.
+    """
+
+    def write(path: Path) -> None:
+        try:
+            draw(path)
+        except MemoryError:
+            raise
+        except Exception as error:  # a library's, of any kind: settings, fonts, caches, the disk
+            reason = (error.strerror if isinstance(error, OSError) else None) or f"{type(error).__name__}: {error}"
+            raise PictureError(f"{name} cannot be drawn: {reason}") from error
+
+    return write
+
+
+def write_result(folder: Path, writers: Mapping[str, Writer], name: str, text: str) -> tuple[Path, ...]:
+    """Write all files or, when a picture fails, the JSON alone.
+
+    The JSON then goes where the result of a stopped run goes: older pictures beside it would not be its own.
+
+    Parameters
+    ----------
+    writers : as of `write_files`; the last one is the JSON's.
+    name, text : of the JSON.
+
+    Raises
+    ------
+    PictureError
+        After the JSON has been saved.
+    OutputError
+        When a file can not be written.
+    """
+    try:
+        return write_files(folder, writers)
+    except PictureError as error:
+        place = save_stopped(folder / name, text)
+        raise PictureError(
+            f"{error}; the result, without pictures, is in {place}{where_saved(folder / name, place)}"
+        ) from error

@@ -1,0 +1,417 @@
+"""Limits, and what else a caller may have set around the program: memory, descriptors, signals, streams, settings.
+
+Whatever they are, the program ends, with one message and a status that says why, and nothing that is done is lost.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import re
+import resource
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from test_faults import FIG2, IN_C, PARTIAL, ROOT, Running, classified, linux
+
+from ptmcad.cli import run
+from ptmcad.cli.pictures import picture, write_result
+from ptmcad.errors import ConfigError, PictureError
+from ptmcad.memory import ROOM, Bound, bounded, check_room, loading
+from ptmcad.output import text_writer
+from ptmcad.shortage import COMPUTING, IDLE, LITTLE, LOADING, Limit, Usage, Waiting, usage_of
+from ptmcad.streams import quiet_stream
+
+pytestmark = linux
+MIB = 1 << 20
+
+
+def limited(which: int, soft: int, hard: int | None = None) -> Callable[[], None]:
+    """What a shell's ``ulimit`` does, to be called in the new process."""
+    return lambda: resource.setrlimit(which, (soft, soft if hard is None else hard))
+
+
+# Memory
+
+
+@pytest.mark.parametrize(("which", "option"), [(resource.RLIMIT_AS, "-v"), (resource.RLIMIT_DATA, "-d")])
+def test_the_limit_that_was_reached_is_named(tmp_path: Path, which: int, option: str) -> None:
+    """The caller's own, though the program has one too."""
+    work = "def engine(progress, partial):\n    time.sleep(0.4)\n    bytes(1 << 30)\n"
+    running = Running(tmp_path, work, preexec_fn=limited(which, 300 * MIB))
+    place = tmp_path / "out" / "fig2.json"
+    assert running.end() == (
+        3,
+        f"stopped: the memory limit of 300M that the caller has set (ulimit {option}) was reached; "
+        f"the partial result is in {place}\n",
+    )
+    assert running.files() == {"fig2.json": PARTIAL}
+
+
+@pytest.mark.parametrize(
+    ("end", "how"),
+    [
+        ("os.kill(os.getpid(), signal.SIGSEGV)", "SIGSEGV"),
+        ("raise SystemError('error return without exception set')", "SystemError: error return without exception set"),
+    ],
+)
+def test_a_crash_with_little_memory_left(tmp_path: Path, end: str, how: str) -> None:
+    """No library said that it was for lack of memory, so the message says how it ended, and the result is kept."""
+    work = (
+        "import resource\n"
+        "def engine(progress, partial):\n"
+        "    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))\n"
+        "    kept = bytearray(100 << 20)\n"
+        "    time.sleep(0.8)\n"
+        f"    {end}\n"
+    )
+    running = Running(tmp_path, work, "--max-memory", "150M")
+    status, errors = running.end()
+    place = tmp_path / "out" / "fig2.json"
+    assert (
+        errors
+        == f"stopped: most likely the memory limit of 150M was reached ({how}); the partial result is in {place}\n"
+    )
+    assert status == 3
+
+
+def test_a_failure_with_memory_left_is_shown(tmp_path: Path) -> None:
+    """A traceback is a bug's, also under a limit, and nothing is saved."""
+    running = Running(tmp_path, "def engine(progress, partial):\n    [][0]\n", "--max-memory", "2G")
+    status, errors = running.end()
+    assert status == 1
+    assert "IndexError" in errors
+    assert "this is a bug" in errors
+    assert running.files() == {}
+
+
+def test_a_bound_that_the_libraries_exceed_is_refused() -> None:
+    usage = usage_of(os.getpid())
+    assert usage is not None
+    with bounded(Bound(usage.data + 4 * ROOM, "100M")):
+        check_room("the engine")
+    before = resource.getrlimit(resource.RLIMIT_DATA)
+    with bounded(Bound(usage.data + ROOM // 2, "100M")):
+        with loading("the engine"):
+            assert resource.getrlimit(resource.RLIMIT_DATA) == before
+        assert resource.getrlimit(resource.RLIMIT_DATA) != before
+        with pytest.raises(
+            ConfigError, match=r"100M is too little for the engine, which has .*: at least [0-9]+M"
+        ) as caught:
+            check_room("the engine")
+    least = int(re.findall("at least ([0-9]+)M", str(caught.value))[0])
+    assert usage.data + ROOM <= least * MIB < usage.data + ROOM + 8 * MIB
+
+
+def test_a_library_that_says_it_lacks_memory() -> None:
+    with pytest.raises(MemoryError), loading("a library"):
+        raise ImportError("libx.so: failed to map segment from shared object")
+    with pytest.raises(ImportError), loading("a library"):
+        raise ImportError("libx.so: no such file")
+
+
+def test_a_library_that_does_not_say_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    """LLVM's loader says under a low limit on address space that its file is not found."""
+    failure = OSError("Could not find/load shared object file 'libllvmlite.so'")
+    for size, expected in ((200 * MIB, MemoryError), (1 << 40, OSError)):
+        monkeypatch.setattr("ptmcad.memory.caller_limits", lambda size=size: (Limit(size, True, "a limit"),))
+        with pytest.raises(expected), loading("a library"):
+            raise failure
+        with pytest.raises(ModuleNotFoundError), loading("a library"):
+            raise ModuleNotFoundError("No module named 'numba'")
+
+
+def usage(user: float = 0.0, kernel: float = 0.0, data: int = 90 * MIB, resident: int = 50 * MIB) -> Usage:
+    return Usage(data, 300 * MIB, resident, user, kernel)
+
+
+@pytest.mark.parametrize(
+    ("looks", "limit", "loads", "waits"),
+    [
+        ([usage(0, 0), usage(1, LOADING)], 100, True, True),
+        ([usage(0, 0), usage(LOADING, 0)], 100, True, True),
+        ([usage(0, 0), usage(1, LOADING - 2)], 100, True, False),  # not for long enough
+        ([usage(0, 0), usage(1, LOADING)], 90 + LITTLE // MIB, True, False),  # with room left
+        ([usage(0, 0), usage(4, 0), usage(8, 0, resident=51 * MIB)], 100, True, False),  # it goes on loading
+        ([usage(0, 0), usage(1, COMPUTING)], 100, False, True),
+        ([usage(0, 0), usage(1000, 1)], 100, False, False),  # it computes, in the memory that it has
+        ([usage(0, 0), usage(1, COMPUTING, data=89 * MIB)], 100, False, False),
+    ],
+)
+def test_waiting_is_told_from_computing(looks: list[Usage], limit: int, loads: bool, waits: bool) -> None:
+    waiting = Waiting()
+    limits = (Limit(limit * MIB, False, "100M"),)
+    said = [waiting.look(look, limits, loads, 0.0) for look in looks]
+    assert said == [False] * (len(looks) - 1) + [waits]
+    assert not waiting.look(looks[-1], (), loads, 0.0)
+
+
+def test_a_library_that_sleeps_for_ever() -> None:
+    for loads in (True, False):
+        waiting = Waiting()
+        limits = (Limit(400 * MIB, True, "400M"), Limit(310 * MIB, True, "310M"))
+        assert [waiting.look(usage(), limits, loads, now) for now in (0.0, IDLE - 1, IDLE)] == [False, False, loads]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("phase", ["loading", "computing"])
+def test_what_waits_for_memory_is_ended(tmp_path: Path, phase: str) -> None:
+    """As OpenBLAS does."""
+    work = (
+        "import mmap\nfrom ptmcad.memory import loading\nfrom contextlib import nullcontext\n"
+        "def engine(progress, partial):\n"
+        "    kept = bytearray(100 << 20)\n"
+        f"    with {'loading(chr(97))' if phase == 'loading' else 'nullcontext()'}:\n"
+        "        while True:\n"
+        "            try:\n"
+        "                mmap.mmap(-1, 1 << 30)\n"
+        "            except OSError:\n"
+        "                pass\n"
+    )
+    running = Running(tmp_path, work, preexec_fn=limited(resource.RLIMIT_AS, 200 * MIB))
+    status, errors = running.end()
+    assert status == 3
+    assert errors.startswith("stopped: the memory limit of 200M that the caller has set (ulimit -v) was reached; ")
+    assert running.files() == {"fig2.json": PARTIAL}
+
+
+@pytest.mark.slow
+def test_the_callers_limit_on_processor_time(tmp_path: Path) -> None:
+    for limits in ((1, 1), (1, 100)):
+        work = "def engine(progress, partial):\n    while True:\n        pass\n"
+        folder = tmp_path / str(limits[1])
+        folder.mkdir()
+        running = Running(folder, work, preexec_fn=limited(resource.RLIMIT_CPU, *limits))
+        status, errors = running.end()
+        assert status == 3
+        assert errors.startswith(
+            "stopped: the limit on processor time that the caller has set (ulimit -t) was reached; "
+        )
+        assert running.files() == {"fig2.json": PARTIAL}
+
+
+SIZES = [round(20 * (1024 / 20) ** (k / 39)) for k in range(40)]
+"""In MiB: from 20M to 1G."""
+FREE = [
+    *("--slice", "rho,L2", "--range", "rho=1/2:3/5", "--range", "L2=1:11/10"),
+    *("--set", "l0=1/5", "--set", "F3=-10", "--set", "F4=-10", "--tolerance", "9/10"),
+]
+WITHOUT_SCIPY = """
+import sys
+class Hidden:
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] == "scipy":
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+sys.meta_path.insert(0, Hidden())
+"""
+
+
+def ended(folder: Path, engine: str, scipy: bool, options: list[str], **popen: Any) -> tuple[int, str, float]:
+    """Exit status, standard error and seconds of a run in an empty folder."""
+    hiding = folder / "hiding"
+    hiding.mkdir(exist_ok=True)
+    (hiding / "sitecustomize.py").write_text("" if scipy else WITHOUT_SCIPY)
+    for path in folder.glob("out/*"):
+        path.unlink()
+    slice = FREE if engine == "certified" else [str(FIG2)]
+    arguments = ["classify", *slice, "--out", str(folder / "out"), "--format", "json,png", *options]
+    popen["env"] = {**os.environ, "PYTHONPATH": str(hiding)}
+    started = time.monotonic()
+    done = subprocess.run(
+        [sys.executable, "-m", "ptmcad", *arguments], cwd=ROOT, capture_output=True, text=True, check=False, **popen
+    )
+    return done.returncode, done.stderr, time.monotonic() - started
+
+
+def judge(folder: Path, status: int, errors: str, limit: str) -> str:
+    """What kind of an end it was; asserts that it is a proper one."""
+    assert status in (0, 2, 3), (status, errors)
+    assert errors.count("\n") == (status != 0), errors
+    assert "Traceback" not in errors
+    assert status == 0 or limit in errors, errors
+    files = sorted(path.name for path in folder.glob("out/*") if not path.name.startswith("."))
+    assert not list(folder.glob("out/.*"))
+    saved = re.findall("the (partial|complete) result is in .*/(.*)", errors)
+    if status == 0:
+        assert len(files) == 2
+    else:
+        assert files == [name for _, name in saved]
+    for name in files:
+        if name.endswith(".json"):
+            assert json.loads((folder / "out" / name).read_text())["status"]
+    likely = ", most likely" if "most likely" in errors else ""
+    return {0: "done", 2: "refused"}.get(status, f"stopped{likely}, {saved[0][0] if saved else 'nothing'} saved")
+
+
+def campaign(folder: Path, engine: str, scipy: bool, sizes: list[int]) -> Iterator[tuple[int, int, str, float]]:
+    """For each size in MiB: the status, the kind of end, the seconds."""
+    for size in sizes:
+        status, errors, seconds = ended(folder, engine, scipy, ["--max-memory", f"{size}M"])
+        yield size, status, judge(folder, status, errors, f"{size}M"), seconds
+
+
+def callers(folder: Path, engine: str, which: int, sizes: list[int]) -> Iterator[tuple[int, int, str, float]]:
+    for size in sizes:
+        status, errors, seconds = ended(folder, engine, True, [], preexec_fn=limited(which, size * MIB))
+        yield size, status, judge(folder, status, errors, "that the caller has set"), seconds
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scipy", [True, False], ids=["scipy", "no-scipy"])
+@pytest.mark.parametrize("engine", ["exact", "certified"])
+def test_every_size_of_memory(tmp_path: Path, engine: str, scipy: bool) -> None:
+    assert ended(tmp_path, engine, scipy, ["--max-memory", "4G"])[0] == 0  # compiles what has to be
+    kinds = [status for _, status, _, _ in campaign(tmp_path, engine, scipy, SIZES)]
+    assert kinds[0] == 2
+    assert kinds[-1] == 0
+    order = [kinds.index(status) for status in (2, 3, 0) if status in kinds]
+    assert order == sorted(order)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("which", [resource.RLIMIT_AS, resource.RLIMIT_DATA], ids=["address space", "data"])
+@pytest.mark.parametrize("engine", ["exact", "certified"])
+def test_every_size_of_a_callers_limit(tmp_path: Path, engine: str, which: int) -> None:
+    sizes = [20, 30, 45, 60, 80, 100, 130, 160, 200, 260, 350, 500, 700, 1000]
+    assert [status for _, status, _, _ in callers(tmp_path, engine, which, sizes)][-1] == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [180, 260])
+def test_memory_for_compilation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    status, errors, _ = ended(tmp_path, "certified", True, ["--max-memory", f"{size}M"])
+    judge(tmp_path, status, errors, f"{size}M")
+
+
+# Signals and descriptors
+
+
+def with_everything_blocked() -> None:
+    signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
+
+
+def with_children_ignored() -> None:
+    for number in (signal.SIGCHLD, signal.SIGIO, signal.SIGPIPE):
+        signal.signal(number, signal.SIG_IGN)
+
+
+@pytest.mark.parametrize("caller", [with_everything_blocked, with_children_ignored])
+def test_what_the_caller_made_of_signals(tmp_path: Path, caller: Callable[[], None]) -> None:
+    """It is the caller's own; the program ends when its computation does, and when it is asked to."""
+    running = Running(tmp_path, "", preexec_fn=caller)
+    assert running.end() == (0, "")
+    running = Running(tmp_path, IN_C, preexec_fn=caller)
+    running.arrive()
+    running.process.send_signal(signal.SIGTERM)
+    assert running.end() == (143, "")
+
+
+def test_few_descriptors(tmp_path: Path) -> None:
+    status, errors = classified(tmp_path, preexec_fn=limited(resource.RLIMIT_NOFILE, 8))
+    assert (status, errors) == (2, "error: Too many open files: ptmcad needs 16 more than are open (ulimit -n)\n")
+    assert not list(tmp_path.iterdir())
+
+
+# Streams
+
+
+def test_no_room_for_messages(tmp_path: Path) -> None:
+    arguments = [sys.executable, "-m", "ptmcad", "classify", "nothing.yaml"]
+    with open("/dev/full", "w") as full:
+        assert subprocess.run(arguments, cwd=ROOT, stderr=full, check=False).returncode == 2
+
+
+def test_a_stream_that_does_not_block() -> None:
+    """It is waited for, and nothing is lost."""
+    reading, writing = os.pipe()
+    os.set_blocking(writing, False)
+    room = fcntl.fcntl(writing, fcntl.F_SETPIPE_SZ, 4096)
+    text = "".join(f"{number}\n" for number in range(3 * room))
+    found = bytearray()
+
+    def read() -> None:
+        while data := os.read(reading, 1000):
+            found.extend(data)
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    try:
+        with open(os.devnull, "w") as like:
+            stream = quiet_stream(writing, like)
+        stream.write(text)
+        stream.flush()
+    finally:
+        os.close(writing)
+        reader.join()
+        os.close(reading)
+    assert found.decode() == text
+
+
+# Pictures
+
+
+NOTEBOOK = {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
+NO_FOLDERS = {"HOME": "/proc", "XDG_CACHE_HOME": "/proc", "XDG_CONFIG_HOME": "/proc"}
+PECULIAR = {
+    "MPLBACKEND": "nonsense", "TERM": "dumb", "COLUMNS": "1", "LC_ALL": "C", "PYTHONWARNINGS": "error",
+    "PYTHONOPTIMIZE": "2",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "environment",
+    [NOTEBOOK, *(pytest.param(each, marks=pytest.mark.slow) for each in (NO_FOLDERS, PECULIAR))],
+    ids=["notebook", "no folders", "peculiar"],
+)
+def test_pictures_whatever_the_environment_says(tmp_path: Path, environment: dict[str, str]) -> None:
+    """Another backend, settings that are no text, no folder for caches: pictures as usual, and without a word."""
+    settings = tmp_path / "settings"
+    settings.write_bytes(b"backend: \xff\n")
+    environment = {**os.environ, "MATPLOTLIBRC": str(settings), **environment}
+    assert classified(tmp_path / "out", formats="json,png", env=environment) == (0, "")
+    assert sorted(os.listdir(tmp_path / "out")) == ["fig2.json", "fig2.png"]
+
+
+@pytest.mark.parametrize("error", [KeyError("font"), OSError(28, "No space left on device"), RuntimeError("x\ny")])
+def test_a_picture_that_fails_leaves_the_result(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], error: Exception
+) -> None:
+    import ptmcad.render.regionmap
+
+    def fail(*_: Any, **__: Any) -> None:
+        raise error
+
+    monkeypatch.setattr(ptmcad.render.regionmap, "draw", fail)
+    arguments = ["classify", str(FIG2), "--out", str(tmp_path), "--format", "json,svg"]
+    assert run(arguments) == 2
+    errors = capfd.readouterr().err
+    assert errors.startswith("error: fig2.svg cannot be drawn: ")
+    assert errors.endswith(f"the result, without pictures, is in {tmp_path / 'fig2.json'}\n")
+    assert errors.count("\n") == 1
+    assert json.loads((tmp_path / "fig2.json").read_text())["status"] == "exact"
+    assert os.listdir(tmp_path) == ["fig2.json"]
+    # beside older pictures it would lie
+    (tmp_path / "fig2.svg").write_text("older")
+    assert run(arguments) == 2
+    assert sorted(os.listdir(tmp_path)) == ["fig2.json", "fig2.partial.json", "fig2.svg"]
+
+
+def test_lack_of_memory_is_no_failed_picture(tmp_path: Path) -> None:
+    def fail(_: Path) -> None:
+        raise MemoryError
+
+    with pytest.raises(MemoryError):
+        write_result(tmp_path, {"a.png": picture("a.png", fail), "a.json": text_writer("{}")}, "a.json", "{}")
+    with pytest.raises(PictureError, match=r"a\.png cannot be drawn: ZeroDivisionError: .*a\.json"):
+        write_result(
+            tmp_path, {"a.png": picture("a.png", lambda _: 1 // 0), "a.json": text_writer("{}")}, "a.json", "{}"
+        )  # type: ignore[arg-type,return-value]
