@@ -9,6 +9,7 @@ from hashlib import sha256
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
+from ptmcad.verification.auxiliary import check_auxiliary
 from ptmcad.verification.certified.verify import verify_certified
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
@@ -22,7 +23,10 @@ from ptmcad.verification.structure import check_critical_values, check_stacks
 from ptmcad.verification.variety import check_irreducible, check_norm
 from ptmcad.verification.window import check_left_out
 
-NOT_CHECKED = (("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),)
+NOT_CHECKED = (
+    ("plan without trace", "predicted costs; which savings were made that make no difference in this file"),
+    ("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),
+)
 
 _SINCE_VARIETY: tuple[tuple[str, str, Callable[[Claims], str]], ...] = (
     ("critical values", "discriminants, resultants, Sturm", check_critical_values),
@@ -69,6 +73,7 @@ def verify(result: RegionMap, seed: int | None = None, boxes: int | None = None)
         ("boundary components", "factors of the parameters", check_boundary),
         ("left out", "Sturm counts, resultants", check_left_out),
         ("plan", "built once more", check_plan),
+        ("auxiliary components", "values at random points", partial(check_auxiliary, seed=drawn)),
         *_SINCE_VARIETY,
     )
     missing: set[str] = set()
