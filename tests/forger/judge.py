@@ -22,6 +22,8 @@ class Tally:
     tried: dict[str, int] = field(default_factory=dict)
     wrong: list[str] = field(default_factory=list)
     by: dict[str, int] = field(default_factory=dict)
+    likely: dict[str, str] = field(default_factory=dict)
+    """The check that rejected the last alteration of a kind."""
 
 
 MALFORMED = (IndexError, KeyError, ValueError, TypeError, AttributeError, ArithmeticError)
@@ -68,18 +70,17 @@ def judge(
         label = kind.__name__
         there, chosen = places_of(kind, r, number, f"{name} {label}")
         tally.places[label] = tally.places.get(label, 0) + there
-        likely = ""
         for place, make in chosen:
             altered = make()
             tally.tried[label] = tally.tried.get(label, 0) + 1
             if false:
-                found = violation(altered, likely)
+                found = violation(altered, tally.likely.get(label, ""))
                 if found is None:
                     tally.wrong.append(f"{name}: {label} {place} accepted")
                     told(tally.wrong[-1])
                 else:
-                    likely = found[0]
-                    key = f"{label}: {likely}"
+                    tally.likely[label] = found[0]
+                    key = f"{label}: {found[0]}"
                     tally.by[key] = tally.by.get(key, 0) + 1
             else:
                 report = ptmcad.verify(altered)
