@@ -310,8 +310,10 @@ def non_adjacency_reason(r: RegionMap) -> Iterator[Alteration]:
 def non_adjacency_of_other_cells(r: RegionMap) -> Iterator[Alteration]:
     """One cell more or less on a side, or another critical value."""
     for k, a in enumerate(r.non_adjacencies):
-        for changes in ({"left": a.left[:-1]}, {"left": (*a.left, a.left[-1] + 1)}, {"right": a.right[1:]},
-                        {"right": a.right[::-1] + (0,)}, {"left": ()}, {"critical_value": a.critical_value + 1}):  # fmt: skip
+        for changes in (
+            {"left": a.left[:-1]}, {"left": (*a.left, a.left[-1] + 1)}, {"right": a.right[1:]},
+            {"right": (*a.right[::-1], 0)}, {"left": ()}, {"critical_value": a.critical_value + 1},
+        ):  # fmt: skip
             yield partial(replace, r, non_adjacencies=put(r.non_adjacencies, k, **changes))
 
 

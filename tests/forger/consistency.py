@@ -63,10 +63,7 @@ def with_merges(r: RegionMap) -> RegionMap:
     found, separating = [], set()
     for a in r.adjacencies:
         equal = getattr(r.cells[a.first], key) == getattr(r.cells[a.second], key)
-        if a.component is None:
-            kind = Merge.PROVEN
-        else:
-            kind = Merge.EQUAL_COUNT if equal else Merge.SEPARATED
+        kind = Merge.PROVEN if a.component is None else Merge.EQUAL_COUNT if equal else Merge.SEPARATED
         if kind is Merge.SEPARATED:
             separating.add(a.component)
         found.append(replace(a, merge=kind))

@@ -214,7 +214,7 @@ def _with_stack(r: RegionMap, s: int, values: tuple[CriticalValue, ...]) -> Regi
 
 
 def _split(r: RegionMap, s: int, value: CriticalValue, sample: Fraction) -> RegionMap:
-    """The map with stack s parted at a value to the left of its sample; the left part has a sample and cells of its own.
+    """The map with stack s parted at a value left of its sample; the left part has a sample and cells of its own.
 
     Only where the walls leave the old heights free over the new sample is every claim but the value true.
     """

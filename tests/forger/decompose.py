@@ -1,6 +1,7 @@
 """A map over components that may be false: decomposed, counted and assembled as the engine does with true ones.
 
-Where the counts then contradict each other, since a curve is missing between them, every cell is given the first one's.
+Where the counts then contradict each other, since a curve is missing between them, every cell is given the first one's;
+so is a cell whose sample lies on a missing curve.
 """
 
 from __future__ import annotations
@@ -10,14 +11,18 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
+from flint import fmpq
+
 from forger.consistency import NO_AREAS, kept, settled, with_plan
-from ptmcad.algebra.polynomials import from_expression, from_fraction
+from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction
 from ptmcad.assembly import assemble
 from ptmcad.cad.adjacency import cross
 from ptmcad.cad.projection import project
 from ptmcad.cad.stacks import lift
+from ptmcad.counting import Equilibria
+from ptmcad.errors import HypothesisError
 from ptmcad.exactmap import _seen_from, avoided_by_samples, count_at
-from ptmcad.models import system_of
+from ptmcad.models import ParametricSystem, system_of
 from ptmcad.regionmap import Component, RegionMap
 
 
@@ -33,7 +38,10 @@ def decomposed(r: RegionMap, components: Sequence[Component], keep: frozenset[st
     avoided = avoided_by_samples(components, base)
     stacks = lift(curves, projection.abscissae, window[base], window[1 - base], avoided)
     points = [(s.sample, height) if base == 0 else (height, s.sample) for s in stacks for height in s.heights]
-    counts = [count_at("a sample", system, parameters, at) for at in points]
+    known = [_equilibria(system, parameters, at) for at in points]
+    some = next((e for e in known if e is not None), None) or _equilibria(system, parameters, _inside(r))
+    assert some is not None
+    counts = [some if e is None else e for e in known]
     crossings = [cross(curves, left, right, window[1 - base]) for left, right in pairwise(stacks)]
     lines = {tuple(int(c) for c in p.coeffs()): n for n, p in verticals.items()}
     try:
@@ -49,3 +57,17 @@ def decomposed(r: RegionMap, components: Sequence[Component], keep: frozenset[st
         for g in found.regions
     )
     return settled(replace(found, regions=regions, status=r.status, versions=r.versions, precision=r.precision))
+
+
+def _equilibria(system: ParametricSystem, parameters: dict[str, Ratio], at: tuple[fmpq, fmpq]) -> Equilibria | None:
+    """The equilibria at a sample; None on a curve of the variety, which may be missing, or outside of the domain."""
+    try:
+        return count_at("a sample", system, parameters, at)
+    except HypothesisError:
+        return None
+
+
+def _inside(r: RegionMap) -> tuple[fmpq, fmpq]:
+    """A sample of the true map."""
+    x, y = r.cells[0].sample
+    return from_fraction(x), from_fraction(y)

@@ -1,4 +1,4 @@
-"""False claims about all the rest: slice, window, equations, areas, plan, status, and how tables refer to each other."""
+"""False claims about the rest: slice, window, equations, areas, plan, status, and how tables refer to each other."""
 
 from __future__ import annotations
 
@@ -9,7 +9,17 @@ from functools import partial
 from itertools import combinations
 from typing import Any
 
-from forger.consistency import NO_AREAS, Alteration, changed, drop, put, settled, swapped, window_area, with_plan
+from forger.consistency import (
+    NO_AREAS,
+    Alteration,
+    drop,
+    put,
+    settled,
+    swapped,
+    window_area,
+    with_merges,
+    with_plan,
+)
 from ptmcad.expressions import Expression, constant
 from ptmcad.regionmap import PlanStep, RegionMap, Status
 from ptmcad.slice import Count
@@ -136,7 +146,7 @@ def another_count(r: RegionMap) -> Iterator[Alteration]:
     """Regions of one count said to be those of another; or of one that an exact map does not have."""
     for kind in Count:
         other = replace(r, slice=replace(r.slice, count=kind))
-        if kind is Count.ADMISSIBLE or changed(other) != other:
+        if kind is Count.ADMISSIBLE or with_merges(other) != other:
             yield partial(replace, other)
 
 
@@ -286,7 +296,7 @@ def references(r: RegionMap) -> Iterator[Alteration]:
 def window_of_a_settled_map(r: RegionMap) -> Iterator[Alteration]:
     """A partial map whose areas are those of a smaller window."""
     for k, g in enumerate(r.regions):
-        low, high = g.area
+        low = g.area[0]
         if len(r.regions) > 1 and low:
             smaller = put(r.regions, k, area=(low * Fraction(9, 10), low * Fraction(99, 100)))
             yield partial(settled, replace(r, status=Status.PARTIAL, regions=smaller))
