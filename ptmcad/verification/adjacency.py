@@ -3,6 +3,23 @@
 Guarantee: every stored segment joins its cells and meets no curve; every gap between the curves over a critical value
 belongs to a stored pair; every record of cells that are not adjacent holds, and there is one wherever order alone would
 allow another pair.
+
+Why no pair is missing. Let the line over a critical value cross the open window, and take away the points of the curves
+on it, which are finitely many (no curve contains the line). The open intervals that are left are its *gaps*: at least
+one, whatever the curves do. Each gap lies in the closure of exactly one cell on either side, so two cells are adjacent
+across the line exactly when they have a gap in common. A stored segment crosses the line in a gap and tells its pair.
+The segments cut the line into parts: between two of them, or between one and the window's edge. Into a part run as many
+half-branches as the levels of its ends differ by, on both sides together; an isolated point of the curves changes no
+pair. A part contains no pair but those of the segments at its ends, if
+
+* no half-branch runs into it, and there is a segment at one of its ends at least: all its gaps have that segment's
+  pair. (Between the two edges of the window, with no segment, the pair of all gaps would be stored nowhere);
+* two half-branches run into a part between two segments: through each point inside the window runs an even number of
+  half-branches, so both end in one point, and the gaps on either side of it have the segments' pairs;
+* a single half-branch runs into a part between a segment and the window's edge: being alone, it ends on the edge, so
+  that all gaps have the segment's pair.
+
+Any other part is settled by a free segment built in each of its gaps, whose pair has to be stored.
 """
 
 from __future__ import annotations
@@ -87,6 +104,11 @@ def _check_free(claims: Claims, what: str, segment: Segment, first: tuple[int, C
             )
 
 
+_SETTLED = ((0, 2), (0, 1), ())
+"""Numbers of half-branches with which a part has no further pair: between two segments, a segment and an edge, two
+edges. See the module's text."""
+
+
 def check_no_adjacency_missing(claims: Claims) -> str:
     """Every open segment of the line over a critical value joins a stored pair."""
     result = claims.result
@@ -105,10 +127,8 @@ def check_no_adjacency_missing(claims: Claims) -> str:
         marks.append((claims.height[1], len(left.walls), len(right.walls), True))
         marks.sort(key=lambda m: fmpq(m[0]))
         for (bottom, l0, r0, edge0), (top, l1, r1, edge1) in pairwise(marks):
-            branches = (l1 - l0) + (r1 - r0)
-            edge = edge0 or edge1
-            # through an inner point runs an even number of half-branches; a single one ends on the window's edge
-            if branches == 0 or (branches == 2 and not edge) or (branches == 1 and edge0 != edge1):
+            # half-branches that settle the part, by the number of its ends that are the window's edges
+            if (l1 - l0) + (r1 - r0) in _SETTLED[edge0 + edge1]:
                 by_parity += 1
                 continue
             _search(claims, s, bottom, top, pairs)

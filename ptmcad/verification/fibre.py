@@ -10,7 +10,7 @@ itself, and counts come from signatures of trace forms: another elimination than
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -103,6 +103,11 @@ class Fibre:
         positive = sum(a != b for a, b in pairwise(signs))
         return positive, n - zero - positive
 
+    def determinant_of_traces(self, monomials: Sequence[Monomial]) -> fmpq:
+        """The determinant of the matrix with entries trace(f g), for all f and g among the monomials."""
+        powers = [self._monomial(m) for m in monomials]
+        return fmpq(fmpq_mat([[_trace_of_product(f, g) for g in powers] for f in powers]).det())
+
     def _monomial(self, m: Monomial) -> fmpq_mat:
         result = _identity(self.dimension)
         for table, e in zip(self.tables, m, strict=True):
@@ -144,6 +149,13 @@ def fibre(values: Mapping[str, Fraction]) -> Fibre:
     NotFinite
         When there are infinitely many complex solutions.
     """
+    energy = _potential(values)
+    e1, e2 = _d(energy, 1), _d(energy, 2)
+    basis, tables = _algebra(_equations(e1, e2))
+    return Fibre(basis, tables, (_d(e1, 1), _d(e1, 2), _d(e2, 2)))
+
+
+def _potential(values: Mapping[str, Fraction]) -> fmpq_mpoly:
     v = {name: rational(values[name]) for name in PARAMETERS}
     one = _RATIONAL.constant(1)
     nodes = {
@@ -156,10 +168,32 @@ def fibre(values: Mapping[str, Fraction]) -> Fibre:
     for start, end, stiffness in ((1, 4, v["k1"]), (2, 3, v["k2"]), (3, 4, v["k3"])):
         across, up = (nodes[end][i] - nodes[start][i] for i in (0, 1))
         energy += (stiffness / 2) * (across * across + up * up)
-    e1, e2 = _d(energy, 1), _d(energy, 2)
-    circles = [_C1 * _C1 + _S1 * _S1 - 1, _C2 * _C2 + _S2 * _S2 - 1]
-    basis, tables = _algebra([e for e in (e1, e2) if not e.is_zero()] + circles)
-    return Fibre(basis, tables, (_d(e1, 1), _d(e1, 2), _d(e2, 2)))
+    return energy
+
+
+def _equations(e1: fmpq_mpoly, e2: fmpq_mpoly) -> list[fmpq_mpoly]:
+    """The entries of the gradient that are not zero, and the circles."""
+    return [*(e for e in (e1, e2) if not e.is_zero()), _C1 * _C1 + _S1 * _S1 - 1, _C2 * _C2 + _S2 * _S2 - 1]
+
+
+def standard_monomials(values: Mapping[str, Fraction]) -> tuple[Monomial, ...]:
+    """The monomials, exponents of (s2, c2, s1, c1), that are standard in the order with c1 > s1 > c2 > s2.
+
+    It is graded reverse lexicographic, as the one in which `fibre` computes is, which has the unknowns the other way
+    round.
+
+    Raises
+    ------
+    NotFinite
+        When there are infinitely many complex solutions.
+    """
+    energy = _potential(values)
+    turned = [
+        _RATIONAL.from_dict({tuple(reversed(_monomial(m))): fmpq(c) for m, c in e.terms()})
+        for e in _equations(_d(energy, 1), _d(energy, 2))
+    ]
+    basis, _ = _algebra(turned)
+    return tuple((a, b, c, d) for d, c, b, a in basis)
 
 
 def _algebra(equations: list[fmpq_mpoly]) -> tuple[tuple[Monomial, ...], tuple[fmpq_mat, ...]]:

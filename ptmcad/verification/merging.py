@@ -27,6 +27,8 @@ def check_shape(claims: Claims) -> str:
                         f"{'all cells' if r.stacks else 'no cells'} are stored")  # fmt: skip
     if r.slice.mechanism != "ptm" or set(r.slice.parameters) - {"k"} != set(PARAMETERS):
         raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
+    if r.slice.count not in _KEYS:
+        raise Violation(f"an exact map has no {r.slice.count.value} counts by which its regions could be told apart")
     if any(a.low >= a.high for a in r.slice.axes) or r.base not in (0, 1):
         raise Violation("the window is empty")
     if any(c.admissible is not None for c in r.cells) or any(g.admissible is not None for g in r.regions):
@@ -72,8 +74,12 @@ def _is_index(value: object, length: int) -> bool:
     return isinstance(value, int) and 0 <= value < length
 
 
+_KEYS = {Count.STABLE: "stable", Count.TOTAL: "total", Count.INDEX: "index"}
+"""The counts by which regions of an exact map are told apart."""
+
+
 def _key(cell: Cell, count: Count) -> object:
-    return {Count.STABLE: cell.stable, Count.TOTAL: cell.total, Count.INDEX: cell.index}[count]
+    return getattr(cell, _KEYS[count])
 
 
 def check_merges(claims: Claims) -> str:

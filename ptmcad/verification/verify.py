@@ -9,6 +9,7 @@ from hashlib import sha256
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
+from ptmcad.verification.auxiliary import check_auxiliary
 from ptmcad.verification.certified.verify import verify_certified
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
@@ -22,9 +23,15 @@ from ptmcad.verification.structure import check_critical_values, check_stacks
 from ptmcad.verification.variety import check_irreducible, check_norm
 from ptmcad.verification.window import check_left_out
 
-NOT_CHECKED = (("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),)
+NOT_CHECKED = (
+    ("plan without trace", "predicted costs; which savings were made that make no difference in this file"),
+    ("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),
+)
 
-_SINCE_VARIETY: tuple[tuple[str, str, Callable[[Claims], str]], ...] = (
+CheckOf = tuple[str, str, Callable[[Claims], str]]
+"""The name of a check, its method, and the function that raises `Violation` or tells what it checked."""
+
+_SINCE_VARIETY: tuple[CheckOf, ...] = (
     ("critical values", "discriminants, resultants, Sturm", check_critical_values),
     ("walls and samples", "Sturm counts between samples", check_stacks),
     ("counts", "signatures of trace forms", check_counts),
@@ -58,9 +65,24 @@ def verify(result: RegionMap, seed: int | None = None, boxes: int | None = None)
     """
     if result.cover is not None or result.status is Status.CERTIFIED:
         return verify_certified(result, seed, boxes)
-    claims = Claims(result)
+    steps = checks_of(result, seed)
+    missing: set[str] = set()
+    if result.status is Status.PARTIAL:
+        missing = set() if result.stacks else {name for name, _, _ in _SINCE_VARIETY}
+    checks = checked(Claims(result), steps, missing)
+    checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
+    return VerifyReport(tuple(checks))
+
+
+def checks_of(result: RegionMap, seed: int | None) -> tuple[CheckOf, ...]:
+    """The checks of an exact map, in the order in which one rests on another: name, method and function.
+
+    Parameters
+    ----------
+    seed : as for `verify`.
+    """
     drawn = fingerprint(result) if seed is None else str(seed)
-    steps: tuple[tuple[str, str, Callable[[Claims], str]], ...] = (
+    return (
         ("shape", "cross references", check_shape),
         ("parameters as written", "expressions compared", check_text),
         ("equations", "potential from the nodes", check_system),
@@ -69,14 +91,9 @@ def verify(result: RegionMap, seed: int | None = None, boxes: int | None = None)
         ("boundary components", "factors of the parameters", check_boundary),
         ("left out", "Sturm counts, resultants", check_left_out),
         ("plan", "built once more", check_plan),
+        ("auxiliary components", "values at random points", partial(check_auxiliary, seed=drawn)),
         *_SINCE_VARIETY,
     )
-    missing: set[str] = set()
-    if result.status is Status.PARTIAL:
-        missing = set() if result.stacks else {name for name, _, _ in _SINCE_VARIETY}
-    checks = checked(claims, steps, missing)
-    checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
-    return VerifyReport(tuple(checks))
 
 
 def fingerprint(result: RegionMap) -> str:

@@ -17,6 +17,8 @@ from ptmcad.verification.sturm import isolating_intervals, points_apart, roots_b
 
 BOXES = 600
 """Boxes into which the window may be cut before the algebraic way is taken."""
+HALVINGS = 4
+"""Times that the window's sides are halved before a curve may be used although it has no point in the window."""
 
 
 def check_left_out(claims: Claims) -> str:
@@ -84,15 +86,42 @@ def _nowhere_zero(curve: PlaneCurve, claims: Claims) -> bool:
     return True
 
 
-def _one_sign(rows: list[fmpq_poly], degree: int, base: tuple[fmpq, fmpq], height: tuple[fmpq, fmpq]) -> bool:
+def plainly_outside(curve: PlaneCurve, claims: Claims) -> bool:
+    """Whether few signs show that the curve has no point in the open window: those for which it has to be left out.
+
+    A curve in one variable is decided by its roots; another one is asked for on the window and on what halving both
+    sides up to `HALVINGS` times makes of it, with constant terms then.
+    """
+    if curve.degrees[1] == 0:
+        return not roots_between(curve.in_v[0], *claims.base)
+    if curve.degrees[0] == 0:
+        return not roots_between(curve.in_u[0], *claims.height)
+    rows = [fmpq_poly(row) for row in curve.in_v]
+    if _one_sign(rows, curve.degrees[0], claims.base, claims.height):
+        return True
+    waiting = [(0, claims.base, claims.height)]
+    while waiting:
+        halved, (a, b), (c, d) = waiting.pop()
+        if _one_sign(rows, curve.degrees[0], (a, b), (c, d), strict=True):
+            continue
+        if halved == HALVINGS or curve.over(a)(c) * curve.over(b)(d) <= 0:
+            return False
+        u, v = (a + b) / 2, (c + d) / 2
+        waiting += [(halved + 1, base, height) for base in ((a, u), (u, b)) for height in ((c, v), (v, d))]
+    return True
+
+
+def _one_sign(
+    rows: list[fmpq_poly], degree: int, base: tuple[fmpq, fmpq], height: tuple[fmpq, fmpq], strict: bool = False
+) -> bool:
     lines = [_on_half_line(row, degree, base) for row in rows]
     signs = set()
     for i in range(degree + 1):
-        column = fmpq_poly([line[i] for line in lines])
-        signs |= {1 if c > 0 else -1 for c in _on_half_line(column, len(rows) - 1, height).coeffs() if c != 0}
+        column = _on_half_line(fmpq_poly([line[i] for line in lines]), len(rows) - 1, height)
+        signs |= {(c > 0) - (c < 0) for c in (column[j] for j in range(len(rows))) if strict or c != 0}
         if len(signs) > 1:
             return False
-    return True
+    return 0 not in signs
 
 
 def _on_half_line(p: fmpq_poly, degree: int, interval: tuple[fmpq, fmpq]) -> fmpq_poly:

@@ -1,0 +1,122 @@
+"""Checks of the curves that are there only because a saving which leaves them out was switched off.
+
+With "sign-curve" switched off these are the irreducible factors of the norm of H11, with "hermite-matrix" those of the
+determinant of the matrix trace(b_i b_j), where the b_i are the monomials that are standard in graded reverse
+lexicographic order; as far as they are stored for no other reason. Both functions of the axes are known at random
+integer points, as the norm of det H is in `ptmcad.verification.variety`.
+
+Guarantee: up to its error probability, every AUXILIARY component is such a factor and no factor or pole of the norm of
+det H, and no such factor is missing.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Sequence
+from fractions import Fraction
+from math import gcd, isqrt, prod
+
+from flint import fmpq
+
+from ptmcad.regionmap import Kind
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.fibre import Fibre, Monomial, standard_monomials
+from ptmcad.verification.plan import kept
+from ptmcad.verification.report import Violation
+
+POINTS, BITS = 12, 48
+CERTAIN = 2**16
+"""A value's part that it shares with no other one tells its multiplicity when it is larger than this."""
+_SAVINGS = {"sign-curve": "the norm of H11", "hermite-matrix": "the Hermite matrix's determinant"}
+
+Values = tuple[Fraction, tuple[int, ...]]
+"""The value of a function at a point, and those of the components there."""
+
+
+def check_auxiliary(claims: Claims, seed: str) -> str:
+    """Auxiliary components against the functions that they are factors of."""
+    components = claims.result.components
+    auxiliary = [n for n, c in enumerate(components) if c.kind is Kind.AUXILIARY]
+    savings = [name for name in _SAVINGS if name in kept(claims.result)]
+    if not savings:
+        if auxiliary:
+            raise Violation(f"component {auxiliary[0]} is auxiliary, but no saving was switched off that leaves it out")
+        return "none"
+    norms, functions = _values(claims, seed, savings)
+    multiplicities = {name: _multiplicities(values, len(components)) for name, values in functions.items()}
+    of_norm = _multiplicities(norms, len(components))
+    for n in auxiliary:
+        text = components[n].polynomial.text(claims.result.slice.axis_names)[:60]
+        if of_norm[n]:
+            raise Violation(f"component {n} is said to be auxiliary, but det H vanishes or has poles on it: {text}")
+        if multiplicities.get("sign-curve", of_norm)[n] < 1 and not multiplicities.get("hermite-matrix", of_norm)[n]:
+            raise Violation(f"component {n} is said to be auxiliary, but is no factor of "
+                            f"{' or '.join(_SAVINGS[name] for name in savings)}: {text}")  # fmt: skip
+    for name, values in functions.items():
+        if len({_rest(at, multiplicities[name]) for at in values}) > 1:
+            raise Violation(f"the plan says that {name!r} was kept, but a factor of {_SAVINGS[name]} is not stored")
+    return f"{len(auxiliary)} components; {POINTS} points of {BITS} bits, seed {seed}"
+
+
+def _values(claims: Claims, seed: str, savings: Sequence[str]) -> tuple[list[Values], dict[str, list[Values]]]:
+    """At each point the norm of det H, and the functions that the savings leave out."""
+    source = random.Random(f"auxiliary {seed}")
+    norms: list[Values] = []
+    functions: dict[str, list[Values]] = {name: [] for name in savings}
+    monomials = None
+    while len(norms) < POINTS:
+        x, y = (Fraction(source.getrandbits(BITS) - 2 ** (BITS - 1)) for _ in range(2))
+        fibre = claims.fibre_at(x, y)
+        if monomials is None:
+            monomials = standard_monomials(claims.parameters_at(x, y))
+        at = tuple(int(c.polynomial(x, y)) for c in claims.result.components)
+        found = {"": fibre.norm()} | {name: _function(name, fibre, monomials) for name in savings}
+        exact = {name: Fraction(int(value.p), int(value.q)) for name, value in found.items()}
+        if 0 in at or 0 in exact.values():
+            raise Violation(f"a function that defines curves vanishes at the random point {x}, {y}")
+        norms.append((exact[""], at))
+        for name in savings:
+            functions[name].append((exact[name], at))
+    return norms, functions
+
+
+def _function(name: str, fibre: Fibre, monomials: Sequence[Monomial]) -> fmpq:
+    if name == "sign-curve":
+        return fibre.matrix(fibre.hessian[0]).det()
+    return fibre.determinant_of_traces(monomials)
+
+
+def _multiplicities(values: Sequence[Values], number: int) -> list[int]:
+    """How often each component divides a function, negative for poles: what most points tell."""
+    told = [Counter(e for value, at in values if (e := _multiplicity(value, at, k)) is not None) for k in range(number)]
+    return [counter.most_common(1)[0][0] if counter else 0 for counter in told]
+
+
+def _multiplicity(value: Fraction, at: Sequence[int], k: int) -> int | None:
+    """What one point tells of it: how often the primes of the component's value alone divide the function's.
+
+    Small primes are left out: they may divide the constant, by which the function differs from a product of components.
+    """
+    own = abs(at[k])
+    for other in (_SMALL_PRIMES, *at[:k], *at[k + 1 :]):
+        while (common := gcd(own, other)) > 1:
+            own //= common
+    if own < CERTAIN:
+        return None
+    numerator, denominator, found = value.numerator, value.denominator, 0
+    while numerator % own == 0:
+        numerator, found = numerator // own, found + 1
+    while denominator % own == 0:
+        denominator, found = denominator // own, found - 1
+    return found
+
+
+_SMALL_PRIMES = prod(p for p in range(2, 2000) if all(p % q for q in range(2, isqrt(p) + 1)))
+
+
+def _rest(values: Values, multiplicities: Sequence[int]) -> Fraction:
+    value, at = values
+    for v, e in zip(at, multiplicities, strict=True):
+        value /= Fraction(v) ** e
+    return value
