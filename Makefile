@@ -16,7 +16,7 @@ help:
 	@echo "make test-slow  the thorough tests"
 	@echo "make test-oldest  the fast tests with the oldest versions of all packages that pyproject.toml states"
 	@echo "make fuzz       damaged and hostile records, results and points by the ten thousand, guided by coverage"
-	@echo "make check      ruff, its formatter and mypy in strict mode"
+	@echo "make check      ruff, its formatter and mypy in strict mode, on the tests less so"
 	@echo "make bench      error, run time and memory on every slice in configs/, into docs/benchmarks/: ten minutes"
 	@echo "make ablation   what each saving is worth, into docs/benchmarks/: nine minutes"
 	@echo "make scaling    how time and memory grow, into docs/benchmarks/: three minutes"
@@ -81,6 +81,7 @@ check: $(VENV)/.installed-check
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
 	$(BIN)/python -m mypy
+	cd tests && ../$(BIN)/python -m mypy --config-file mypy.ini .
 
 $(VENV)/.installed-bench: $(VENV)/.installed
 	$(PIP) --editable '.[bench]'

@@ -211,7 +211,7 @@ def _count(parameters: Mapping[str, Fraction]) -> tuple[int, int, int]:
             sextic = sextic[:-2]
         else:
             at = s2 / (1 + c2)
-            sextic = quotient_at_infinity_too(sextic, primitive(times([-at, 1], [-at, 1])))
+            sextic = quotient_at_infinity_too(sextic, primitive(times([-at, 1], [-at, 1])))  # type: ignore[assignment]
     if not any(sextic):
         raise Degenerate("every th2 is a solution")
     if sextic[-1] == 0:  # th2 = pi
@@ -226,7 +226,7 @@ def _count(parameters: Mapping[str, Fraction]) -> tuple[int, int, int]:
     repeated = common_divisor(whole, derivative(whole)) if len(whole) > 1 else [1]
     if len(repeated) > 1 and real_roots(repeated):
         raise Degenerate("a multiple real root")
-    p = squarefree(whole) if len(whole) > 1 else whole
+    p = squarefree(whole) if len(whole) > 1 else whole  # type: ignore[assignment]
     determinant, sign = primitive(n), primitive(slope)
     if len(p) > 1:
         for factor in (determinant, sign):

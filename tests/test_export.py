@@ -244,7 +244,8 @@ def divided_out(generator: PlanePolynomial, of: SliceVariety) -> tuple[set[Plane
             quotient, remainder = rest.div(factor)
             if remainder:
                 break
-            rest, _ = quotient, found.add(component.polynomial)
+            found.add(component.polynomial)
+            rest = quotient
     return found, PlanePolynomial.of((int(i), int(j), int(c)) for (i, j), c in rest.clear_denoms()[1].terms())
 
 

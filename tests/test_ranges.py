@@ -148,7 +148,7 @@ def divides(polynomial: tuple[int, ...], p: fmpz_poly) -> bool:
 
 def real_parts(p: fmpz_poly) -> list[tuple[Fraction, int]]:
     """Approximations of the real roots."""
-    return [(Fraction(float(z.real)), m) for z, m in p.complex_roots() if z.imag == 0]
+    return [(Fraction(float(z.real)), m) for z, m in p.complex_roots() if z.imag == 0]  # type: ignore[misc, has-type]
 
 
 @pytest.mark.parametrize("number", [3, 27, 58, 83, 118])

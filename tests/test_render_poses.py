@@ -54,7 +54,7 @@ def poses(name: str) -> Poses:
 
 
 def identifiers(figure: Figure, start: str) -> list[str]:
-    return [a.get_gid() for a in figure.findobj() if a.get_gid() and a.get_gid().startswith(start)]
+    return [a.get_gid() for a in figure.findobj() if a.get_gid() and a.get_gid().startswith(start)]  # type: ignore[misc]
 
 
 # ------------------------------------------------------------------------------------------------------ the poses

@@ -295,7 +295,7 @@ def test_points_of_a_fibre_with_complex_and_fat_points() -> None:
     """x^2 (x - 1) (x^2 + 1)^2 with y = x + 1; and the fat point x^2 = x y = y^2 = 0, which no single root counts."""
     one = fmpq(1)
     p = {(7, 0): one, (6, 0): -one, (5, 0): 2 * one, (4, 0): -2 * one, (3, 0): one, (2, 0): -one}
-    curve = fibre([p, {(0, 1): one, (1, 0): -one, (0, 0): -one}], 2)
+    curve = fibre([p, {(0, 1): one, (1, 0): -one, (0, 0): -one}], 2)  # type: ignore[list-item]
     assert curve is not None
     found = points(curve, bound=2)
     assert (found.distinct, found.total) == (4, 7)

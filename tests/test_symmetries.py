@@ -144,10 +144,14 @@ def check_same(record: Record, symmetry: Callable[[Record, Fraction], Image], fa
             assert partner.setdefault(one.region, other.region) == other.region  # type: ignore[arg-type]
     assert sorted(partner.values()) == list(range(len(theirs.regions))), "each region has one partner"
     for n, m in partner.items():
-        a, b = ours.regions[n], theirs.regions[m]
-        assert (a.stable, a.total, a.index) == (b.stable, b.total, b.index)
-        assert a.area[0] * unit <= b.area[1]
-        assert b.area[0] <= a.area[1] * unit
+        one_region, other_region = ours.regions[n], theirs.regions[m]
+        assert (one_region.stable, one_region.total, one_region.index) == (
+            other_region.stable,
+            other_region.total,
+            other_region.index,
+        )
+        assert one_region.area[0] * unit <= other_region.area[1]
+        assert other_region.area[0] <= one_region.area[1] * unit
 
 
 factors = st.sampled_from([Fraction(f) for f in ("2", "1/3", "7/5", "1000", "1/1000")])
