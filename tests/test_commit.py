@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from faulty_disk import FaultyDisk, Killed
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ptmcad import commit
@@ -171,6 +171,7 @@ def test_errors_at_every_step(tmp_path: Path, links: bool, olds: tuple[tuple[str
     assert ends == {"", UNCHANGED, UNFINISHED}
 
 
+@pytest.mark.slow
 def test_errors_and_then_a_kill(tmp_path: Path) -> None:
     """Also while it is taken back, and while that is done again by somebody else."""
     for old, first, killed, again in product((NAMES, ("fig2.png",)), range(2, 9), range(3, 18), (2, 4)):
@@ -275,6 +276,7 @@ def test_journals_that_this_program_has_not_written(tmp_path: Path) -> None:
     assert visible(tmp_path) == {"fig2.json": "new"}
 
 
+@settings(max_examples=40)
 @given(
     st.lists(
         st.tuples(
