@@ -42,7 +42,11 @@ $(VENV)/.installed-fuzz: $(VENV)/.installed-test
 	$(PIP) --only-binary atheris --editable '.[test,fuzz]' || echo "atheris can not be installed here, see above"
 	@touch $@
 
-$(VENV)/.installed-# The oldest versions that pyproject.toml states, on the oldest Python that it does where that is installed: a version's
+$(VENV)/.installed-check: $(VENV)/.installed-test
+	$(PIP) --editable '.[test,check]'
+	@touch $@
+
+# The oldest versions that pyproject.toml states, on the oldest Python that it does where that is installed: a version's
 # wheels are for the Pythons of its time.
 OLDEST := .venv-oldest
 OLDEST_PYTHON := $(or $(shell command -v python3.11),python3)
@@ -52,13 +56,6 @@ $(OLDEST)/.installed: pyproject.toml scripts/setup-venv scripts/oldest-versions
 	$(OLDEST)/bin/python scripts/oldest-versions > $(OLDEST)/constraints.txt
 	$(OLDEST)/bin/python -m pip --disable-pip-version-check --quiet install --constraint $(OLDEST)/constraints.txt \
 		--editable '.[test]'
-	@touch $@
-
-test-oldest: $(OLDEST)/.installed
-	$(OLDEST)/bin/python -m pytest --numprocesses $(JOBS)
-
-check: $(VENV)/.installed-test
-	$(PIP) --editable '.[test,check]'
 	@touch $@
 
 $(VENV)/.installed-docs: $(VENV)/.installed
@@ -73,6 +70,9 @@ test: $(VENV)/.installed-test
 
 test-slow: $(VENV)/.installed-test
 	$(BIN)/python -m pytest --numprocesses $(JOBS) -m slow
+
+test-oldest: $(OLDEST)/.installed
+	$(OLDEST)/bin/python -m pytest --numprocesses $(JOBS)
 
 fuzz: $(VENV)/.installed-fuzz
 	PYTHONPATH=tests $(BIN)/python -m fuzz --folder out/fuzz $(FUZZ)
