@@ -158,3 +158,31 @@ def test_a_dense_search_agrees_at_1000_random_points(name: str) -> None:
 def test_a_dense_search_agrees_on_other_counts(count: Count) -> None:
     result = certified(load(CONFIGS / "free02.yaml"), "1/50", count)
     assert differing(result, 200, 11, 80) == []
+
+
+TOUCHING = {
+    "a free length is zero along a line inside": (
+        {"l0_1": 0, "l0_2": 0, "l0_3": "(m-2/3)^2", "F3": -3, "F4": -5}, {"rho": ["1", "3/2"], "m": ["1/2", "1"]}
+    ),
+    "a free length is zero on two edges": (
+        {"l0": "m^3*(2-rho)", "F3": -6, "F4": -9}, {"rho": ["1/2", "2"], "m": ["0", "1"]}
+    ),
+    "a stiffness is zero on an edge": (
+        {"k3": "100*m", "l0": "1/5", "F3": -6, "F4": -9}, {"rho": ["1/2", "3/2"], "m": ["0", "1/2"]}
+    ),
+    "a length is zero in a corner": (
+        {"L1": "m+rho-1/2", "l0": "1/5", "F3": -6, "F4": -9}, {"rho": ["1/2", "3/2"], "m": ["0", "1"]}
+    ),
+    "a denominator is zero in a corner": (
+        {"l0_1": "m/(m+rho-1/2)", "l0": "1/10", "F3": -6, "F4": -9}, {"rho": ["1/2", "1"], "m": ["0", "1/2"]}
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", TOUCHING)
+def test_slices_that_only_touch_the_limits_of_the_domain(name: str) -> None:
+    """Signs that are allowed, zeros among them: the certified counts are those of a dense search."""
+    parameters, axes = TOUCHING[name]
+    slice = ptmcad.slice_from_mapping({"parameters": {"L1": 1, "L2": 1, "k": 100, **parameters}, "axes": axes})
+    assert not differing(certified(slice, "1/5"), 40, 3, 60)

@@ -90,6 +90,8 @@ def check(expression: Expression, need: Need, axes: tuple[Axis, Axis] = AXES) ->
      ("rho^2+(F^2-2)^2", False), ("(2-rho)^3+(F^2-2)^2", False), ("(rho-2/3)^2", True), ("(rho^2-2)^2", True),
      ("(rho-2/3)^2+(F+1/7)^2", True), ("(F-rho)^2", True), ("(F^2-rho)^2*(1+rho)", True),
      ("rho^3+(F+1/3)^2*(F-2)^2", False), ("(rho-1)^2 + 1e-40", False), ("(rho-F-1/3)^2+1e-40", False),
+     # zero along a side of the first halves, whose corners are on the window's edge
+     ("(rho-1)^2*(F+4)", True), ("(F+1)^2*(rho+1)", True), ("(rho-1)^2*(F+4)+1e-30", False),
      # reducible: each factor is definite, or two change sign together
      ("(rho-2/3)^2*(F+1/7)^4+1e-30", False), ("(rho-2/3)*(3*rho-2)", True), ("(rho-F-3)*(rho-F-3)*(rho+1)", True)],
 )  # fmt: skip
