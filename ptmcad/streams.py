@@ -50,3 +50,10 @@ def reader_left(stream: TextIO) -> bool:
     """Whether nobody reads any more what is written to the stream."""
     raw = getattr(getattr(stream, "buffer", None), "raw", None)
     return isinstance(raw, _Pipe) and raw.reader_left
+
+
+def open_standard_streams() -> None:
+    """Occupy descriptors 0 to 2 where the caller has closed them, so that no pipe is taken for a standard stream."""
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) < 3:
+        pass
+    os.close(descriptor)

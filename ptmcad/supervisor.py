@@ -25,7 +25,7 @@ from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
 from ptmcad.handover import Receiver, Topic, connect, disconnect, tell
-from ptmcad.streams import quiet_stream
+from ptmcad.streams import open_standard_streams, quiet_stream
 
 if sys.platform != "win32":
     import fcntl
@@ -56,7 +56,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     work : what to compute; it returns an exit status.
     heeded : the signals that stop it.
     """
-    _open_standard_streams()
+    open_standard_streams()
     _check_descriptors()
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # where it is ignored, the system tells nobody how a child has ended
     messages, printed, lifeline, wake = os.pipe(), os.pipe(), os.pipe(), os.pipe()
@@ -334,13 +334,6 @@ def _leave(number: int, _frame: FrameType | None) -> NoReturn:
         os.dup2(null, sys.stderr.fileno())
         os.close(null)
     raise SystemExit(128 + number)
-
-
-def _open_standard_streams() -> None:
-    """Occupy descriptors 0 to 2 where the caller has closed them, so that no pipe is taken for a standard stream."""
-    while (descriptor := os.open(os.devnull, os.O_RDWR)) < 3:
-        pass
-    os.close(descriptor)
 
 
 def _check_descriptors() -> None:
