@@ -25,8 +25,9 @@ class Topic(Enum):
     DEADLINE = b"D"  # reading of time.monotonic() at which the time is over, the limit in words
     MEMORY = b"M"  # the memory limit in words
     TARGET = b"F"  # path of the result file
-    RESULT = b"P"  # "partial" or "complete", and the result's text as it is by now
-    RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work
+    RESULT = b"P"  # "partial" or "complete", the result's text as it is by now, and a remark on how far it is, or ""
+    RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work;
+    # with the reason why there is none as long as none has been handed over
     PROGRESS = b"B"  # the progress bar stands in the terminal's line
     EXHAUSTED = b"X"  # memory has run out
     DONE = b"E"  # the program has come to its end and exits with its status

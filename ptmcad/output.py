@@ -13,6 +13,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shlex
 import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -183,6 +184,11 @@ def save_stopped(target: Path, text: str) -> Path:
 def where_saved(target: Path, place: Path) -> str:
     """Why a stopped result is not in the file that was asked for, as the end of a sentence."""
     return "" if place == target else f", because {target.name} holds an older result that is not partial"
+
+
+def how_to_go_on(place: Path) -> str:
+    """What goes on from a stopped result that can be gone on from, as the end of a sentence."""
+    return f"; --resume {shlex.quote(str(place))} goes on from there"
 
 
 def _replaceable(target: Path) -> bool:

@@ -6,7 +6,8 @@ can stop or save anything there. So the computation runs in a forked child, and 
 Guarantee: a signal, or the time limit, ends the child within a second whatever it does: it is asked to leave first and
 killed after `GRACE`. No temporary file that it has told of stays. When a limit ends it (time; memory, also where a
 library aborts on a failed allocation or the system kills the child), the last result that it handed over is saved and
-the status is 3. When a signal ends it, such a result is saved if one can go on from it. A parent that is killed takes
+the status is 3. When a signal ends it, such a result is saved if one can go on from it,
+and where there is none yet the message says why. A parent that is killed takes
 the child with it.
 
 Not guaranteed: the last sentence on a system whose pipes send no signal (it is tested on Linux).
@@ -14,6 +15,7 @@ Not guaranteed: the last sentence on a system whose pipes send no signal (it is 
 
 import atexit
 import gc
+import math
 import os
 import select
 import signal
@@ -138,7 +140,8 @@ class _Watch:
                 kill_at = now + GRACE
 
     def _deadline(self) -> float | None:
-        return float(self.told[Topic.DEADLINE][0]) + LATE if Topic.DEADLINE in self.told else None
+        told = float(self.told[Topic.DEADLINE][0]) if Topic.DEADLINE in self.told else math.inf
+        return None if told == math.inf else told + LATE  # infinite while the clock stands still
 
     def _read(self, end: int) -> bool:
         """Take what there is; False at the end of the pipe."""
@@ -164,7 +167,7 @@ class _Watch:
         if ended < 0 or deserted or self.caught or self.out_of_time:
             self._tidy()
         if self.caught:
-            if Topic.RESUMABLE in self.told and Topic.RESULT in self.told:
+            if Topic.RESUMABLE in self.told:
                 self._stopped(f"by {signal.Signals(self.caught[0]).name}")
             return 128 + self.caught[0]
         text = self.text.decode(errors="replace")
@@ -203,21 +206,23 @@ class _Watch:
             _say(f"stopped: {why}\n")
             return 3
         if Topic.RESULT not in self.told:
-            _say(f"stopped: {why}; there was no partial result to save yet\n")
+            reason = f": {self.told[Topic.RESUMABLE][0]}" if Topic.RESUMABLE in self.told else ""
+            _say(f"stopped: {why}; there was no partial result to save yet{reason}\n")
             return 3
         from pathlib import Path  # not before it is needed: every start would pay for it
 
         from ptmcad.errors import OutputError
-        from ptmcad.output import save_stopped, where_saved
+        from ptmcad.output import how_to_go_on, save_stopped, where_saved
 
         target = Path(self.told[Topic.TARGET][0])
-        state, text = self.told[Topic.RESULT]
+        state, text, remark = self.told[Topic.RESULT]
         try:
             place = Path(self.told[Topic.RENAMES][1]) if Topic.RENAMES in self.told else save_stopped(target, text)
         except OutputError as error:
             _say(f"error: {why}, and the {state} result was lost: {error}\n")
             return 2
-        _say(f"stopped: {why}; the {state} result is in {place}{where_saved(target, place)}\n")
+        further = how_to_go_on(place) if Topic.RESUMABLE in self.told and state == "partial" else ""
+        _say(f"stopped: {why}; the {state} result{remark} is in {place}{where_saved(target, place)}{further}\n")
         return 3
 
 

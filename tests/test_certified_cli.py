@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -51,6 +52,9 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     module.certified_map = stand_in  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "ptmcad.interval.compiled", compiled)
     monkeypatch.setitem(sys.modules, "ptmcad.interval.engine", module)
+    loading = ModuleType("ptmcad.interval.loading")
+    loading.load = lambda progress: None  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "ptmcad.interval.loading", loading)
     # the map made by hand has more counts than its question needs, which a stored map must not have
     monkeypatch.setattr("ptmcad.verification.certified.verify.contradiction", lambda result: "")
     return calls
@@ -125,7 +129,8 @@ def test_the_time_limit_saves_the_map_so_far(
     engine["stop"] = True
     assert run(["classify", *HAND, "--out", str(tmp_path), "--timeout", "5"]) == 3
     place = tmp_path / SAVED
-    assert capsys.readouterr().err == f"stopped: the time limit was reached; the partial result is in {place}\n"
+    said = f"stopped: the time limit was reached; the partial result is in {place}; --resume {place} goes on from there"
+    assert capsys.readouterr().err == f"{said}\n"
     assert RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8")).status is Status.PARTIAL
     del engine["stop"]
     assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED)]) == 0
@@ -227,7 +232,8 @@ def test_the_engine_stopped_by_ctrl_c_and_gone_on_with(tmp_path: Path) -> None:
         stopped.send_signal(signal.SIGINT)
         _, errors = stopped.communicate()
     assert stopped.returncode == 130
-    assert errors.decode().startswith("stopped: by SIGINT; the partial result is in ")
+    assert re.match(r"stopped: by SIGINT; the partial result, [0-9.e-]+ % of it undetermined, is in ", errors.decode())
+    assert "--resume" in errors.decode()
     partial = RegionMap.from_json((tmp_path / "slice-rho-L2.partial.json").read_text(encoding="utf-8"))
     assert partial.status is Status.PARTIAL
     with pytest.raises(ConfigError, match="axes differs"):

@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from ptmcad.cli.formats import formats_of
-from ptmcad.cli.limits import limit_options, limits, tell_deadline
+from ptmcad.cli.limits import clock_stopped, limit_options, limits
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import slice_options
 from ptmcad.config import slice_from_options
@@ -21,7 +21,15 @@ from ptmcad.errors import ConfigError, ExpressionError, LimitReached
 from ptmcad.expressions import rational
 from ptmcad.handover import Topic, tell, watched
 from ptmcad.memory import Bound
-from ptmcad.output import Writer, check_writable, save_stopped, text_writer, where_saved, write_files
+from ptmcad.output import (
+    Writer,
+    check_writable,
+    how_to_go_on,
+    save_stopped,
+    text_writer,
+    where_saved,
+    write_files,
+)
 from ptmcad.savings import check_names, kept
 from ptmcad.slice import Count, Slice
 
@@ -66,14 +74,20 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
         Any other of its kinds, with nothing written.
     """
     check_writable(request.out, tuple(f"{slice.name}.{suffix}" for suffix in request.formats))
-    from ptmcad.pipeline import classify
-
     target = request.out / f"{slice.name}.json"
     if "json" in request.formats:
         tell(Topic.TARGET, str(target))
-    tell_deadline(request.timeout, request.spent)  # anew: the time that the import took is not the computation's
+    def handed_over(result: Any) -> None:
+        _hand_over(request, result)
+
     left = None if request.timeout is None else max(request.timeout - request.spent, SHORTEST)
     with ProgressBar() as progress:
+        with clock_stopped(request.timeout, request.spent):  # the time that the import takes is not the computation's
+            from ptmcad.pipeline import classify, prepare
+
+            _tell_why_none(slice, request, "the engine was still being loaded or compiled")
+            prepare(slice, request.engine, progress)
+        _tell_why_none(slice, request, "the first level of the search was not done")
         try:
             result = classify(
                 slice,
@@ -83,7 +97,7 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
                 area_tolerance=request.area_tolerance,
                 jobs=request.jobs,
                 progress=progress,
-                partial=partial(_hand_over, request) if watched() else None,
+                partial=handed_over if watched() else None,
                 resume=request.resume,
                 keep=request.keep,
                 areas=request.areas,
@@ -91,9 +105,11 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
         except LimitReached as stopped:
             if stopped.partial is None or "json" not in request.formats:
                 raise
-            place = save_stopped(target, _text(stopped.partial, request))
+            text = _hand_over(request, stopped.partial)  # first: if this process is ended now, the other one has it
+            place = save_stopped(target, text)
             where = f"the partial result is in {place}{where_saved(target, place)}"
-            raise LimitReached(f"{stopped}; {where}") from stopped
+            further = "" if getattr(stopped.partial, "cover", None) is None else how_to_go_on(place)
+            raise LimitReached(f"{stopped}; {where}{further}") from stopped
         _save(result, slice.name, request.formats, request)
     return result
 
@@ -103,18 +119,33 @@ def _text(result: Any, request: Request) -> str:
     return text
 
 
-def _hand_over(request: Request, result: Any) -> None:
-    """Give the result so far to the process that watches, which saves it if this one has to be stopped."""
+def _tell_why_none(slice: Slice, request: Request, reason: str) -> None:
+    """Say why there is no map yet to the process that watches, when maps of this engine can be gone on from."""
+    from ptmcad.plan import is_certified
+
+    if "json" in request.formats and is_certified(slice, request.engine):
+        kept = "; the map to go on from is as it was" if request.resume is not None else ""
+        tell(Topic.RESUMABLE, f"{reason}{kept}")
+
+
+def _hand_over(request: Request, result: Any) -> str:
+    """Give the result so far to the process that watches, which saves it if this one has to be stopped; its text."""
+    text = _text(result, request)
     if "json" in request.formats:
-        if result.cover is not None:
-            tell(Topic.RESUMABLE)
         state = "partial" if result.status.value == "partial" else "complete"
-        tell(Topic.RESULT, state, _text(result, request))
+        open_share = "" if result.cover is None else f", {_percent(result.undetermined)} of it undetermined,"
+        tell(Topic.RESULT, state, text, open_share)
+    return text
+
+
+def _percent(share: Fraction) -> str:
+    return f"{float(100 * share):.2g} %"
 
 
 def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) -> None:
     """Write the pictures and, last, the JSON."""
     writers: dict[str, Writer] = {}
+    text = _hand_over(request, result) if "json" in formats else ""  # first: drawing may take longer than there is time
     pictures = [suffix for suffix in formats if suffix != "json"]
     if pictures:
         from ptmcad.render import draw  # brings matplotlib
@@ -122,7 +153,7 @@ def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) ->
         for suffix in pictures:
             writers[f"{name}.{suffix}"] = partial(draw, result, samples=request.samples)
     if "json" in formats:
-        writers[f"{name}.json"] = text_writer(_text(result, request))
+        writers[f"{name}.json"] = text_writer(text)
     write_files(request.out, writers)
 
 
@@ -261,7 +292,9 @@ def command(
     load.
 
     Springs with a free length (--set l0=1/5) are the certified engine's: it leaves a part of the window undetermined,
-    which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the map so far; --resume goes on from there.
+    which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the best map so far, from the first level of the
+    search on, and says how much of it is undetermined; --resume goes on from there. In its first run on a machine it
+    compiles its inner loops, 10 to 40 seconds that --timeout does not count.
 
     \b
     Examples:
@@ -287,6 +320,8 @@ def command(
     )
     with limits(timeout, max_memory):
         if resume is not None:
+            if "json" in formats:
+                tell(Topic.RESUMABLE, "the map to go on from was still being checked; it is as it was")
             begun = time.monotonic()
             earlier = _resumed(slice, resume)  # of many rectangles that takes a while, which is part of the limit
             request = replace(request, resume=earlier, spent=time.monotonic() - begun)
