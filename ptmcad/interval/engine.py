@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf
-from time import perf_counter
 
 import flint
 import numba
@@ -120,8 +119,8 @@ class _Run:
 
     def __init__(self, slice: Slice, options: Options, resume: Cover | None):
         load(options.progress)
-        started = perf_counter()
-        self.pace = Pace(started, options.deadline)
+        self.pace = Pace(options.deadline)
+        self.clock = self.pace.clock
         self.slice, self.options = slice, options
         self.seconds = {"plan": 0.0, "curves": 0.0, "regions": 0.0}
         self.area = float((slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low))
@@ -140,7 +139,7 @@ class _Run:
         """The strips of the boxes as they are, when they are known."""
         self.enclosed = Fraction(1)
         """The share that the boxes had when it was made."""
-        self.seconds["plan"] = perf_counter() - started
+        self.seconds["plan"] = self.clock() - self.pace.started
 
     def run(self) -> RegionMap:
         undetermined = Fraction(1)
@@ -150,11 +149,11 @@ class _Run:
             if result.undetermined <= tolerance:
                 return result
         for level in range(FIRST_LEVEL, LAST_LEVEL):
-            start, regions = perf_counter(), self.seconds["regions"]
+            start, regions = self.clock(), self.seconds["regions"]
             report = self._report(level, undetermined)
             self._thinned = None
             in_time = refine(self.enclosures, self.area * 4.0**-level, self.options.jobs, report, self._late)
-            self.seconds["curves"] += perf_counter() - start - (self.seconds["regions"] - regions)
+            self.seconds["curves"] += self.clock() - start - (self.seconds["regions"] - regions)
             if not in_time:
                 return self._stopped("the time limit was reached")
             cover = self._box_cover()
@@ -185,12 +184,12 @@ class _Run:
         allowed = self.options.tolerance
         if undetermined > WITHIN * allowed or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes()):
             return None
-        start = perf_counter()
+        start = self.clock()
         strips = self._strips()
         target = float(allowed) * self.area
         enough = strips.least() <= ENOUGH * target and strips.number(target) <= MOST_RECTANGLES
         cover = strips.cover(target) if enough else None
-        self.seconds["curves"] += perf_counter() - start
+        self.seconds["curves"] += self.clock() - start
         return cover
 
     def partial(self) -> RegionMap:
@@ -213,13 +212,13 @@ class _Run:
 
     def map(self, cover: Cover, status: Status) -> RegionMap:
         """The map of a cover; what is not counted when the time is over is undetermined."""
-        start, boxes = perf_counter(), self.boxes()
+        start, boxes = self.clock(), self.boxes()
         if _overlap(cover) > OVERLAPPING:
             cover = simplified(cover, COMPILED)
         times = self.seconds | {"total": start - self.pace.started}
         result = self.assembler.map(cover, status, times, self._hurry)
-        self.seconds["regions"] += perf_counter() - start
-        self.pace.map.record(boxes, perf_counter() - start)
+        self.seconds["regions"] += self.clock() - start
+        self.pace.map.record(boxes, self.clock() - start)
         return result
 
     def _hurry(self) -> bool:
@@ -231,9 +230,9 @@ class _Run:
 
     def _strips(self) -> Thinning:
         if self._thinned is None:
-            start, boxes = perf_counter(), self.boxes()
+            start, boxes = self.clock(), self.boxes()
             self._thinned = thinning(self.enclosures, self.lattice, self.options.jobs)
-            self.pace.thin.record(boxes, perf_counter() - start)
+            self.pace.thin.record(boxes, self.clock() - start)
         return self._thinned
 
     def _affordable(self, cover: Cover) -> bool:
@@ -248,10 +247,10 @@ class _Run:
             self._thinned = None
             return True
         if self.options.partial is not None and self.pace.due(boxes):
-            start = perf_counter()
+            start = self.clock()
             self._thinned = None
             enclosed = _share(self._box_cover())
-            self.pace.looked(perf_counter() - start)
+            self.pace.looked(self.clock() - start)
             if enclosed <= FALL * self.enclosed:
                 self._hand_over(enclosed)
             self.pace.resumed()
@@ -264,16 +263,16 @@ class _Run:
         ----------
         enclosed : the boxes' share of the window.
         """
-        start = perf_counter()
+        start = self.clock()
         found = self.partial() if enclosed <= COARSE else self.map(self._box_cover(), Status.PARTIAL)
         self.enclosed = min(enclosed, self.enclosed)
         least = Fraction(1) if self.best is None else self.best.undetermined
         if found.undetermined < least and self.options.partial is not None:
             self.best = found
-            made = perf_counter()
+            made = self.clock()
             self.options.partial(found)
-            self.pace.text.record(self.boxes(), perf_counter() - made)
-        self.pace.spent += perf_counter() - start
+            self.pace.text.record(self.boxes(), self.clock() - made)
+        self.pace.spent += self.clock() - start
 
     def _stopped(self, why: str) -> RegionMap:
         """The map so far if it will do after all.
@@ -284,6 +283,8 @@ class _Run:
             Otherwise, with that map; without one where nothing is decided yet.
         """
         tolerance = self.options.tolerance
+        if self.best is None and self.options.partial is not None:
+            self._hand_over(Fraction(1))  # a cheap one first: what strips take is not known yet
         so_far = self.partial()
         if so_far.undetermined <= tolerance:  # strips of what the level had reached were enough
             return replace(so_far, status=Status.CERTIFIED)

@@ -51,13 +51,14 @@ class Pace:
     Attributes
     ----------
     deadline : reading of the clock at which all has to be done; None without a limit.
+    started : reading of the clock at the start.
     thin, map, text : what it takes to find the strips, to make a map of their cover, and to hand that over.
     spent : seconds that maps on the way took.
     """
 
-    started: float
     deadline: float | None
     clock: Callable[[], float] = perf_counter
+    started: float = 0.0
     thin: Cost = field(default_factory=lambda: Cost(1e-5))
     map: Cost = field(default_factory=lambda: Cost(2e-5))
     text: Cost = field(default_factory=lambda: Cost(5e-6))
@@ -65,6 +66,9 @@ class Pace:
     _look_at: float = -inf
     _asked: float = inf
     _longest: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.started = self.clock()
 
     def left(self) -> float:
         """Seconds until the deadline."""
