@@ -55,6 +55,8 @@ WITHIN = 100
 """Strips are tried as soon as the boxes leave at most so many times the tolerance undetermined."""
 ENOUGH = 0.5
 """... and used as soon as the finest ones would leave less than this part of it."""
+FIRST = Fraction(97, 100)
+"""... and the first one when they have left this part; at the end of the first level there is one in any case."""
 COARSE = Fraction(1, 4)
 """While the boxes have more of the window, maps on the way do without strips, which would gain little."""
 SECONDS = 3e-5
@@ -251,7 +253,7 @@ class _Run:
             self._thinned = None
             enclosed = _share(self._box_cover())
             self.pace.looked(self.clock() - start)
-            if enclosed <= FALL * self.enclosed:
+            if enclosed <= (FIRST if self.best is None else FALL * self.enclosed):
                 self._hand_over(enclosed)
             self.pace.resumed()
         return False
