@@ -77,6 +77,7 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
     target = request.out / f"{slice.name}.json"
     if "json" in request.formats:
         tell(Topic.TARGET, str(target))
+
     def handed_over(result: Any) -> None:
         _hand_over(request, result)
 

@@ -20,26 +20,24 @@ from ptmcad.interval.formula import Graph
 from ptmcad.interval.refinement import Enclosure, begin, refine
 from ptmcad.interval.system import system
 
-ANGLES = np.linspace(0.1, 6.2, 97)
+ANGLES = np.linspace(0.1, 3.1, 97)
 ON_THE_CIRCLE = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
 
 
 def circle(monkeypatch: pytest.MonkeyPatch) -> list[Enclosure]:
-    """The unit circle in a square, in tasks so small that a level has a dozen of them."""
+    """A half of the unit circle, in tasks so small that a level has several of them."""
     monkeypatch.setattr(refinement, "BUDGET", 24)
     monkeypatch.setattr(refinement, "BATCH", 4)
     graph = Graph()
     line = graph.variable(0).squared() + graph.variable(1).squared() - graph.constant(1)
     curve = Curve("circle", "of radius 1", system([line], (0, 1)), ())
-    return begin([curve], np.array([[x, y, x + 0.5, y + 0.5] for x in np.arange(-2, 2, 0.5) for y in (-2, -1, 0, 1)]
-                                   + [[x, y + 0.5, x + 0.5, y + 1.0] for x in np.arange(-2, 2, 0.5)
-                                      for y in (-2, -1, 0, 1)]))  # fmt: skip
+    return begin([curve], np.array([[x, 0.0, x + 0.5, 1.0] for x in np.arange(-1, 1, 0.5)]))
 
 
 def lost(enclosures: list[Enclosure]) -> int:
     """How many points of the circle are in no box."""
     boxes = enclosures[0].boxes()
-    inside = (boxes[:, None, :2] <= ON_THE_CIRCLE) & (ON_THE_CIRCLE <= boxes[:, None, 2:])
+    inside = (boxes[:, None, :2] <= ON_THE_CIRCLE) & (boxes[:, None, 2:] >= ON_THE_CIRCLE)
     return int((~inside.all(axis=2).any(axis=0)).sum())
 
 
@@ -60,7 +58,7 @@ def broken_at(statement: int, enclosures: list[Enclosure]) -> bool:
     before = sys.gettrace()
     sys.settrace(trace)
     try:
-        refine(enclosures, 1e-3, 1, None)
+        refine(enclosures, 1e-2, 1, None)
     except KeyboardInterrupt:
         return True
     finally:
@@ -78,14 +76,14 @@ def test_an_exception_at_any_statement_loses_no_box(monkeypatch: pytest.MonkeyPa
         assert lost(enclosures) == 0, statement
         if not came:
             break
-    assert statement > 200
+    assert statement > 60
     enclosures = circle(monkeypatch)
-    assert broken_at(150, enclosures)
-    assert refine(enclosures, 1e-3, 1, None)
+    assert broken_at(50, enclosures)
+    assert refine(enclosures, 1e-2, 1, None)
     assert lost(enclosures) == 0
 
 
-@pytest.mark.parametrize("times", [1, 2, 5, 9])
+@pytest.mark.parametrize("times", [1, 2, 4])
 def test_a_lack_of_threads_or_memory_loses_no_box(monkeypatch: pytest.MonkeyPatch, times: int) -> None:
     enclosures = circle(monkeypatch)
     submit, calls = ThreadPoolExecutor.submit, []
@@ -103,18 +101,18 @@ def test_a_lack_of_threads_or_memory_loses_no_box(monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_search_that_is_to_end_says_so_and_has_all_boxes(monkeypatch: pytest.MonkeyPatch) -> None:
-    for tasks in (0, 1, 3):
+    for tasks in (0, 1, 2):
         enclosures, asked = circle(monkeypatch), []
 
         def late(tasks: int = tasks, asked: list[int] = asked) -> bool:
             asked.append(1)
             return len(asked) > tasks
 
-        assert not refine(enclosures, 1e-3, 1, None, late)
+        assert not refine(enclosures, 1e-2, 1, None, late)
         assert len(asked) == tasks + 1
         assert lost(enclosures) == 0
         assert enclosures[0].number() == len(enclosures[0].boxes())
-    assert refine(enclosures, 1e-3, 1, None, lambda: False)
+    assert refine(enclosures, 1e-2, 1, None, lambda: False)
     assert lost(enclosures) == 0
 
 
