@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import inf
-from time import perf_counter
+from time import perf_counter, process_time
 
 SHARE = 0.06
 """Of the time, spent on maps on the way."""
@@ -19,9 +19,11 @@ ALLOWANCE = 1.5
 """Seconds for the first of them, whose worth is largest."""
 SAFETY = 2.0
 SHORTEST = 1.0
-"""Seconds kept for the last map in any case ..."""
+"""Seconds kept for the last map in any case, of a processor that does nothing else ..."""
 PART = 0.02
 """... or this part of the time that there is in all, if that is more."""
+LARGEST_PART = 1 / 3
+"""Of the time in all, kept for the last map on a busy machine while it is not known what a map takes."""
 MANY = 4000
 """Of fewer boxes the time says nothing about what each of them takes."""
 
@@ -51,6 +53,7 @@ class Pace:
     Attributes
     ----------
     deadline : reading of the clock at which all has to be done; None without a limit.
+    work : reading of a clock that runs while this process works: by the other one it takes longer on a busy machine.
     started : reading of the clock at the start.
     thin, map, text : what it takes to find the strips, to make a map of their cover, and to hand that over.
     spent : seconds that maps on the way took.
@@ -58,6 +61,7 @@ class Pace:
 
     deadline: float | None
     clock: Callable[[], float] = perf_counter
+    work: Callable[[], float] = process_time
     started: float = 0.0
     thin: Cost = field(default_factory=lambda: Cost(1e-5))
     map: Cost = field(default_factory=lambda: Cost(2e-5))
@@ -66,9 +70,10 @@ class Pace:
     _look_at: float = -inf
     _asked: float = inf
     _longest: float = 0.0
+    _worked: float = 0.0
 
     def __post_init__(self) -> None:
-        self.started = self.clock()
+        self.started, self._worked = self.clock(), self.work()
 
     def left(self) -> float:
         """Seconds until the deadline."""
@@ -77,7 +82,9 @@ class Pace:
     def last(self, boxes: int) -> float:
         """Seconds to keep for the last map, of so many boxes."""
         total = 0.0 if self.deadline is None else self.deadline - self.started
-        return max(SHORTEST, PART * total, SAFETY * self.cost(boxes)) + self._longest
+        busy = max(1.0, (self.clock() - self.started) / max(self.work() - self._worked, 0.01))
+        unknown = min(busy * SHORTEST, max(SHORTEST, LARGEST_PART * total))
+        return max(unknown, PART * total, SAFETY * self.cost(boxes)) + self._longest
 
     def cost(self, boxes: int) -> float:
         """Seconds for a map of what so many boxes leave."""
