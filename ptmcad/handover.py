@@ -24,8 +24,9 @@ class Topic(Enum):
     MEMORY = b"M"  # the memory limit in bytes, in words, and "asked" or "default"
     LOADING = b"L"  # the libraries that are about to be loaded, or nothing when they are
     TARGET = b"F"  # path of the result file, names of the other files that are to be written
-    RESULT = b"P"  # "partial" or "complete", and the result's text as it is by now
-    RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work
+    RESULT = b"P"  # "partial" or "complete", the result's text as it is by now, and a remark on how far it is, or ""
+    RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work;
+    # with the reason why there is none as long as none has been handed over
     PROGRESS = b"B"  # the progress bar stands in the terminal's line
     EXHAUSTED = b"X"  # memory has run out
     DONE = b"E"  # the program has come to its end and exits with its status

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import stat
 import sys
 from collections.abc import Callable, Iterable, Mapping
@@ -213,6 +214,11 @@ def where_saved(target: Path, place: Path, beside: Iterable[str] = ()) -> str:
     if pictures:
         return f", because {pictures[0]} shows an older result"
     return f", because another process is writing {target.name}"
+
+
+def how_to_go_on(place: Path) -> str:
+    """What goes on from a stopped result that can be gone on from, as the end of a sentence."""
+    return f"; --resume {shlex.quote(str(place))} goes on from there"
 
 
 def _replaceable(target: Path) -> bool:

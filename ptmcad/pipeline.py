@@ -14,11 +14,11 @@ from fractions import Fraction
 from importlib import import_module
 from time import perf_counter
 
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.expressions import did_you_mean
 from ptmcad.memory import check_room, loading
 from ptmcad.plan import is_certified
-from ptmcad.regionmap import RegionMap
+from ptmcad.regionmap import RegionMap, Status
 from ptmcad.savings import kept, load_all
 from ptmcad.slice import Count, Slice, without_free_lengths
 
@@ -48,7 +48,8 @@ def classify(
     ----------
     engine : ``"exact"``, ``"certified"``, or ``"auto"``: certified where springs have a free length, else exact.
     count : which count tells regions apart; the slice's own when None.
-    timeout : seconds after which `LimitReached` is raised.
+    timeout : seconds after which `LimitReached` is raised; loading the certified engine, and compiling it in the first
+        run on a machine, is no part of them.
     tolerance : the certified engine stops when at most this share of the window's area is undetermined; the exact
         engine leaves none.
     area_tolerance : largest relative width of each region's area bounds, 1e-4 when None; for the exact engine.
@@ -70,7 +71,6 @@ def classify(
     LimitReached
         After ``timeout`` seconds, with what there is of the map as ``partial``.
     """
-    started = perf_counter()
     if engine not in ENGINES:
         raise ConfigError(f"{engine!r} is none of {', '.join(ENGINES)}{did_you_mean(engine, ENGINES)}", key="engine")
     try:
@@ -79,13 +79,17 @@ def classify(
         raise ConfigError(str(error), key="count") from error
     undetermined, relative = _share(tolerance, "tolerance"), _share(area_tolerance, "area_tolerance")
     _check_count(slice)
-    deadline = None if timeout is None else started + timeout
     certified = is_certified(slice, engine)
     if not areas:
         _check_no_areas(certified, relative)
     off = kept(keep, certified)
     if certified:
-        result = _certified(slice, undetermined, relative, deadline, jobs, progress, off, partial, resume)
+        _check_certified(slice, relative, resume)
+        prepare(slice, engine, progress, off)
+    started = perf_counter()
+    deadline = None if timeout is None else started + timeout
+    if certified:
+        result = _certified(slice, undetermined, deadline, jobs, progress, off, partial, resume)
         return replace(result, timings={**result.timings, "total": perf_counter() - started})
     try:
         without_free_lengths(slice.parameters, "an exact map is")
@@ -107,17 +111,27 @@ def _check_no_areas(certified: bool, area_tolerance: Fraction | None) -> None:
         raise ConfigError("areas are not asked for, but a tolerance for them is given: leave one out", key="areas")
 
 
-def _certified(
-    slice: Slice,
-    tolerance: Fraction | None,
-    area_tolerance: Fraction | None,
-    deadline: float | None,
-    jobs: int | None,
-    progress: Progress | None,
-    keep: frozenset[str],
-    partial: Callable[[RegionMap], None] | None,
-    resume: RegionMap | None,
-) -> RegionMap:
+def prepare(
+    slice: Slice, engine: str = "auto", progress: Progress | None = None, keep: frozenset[str] = frozenset()
+) -> None:
+    """Load what an engine needs, and compile it where this machine has not done so: no part of any time limit.
+
+    Raises
+    ------
+    ConfigError
+        Where the certified engine is wanted and numba is missing, or the memory limit leaves it no room.
+    """
+    if is_certified(slice, engine):
+        with loading("the certified engine"):
+            import_module("ptmcad.interval.compiled")  # first: where numba is missing, it says so
+            if "imports" in keep:
+                load_all()
+            from ptmcad.interval.loading import load
+        check_room("the certified engine")
+        load(progress)
+
+
+def _check_certified(slice: Slice, area_tolerance: Fraction | None, resume: RegionMap | None) -> None:
     if area_tolerance is not None:
         raise ConfigError(
             "the certified engine bounds areas by what it leaves undetermined: give tolerance instead",
@@ -125,24 +139,42 @@ def _certified(
         )
     if resume is not None:
         check_resumable(slice, resume)
-    with loading("the certified engine"):
-        import_module("ptmcad.interval.compiled")  # first: where numba is missing, it says so
-        if "imports" in keep:
-            load_all()
-        from ptmcad.interval.engine import certified_map
-    check_room("the certified engine")
 
-    cover = None if resume is None else resume.cover
-    return certified_map(
-        slice,
-        tolerance=tolerance,
-        deadline=deadline,
-        jobs=jobs,
-        progress=progress,
-        partial=partial,
-        resume=cover,
-        keep=keep,
-    )
+
+def _certified(
+    slice: Slice,
+    tolerance: Fraction | None,
+    deadline: float | None,
+    jobs: int | None,
+    progress: Progress | None,
+    keep: frozenset[str],
+    partial: Callable[[RegionMap], None] | None,
+    earlier: RegionMap | None,
+) -> RegionMap:
+    from ptmcad.interval.engine import certified_map
+
+    def improved(found: RegionMap) -> None:
+        """What is handed on is never less than the map from which the computation went on."""
+        if partial is not None and (earlier is None or found.undetermined < earlier.undetermined):
+            partial(found)
+
+    try:
+        return certified_map(
+            slice,
+            tolerance=tolerance,
+            deadline=deadline,
+            jobs=jobs,
+            progress=progress,
+            partial=None if partial is None else improved,
+            resume=None if earlier is None else earlier.cover,
+            keep=keep,
+        )
+    except LimitReached as stop:
+        found = stop.partial
+        if earlier is None or (isinstance(found, RegionMap) and found.undetermined < earlier.undetermined):
+            raise
+        kept_map = replace(earlier, status=Status.PARTIAL)
+        raise LimitReached(f"{stop}; the map to go on from has no more, and is kept", partial=kept_map) from stop
 
 
 def check_resumable(slice: Slice, earlier: RegionMap) -> None:

@@ -8,13 +8,15 @@ killed after `GRACE`. A library that waits for memory in vain (`ptmcad.shortage`
 caller has made of signals, masks and standard streams is no obstacle. No temporary file that the child has told of
 stays. When a limit ends it (time; the caller's on processor time; memory, also where a library aborts on a failed
 allocation or the system kills the child), the last result that it handed over is saved and the status is 3. When a
-signal ends it, such a result is saved if one can go on from it. A parent that is killed takes the child with it.
+signal ends it, such a result is saved if one can go on from it, and where there is none yet the message says why. A
+parent that is killed takes the child with it.
 
 Not guaranteed: the last sentence on a system whose pipes send no signal (it is tested on Linux).
 """
 
 import atexit
 import gc
+import math
 import os
 import select
 import signal
@@ -187,7 +189,8 @@ class _Watch:
         return (*caller_limits(), *([] if own is None or lifted else [Limit(int(own[0]), False, own[1])]))
 
     def _deadline(self) -> float | None:
-        return float(self.told[Topic.DEADLINE][0]) + LATE if Topic.DEADLINE in self.told else None
+        told = float(self.told[Topic.DEADLINE][0]) if Topic.DEADLINE in self.told else math.inf
+        return None if told == math.inf else told + LATE  # infinite while the clock stands still
 
     def _read(self, end: int) -> bool:
         """Take what there is; False at the end of the pipe."""
@@ -213,7 +216,7 @@ class _Watch:
         if ended < 0 or deserted or self.caught or self.out_of_time or Topic.EXHAUSTED in self.told:
             self._tidy()
         if self.caught:
-            if Topic.RESUMABLE in self.told and Topic.RESULT in self.told:
+            if Topic.RESUMABLE in self.told:
                 self._stopped(f"by {signal.Signals(self.caught[0]).name}")
             return 128 + self.caught[0]
         text = self.text.decode(errors="replace")
@@ -301,16 +304,17 @@ class _Watch:
             _say(f"stopped: {why}\n")
             return 3
         if Topic.RESULT not in self.told:
-            _say(f"stopped: {why}; there was no partial result to save yet\n")
+            reason = f": {self.told[Topic.RESUMABLE][0]}" if Topic.RESUMABLE in self.told else ""
+            _say(f"stopped: {why}; there was no partial result to save yet{reason}\n")
             return 3
         from pathlib import Path  # not before it is needed: every start would pay for it
 
         from ptmcad.commit import identity
         from ptmcad.errors import OutputError
-        from ptmcad.output import save_stopped, where_saved
+        from ptmcad.output import how_to_go_on, save_stopped, where_saved
 
         target, beside = Path(self.told[Topic.TARGET][0]), self.told[Topic.TARGET][1:]
-        state, text = self.told[Topic.RESULT]
+        state, text, remark = self.told[Topic.RESULT]
         _, placed, mark = self.told.get(Topic.RENAMES, ("", "", ""))
         try:
             if mark and identity(Path(placed)) == mark:
@@ -320,7 +324,9 @@ class _Watch:
         except OutputError as error:
             _say(f"error: {why}, and the {state} result was lost: {error}\n")
             return 2
-        _say(f"stopped: {why}; the {state} result is in {place}{where_saved(target, place, beside)}\n")
+        further = how_to_go_on(place) if Topic.RESUMABLE in self.told and state == "partial" else ""
+        where = f"{place}{where_saved(target, place, beside)}{further}"
+        _say(f"stopped: {why}; the {state} result{remark} is in {where}\n")
         return 3
 
 

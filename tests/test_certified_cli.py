@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import io
 import json
+import math
+import os
+import re
 import signal
 import subprocess
 import sys
@@ -24,7 +27,9 @@ from ptmcad.cli import run
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cover import Cover
 from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.handover import Receiver, Topic, connect, disconnect
 from ptmcad.regionmap import RegionMap, Status
+from ptmcad.supervisor import LATE, _Watch
 
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = json.loads((ROOT / "docs" / "region-map.schema.json").read_text(encoding="utf-8"))
@@ -51,6 +56,9 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     module.certified_map = stand_in  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "ptmcad.interval.compiled", compiled)
     monkeypatch.setitem(sys.modules, "ptmcad.interval.engine", module)
+    loading = ModuleType("ptmcad.interval.loading")
+    loading.load = lambda progress: None  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "ptmcad.interval.loading", loading)
     # the map made by hand has more counts than its question needs, which a stored map must not have
     monkeypatch.setattr("ptmcad.verification.certified.verify.contradiction", lambda result: "")
     return calls
@@ -125,7 +133,8 @@ def test_the_time_limit_saves_the_map_so_far(
     engine["stop"] = True
     assert run(["classify", *HAND, "--out", str(tmp_path), "--timeout", "5"]) == 3
     place = tmp_path / SAVED
-    assert capsys.readouterr().err == f"stopped: the time limit was reached; the partial result is in {place}\n"
+    said = f"stopped: the time limit was reached; the partial result is in {place}; --resume {place} goes on from there"
+    assert capsys.readouterr().err == f"{said}\n"
     assert RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8")).status is Status.PARTIAL
     del engine["stop"]
     assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED)]) == 0
@@ -167,6 +176,163 @@ def test_the_progress_bar_shows_the_undetermined_share(stage: str, shown: str, m
     with ProgressBar() as progress:
         progress(stage, 6, 24)
     assert f"[######..................{shown}" in terminal.getvalue()
+
+
+# ------------------------------------------------------------------------------- whole processes, a stand-in's engine
+
+STAND_IN = """
+import sys, time
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+here, tests = Path(sys.argv.pop(1)), sys.argv.pop(1)
+sys.path.insert(0, tests)
+import certified_map as by_hand
+from ptmcad.errors import LimitReached
+from ptmcad.regionmap import Status
+from ptmcad.slice import Count
+
+def arrived():
+    (here / "arrived").touch()
+    time.sleep(60)
+def load(progress):
+    pass
+def search():
+    pass
+def draw(result, path, samples):
+    path.write_text("a picture")
+{work}
+def certified_map(slice, *, partial, deadline, **options):
+    partial(replace(by_hand.certified_map(Count.STABLE, Status.PARTIAL), slice=slice))
+    search()
+    return replace(by_hand.certified_map(Count.STABLE), slice=slice)
+for name in ("compiled", "loading", "engine"):
+    sys.modules["ptmcad.interval." + name] = ModuleType(name)
+sys.modules["ptmcad.interval.loading"].load = load
+sys.modules["ptmcad.interval.engine"].certified_map = certified_map
+sys.modules["ptmcad.render"] = ModuleType("render")
+sys.modules["ptmcad.render"].draw = draw
+from ptmcad.__main__ import main
+main()
+"""
+
+
+def _stand_in(folder: Path, work: str, *options: str, stop: signal.Signals | None = None) -> tuple[int, str]:
+    """Run the program with this work, and end it by a signal when it has arrived where it stays; status and message."""
+    program = STAND_IN.replace("{work}", work)
+    arguments = [str(folder), str(Path(__file__).parent), "classify", *HAND, "--out", str(folder / "out"), *options]
+    with subprocess.Popen([sys.executable, "-c", program, *arguments], cwd=ROOT, stderr=subprocess.PIPE) as running:
+        while stop is not None and not (folder / "arrived").exists():
+            assert running.poll() is None, running.communicate()
+            time.sleep(0.02)
+        if stop is not None:
+            running.send_signal(stop)
+        _, errors = running.communicate()
+    return running.returncode, errors.decode()
+
+
+forked = pytest.mark.skipif(not hasattr(os, "fork"), reason="without fork the command line is not watched")
+
+
+@forked
+@pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda s: s.name)
+def test_a_signal_saves_the_best_map_and_says_how_to_go_on(tmp_path: Path, stop: signal.Signals) -> None:
+    status, said = _stand_in(tmp_path, "search = arrived", stop=stop)
+    place = tmp_path / "out" / SAVED
+    assert status == 128 + stop
+    assert said == (
+        f"stopped: by {stop.name}; the partial result, 28 % of it undetermined, is in {place}; "
+        f"--resume {place} goes on from there\n"
+    )
+    assert RegionMap.from_json(place.read_text(encoding="utf-8")).status is Status.PARTIAL
+
+
+@forked
+def test_a_signal_before_the_first_map_says_that_there_is_none(tmp_path: Path) -> None:
+    status, said = _stand_in(tmp_path, "def load(progress):\n    arrived()", stop=signal.SIGTERM)
+    why = "the engine was still being loaded or compiled"
+    assert (status, said) == (143, f"stopped: by SIGTERM; there was no partial result to save yet: {why}\n")
+    assert not list((tmp_path / "out").iterdir())
+
+
+def test_compiling_is_no_part_of_the_time_limit(
+    engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """It takes 1000 seconds by the clock that is read, the limit is 600: for both processes 600 are left after it."""
+    clock = {"ahead": 0}
+    monotonic, counter = time.monotonic, perf_counter
+    monkeypatch.setattr(time, "monotonic", lambda: monotonic() + clock["ahead"])
+    monkeypatch.setattr("ptmcad.pipeline.perf_counter", lambda: counter() + clock["ahead"])
+
+    def load(progress: object) -> None:
+        clock["ahead"] += 1000
+
+    monkeypatch.setattr(sys.modules["ptmcad.interval.loading"], "load", load)
+    begun, counted = monotonic(), counter()
+    read, write = os.pipe()
+    connect(write)
+    try:
+        assert run(["classify", *HAND, "--out", str(tmp_path), "--timeout", "600"]) == 0
+    finally:
+        disconnect()
+        os.close(write)
+    with open(read, "rb") as pipe:
+        told = [(topic, float(texts[0])) for topic, texts in Receiver().feed(pipe.read()) if topic is Topic.DEADLINE]
+    first, stopped, again = (at for _, at in told)
+    taken = monotonic() - begun
+    assert 600 <= first - begun <= 600 + taken
+    assert stopped == math.inf
+    assert 1600 <= again - begun <= 1600 + taken
+    # the library loads once more, which takes no time outside of this test
+    assert 2600 <= engine["deadline"] - counted <= 2600 + taken
+    watch = _Watch(0, 0, 0, ())
+    watch.told[Topic.DEADLINE] = [repr(stopped), ""]
+    assert watch._deadline() is None
+    watch.told[Topic.DEADLINE] = [repr(again), "600 s"]
+    assert watch._deadline() == again + LATE
+
+
+@forked
+@pytest.mark.parametrize("options", [["--timeout", "5"], []], ids=["time", "signal"])
+def test_a_complete_map_is_not_lost_while_its_pictures_are_drawn(tmp_path: Path, options: list[str]) -> None:
+    work = "def draw(result, path, samples):\n    arrived()"
+    stop = None if options else signal.SIGINT
+    status, said = _stand_in(tmp_path, work, "--format", "json,png", *options, stop=stop)
+    assert status == (3 if options else 130)
+    assert "the complete result, 28 % of it undetermined, is in" in said
+    assert "--resume" not in said
+    text = (tmp_path / "out" / SAVED).read_text(encoding="utf-8")
+    assert RegionMap.from_json(text).status is Status.CERTIFIED
+
+
+def test_a_run_that_goes_on_from_a_map_does_not_replace_it_by_a_worse_one() -> None:
+    before = replace(certified_map(status=Status.PARTIAL), slice=free_slice())
+    better = replace(before, undetermined=before.undetermined / 2)
+    with pytest.raises(LimitReached, match="the map to go on from has no more, and is kept") as limit:
+        _resumed_and_stopped(better, before)
+    assert limit.value.partial == better
+    with pytest.raises(LimitReached) as limit:
+        _resumed_and_stopped(before, better)
+    assert limit.value.partial == better
+
+
+def _resumed_and_stopped(earlier: RegionMap, found: RegionMap) -> None:
+    """Go on from a map, be handed another one, and be stopped with that."""
+    handed: list[RegionMap] = []
+
+    def stand_in(slice: ptmcad.Slice, **options: Any) -> RegionMap:
+        options["partial"](found)
+        assert handed == ([found] if found.undetermined < earlier.undetermined else [])
+        raise LimitReached("the time limit was reached", partial=found)
+
+    loading, module = ModuleType("ptmcad.interval.loading"), ModuleType("ptmcad.interval.engine")
+    loading.load = lambda progress: None  # type: ignore[attr-defined]
+    module.certified_map = stand_in  # type: ignore[attr-defined]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "ptmcad.interval.compiled", ModuleType("ptmcad.interval.compiled"))
+        patch.setitem(sys.modules, "ptmcad.interval.loading", loading)
+        patch.setitem(sys.modules, "ptmcad.interval.engine", module)
+        ptmcad.classify(earlier.slice, resume=earlier, partial=handed.append)
 
 
 # ---------------------------------------------------------------------------------------------------- the real engine
@@ -227,7 +393,8 @@ def test_the_engine_stopped_by_ctrl_c_and_gone_on_with(tmp_path: Path) -> None:
         stopped.send_signal(signal.SIGINT)
         _, errors = stopped.communicate()
     assert stopped.returncode == 130
-    assert errors.decode().startswith("stopped: by SIGINT; the partial result is in ")
+    assert re.match(r"stopped: by SIGINT; the partial result, [0-9.e-]+ % of it undetermined, is in ", errors.decode())
+    assert "--resume" in errors.decode()
     partial = RegionMap.from_json((tmp_path / "slice-rho-L2.partial.json").read_text(encoding="utf-8"))
     assert partial.status is Status.PARTIAL
     with pytest.raises(ConfigError, match="axes differs"):

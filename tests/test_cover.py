@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+import tracemalloc
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from ptmcad.cover import MOST_STEPS, Cover, Rectangle, components, from_boxes, union_area
 from ptmcad.cover.borders import area_bounds
-from ptmcad.cover.filling import filled, gathered, pockets, simplified
+from ptmcad.cover.filling import combined, filled, gathered, pockets, simplified
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.samples import samples, simplest_between
 
@@ -187,6 +188,35 @@ def test_a_simplified_cover_covers_the_same_with_no_more_rectangles(cover: Cover
     assert len(after.rectangles) <= len(cover.rectangles)
     assert (flood(after).closed == flood(cover).closed).all()
     assert list(after.rectangles) == sorted(set(after.rectangles))
+
+
+@settings(deadline=None, max_examples=80)
+@given(covers())
+def test_a_combined_cover_covers_the_same_with_no_more_rectangles(cover: Cover) -> None:
+    after = combined(cover)
+    assert len(after.rectangles) <= len(cover.rectangles)
+    assert (flood(after).closed == flood(cover).closed).all()
+
+
+def test_many_rectangles_over_each_other_take_little_memory() -> None:
+    """As where a curve of solutions is double: 12 800 in 40 squares; each crosses all others of its square."""
+    generator = random.Random(5)
+    found = []
+    for k in range(40):
+        left, bottom = 512 * (k % 20), 1024 * (k // 20)
+        for _ in range(320):
+            a, b, c, d = (generator.randrange(200) for _ in range(4))
+            found.append((left + a, left + 511 - b, bottom + c, bottom + 511 - d))
+        found.append((left, left + 511, bottom, bottom + 511))
+    cover = Cover(16384, tuple(sorted(set(found))))
+    tracemalloc.start()
+    try:
+        after = simplified(cover)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert len(after.rectangles) == 40
+    assert peak < 20_000_000
 
 
 @settings(deadline=None, max_examples=80)

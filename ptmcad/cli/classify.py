@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from ptmcad.cli.formats import formats_of
-from ptmcad.cli.limits import limit_options, limits, tell_deadline
+from ptmcad.cli.limits import clock_stopped, limit_options, limits
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import slice_options
@@ -22,7 +22,15 @@ from ptmcad.errors import ConfigError, ExpressionError, LimitReached
 from ptmcad.expressions import rational
 from ptmcad.handover import Topic, tell, watched
 from ptmcad.memory import Bound
-from ptmcad.output import Writer, check_writable, save_stopped, text_writer, where_saved, write_files
+from ptmcad.output import (
+    Writer,
+    check_writable,
+    how_to_go_on,
+    save_stopped,
+    text_writer,
+    where_saved,
+    write_files,
+)
 from ptmcad.savings import check_names, kept
 from ptmcad.slice import Count, Slice
 
@@ -67,15 +75,22 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
         Any other of its kinds, with nothing written.
     """
     check_writable(request.out, tuple(f"{slice.name}.{suffix}" for suffix in request.formats))
-    from ptmcad.pipeline import classify
-
     target = request.out / f"{slice.name}.json"
     beside = tuple(f"{slice.name}.{suffix}" for suffix in request.formats if suffix != "json")
     if "json" in request.formats:
         tell(Topic.TARGET, str(target), *beside)
-    tell_deadline(request.timeout, request.spent)  # anew: the time that the import took is not the computation's
+
+    def handed_over(result: Any) -> None:
+        _hand_over(request, result)
+
     left = None if request.timeout is None else max(request.timeout - request.spent, SHORTEST)
     with ProgressBar() as progress:
+        with clock_stopped(request.timeout, request.spent):  # the time that the import takes is not the computation's
+            from ptmcad.pipeline import classify, prepare
+
+            _tell_why_none(slice, request, "the engine was still being loaded or compiled")
+            prepare(slice, request.engine, progress)
+        _tell_why_none(slice, request, "the first level of the search was not done")
         try:
             result = classify(
                 slice,
@@ -85,7 +100,7 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
                 area_tolerance=request.area_tolerance,
                 jobs=request.jobs,
                 progress=progress,
-                partial=partial(_hand_over, request) if watched() else None,
+                partial=handed_over if watched() else None,
                 resume=request.resume,
                 keep=request.keep,
                 areas=request.areas,
@@ -93,9 +108,11 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
         except LimitReached as stopped:
             if stopped.partial is None or "json" not in request.formats:
                 raise
-            place = save_stopped(target, _text(stopped.partial, request), beside=beside)
+            text = _hand_over(request, stopped.partial)  # first: if this process is ended now, the other one has it
+            place = save_stopped(target, text, beside=beside)
             where = f"the partial result is in {place}{where_saved(target, place, beside)}"
-            raise LimitReached(f"{stopped}; {where}") from stopped
+            further = "" if getattr(stopped.partial, "cover", None) is None else how_to_go_on(place)
+            raise LimitReached(f"{stopped}; {where}{further}") from stopped
         _save(result, slice.name, request.formats, request)
     return result
 
@@ -105,21 +122,33 @@ def _text(result: Any, request: Request) -> str:
     return text
 
 
-def _hand_over(request: Request, result: Any) -> None:
-    """Give the result so far to the process that watches, which saves it if this one has to be stopped."""
+def _tell_why_none(slice: Slice, request: Request, reason: str) -> None:
+    """Say why there is no map yet to the process that watches, when maps of this engine can be gone on from."""
+    from ptmcad.plan import is_certified
+
+    if "json" in request.formats and is_certified(slice, request.engine):
+        kept = "; the map to go on from is as it was" if request.resume is not None else ""
+        tell(Topic.RESUMABLE, f"{reason}{kept}")
+
+
+def _hand_over(request: Request, result: Any) -> str:
+    """Give the result so far to the process that watches, which saves it if this one has to be stopped; its text."""
+    text = _text(result, request)
     if "json" in request.formats:
-        if result.cover is not None:
-            tell(Topic.RESUMABLE)
-        tell(Topic.RESULT, _state(result), _text(result, request))
+        state = "partial" if result.status.value == "partial" else "complete"
+        open_share = "" if result.cover is None else f", {_percent(result.undetermined)} of it undetermined,"
+        tell(Topic.RESULT, state, text, open_share)
+    return text
 
 
-def _state(result: Any) -> str:
-    return "partial" if result.status.value == "partial" else "complete"
+def _percent(share: Fraction) -> str:
+    return f"{float(100 * share):.2g} %"
 
 
 def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) -> None:
     """Write the pictures and, last, the JSON."""
     writers: dict[str, Writer] = {}
+    text = _hand_over(request, result) if "json" in formats else ""  # first: drawing may take longer than there is time
 
     def draw(path: Path) -> None:
         from ptmcad import render  # brings matplotlib
@@ -129,9 +158,6 @@ def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) ->
     for file in (f"{name}.{suffix}" for suffix in formats if suffix != "json"):
         writers[file] = picture(file, draw)
     if "json" in formats:
-        text = _text(result, request)
-        if len(formats) > 1:  # if this process ends while it draws, the result is saved
-            tell(Topic.RESULT, _state(result), text)
         writers[f"{name}.json"] = text_writer(text)
         write_result(request.out, writers, f"{name}.json", text)
     else:
@@ -273,7 +299,9 @@ def command(
     load.
 
     Springs with a free length (--set l0=1/5) are the certified engine's: it leaves a part of the window undetermined,
-    which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the map so far; --resume goes on from there.
+    which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the best map so far, from the first level of the
+    search on, and says how much of it is undetermined; --resume goes on from there. In its first run on a machine it
+    compiles its inner loops, 10 to 40 seconds that --timeout does not count.
 
     \b
     Examples:
@@ -299,6 +327,8 @@ def command(
     )
     with limits(timeout, max_memory):
         if resume is not None:
+            if "json" in formats:
+                tell(Topic.RESUMABLE, "the map to go on from was still being checked; it is as it was")
             begun = time.monotonic()
             earlier = _resumed(slice, resume)  # of many rectangles that takes a while, which is part of the limit
             request = replace(request, resume=earlier, spent=time.monotonic() - begun)

@@ -6,6 +6,7 @@ and the time limit where the command itself looks at the clock.
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from collections.abc import Callable, Iterator
@@ -37,13 +38,23 @@ def limit_options(command: F) -> F:
                                 "too little to start with).  "
                                 "[default: 9/10 of the machine's]")(command)  # fmt: skip
     return click.option("--timeout", type=float, callback=_seconds, metavar="S",
-                        help="Stop after S seconds (exit status 3).")(command)  # fmt: skip
+                        help="Stop after S seconds (exit status 3); compiling the certified engine, once for a "
+                             "machine, is no part of them.")(command)  # fmt: skip
 
 
 def tell_deadline(timeout: float | None, spent: float = 0.0) -> None:
     """The time limit starts now, or started so many seconds ago."""
     if timeout is not None:
         tell(Topic.DEADLINE, repr(time.monotonic() + timeout - spent), f"{timeout:g} s")
+
+
+@contextmanager
+def clock_stopped(timeout: float | None, spent: float = 0.0) -> Iterator[None]:
+    """The time limit does not run inside; it starts at the end, or has started so many seconds before."""
+    if timeout is not None:
+        tell(Topic.DEADLINE, repr(math.inf), "")
+    yield
+    tell_deadline(timeout, spent)
 
 
 @contextmanager

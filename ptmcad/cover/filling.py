@@ -1,7 +1,7 @@
 """Covers with less detail: small components given up, and the same area covered by fewer rectangles.
 
 Guarantee: `filled` covers what the cover covers and the chosen components, and no inner point of another component;
-`simplified` covers the same points as before; `gathered` covers them and more.
+`simplified` and `combined` cover the same points as before; `gathered` covers them and more.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from collections.abc import Iterable
 import numpy as np
 
 from ptmcad.cover import Cover
-from ptmcad.cover.complement import Components
+from ptmcad.cover.complement import PLAIN, Components, Tiling
 from ptmcad.cover.rounding import cover_of
-from ptmcad.cover.subdivision import FREE, Integers, rectangle_array, subdivide
+from ptmcad.cover.subdivision import FREE, Integers, rectangle_array
 
 
 def pockets(components: Components, least_area: int) -> tuple[int, ...]:
@@ -29,22 +29,27 @@ def filled(components: Components, numbers: Iterable[int]) -> Cover:
     return cover_of(np.concatenate([array, _merged(tree.bounds[chosen])]), components.cover.steps)
 
 
-def simplified(cover: Cover) -> Cover:
+def simplified(cover: Cover, tiling: Tiling = PLAIN) -> Cover:
     """A cover of the same points by at most as many rectangles, mostly fewer.
 
     Rectangles that the others cover are left out, the smallest ones first; and neighbours that together are a rectangle
     are replaced by it.
+
+    Parameters
+    ----------
+    tiling : compiled code for what takes time; numpy's when it is left out. The result is the same.
 
     Raises
     ------
     ValueError
         When a rectangle is not one, or the lattice is too fine.
     """
-    rectangles = rectangle_array(cover)
-    array = _merged(rectangles)
+    # first what is cheap: the rest costs as much as rectangles cross each other, which they do by the thousand where
+    # a search has many boxes over each other
+    array = _fewer(rectangle_array(cover))
     if not len(array):
         return cover
-    tree = subdivide(rectangles, cover.steps)
+    tree = tiling.subdivide(array, cover.steps)
     rectangle, leaf = tree.meeting(array, closed=False)
     order = np.argsort(rectangle, kind="stable")
     rectangle, leaf = rectangle[order], leaf[order]
@@ -67,6 +72,11 @@ def simplified(cover: Cover) -> Cover:
             covering[leaf[own_leaves]] = left
             kept[k] = False
     return cover_of(_merged(array[kept]), cover.steps)
+
+
+def combined(cover: Cover) -> Cover:
+    """A cover of the same points by at most as many rectangles, found at small cost, as a start for what costs more."""
+    return cover_of(_fewer(rectangle_array(cover)), cover.steps)
 
 
 def gathered(cover: Cover, most: int) -> Cover:
@@ -107,6 +117,43 @@ def _in_squares(array: Integers, shift: int, most: int) -> Integers | None:
         return None
     low, high = np.minimum.reduceat(parts[:, 2:4], starts), np.maximum.reduceat(parts[:, 4:6], starts)
     return np.stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]], axis=1)
+
+
+def _fewer(array: Integers) -> Integers:
+    return _merged(_outermost(_merged(array)))
+
+
+def _outermost(array: Integers) -> Integers:
+    """Rectangles without most of those that lie in a single other one; the union stays.
+
+    For each size there is a grid with squares of that size, and rectangles of the size meet four of its squares at
+    most. In each square the largest of them is compared with all smaller ones that have their lower left corner there.
+    """
+    sides = array[:, (1, 3)] - array[:, (0, 2)]
+    sizes = np.array([int(side).bit_length() for side in sides.max(axis=1, initial=0)])
+    areas = sides[:, 0].astype(float) * sides[:, 1]
+    for size in np.unique(sizes)[::-1].tolist():
+        own = np.flatnonzero(sizes == size)
+        if not len(own):  # all of them were in larger ones
+            continue
+        first, last = array[own][:, (0, 2)] >> size, (array[own][:, (1, 3)] - 1) >> size
+        corners = [np.where(end, last, first) for end in ((False, False), (False, True), (True, False), (True, True))]
+        # squares in the order in which complex numbers are sorted, the largest rectangle of each first
+        square = np.concatenate([corner[:, 0] + 1j * corner[:, 1] for corner in corners])
+        holder = np.tile(own, 4)
+        order = np.lexsort((-areas[holder], square.imag, square.real))
+        square, starts = np.unique(square[order], return_index=True)
+        holder = holder[order][starts]
+        smaller = np.flatnonzero(sizes <= size)
+        corner = (array[smaller, 0] >> size) + 1j * (array[smaller, 2] >> size)
+        place = np.minimum(np.searchsorted(square, corner), len(square) - 1)
+        there = array[holder[place]]
+        inside = (there[:, (0, 2)] <= array[smaller][:, (0, 2)]) & (there[:, (1, 3)] >= array[smaller][:, (1, 3)])
+        lost = (square[place] == corner) & inside.all(axis=1) & (holder[place] != smaller)
+        kept = np.ones(len(array), dtype=np.bool_)
+        kept[smaller[lost]] = False
+        array, sizes, areas = array[kept], sizes[kept], areas[kept]
+    return array
 
 
 def _merged(array: Integers) -> Integers:

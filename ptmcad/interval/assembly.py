@@ -7,7 +7,7 @@ it may be an artefact of the boxes, with the same counts as a larger component b
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
@@ -38,11 +38,19 @@ class Assembler:
     plan: tuple[PlanStep, ...]
     versions: Mapping[str, str]
 
-    def map(self, cover: Cover, status: Status, seconds: Mapping[str, float]) -> RegionMap:
-        """The map of the window outside the cover."""
+    def map(
+        self, cover: Cover, status: Status, seconds: Mapping[str, float], late: Callable[[], bool] = lambda: False
+    ) -> RegionMap:
+        """The map of the window outside the cover.
+
+        Parameters
+        ----------
+        late : asked before each count but the first; components that are not counted when it says True, the smallest
+            ones, stay undetermined.
+        """
         complement = components(cover, COMPILED)
         pocket = min(POCKET * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
-        counted = self._counts(complement, pocket)
+        counted = self._counts(complement, pocket, late)
         kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)]
         known = frozenset(kept)
         horizontal, vertical = self.slice.axes
@@ -79,12 +87,16 @@ class Assembler:
             cover=cover,
         )
 
-    def _counts(self, complement: Components, pocket: Fraction) -> dict[int, tuple[Point, PointCount]]:
+    def _counts(
+        self, complement: Components, pocket: Fraction, late: Callable[[], bool]
+    ) -> dict[int, tuple[Point, PointCount]]:
         """Samples and counts of the components, largest first, as far as they are decided; small ones only easily."""
         horizontal, vertical = self.slice.axes
         window = ((horizontal.low, horizontal.high), (vertical.low, vertical.high))
         counted = {}
         for n in range(min(len(complement.areas), MOST_COUNTED)):
+            if n > 0 and late():
+                break
             large = complement.areas[n] >= pocket
             for x, y in islice(samples(complement, n, window), 3 if large else 1):
                 sample = Point((horizontal.name, vertical.name), x, y)

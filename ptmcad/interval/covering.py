@@ -14,6 +14,7 @@ from math import inf
 import numpy as np
 
 from ptmcad.cover import Cover, Window, from_boxes, union_area
+from ptmcad.cover.filling import combined
 from ptmcad.interval.refinement import Enclosure
 from ptmcad.interval.search import Boxes
 from ptmcad.interval.strips import NONE, Strips, areas_of_pieces, numbers_of_pieces, pieces, strips
@@ -105,6 +106,6 @@ def thinning(enclosures: Sequence[Enclosure], lattice: Lattice, jobs: int) -> Th
     worthwhile = areas_of_pieces(together, 0.0) < WORTHWHILE * areas_of_pieces(together, inf)
     whole = together[~worthwhile]
     (left, right), (bottom, top) = lattice.window
-    squares = union_area(lattice.cover(pieces(whole, inf)), COMPILED)
+    squares = union_area(combined(lattice.cover(pieces(whole, inf))), COMPILED)
     area = float((right - left) * (top - bottom) * squares / lattice.steps**2)
     return Thinning(together[worthwhile], whole, area, lattice)

@@ -8,26 +8,28 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf
-from time import perf_counter
 
 import flint
 import numba
 import numpy as np
 
-from ptmcad.cover import MOST_STEPS, Cover, Rectangle, components, union_area
-from ptmcad.cover.filling import gathered, simplified
+from ptmcad.cover import MOST_STEPS, Cover, Rectangle, union_area
+from ptmcad.cover.filling import combined, gathered, simplified
+from ptmcad.cover.subdivision import rectangle_array
 from ptmcad.domain import prove_slice
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.interval.assembly import Assembler
-from ptmcad.interval.covering import Lattice, box_rectangles, thinning
+from ptmcad.interval.covering import Lattice, Thinning, box_rectangles, thinning
 from ptmcad.interval.curves import curves
+from ptmcad.interval.loading import load
+from ptmcad.interval.pace import SAFETY, Pace
 from ptmcad.interval.points import point_counter
 from ptmcad.interval.refinement import Enclosure, begin, refine
-from ptmcad.interval.search import Boxes, search_curve
+from ptmcad.interval.search import Boxes
 from ptmcad.interval.statement import plan_of
 from ptmcad.interval.tape import enclosing_floats
 from ptmcad.interval.tiling import COMPILED
@@ -54,8 +56,14 @@ WITHIN = 100
 """Strips are tried as soon as the boxes leave at most so many times the tolerance undetermined."""
 ENOUGH = 0.5
 """... and used as soon as the finest ones would leave less than this part of it."""
+FIRST = Fraction(97, 100)
+"""... and the first one when they have left this part; at the end of the first level there is one in any case."""
+COARSE = Fraction(1, 4)
+"""While the boxes have more of the window, maps on the way do without strips, which would gain little."""
 SECONDS = 3e-5
 """That a map takes for each rectangle, with its JSON: less, on most machines."""
+FALL = Fraction(9, 10)
+"""A map on the way is worth making when the boxes' share is at most this part of what it was at the last one."""
 STEPS = 2**24
 """Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
 
@@ -90,7 +98,8 @@ def certified_map(
     Parameters
     ----------
     tolerance : largest undetermined share of the window's area at which to stop; `TOLERANCE` when None.
-    deadline : reading of `time.perf_counter` at which to stop.
+    deadline : reading of `time.perf_counter` at which to stop; `ptmcad.interval.loading.load` comes before, so that
+        compilation is no part of it.
     jobs : number of threads, all processors when None. The map does not depend on it.
     progress : called as progress(what, done, total).
     partial : called with maps on the way, each complete but for a larger undetermined area.
@@ -115,7 +124,9 @@ class _Run:
     """One computation of a map: the enclosures, which shrink, and the time each part took."""
 
     def __init__(self, slice: Slice, options: Options, resume: Cover | None):
-        self.started = perf_counter()
+        load(options.progress)
+        self.pace = Pace(options.deadline)
+        self.clock = self.pace.clock
         self.slice, self.options = slice, options
         self.seconds = {"plan": 0.0, "curves": 0.0, "regions": 0.0}
         self.area = float((slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low))
@@ -128,10 +139,13 @@ class _Run:
         wanted = curves(slice, slice.count, options.keep)
         self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, resume))
         self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted, options.keep), _versions())
-        _load(self.enclosures, self.assembler, self.lattice)
-        self.handed_over = perf_counter()
-        self.slowest = 0.0
-        self.seconds["plan"] = perf_counter() - self.started
+        self.best: RegionMap | None = None
+        """The map with the least undetermined area of those that were handed over."""
+        self._thinned: Thinning | None = None
+        """The strips of the boxes as they are, when they are known."""
+        self.enclosed = Fraction(1)
+        """The share that the boxes had when it was made."""
+        self.seconds["plan"] = self.clock() - self.pace.started
 
     def run(self) -> RegionMap:
         undetermined = Fraction(1)
@@ -141,89 +155,152 @@ class _Run:
             if result.undetermined <= tolerance:
                 return result
         for level in range(FIRST_LEVEL, LAST_LEVEL):
-            start = perf_counter()
-            in_time = refine(
-                self.enclosures,
-                self.area * 4.0**-level,
-                self.options.jobs,
-                self._search_until(),
-                self._report(level, undetermined),
-            )
-            self.seconds["curves"] += perf_counter() - start
+            start, regions = self.clock(), self.seconds["regions"]
+            report = self._report(level, undetermined)
+            self._thinned = None
+            in_time = refine(self.enclosures, self.area * 4.0**-level, self.options.jobs, report, self._late)
+            self.seconds["curves"] += self.clock() - start - (self.seconds["regions"] - regions)
             if not in_time:
-                so_far = self.partial()
-                if so_far.undetermined <= tolerance:  # strips of what the level had reached were enough
-                    return replace(so_far, status=Status.CERTIFIED)
-                raise LimitReached(
-                    f"the time limit was reached with {_percent(so_far.undetermined)} undetermined, "
-                    f"more than the tolerance of {_percent(tolerance)}",
-                    partial=so_far,
-                )
-            cover = self.lattice.cover(box_rectangles(self.enclosures))
+                return self._stopped("the time limit was reached")
+            cover = self._box_cover()
             undetermined = _share(cover)
             thin = None if undetermined <= tolerance else self.thin_cover(undetermined)
             if thin is not None:
                 cover = thin
-            if thin is not None or undetermined <= tolerance:
+            if (thin is not None or undetermined <= tolerance) and self._affordable(cover):
                 result = self.map(cover, Status.CERTIFIED)
                 undetermined = result.undetermined
                 if undetermined <= tolerance:
                     return result
-            self._hand_over()
+            strips_wanted = self._thinned is None and undetermined <= COARSE
+            if self.options.partial is not None and (
+                self.best is None or self.pace.due(self.boxes(), thinned=strips_wanted)
+            ):
+                self._hand_over(undetermined)
             if self.boxes() > MOST_BOXES:
                 break
-        so_far = self.partial()
-        raise LimitReached(
-            f"the search ended at {self.boxes():,} boxes with {_percent(so_far.undetermined)} undetermined, "
-            f"more than the tolerance of {_percent(tolerance)}",
-            partial=so_far,
-        )
+        return self._stopped(f"the search ended at {self.boxes():,} boxes")
 
     def boxes(self) -> int:
         """The number of boxes there are by now."""
-        return sum(len(enclosure.boxes()) for enclosure in self.enclosures)
+        return sum(enclosure.number() for enclosure in self.enclosures)
 
     def thin_cover(self, undetermined: Fraction) -> Cover | None:
-        """A cover of strips that are thin enough for the tolerance, if they can be."""
+        """A cover of strips that are thin enough for the tolerance, if they can be, in the time that there is."""
         allowed = self.options.tolerance
-        if undetermined > WITHIN * allowed:
+        if undetermined > WITHIN * allowed or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes()):
             return None
-        start = perf_counter()
-        strips = thinning(self.enclosures, self.lattice, self.options.jobs)
+        start = self.clock()
+        strips = self._strips()
         target = float(allowed) * self.area
         enough = strips.least() <= ENOUGH * target and strips.number(target) <= MOST_RECTANGLES
         cover = strips.cover(target) if enough else None
-        self.seconds["curves"] += perf_counter() - start
+        self.seconds["curves"] += self.clock() - start
         return cover
 
     def partial(self) -> RegionMap:
-        """The map so far, with strips as thin as they can be for not many more rectangles than boxes."""
-        strips = thinning(self.enclosures, self.lattice, self.options.jobs)
-        most, deadline = min(4 * len(strips.thin), MOST_RECTANGLES), self.options.deadline
-        if deadline is not None:
-            most = min(most, int((deadline - perf_counter()) / (2 * SECONDS)))
+        """The map so far, with strips as thin as they can be for not many more rectangles than boxes.
+
+        Where there is no time for it, or another one has a smaller undetermined area, it is the best that was made.
+        """
+        boxes = self.boxes()
+        if self.best is not None and self.pace.cost(boxes) > self.pace.left():
+            return self.best
+        strips = self._strips()
+        most = min(4 * len(strips.thin), MOST_RECTANGLES)
+        if self.pace.deadline is not None:
+            most = min(most, max(0, int(self.pace.left() / (SAFETY * SECONDS))))
         cover, known = strips.cover(1.5 * strips.least(), most), self.resumed
         if known is not None and _share(known) < _share(cover):
             cover = known
-        return self.map(cover, Status.PARTIAL)
+        found = self.map(cover, Status.PARTIAL)
+        return found if self.best is None or found.undetermined < self.best.undetermined else self.best
 
     def map(self, cover: Cover, status: Status) -> RegionMap:
-        start = perf_counter()
+        """The map of a cover; what is not counted when the time is over is undetermined."""
+        start, boxes = self.clock(), self.boxes()
         if _overlap(cover) > OVERLAPPING:
-            cover = simplified(cover)
-        times = self.seconds | {"total": start - self.started}
-        result = self.assembler.map(cover, status, times)
-        self.seconds["regions"] += perf_counter() - start
-        self.slowest = max(self.slowest, perf_counter() - start)
+            cover = simplified(cover, COMPILED)
+        times = self.seconds | {"total": start - self.pace.started}
+        result = self.assembler.map(cover, status, times, self._hurry)
+        self.seconds["regions"] += self.clock() - start
+        self.pace.map.record(boxes, self.clock() - start)
         return result
 
-    def _search_until(self) -> float | None:
-        """The deadline, less the time that it takes to make a map of what there is by then."""
-        deadline = self.options.deadline
-        if deadline is None:
-            return None
-        rest = max(1.0, 0.08 * (deadline - self.started), 2 * self.slowest, 1.5 * SECONDS * self.boxes())
-        return deadline - rest
+    def _hurry(self) -> bool:
+        """Whether there is only time left to put a map into other hands."""
+        return self.pace.left() < SAFETY * self.pace.text.of(self.boxes())
+
+    def _box_cover(self) -> Cover:
+        return combined(self.lattice.cover(box_rectangles(self.enclosures)))
+
+    def _strips(self) -> Thinning:
+        if self._thinned is None:
+            start, boxes = self.clock(), self.boxes()
+            self._thinned = thinning(self.enclosures, self.lattice, self.options.jobs)
+            self.pace.thin.record(boxes, self.clock() - start)
+        return self._thinned
+
+    def _affordable(self, cover: Cover) -> bool:
+        """Whether there is the time to make a map of the cover, as far as one can foresee."""
+        pieces = max(self.boxes(), len(cover.rectangles))
+        return SAFETY * (self.pace.map.of(pieces) + self.pace.text.of(pieces)) < self.pace.left()
+
+    def _late(self) -> bool:
+        """Whether the search has to end for the last map; between its tasks maps are handed over."""
+        boxes = self.boxes()
+        if self.pace.late(boxes):
+            self._thinned = None
+            return True
+        if self.options.partial is not None and self.pace.due(boxes):
+            start = self.clock()
+            self._thinned = None
+            enclosed = _share(self._box_cover())
+            self.pace.looked(self.clock() - start)
+            if enclosed <= (FIRST if self.best is None else FALL * self.enclosed):
+                self._hand_over(enclosed)
+            self.pace.resumed()
+        return False
+
+    def _hand_over(self, enclosed: Fraction) -> None:
+        """Give the map so far to whoever asked for it.
+
+        Parameters
+        ----------
+        enclosed : the boxes' share of the window.
+        """
+        start = self.clock()
+        found = self.partial() if enclosed <= COARSE else self.map(self._box_cover(), Status.PARTIAL)
+        self.enclosed = min(enclosed, self.enclosed)
+        least = Fraction(1) if self.best is None else self.best.undetermined
+        if found.undetermined < least and self.options.partial is not None:
+            self.best = found
+            made = self.clock()
+            self.options.partial(found)
+            self.pace.text.record(self.boxes(), self.clock() - made)
+        self.pace.spent += self.clock() - start
+
+    def _stopped(self, why: str) -> RegionMap:
+        """The map so far if it will do after all.
+
+        Raises
+        ------
+        LimitReached
+            Otherwise, with that map; without one where nothing is decided yet.
+        """
+        tolerance = self.options.tolerance
+        if self.best is None and self.options.partial is not None:
+            self._hand_over(Fraction(1))  # a cheap one first: what strips take is not known yet
+        so_far = self.partial()
+        if so_far.undetermined <= tolerance:  # strips of what the level had reached were enough
+            return replace(so_far, status=Status.CERTIFIED)
+        if so_far.undetermined == 1:
+            raise LimitReached(f"{why} before anything was decided: there is no map to save yet")
+        raise LimitReached(
+            f"{why} with {_percent(so_far.undetermined)} undetermined, more than the tolerance of "
+            f"{_percent(tolerance)}",
+            partial=so_far,
+        )
 
     def _report(self, level: int, undetermined: Fraction) -> Callable[[int, int], None] | None:
         progress = self.options.progress
@@ -231,26 +308,6 @@ class _Run:
             return None
         what = f"undetermined {_percent(undetermined)}"
         return lambda treated, waiting: progress(what, treated, treated + 8 * waiting)
-
-    def _hand_over(self) -> None:
-        """Give the map so far to whoever asked for it, but not so often that it would cost much."""
-        partial, until = self.options.partial, self._search_until()
-        if partial is None or (until is not None and perf_counter() + 2 * self.slowest > until):
-            return
-        if perf_counter() - self.handed_over > 10 * self.seconds["regions"] + 2:
-            partial(self.partial())
-            self.handed_over = perf_counter()
-
-
-def _load(enclosures: Sequence[Enclosure], assembler: Assembler, lattice: Lattice) -> None:
-    """Use all compiled code once: what has to be compiled is so before the search, not at its deadline."""
-    nothing = [Enclosure(enclosure.curve, []) for enclosure in enclosures]
-    components(thinning(nothing, lattice, 1).cover(0.0), COMPILED)
-    for enclosure in nothing:
-        area, weights = 0.0, enclosure.curve.importance()
-        search_curve(enclosure.curve.system.arguments(), enclosure.boxes(), area, 1, weights)
-    (left, right), (bottom, top) = lattice.window
-    assembler.counter.at((left + right) / 2, (bottom + top) / 2, assembler.slice.count, thorough=False)
 
 
 def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
@@ -299,8 +356,8 @@ def _share(cover: Cover) -> Fraction:
 
 def _overlap(cover: Cover) -> float:
     """How many times the rectangles cover their union, on average."""
-    union = union_area(cover, COMPILED)
-    return sum(float((right - left) * (top - bottom)) for left, right, bottom, top in cover.rectangles) / max(union, 1)
+    left, right, bottom, top = rectangle_array(cover).T.astype(np.float64)
+    return float(((right - left) * (top - bottom)).sum()) / max(union_area(cover, COMPILED), 1)
 
 
 def _percent(share: Fraction) -> str:

@@ -1,7 +1,9 @@
 """Refinement of the curves' enclosure, level by level: each level quarters the area at which boxes are left alone.
 
-Guarantee: at every moment the boxes that are left contain all curves over the rectangles at the start. The boxes of a
-finished level depend on nothing but the system and the start: not on the number of threads, nor on the time.
+Guarantee: at every moment the boxes that are left contain all curves over the rectangles at the start: also where an
+exception (a signal's, a lack of memory or of threads) breaks into any statement here. Such a break may leave boxes
+twice, which costs time, but never leaves one out. The boxes of a finished level depend on nothing but the system and
+the start: not on the number of threads, nor on the time.
 """
 
 from __future__ import annotations
@@ -9,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
-from time import perf_counter
 
 import numpy as np
 
@@ -30,6 +31,10 @@ class Enclosure:
     waiting: list[Boxes]
     small: list[Boxes] = field(default_factory=list)
 
+    def number(self) -> int:
+        """How many boxes there are."""
+        return sum(map(len, self.waiting)) + sum(map(len, self.small))
+
     def boxes(self) -> Boxes:
         """All of them; none where the curve does not enter the window."""
         none = self.curve.start(np.empty((0, 4)))
@@ -45,22 +50,23 @@ def refine(
     enclosures: Sequence[Enclosure],
     area: float,
     jobs: int,
-    deadline: float | None,
     report: Callable[[int, int], None] | None = None,
+    late: Callable[[], bool] | None = None,
 ) -> bool:
-    """One level: bisect until every box's projection has at most the given area. False when the deadline came first.
+    """One level: bisect until every box's projection has at most the given area. False when it was to end before.
 
     Parameters
     ----------
-    deadline : reading of `time.perf_counter` at which to stop.
     report : called with the numbers of boxes treated and waiting.
+    late : called before the first task and after each, when the enclosures have what the tasks have found; it may
+        take its time, in which the running tasks end. No task is begun after it has said True.
     """
     for enclosure in enclosures:
         enclosure.waiting = [*enclosure.waiting, *enclosure.small]
         enclosure.small = []
     with ThreadPoolExecutor(jobs) as pool:
         for enclosure in enclosures:
-            if not _refine_one(enclosure, area, pool, jobs, deadline, report):
+            if not _refine_one(enclosure, area, pool, jobs, report, late):
                 return False
     return True
 
@@ -70,34 +76,33 @@ def _refine_one(
     area: float,
     pool: ThreadPoolExecutor,
     jobs: int,
-    deadline: float | None,
     report: Callable[[int, int], None] | None,
+    late: Callable[[], bool] | None,
 ) -> bool:
     arguments, weights = enclosure.curve.system.arguments(), enclosure.curve.importance()
     queue = list(_batches(enclosure.waiting))
     running: dict[Future[tuple[Boxes, Boxes, int]], Boxes] = {}
     treated = 0
-    try:
-        while queue or running:
-            late = deadline is not None and perf_counter() > deadline
-            while queue and len(running) < jobs and not late:
-                batch = queue.pop()
-                running[pool.submit(search_curve, arguments, batch, area, BUDGET, weights)] = batch
-            if not running:
-                return False
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                small, waiting, used = future.result()
-                treated += used
-                if len(small):
-                    enclosure.small.append(small)
-                queue.extend(_batches([waiting]))
-                del running[future]  # last: an interruption before it leaves a box twice, after it never out
-            if report is not None:
-                report(treated, sum(len(batch) for batch in queue))
-        return True
-    finally:
-        # an interrupted task has changed nothing: its batch is still open
+    ending = late is not None and late()
+    while running or (queue and not ending):
+        while queue and len(running) < jobs and not ending:
+            batch = queue[-1]
+            running[pool.submit(search_curve, arguments, batch, area, BUDGET, weights)] = batch
+            queue.pop()
+        for future in wait(running, return_when=FIRST_COMPLETED).done:
+            small, waiting, used = future.result()
+            treated += used
+            if len(small):
+                enclosure.small.append(small)
+            queue.extend(_batches([waiting]))
+            del running[future]
+        # The only statement that takes boxes away. Until it is done the batches of before are still there: of those
+        # that an interruption cuts short nothing is lost, and what they have left is there twice at worst.
         enclosure.waiting = [*queue, *running.values()]
+        if report is not None:
+            report(treated, sum(len(batch) for batch in queue))
+        ending = ending or (late is not None and late())
+    return not queue
 
 
 def _batches(boxes: Sequence[Boxes]) -> Iterator[Boxes]:

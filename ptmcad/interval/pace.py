@@ -1,0 +1,117 @@
+"""The pace of a search: when it hands over a map on the way, and when it ends so that the last map is made in time.
+
+Guarantee: maps on the way take at most `SHARE` of the time and `ALLOWANCE` seconds, as far as what a map takes is
+foreseen; the search is asked to end while `SAFETY` times what the last map is foreseen to take is left.
+
+Nothing here decides what is in a map: only when it is made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import inf
+from time import perf_counter, process_time
+
+SHARE = 0.06
+"""Of the time, spent on maps on the way."""
+ALLOWANCE = 1.5
+"""Seconds for the first of them, whose worth is largest."""
+SAFETY = 2.0
+SHORTEST = 1.0
+"""Seconds kept for the last map in any case, of a processor that does nothing else ..."""
+PART = 0.02
+"""... or this part of the time that there is in all, if that is more."""
+LARGEST_PART = 1 / 3
+"""Of the time in all, kept for the last map on a busy machine while it is not known what a map takes."""
+MANY = 4000
+"""Of fewer boxes the time says nothing about what each of them takes."""
+
+
+@dataclass(slots=True)
+class Cost:
+    """The seconds that a kind of work on the boxes takes, from the last two times that it was done."""
+
+    each: float
+    """Seconds for a box, before anything is known."""
+    known: list[tuple[int, float]] = field(default_factory=list)
+
+    def record(self, boxes: int, seconds: float) -> None:
+        """The work on so many boxes took so many seconds."""
+        self.known = [*self.known[-1:], (boxes, seconds)]
+
+    def of(self, boxes: int) -> float:
+        """The seconds that the work on so many boxes will take: with more boxes more, with fewer no less."""
+        foreseen = (seconds * max(1.0, boxes / max(known, MANY)) for known, seconds in self.known)
+        return max(foreseen, default=self.each * boxes)
+
+
+@dataclass(slots=True)
+class Pace:
+    """The time that a computation has, and how it has been spent.
+
+    Attributes
+    ----------
+    deadline : reading of the clock at which all has to be done; None without a limit.
+    work : reading of a clock that runs while this process works: by the other one it takes longer on a busy machine.
+    started : reading of the clock at the start.
+    thin, map, text : what it takes to find the strips, to make a map of their cover, and to hand that over.
+    spent : seconds that maps on the way took.
+    """
+
+    deadline: float | None
+    clock: Callable[[], float] = perf_counter
+    work: Callable[[], float] = process_time
+    started: float = 0.0
+    thin: Cost = field(default_factory=lambda: Cost(1e-5))
+    map: Cost = field(default_factory=lambda: Cost(2e-5))
+    text: Cost = field(default_factory=lambda: Cost(5e-6))
+    spent: float = 0.0
+    _look_at: float = -inf
+    _asked: float = inf
+    _longest: float = 0.0
+    _worked: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.started, self._worked = self.clock(), self.work()
+
+    def left(self) -> float:
+        """Seconds until the deadline."""
+        return inf if self.deadline is None else self.deadline - self.clock()
+
+    def last(self, boxes: int) -> float:
+        """Seconds to keep for the last map, of so many boxes."""
+        total = 0.0 if self.deadline is None else self.deadline - self.started
+        busy = max(1.0, (self.clock() - self.started) / max(self.work() - self._worked, 0.01))
+        unknown = min(busy * SHORTEST, max(SHORTEST, LARGEST_PART * total))
+        return max(unknown, PART * total, SAFETY * self.cost(boxes)) + self._longest
+
+    def cost(self, boxes: int) -> float:
+        """Seconds for a map of what so many boxes leave."""
+        return self.thin.of(boxes) + self.map.of(boxes) + self.text.of(boxes)
+
+    def late(self, boxes: int) -> bool:
+        """Whether the search has to end; to be asked after each of its tasks, which it measures too."""
+        now = self.clock()
+        if self.deadline is None:
+            return False
+        self._longest = max(self._longest, now - self._asked)
+        self._asked = now
+        return now > self.deadline - self.last(boxes)
+
+    def resumed(self) -> None:
+        """What passed since `late` was asked was no task of the search."""
+        self._asked = self.clock()
+
+    def looked(self, seconds: float) -> None:
+        """It took so many seconds to see whether a map on the way is worth while: that is not done all the time."""
+        self.spent += seconds
+        self._look_at = self.clock() + seconds / (SHARE / 2)
+
+    def due(self, boxes: int, *, thinned: bool = True) -> bool:
+        """Whether there is time for a map on the way, without strips if they are not wanted or known."""
+        if self.clock() < self._look_at:
+            return False
+        cost = self.cost(boxes) - (0.0 if thinned else self.thin.of(boxes))
+        affordable = self.spent + cost <= ALLOWANCE + SHARE * (self.clock() - self.started)
+        return affordable and cost + self.last(boxes) < self.left()

@@ -1,0 +1,196 @@
+"""When maps are handed over, and when a search ends, by a clock that the test sets."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("numba")
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import ptmcad
+from ptmcad.errors import LimitReached
+from ptmcad.interval import assembly, engine, loading, refinement
+from ptmcad.interval.pace import ALLOWANCE, SAFETY, SHARE, SHORTEST, Pace
+from ptmcad.regionmap import RegionMap, Status
+
+
+class Clock:
+    """A clock that moves when it is told to, and a millisecond at each look, as time does."""
+
+    def __init__(self) -> None:
+        self.now = 1000.0
+
+    def __call__(self) -> float:
+        self.now += 1e-3
+        return self.now
+
+    def slowed(self, function: Callable[..., Any], seconds: float) -> Callable[..., Any]:
+        """The function, which takes so long by this clock."""
+
+        def slow(*arguments: Any, **named: Any) -> Any:
+            self.now += seconds
+            return function(*arguments, **named)
+
+        return slow
+
+
+def test_the_last_map_is_foreseen_from_those_before() -> None:
+    clock = Clock()
+    pace = Pace(clock() + 100, clock, clock)
+    assert pace.last(1000) == pytest.approx(2, abs=0.1)  # a fiftieth of the time
+    pace.map.record(10_000, 3.0)
+    assert pace.last(10_000) == pytest.approx(SAFETY * 3, rel=0.1)
+    assert pace.last(40_000) >= SAFETY * 12
+    assert pace.last(100) >= SAFETY * 3
+    assert not pace.late(10_000)
+    clock.now += 95
+    assert pace.late(10_000)
+
+
+def test_on_a_busy_machine_more_time_is_kept() -> None:
+    """By the clock all takes ten times what it does by the processor's; but a third of the time is enough."""
+    clock, work = Clock(), Clock()
+    long, short = Pace(clock() + 100, clock, work), Pace(clock() + 12, clock, work)
+    clock.now += 5
+    work.now += 0.5
+    assert long.last(10) == pytest.approx(10, rel=0.1)
+    assert short.last(10) == pytest.approx(4, rel=0.1)
+
+
+def test_a_long_task_is_expected_again() -> None:
+    clock = Clock()
+    pace = Pace(clock() + 40, clock, clock)
+    assert not pace.late(10)
+    clock.now += 12
+    assert not pace.late(10)
+    clock.now += 14.5  # 13.5 are left: one more such task does not fit with the map
+    assert pace.late(10)
+    assert Pace(clock() + SHORTEST / 2, clock, clock).late(10)
+    assert not Pace(None, clock, clock).late(10**7)
+
+
+def test_maps_on_the_way_take_a_small_part_of_the_time() -> None:
+    """Each takes 3 seconds whatever was foreseen, for an hour."""
+    clock = Clock()
+    pace = Pace(None, clock, clock)
+    made = 0
+    while clock.now < pace.started + 3600:
+        clock.now += 0.2
+        if pace.due(20_000):
+            clock.now += 3
+            pace.map.record(20_000, 3.0)
+            pace.spent += 3
+            made += 1
+    assert 50 <= made <= (ALLOWANCE + SHARE * (clock.now - pace.started)) / 3 + 1
+
+
+def test_what_is_not_worth_while_is_not_looked_at_all_the_time() -> None:
+    clock = Clock()
+    pace = Pace(None, clock, clock)
+    clock.now += 1000
+    assert pace.due(1000)
+    pace.looked(1.0)
+    assert not pace.due(1000)
+    clock.now += 2 / SHARE + 1
+    assert pace.due(1000)
+
+
+def window() -> ptmcad.Slice:
+    """A small part of free02 with a fold in it."""
+    return ptmcad.slice_from_options(
+        slice="rho,L2", ranges=["rho=1/2:1", "L2=5/4:7/4"], sets=["l0=1/5", "F3=-10", "F4=-10"]
+    )
+
+
+def stopped(
+    monkeypatch: pytest.MonkeyPatch, seconds: float, phase: str, length: float
+) -> tuple[float, RegionMap | None, list[RegionMap]]:
+    """Run until so many seconds by a clock by which one phase takes long: what is left, the map, those on the way."""
+    clock = Clock()
+    deadline = clock() + seconds
+    handed: list[RegionMap] = []
+    with monkeypatch.context() as patch:
+        patch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
+        patch.setattr(refinement, "BUDGET", 500)
+        patch.setattr(refinement, "search_curve", clock.slowed(refinement.search_curve, 0.1))
+        if phase == "handing":
+            hand = clock.slowed(handed.append, length)
+        else:
+            hand = handed.append
+            module = assembly if phase == "components" else engine
+            patch.setattr(module, phase, clock.slowed(getattr(module, phase), length))
+        with pytest.raises(LimitReached) as limit:
+            engine.certified_map(window(), tolerance=Fraction(1, 10**9), deadline=deadline, jobs=1, partial=hand)
+    found = limit.value.partial
+    assert found is None or isinstance(found, RegionMap)
+    return deadline - clock.now, found, handed
+
+
+@pytest.mark.parametrize(
+    "phase",
+    [
+        pytest.param("thinning", marks=pytest.mark.slow),
+        pytest.param("combined", marks=pytest.mark.slow),
+        "components",
+        pytest.param("union_area", marks=pytest.mark.slow),
+        pytest.param("handing", marks=pytest.mark.slow),
+    ],
+)
+def test_the_time_limit_is_kept_in_every_phase(monkeypatch: pytest.MonkeyPatch, phase: str) -> None:
+    """Whatever part of a map takes three seconds, the last map is made before the limit, and is the best."""
+    loading.load()
+    left, found, handed = stopped(monkeypatch, 40, phase, 3.0)
+    assert left > 0
+    assert found is not None
+    assert found.status is Status.PARTIAL
+    assert handed
+    assert found.undetermined == min(m.undetermined for m in [found, *handed])
+    shares = [m.undetermined for m in handed]
+    assert shares == sorted(shares, reverse=True)
+
+
+def test_counts_are_left_out_before_the_limit_is_missed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each count at a point takes ten seconds: what is not counted is undetermined, and the map is there in time."""
+    from ptmcad.interval.points import PointCounter
+
+    clock = Clock()
+    monkeypatch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
+    monkeypatch.setattr(PointCounter, "at", clock.slowed(PointCounter.at, 10.0))
+    deadline = clock() + 16
+    result = engine.certified_map(window(), tolerance=Fraction(99, 100), deadline=deadline, jobs=1)
+    assert clock.now <= deadline + 10
+    assert len(result.cells) == 2
+
+
+def test_before_anything_is_decided_the_message_says_that_there_is_no_map(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = Clock()
+    monkeypatch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
+    with pytest.raises(LimitReached, match="before anything was decided: there is no map to save yet") as limit:
+        engine.certified_map(window(), deadline=clock() + SHORTEST / 2, jobs=1)
+    assert limit.value.partial is None
+
+
+def test_nothing_is_compiled_after_loading() -> None:
+    """All that a map needs is compiled by `load`, of which a run is no part."""
+    from numba.core.dispatcher import Dispatcher
+
+    loading.load()
+
+    def signatures() -> dict[str, int]:
+        import sys
+
+        return {
+            f"{name}.{key}": len(value.signatures)
+            for name, module in sys.modules.items()
+            if name.startswith("ptmcad.interval.")
+            for key, value in vars(module).items()
+            if isinstance(value, Dispatcher)
+        }
+
+    before = signatures()
+    assert before["ptmcad.interval.strips.strips"] == 1
+    ptmcad.classify(window(), count="total", tolerance="1/5", jobs=1)
+    assert signatures() == before
