@@ -498,7 +498,7 @@ def test_real_roots_by_complex_roots() -> None:
 
     _, rods, free, _ = extensions.ELIMINATED
     first, second = squared_equations(free_springs.WITHOUT_LOADS[1], rods, free, (Fraction(0), Fraction(0)))
-    roots = resultant(coefficients_in(first, 0), coefficients_in(second, 0)).complex_roots()
+    roots: list[Any] = resultant(coefficients_in(first, 0), coefficients_in(second, 0)).complex_roots()
     assert sum(root.imag == 0 for root, _ in roots) == outcome("5.2-real").facts["real roots"][4]
 
 
@@ -507,7 +507,8 @@ def test_maps_with_free_lengths_at_points() -> None:
     from ptmcad.locate import locate
     from ptmcad.paper.free_lengths import proved_equilibria
 
-    half, draw, seen = Fraction(3, 2), Random(7), []
+    half, draw = Fraction(3, 2), Random(7)
+    seen: list[int] = []
     map_ = free_springs.certified("L2 = 3/2")
     while len(seen) < 5:
         rho, free = Fraction(draw.randint(26, 124), 100), Fraction(draw.randint(1, 49), 200)

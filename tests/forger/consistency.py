@@ -97,7 +97,7 @@ def with_regions(r: RegionMap, labels: Sequence[int] | None = None) -> RegionMap
         cells = tuple(n for n, label in enumerate(labels) if label == number)
         members = [r.cells[n] for n in cells]
         key = frozenset(tuple(c.sample) for c in members)
-        common = {name: members[0] and _common(members, name) for name in ("stable", "total", "index")}
+        common: dict[str, Any] = {name: _common(members, name) for name in ("stable", "total", "index")}
         area = areas.get(key, (Fraction(0), window_area(r)))
         if NO_AREAS in r.plan:
             area = (Fraction(0), window_area(r))

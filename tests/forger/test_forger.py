@@ -155,10 +155,10 @@ BOXES = 40
 def test_places_on_certified_maps(count: str) -> None:
     r = certified_map_of(count)
     assert ptmcad.verify(r, boxes=4).ok
-    wrong = []
+    wrong: list[tuple[str, int, str | None]] = []
     for kind in certified.FALSE:
         boxes = BOXES if kind is certified.cover_left_out else 0
-        wrong += [(kind.__name__, k) for k, make in enumerate(kind(r)) if ptmcad.verify(make(), boxes=boxes).ok]
+        wrong += [(kind.__name__, k, None) for k, make in enumerate(kind(r)) if ptmcad.verify(make(), boxes=boxes).ok]
     for kind in certified.TRUE:
         for k, make in enumerate(kind(r)):
             report = ptmcad.verify(make(), boxes=2)

@@ -102,7 +102,8 @@ def test_a_lack_of_threads_or_memory_loses_no_box(monkeypatch: pytest.MonkeyPatc
 
 def test_a_search_that_is_to_end_says_so_and_has_all_boxes(monkeypatch: pytest.MonkeyPatch) -> None:
     for tasks in (0, 1, 2):
-        enclosures, asked = circle(monkeypatch), []
+        enclosures = circle(monkeypatch)
+        asked: list[int] = []
 
         def late(tasks: int = tasks, asked: list[int] = asked) -> bool:
             asked.append(1)
