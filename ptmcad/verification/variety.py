@@ -115,7 +115,7 @@ class Place:
 
 
 def random_places(claims: Claims, seed: str, bits: int) -> Iterator[Place]:
-    """Random points, without end.
+    """Random points, without end, of components that `check_irreducible` has accepted: of others there may be none.
 
     Components vanish on a share of at most (sum of degrees)/2^bits of the points, and on a point where one does,
     nothing can be told: it is drawn again from one bit more, so that a point is found whatever the degrees are.

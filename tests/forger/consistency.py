@@ -102,8 +102,8 @@ def with_regions(r: RegionMap, labels: Sequence[int] | None = None) -> RegionMap
         if NO_AREAS in r.plan:
             area = (Fraction(0), window_area(r))
         regions.append(Region(area=area, cells=cells, sample=members[0].sample, **common))
-    cells = tuple(replace(c, region=label) for c, label in zip(r.cells, labels, strict=True))
-    return replace(r, cells=cells, regions=tuple(regions))
+    labelled = tuple(replace(c, region=label) for c, label in zip(r.cells, labels, strict=True))
+    return replace(r, cells=labelled, regions=tuple(regions))
 
 
 def _common(members: Sequence[Cell], name: str) -> Any:

@@ -30,6 +30,10 @@ MALFORMED = (IndexError, KeyError, ValueError, TypeError, AttributeError, Arithm
 """What a check may stumble over when those before it were left out."""
 
 
+BEFORE = {"variety complete": ("irreducible components",)}
+"""Checks that another one rests on: without them it need not end."""
+
+
 def violation(r: RegionMap, likely: str = "") -> tuple[str, str] | None:
     """The check that rejects a map and its words; None when every check accepts.
 
@@ -38,11 +42,11 @@ def violation(r: RegionMap, likely: str = "") -> tuple[str, str] | None:
     """
     claims = Claims(r)
     checks = {name: check for name, _, check in checks_of(r, None)}
-    if likely:
+    for name in (*BEFORE.get(likely, ()), *([likely] if likely else [])):
         try:
-            checks[likely](claims)
+            checks[name](claims)
         except Violation as found:
-            return likely, str(found)
+            return name, str(found)
         except MALFORMED:
             claims = Claims(r)
     for name, check in checks.items():
