@@ -21,6 +21,7 @@ import pytest
 from ptmcad.cli import COMMANDS, group, run
 from ptmcad.errors import ConfigError, LimitReached, OutputError
 from ptmcad.output import check_writable, text_writer, write_files
+from ptmcad.regionmap import Status
 
 ROOT = Path(__file__).parent.parent
 FIG4 = ROOT / "configs" / "fig4.yaml"
@@ -31,6 +32,9 @@ class StandIn:
     """What the command line uses of a region map."""
 
     plan = ("exact: no free lengths", "infinity: left out, the unknowns are bounded")
+
+    cover = None
+    status = Status.EXACT
 
     def __init__(self, name: str):
         self.name = name
@@ -62,6 +66,7 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
 
     pipeline = ModuleType("ptmcad.pipeline")
     pipeline.classify = classify  # type: ignore[attr-defined]
+    pipeline.prepare = lambda *_: None  # type: ignore[attr-defined]
     render = ModuleType("ptmcad.render")
     render.draw = draw  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "ptmcad.pipeline", pipeline)
@@ -204,10 +209,11 @@ def test_sigterm_removes_the_temporary_files(tmp_path: Path) -> None:
         "import sys, time, types\n"
         "pipeline, render = types.ModuleType('ptmcad.pipeline'), types.ModuleType('ptmcad.render')\n"
         "class Result:\n"
+        "    cover, status = None, types.SimpleNamespace(value='exact')\n"
         "    def to_json(self, timings): return 'new'\n"
         "def draw(result, path, samples):\n"
         "    path.write_text('half'); time.sleep(60)\n"
-        "pipeline.classify = lambda slice, **options: Result()\n"
+        "pipeline.classify, pipeline.prepare = lambda slice, **options: Result(), lambda *_: None\n"
         "render.draw = draw\n"
         "sys.modules.update({'ptmcad.pipeline': pipeline, 'ptmcad.render': render})\n"
         "from ptmcad.cli import main\n"

@@ -161,7 +161,7 @@ def test_a_signal_stops_c_code(tmp_path: Path, number: signal.Signals, status: i
     assert running.files() == old
 
 
-CERTIFIED = "Result.cover = 'of a certified map'\n"
+CERTIFIED = "Result.cover, Result.undetermined = 'of a certified map', 0.25\n"
 
 
 @linux
@@ -172,13 +172,13 @@ def test_a_signal_saves_a_map_that_can_be_gone_on_from(
 ) -> None:
     old = put(tmp_path, json='{"status": "certified"}', png="old picture")
     work = f"{CERTIFIED}def engine(progress, partial):\n    arrived()\n    {stay}\n"
-    running = Running(tmp_path, work, formats="png,json")
+    running = Running(tmp_path, work, "--engine", "certified", formats="png,json")
     running.arrive()
     running.process.send_signal(number)
     place = running.out / "fig2.partial.json"
     message = (
-        f"stopped: by {number.name}; the partial result is in {place}, because fig2.json holds an older result that is "
-        "not partial\n"
+        f"stopped: by {number.name}; the partial result, 25 % of it undetermined, is in {place}, because fig2.json "
+        f"holds an older result that is not partial; --resume {place} goes on from there\n"
     )
     assert running.end() == (status, message)
     assert running.files() == {**old, "fig2.partial.json": PARTIAL}
@@ -189,13 +189,18 @@ def test_the_map_saved_by_a_signal_replaces_the_one_it_went_on_from(tmp_path: Pa
     """And without JSON among the formats nothing is saved, as nothing was asked for."""
     put(tmp_path, json='{"status": "partial", "stage": "earlier"}')
     work = f"{CERTIFIED}def engine(progress, partial):\n    arrived()\n    time.sleep(3600)\n"
-    running = Running(tmp_path, work)
+    running = Running(tmp_path, work, "--engine", "certified")
     running.arrive()
     running.process.send_signal(signal.SIGINT)
-    assert running.end() == (130, f"stopped: by SIGINT; the partial result is in {running.out / 'fig2.json'}\n")
+    place = running.out / "fig2.json"
+    assert running.end() == (
+        130,
+        f"stopped: by SIGINT; the partial result, 25 % of it undetermined, is in {place}; "
+        f"--resume {place} goes on from there\n",
+    )
     assert running.files() == {"fig2.json": PARTIAL}
     (tmp_path / "arrived").unlink()
-    again = Running(tmp_path, work, formats="png")
+    again = Running(tmp_path, work, "--engine", "certified", formats="png")
     again.arrive()
     again.process.send_signal(signal.SIGINT)
     assert again.end() == (130, "")
@@ -337,7 +342,10 @@ def test_waiting_for_the_folder(tmp_path: Path, ended: str, certified: bool, old
     before = put(tmp_path, **old)
     held = os.open(tmp_path / "out", os.O_RDONLY)
     work = "import fcntl, stat\n" + WAITING + (CERTIFIED if certified else "")
-    options = ["--timeout", "1"] if ended == "time limit" else []
+    options = [
+        *(["--timeout", "1"] if ended == "time limit" else []),
+        *(["--engine", "certified"] if certified else []),
+    ]
     running = Running(tmp_path, work, *options, formats="png,json")
     fcntl.flock(held, fcntl.LOCK_EX)  # meanwhile the program starts; it can look at the folder later, too
     try:
@@ -358,7 +366,7 @@ def test_waiting_for_the_folder(tmp_path: Path, ended: str, certified: bool, old
         assert (files, errors) == (before, b"")
     else:
         assert files == {**before, **saved}
-        assert b"; the complete result is in " in errors
+        assert b"; the complete result" in errors
         assert b"fig2.complete.json, because " in errors
     check_writable(running.out, ("fig2.png", "fig2.json"))
     assert set(os.listdir(running.out)) == set(files)
