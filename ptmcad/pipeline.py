@@ -122,13 +122,25 @@ def prepare(
         Where the certified engine is wanted and numba is missing, or the memory limit leaves it no room.
     """
     if is_certified(slice, engine):
-        with loading("the certified engine"):
-            import_module("ptmcad.interval.compiled")  # first: where numba is missing, it says so
-            if "imports" in keep:
+        if "imports" in keep:
+            with loading("all that there is"):
                 load_all()
-            from ptmcad.interval.loading import load
-        check_room("the certified engine")
-        load(progress)
+        load_certified(progress)
+
+
+def load_certified(progress: Progress | None = None) -> None:
+    """Load the certified engine, and compile it where this machine has not done so.
+
+    Raises
+    ------
+    ConfigError
+        Where numba is missing, or the memory limit leaves no room.
+    """
+    with loading("the certified engine"):
+        import_module("ptmcad.interval.compiled")  # first: where numba is missing, it says so
+        from ptmcad.interval.loading import load
+    check_room("the certified engine")
+    load(progress)
 
 
 def _check_certified(slice: Slice, area_tolerance: Fraction | None, resume: RegionMap | None) -> None:

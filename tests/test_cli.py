@@ -179,9 +179,11 @@ def test_a_failed_picture_leaves_the_old_files(
         (tmp_path / f"fig4.{suffix}").write_text("old")
     engine["draw raises"] = error
     assert run(["classify", str(FIG4), "--out", str(tmp_path)]) == status
-    assert names(tmp_path) == ["fig4.json", "fig4.png"]
-    assert all(path.read_text() == "old" for path in tmp_path.iterdir())
+    saved = ["fig4.complete.json"] if status == 2 else []
+    assert names(tmp_path) == [*saved, "fig4.json", "fig4.png"]
+    assert all((tmp_path / f"fig4.{suffix}").read_text() == "old" for suffix in ("json", "png"))
     if status == 2:
+        assert json.loads((tmp_path / saved[0]).read_text())["name"] == "fig4"
         assert "No space left on device" in capfd.readouterr().err
 
 

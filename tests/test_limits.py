@@ -402,7 +402,7 @@ def test_a_picture_that_fails_leaves_the_result(
     # beside older pictures it would lie
     (tmp_path / "fig2.svg").write_text("older")
     assert run(arguments) == 2
-    assert sorted(os.listdir(tmp_path)) == ["fig2.json", "fig2.partial.json", "fig2.svg"]
+    assert sorted(os.listdir(tmp_path)) == ["fig2.complete.json", "fig2.json", "fig2.svg"]
 
 
 def test_lack_of_memory_is_no_failed_picture(tmp_path: Path) -> None:

@@ -151,9 +151,9 @@ def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) ->
     text = _hand_over(request, result) if "json" in formats else ""  # first: drawing may take longer than there is time
 
     def draw(path: Path) -> None:
-        from ptmcad import render  # brings matplotlib
+        from ptmcad.render import draw as drawn  # brings matplotlib
 
-        render.draw(result, path, samples=request.samples)
+        drawn(result, path, samples=request.samples)
 
     for file in (f"{name}.{suffix}" for suffix in formats if suffix != "json"):
         writers[file] = picture(file, draw)

@@ -51,7 +51,7 @@ def write_result(folder: Path, writers: Mapping[str, Writer], name: str, text: s
     try:
         return write_files(folder, writers)
     except PictureError as error:
-        place = save_stopped(folder / name, text)
-        raise PictureError(
-            f"{error}; the result, without pictures, is in {place}{where_saved(folder / name, place)}"
-        ) from error
+        beside = tuple(other for other in writers if other != name)
+        place = save_stopped(folder / name, text, whole=True, beside=beside)
+        why = where_saved(folder / name, place, beside)
+        raise PictureError(f"{error}; the result, without pictures, is in {place}{why}") from error

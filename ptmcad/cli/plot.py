@@ -52,9 +52,9 @@ def command(
         check_writable(folder, tuple(f"{result.stem}.{suffix}" for suffix in formats))
 
         def draw(path: Path) -> None:
-            from ptmcad import render  # brings matplotlib
+            from ptmcad.render import draw as drawn  # brings matplotlib
 
-            render.draw(stored, path, samples=samples, dpi=dpi)
+            drawn(stored, path, samples=samples, dpi=dpi)
 
         names = [f"{result.stem}.{suffix}" for suffix in formats]
         try:

@@ -13,7 +13,7 @@ import click
 from click.core import ParameterSource
 
 from ptmcad.cli.formats import formats_of
-from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.limits import clock_stopped, limit_options, limits
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.config import PARAMETERS, file_name, load, slice_from_options
@@ -249,6 +249,13 @@ def command(
         names += [f"{stem}.json"] * ("json" in formats)
         if names:
             check_writable(out, tuple(names))
+        if slice.has_free_lengths and over is None and start is None and not critical:
+            from ptmcad.pipeline import load_certified
+            from ptmcad.ranges.certified import has_free_lengths
+
+            if has_free_lengths(slice, along, other):
+                with clock_stopped(timeout):  # the time that compiling takes is not the computation's
+                    load_certified()
         found = answer(slice, request)
         click.echo(found.text)
         if names:

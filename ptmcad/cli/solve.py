@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.formats import formats_of
-from ptmcad.cli.limits import limit_options, limits, tell_deadline
+from ptmcad.cli.limits import clock_stopped, limit_options, limits
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.config import file_name, point_from_options
@@ -16,6 +16,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.memory import Bound
 from ptmcad.output import Writer, check_writable, text_writer, write_files
 from ptmcad.poses import MOST_DIGITS, Poses
+from ptmcad.slice import FREE_LENGTHS
 
 FORMATS = ("table", "json", "png", "svg", "pdf")
 DIGITS = 10
@@ -107,9 +108,12 @@ def command(
         parameters = point_from_options(config, {} if at is None else point_of(at), sets)
         if names:
             check_writable(out, names)
+        from ptmcad.pipeline import load_certified
         from ptmcad.solving import poses_at
 
-        tell_deadline(timeout)  # anew: the time that the import took is not the computation's
+        with clock_stopped(timeout):  # the time that imports and compiling take is not the computation's
+            if any(parameters.get(length) for length in FREE_LENGTHS):
+                load_certified()
         poses = poses_at(parameters, digits)
         if names:
             save(poses, out, start, names)
