@@ -17,8 +17,10 @@ import stat
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
+from fractions import Fraction
 from itertools import chain, count
 from pathlib import Path
+from typing import Any
 
 from ptmcad.commit import UNCHANGED, discard, identity, locked, put_into_place, reason, settle
 from ptmcad.errors import ConfigError, OutputError
@@ -180,8 +182,8 @@ def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterab
             with locked(folder, LOCK_PATIENCE) as alone:
                 if alone:
                     settle(folder)
-                free = not any(os.path.lexists(folder / name) for name in beside) and _replaceable(target)
-                chosen = target if free else next(name for name in names if _replaceable(name))
+                free = not any(os.path.lexists(folder / name) for name in beside) and _replaceable(target, text)
+                chosen = target if free else next(name for name in names if _replaceable(name, text))
                 if alone:
                     _check_free(folder, [chosen.name])
                 put_into_place({chosen: temporary})
@@ -213,7 +215,18 @@ def where_saved(target: Path, place: Path, beside: Iterable[str] = ()) -> str:
     pictures = [name for name in beside if os.path.lexists(target.with_name(name))]
     if pictures:
         return f", because {pictures[0]} shows an older result"
+    if _leaves_less_open(_stored(target) or {}, _stored(place)):
+        return f", because less is undetermined in the older partial result {target.name}"
     return f", because another process is writing {target.name}"
+
+
+def _stored(path: Path) -> dict[str, Any] | None:
+    """The document in a file; None when there is no result in it."""
+    try:
+        found = json.loads(read_text(path, MAX_BYTES, "a result"))
+    except (ConfigError, ValueError, RecursionError):
+        return None
+    return found if isinstance(found, dict) else None
 
 
 def how_to_go_on(place: Path) -> str:
@@ -221,15 +234,24 @@ def how_to_go_on(place: Path) -> str:
     return f"; --resume {shlex.quote(str(place))} goes on from there"
 
 
-def _replaceable(target: Path) -> bool:
-    """Whether there is no such file, or only a partial result."""
+def _replaceable(target: Path, text: str | None = None) -> bool:
+    """Whether there is no such file, or only a partial result; with a text: one that leaves no less open than it."""
     if not os.path.lexists(target):
         return True
-    try:
-        stored = json.loads(read_text(target, MAX_BYTES, "a result"))
-    except (ConfigError, ValueError, RecursionError):  # not a result: not ours to replace unasked
+    stored = _stored(target)
+    if stored is None or stored.get("status") != "partial":  # what is no result is not ours to replace unasked
         return False
-    return isinstance(stored, dict) and stored.get("status") == "partial"
+    return text is None or stored.get("cover") is None or not _leaves_less_open(stored, json.loads(text))
+
+
+def _leaves_less_open(stored: dict[str, Any], new: Any) -> bool:
+    """Whether an older certified map has less undetermined than a new result: then it is worth more than that."""
+    if stored.get("cover") is None or not isinstance(new, dict) or new.get("cover") is None:
+        return False
+    try:
+        return Fraction(stored["undetermined"]) < Fraction(new["undetermined"])
+    except (KeyError, TypeError, ValueError, ZeroDivisionError):  # no map that this program has made
+        return False
 
 
 def _remove_stale(folder: Path, names: Iterable[str]) -> None:

@@ -363,3 +363,26 @@ def test_a_stopped_result_loses_no_other(
         assert why == ", because fig2.png shows an older result"
     else:
         assert why == ", because another process is writing fig2.json"
+
+
+@pytest.mark.parametrize(
+    ("older", "newer", "replaced"),
+    [("1/50", "1/2", False), ("1/2", "1/50", True), ("1/50", "1/50", True), ("nonsense", "1/2", True)],
+)
+def test_a_stopped_map_replaces_none_with_less_undetermined(
+    tmp_path: Path, older: str, newer: str, replaced: bool
+) -> None:
+    def stopped(share: str) -> str:
+        return json.dumps({"status": "partial", "cover": {}, "undetermined": share})
+
+    target = tmp_path / "free02.json"
+    target.write_text(stopped(older))
+    place = save_stopped(target, stopped(newer))
+    if replaced:
+        assert (place, where_saved(target, place)) == (target, "")
+    else:
+        assert place.name == "free02.partial.json"
+        why = ", because less is undetermined in the older partial result free02.json"
+        assert where_saved(target, place) == why
+        assert target.read_text() == stopped(older)
+    assert place.read_text() == stopped(newer)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -13,10 +14,10 @@ from test_positivity import AXES, DIPS, NAMES, random_square, thin_dip
 from ptmcad.cover import Cover
 from ptmcad.expressions import Expression, axis, constant, parse
 from ptmcad.positivity import Need, Proved, Undecided, decide
+from ptmcad.regionmap import RegionMap
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.parameters import check_text
-from ptmcad.verification.report import Violation
+from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.signs import Sign, has_no_pole, is_in_domain
 
 WINDOW = ((fmpq(0), fmpq(2)), (fmpq(-3), fmpq(1)))
@@ -77,15 +78,15 @@ def test_random_functions_have_the_sign_that_the_engine_decides(seed: int) -> No
 def test_a_certified_map_outside_of_the_domain_is_rejected(name: str, text: str, message: str) -> None:
     """A stored map is read without asking for signs; random boxes do not meet a dip of width 1e-9."""
     true = certified(Cover(2**10, ()), lambda x, y: 2)
-    assert check_text(Claims(true)).endswith(" parameters, signs proved")
+    assert not isinstance(check_domain(Claims(true)), Unchecked)
     slice = true.slice
     expression = parse(text, {"rho": axis(0), "L2": axis(1)})
     altered = replace(slice, parameters={**slice.parameters, name: expression}, text={**slice.text, name: text})
     if message:
         with pytest.raises(Violation, match=message):
-            check_text(Claims(replace(true, slice=altered)))
+            check_domain(Claims(replace(true, slice=altered)))
     else:
-        assert check_text(Claims(replace(true, slice=altered))).endswith("signs proved")
+        assert not isinstance(check_domain(Claims(replace(true, slice=altered))), Unchecked)
 
 
 def test_a_base_below_zero_is_rejected_and_what_is_too_long_is_said_to_be_unchecked() -> None:
@@ -93,6 +94,23 @@ def test_a_base_below_zero_is_rejected_and_what_is_too_long_is_said_to_be_unchec
     names = {"rho": axis(0), "L2": axis(1)}
     given = {**true.slice.parameters, "rho": parse("rho-1", names)}
     with pytest.raises(Violation, match="rho is not positive"):
-        check_domain(replace(true, slice=replace(true.slice, parameters=given)))
+        check_domain(Claims(replace(true, slice=replace(true.slice, parameters=given))))
     given = {**true.slice.parameters, "rho": constant(0), "k1": parse("rho^16*L2^16+1+rho*L2", names)}
-    assert check_domain(replace(true, slice=replace(true.slice, parameters=given))) == "signs of k1 not checked"
+    found = check_domain(Claims(replace(true, slice=replace(true.slice, parameters=given))))
+    assert isinstance(found, Unchecked)
+    assert found.startswith("k1: ")
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [("L1", "(rho-1/3)^2"), ("L1", "(rho-1)^2"), ("k2", "100*(rho-1/3)^2"), ("F3", "1/(rho-1/3)^2"),
+     ("l0_3", "1/10 - (rho/2)^16*(L2/2)^15")],
+)  # fmt: skip
+def test_signs_of_an_exact_map_too(name: str, text: str, shipped: Callable[..., RegionMap]) -> None:
+    """Zeros and poles of even order change no sign at a sample, and beyond the degrees values are tried."""
+    true = shipped("fig4")
+    expression = parse(text, {"rho": axis(0), "L2": axis(1)})
+    altered = replace(true.slice, parameters={**true.slice.parameters, name: expression})
+    assert not isinstance(check_domain(Claims(true)), Unchecked)
+    with pytest.raises(Violation, match=f"{name} (is|has)"):
+        check_domain(Claims(replace(true, slice=altered)))

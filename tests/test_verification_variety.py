@@ -248,3 +248,13 @@ def test_no_seed_rejects_a_shipped_map_as_a_whole(name: str, shipped: Shipped) -
     for seed in range(3):
         report = ptmcad.verify(shipped(name), seed=seed)
         assert report.ok, (seed, report.violation)
+
+
+def test_factors_with_long_coefficients() -> None:
+    """A parameter of two factors whose coefficients are no machine integers; seen as a crash of verify."""
+    record = {
+        "parameters": {"L1": "((1e30*x+z+1)*(x+1e30*z+3))*1e-60", "L2": "1", "rho": "1+z/7"},
+        "axes": {"x": ["0", "1"], "z": ["0", "1"]},
+    }
+    report = ptmcad.verify(ptmcad.classify(ptmcad.slice_from_mapping(record)))
+    assert report.ok, report.violation

@@ -34,6 +34,12 @@ class Check:
     detail: str
 
 
+class Unchecked(str):
+    """What a check returns when it could not decide its claim, or a part of it: the reason."""
+
+    __slots__ = ()
+
+
 @dataclass(frozen=True, slots=True)
 class VerifyReport:
     """The checks in their order; those after a failed one are not reached."""
@@ -73,7 +79,8 @@ def checked(
             checks.append(Check(name, method, None, "not reached" if failed else "not complete in this partial result"))
             continue
         try:
-            checks.append(Check(name, method, True, check(claims)))
+            detail = check(claims)
+            checks.append(Check(name, method, None if isinstance(detail, Unchecked) else True, detail))
         except Violation as violation:
             failed = True
             checks.append(Check(name, method, False, shown(str(violation))))

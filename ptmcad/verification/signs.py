@@ -78,7 +78,10 @@ def _sign(p: fmpz_mpoly, window: Window, strict: bool) -> Sign:
     parts = list(_factors(p))
     relevant = [f for f, multiplicity in parts if strict or multiplicity % 2]
     if any(min(f.degrees) > 0 and sum(f.degrees) > MAX_DEGREE for f in relevant):
-        return Sign.UNCHECKED
+        (u0, u1), (v0, v1) = window
+        grid = [fmpq(k, 32) for k in range(1, 32)]
+        values = (_value(p, u0 + (u1 - u0) * s, v0 + (v1 - v0) * t) for s in grid for t in grid)
+        return Sign.WRONG if any(value < 0 for value in values) else Sign.UNCHECKED
     if any(_has_curve(f, window) for f in relevant) or _generic_value(p, window) < 0:
         return Sign.WRONG
     if strict and not all(_has_no_isolated_zero(f, window) for f in relevant):

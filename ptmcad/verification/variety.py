@@ -29,7 +29,7 @@ from functools import reduce
 from itertools import permutations
 from math import gcd, lcm, prod
 
-from flint import fmpq, fmpz_poly
+from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_poly
 
 from ptmcad.numerals import text_of
 from ptmcad.plane import PlanePolynomial
@@ -38,6 +38,7 @@ from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.fibre import Fibre
 from ptmcad.verification.report import Violation
 
+_RATIONAL: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("u", "v"), Ordering.lex)
 POINTS, BITS = 12, 48
 FRESH_POINTS = 10
 """Of these, points at least that no exponent was read off at."""
@@ -70,7 +71,7 @@ def _is_irreducible(p: PlanePolynomial) -> bool:
 
 
 def factors(p: object) -> list[PlanePolynomial]:
-    """Irreducible factors; by squarefree parts first, because FLINT's sorting of equal factors is limited."""
+    """Irreducible factors over Q, each once."""
     terms = list(p.to_dict().items())  # type: ignore[attr-defined]
     if not any(m[0] for m, _ in terms) or not any(m[1] for m, _ in terms):
         k = 0 if any(m[0] for m, _ in terms) else 1
@@ -80,11 +81,14 @@ def factors(p: object) -> list[PlanePolynomial]:
             PlanePolynomial.of((i, 0, int(c)) if k == 0 else (0, i, int(c)) for i, c in enumerate(f.coeffs()))
             for f, _ in line.factor()[1]
         ]
-    factors = p.factor_squarefree()[1]  # type: ignore[attr-defined]
+    # Not over Z: python-flint sorts those factors by coefficients as machine integers.
+    rational = _RATIONAL.from_dict({(int(m[0]), int(m[1])): c for m, c in terms})
     found = []
-    for part, _ in factors:
-        for f, _ in part.factor()[1]:
-            found.append(PlanePolynomial.of((int(m[0]), int(m[1]), int(c)) for m, c in f.to_dict().items()))
+    for f, _ in rational.factor()[1]:
+        coefficients = f.to_dict()
+        scale = lcm(*(int(c.q) for c in coefficients.values()))
+        found.append(PlanePolynomial.of((int(m[0]), int(m[1]), int(c.p) * (scale // int(c.q)))
+                                        for m, c in coefficients.items()))  # fmt: skip
     return found
 
 

@@ -10,6 +10,7 @@ from ptmcad.regionmap import RegionMap, Status
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.auxiliary import check_auxiliary
+from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.verify import verify_certified
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
@@ -85,6 +86,7 @@ def checks_of(result: RegionMap, seed: int | None) -> tuple[CheckOf, ...]:
     return (
         ("shape", "cross references", check_shape),
         ("parameters as written", "expressions compared", check_text),
+        ("signs of parameters", "Sturm counts, elimination", check_domain),
         ("equations", "potential from the nodes", check_system),
         ("irreducible components", "factorization", check_irreducible),
         ("variety complete", "norm of det H at random points", partial(check_norm, seed=drawn)),

@@ -11,12 +11,11 @@ from fractions import Fraction
 from flint import arb, fmpq
 
 from ptmcad.expressions import Expression
-from ptmcad.regionmap import RegionMap
 from ptmcad.slice import FREE_LENGTHS, Slice
 from ptmcad.verification.certified.energy import NAMES, Energy
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.report import Violation
+from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.signs import Sign, has_no_pole, is_in_domain
 
 POSITIVE = ("L1", "L2", "k1", "k2", "k3")
@@ -24,16 +23,17 @@ NOT_NEGATIVE = ("rho", *FREE_LENGTHS)
 Values = dict[str, Fraction]
 
 
-def check_domain(result: RegionMap) -> str:
-    """Every parameter is in the whole open window what the certified engine's proofs ask for.
+def check_domain(claims: Claims) -> str:
+    """Every parameter is in the whole open window what the geometry and the engines' proofs ask for.
 
     Returns
     -------
     What was proved, and of which parameters it was not.
     """
-    window = [(_rational(a.low), _rational(a.high)) for a in result.slice.axes]
+    slice = claims.result.slice
+    window = [(_rational(a.low), _rational(a.high)) for a in slice.axes]
     here, unchecked = (window[0], window[1]), []
-    for name, expression in result.slice.parameters.items():
+    for name, expression in slice.parameters.items():
         pole = has_no_pole(expression, here)
         if pole is Sign.WRONG:
             raise Violation(f"{name} has a pole in the window")
@@ -45,7 +45,9 @@ def check_domain(result: RegionMap) -> str:
                 raise Violation(f"{name} is {'not positive' if strict else 'negative'} somewhere in the window")
         if Sign.UNCHECKED in (pole, sign):
             unchecked.append(name)
-    return f"signs of {', '.join(unchecked)} not checked" if unchecked else "signs proved"
+    if unchecked:
+        return Unchecked(f"{', '.join(unchecked)}: of too high degree, or zero at a point that could not be told")
+    return f"{len(slice.parameters)} parameters"
 
 
 def exact(value: Fraction) -> arb:
@@ -68,7 +70,7 @@ def values_at(claims: Claims, x: Fraction, y: Fraction) -> Values:
     values = {name: Fraction(0) for name in FREE_LENGTHS} | claims.parameters_at(x, y)
     for name in POSITIVE:
         if values[name] <= 0:
-            raise Violation(f"{name} is {float(values[name]):g}, not positive")
+            raise Violation(f"{name} is not positive")
     for name in NOT_NEGATIVE:
         if values[name] < 0:
             raise Violation(f"{name} is negative")

@@ -7,6 +7,7 @@ from functools import partial
 from hashlib import sha256
 
 from ptmcad.regionmap import RegionMap
+from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
@@ -30,6 +31,7 @@ def verify_certified(result: RegionMap, seed: int | None, boxes: int | None) -> 
     steps: tuple[tuple[str, str, Callable[[CertifiedClaims], str]], ...] = (
         ("form", "comparison", check_form),
         ("parameters as written", "expressions compared", check_text),
+        ("signs of parameters", "Sturm counts, elimination", check_domain),
         ("equations", "values of the potential at random points", partial(check_potential, seed=drawn)),
         ("components", "sweep over the rectangles", check_components),
         ("regions and areas", "sweep, breadth-first search", check_regions),
