@@ -156,6 +156,8 @@ def check_regions(claims: CertifiedClaims) -> str:
         members = tuple(n for n, cell in enumerate(r.cells) if cell.region == number)
         if not members or members != region.cells:
             raise Violation(f"region {number} is said to have cells {region.cells}, not {members}")
+        if len(members) > 1:
+            raise Violation(f"region {number} joins cells {members}, which are not proved to be connected")
         for name in _COUNTS:
             values = {getattr(r.cells[n], name) for n in members}
             if values != {getattr(region, name)}:
