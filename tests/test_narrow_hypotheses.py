@@ -138,7 +138,8 @@ def test_rho_next_to_a_bar_s_length(off: Q) -> None:
     assert stable.decided
     assert stable.stable == seen_at(s, x, y)["stable"]
     total = counts.at(x, y, Count.TOTAL)
-    # undecided is an answer; what is decided is what is seen on the same side, at a place where the search sees well
+    assert total.decided or off
+    # next to the circle undecided is an answer too; what is decided is what is seen on the same side, at a place where the search sees well
     far = Q(1, 10**4) if off > 0 else -Q(1, 10**4)
     assert total == PointCount() or total.total == seen_at(s, Q(7, 5) + (far if off else 0), y)["total"]
 
@@ -147,7 +148,7 @@ def test_rho_and_a_bar_equal_everywhere_but_written_otherwise() -> None:
     window = {"m": ["1/2", 1], "L2": ["1/2", 1]}
     s = slice_of(window, rho="m*(m + 2)/(m + 2)", L1="(m^2 + m)/(1 + m)")
     with pytest.raises(DegenerateSliceError, match="rho = L1 everywhere"):
-        certified_map(s, tolerance=Q(1, 10))
+        certified_map(s, tolerance=Q(1, 10), deadline=perf_counter() + 20)
 
 
 def test_rho_nearly_equal_to_a_bar_everywhere() -> None:
