@@ -139,7 +139,7 @@ def test_rho_next_to_a_bar_s_length(off: Q) -> None:
     assert stable.stable == seen_at(s, x, y)["stable"]
     total = counts.at(x, y, Count.TOTAL)
     assert total.decided or off
-    # next to the circle undecided is an answer too; what is decided is what is seen on the same side, at a place where the search sees well
+    # next to the circle undecided is an answer too; what is decided is what is seen further on the same side
     far = Q(1, 10**4) if off > 0 else -Q(1, 10**4)
     assert total == PointCount() or total.total == seen_at(s, Q(7, 5) + (far if off else 0), y)["total"]
 
