@@ -9,6 +9,7 @@ from functools import cache, partial
 from typing import Any
 
 import pytest
+from flint import arb, arb_poly, ctx, fmpq
 
 from forger.consistency import drop, kept, put, swapped, with_plan
 from forger.maps import named
@@ -34,7 +35,8 @@ from ptmcad.slice import Axis, Count, Point
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.auxiliary import check_auxiliary
-from ptmcad.verification.claims import Claims
+from ptmcad.verification.branches import Effort, PrecisionTooLow, _along
+from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.counts import check_counts
 from ptmcad.verification.fibre import Fibre, rational
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
@@ -393,6 +395,7 @@ def test_rejecting_branches(check: Check, name: str, change: Change, words: str)
     ("check", "name"),
     [
         (auxiliary, "fig3+hermite-matrix+no-areas"),
+        (auxiliary, "fig3+sign-curve+no-areas"),
         (check_plan, "fig3+no-real-points+no-areas"),
         (check_plan, "fig3+infinity+no-areas"),
         (check_plan, "fig3+axis-order+no-areas"),
@@ -427,3 +430,15 @@ def test_counts_without_a_zero_euler_sum_are_a_fault_of_the_check(monkeypatch: p
 def test_a_degenerate_sample(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Fibre, "morse_index", lambda self: None)
     rejected(check_counts, the("fig3"), "an equilibrium is degenerate at")
+
+
+@pytest.mark.parametrize("distance", [Fraction(0), Fraction(1, 2**70)])
+def test_branches_that_are_not_told_apart_ask_for_more_precision(distance: Fraction) -> None:
+    """Of (v - 1)^2 = u^2 + distance^2, at the middle of a panel."""
+    square = distance**2
+    n = square.denominator
+    curve = PlaneCurve(0, ((0, 2, n), (0, 1, -2 * n), (0, 0, n - square.numerator), (2, 0, -n)))
+    rows = [arb_poly(row)(arb_poly([0, 1])) for row in curve.in_v]
+    effort = Effort(arb(2) ** -20, fmpq(1, 8), fmpq(1, 2**20), (fmpq(0), fmpq(2)), (2,))
+    with ctx.workprec(64), pytest.raises(PrecisionTooLow):
+        _along(rows, fmpq(1, 8), arb(1), 2, effort)

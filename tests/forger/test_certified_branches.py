@@ -284,6 +284,7 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
                    "1/(L1 - L1)", "tan(th1)", "sin(L1)", "+L1", "(0 if L1 else 0)", "l1")),
     (check_potential, springs, plus("(L1 + L2 + rho + k1 + F3)^9"), "a product of more than 2000 terms"),
     (check_potential, springs, plus(POWER), "too many terms, too high a degree or too long numbers"),
+    (check_potential, springs, plus("((L1^9)^9)^9"), "too many terms, too high a degree or too long numbers"),
     (check_potential, springs, plus("(((9^9)^9)^9)^9"), "too many terms, too high a degree or too long numbers"),
     (check_potential, springs, plus(" + ".join(f"{n}*(L1 + L2 + rho + k1)^5*({name} + 1)^5*L1^{n}"
         for n in range(1, 5) for name in ("F3", "F4", "k2"))), "too many terms, too high a degree or too long numbers"),
@@ -312,6 +313,7 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (check_points, springs, with_parameter("rho", "-1"), "cell 0, at rho=.*: rho is negative"),
     (check_points, springs, with_parameter("l0_2", "-1"), "cell 0, at rho=.*: l0_2 is negative"),
     (check_points, springs, lambda r: with_parameter("F3", f"1/(rho - {r.cells[0].sample[0]})")(r), "zero|pole"),
+    (check_points, partial(made, "pitchfork"), sample_at(0, 400, 0), r"confirmed: an equilibrium near \(.*\) may be"),
     (check_points, partial(made, "crease", "total"), sample_at(0, 6, 6), "confirmed: rho equals the length of a bar"),
     (check_points, partial(made, "other-crease", "total"), sample_at(0, 6, 3), "confirmed: rho equals the length"),
     (check_points, partial(made, "slack", "admissible"), sample_at(0, 0, 0), "a spring may be as long as its free"),
