@@ -110,12 +110,15 @@ class Slice:
             yield "no load"
 
 
-def without_free_lengths(parameters: Mapping[str, Expression], what: str) -> dict[str, Expression]:
+def without_free_lengths(
+    parameters: Mapping[str, Expression], what: str, instead: str = "ptmcad classify encloses them"
+) -> dict[str, Expression]:
     """The parameters for algebra, which would leave free lengths out: they have to be zero.
 
     Parameters
     ----------
     what : that is not computed otherwise, as the start of a sentence.
+    instead : what is computed, for the same sentence.
 
     Raises
     ------
@@ -125,7 +128,7 @@ def without_free_lengths(parameters: Mapping[str, Expression], what: str) -> dic
     if any(parameters[name].numerator for name in FREE_LENGTHS if name in parameters):
         raise ConfigError(
             f"{what} not computed for springs with a free length, which bring in square roots and curves of degree "
-            "over 1000; ptmcad classify encloses them"
+            f"over 1000; {instead}"
         )
     return {name: value for name, value in parameters.items() if name not in FREE_LENGTHS}
 
