@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from flint import arb, ctx
+from flint import arb, ctx, fmpq_mpoly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -27,7 +27,7 @@ from ptmcad.verification.certified.parameters import energy_at, energy_over, exa
 from ptmcad.verification.certified.points import all_equilibria, counts_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.sweep import sweep
-from ptmcad.verification.certified.system import _energy as potential
+from ptmcad.verification.certified.system import potential, squares
 
 pytest.importorskip("numba")
 
@@ -180,6 +180,8 @@ FALSE: dict[str, tuple[Change, str]] = {
     "potential": (lambda r: with_potential(r, "1/2*k1*", "1/2*k2*"), "equations"),
     "sign of a load": (lambda r: with_potential(r, "- F3*", "+ F3*"), "equations"),
     "a potential that is a program": (lambda r: with_potential(r, "1/2*k1*", "exit()*k1*"), "equations"),
+    "the absolute value of a load": (lambda r: with_potential(r, " - F3*", " + sqrt(F3^2)*"), "equations"),
+    "a load's 45th digit": (lambda r: with_potential(r, " - F3*", f" - (1 + 1/{10**45})*F3*"), "equations"),
     "unknowns": (lambda r: replace(r, system=replace(r.system, unknowns=("th2", "th1"))), "equations"),
     "another load": (lambda r: with_text(r, "F3", "-11"), "parameters as written"),
     "status": (lambda r: replace(r, status=Status.EXACT), "form"),
@@ -366,6 +368,25 @@ def random_values(rng: random.Random) -> dict[str, Fraction]:
     return found | {name: Fraction(rng.randint(-300, 300), 100) for name in ("F3", "F4", "F3x", "F4x")}
 
 
+def energy(values: dict[str, arb]) -> arb:
+    """The potential at a point of parameters and angles."""
+    known = dict(values)
+    for th in ("th1", "th2"):
+        known |= {f"cos({th})": values[th].cos(), f"sin({th})": values[th].sin()}
+    known |= {f"l{n}": value(square, known).sqrt() for n, square in enumerate(squares(), 1)}
+    return value(potential(), known)
+
+
+def value(p: fmpq_mpoly, known: dict[str, arb]) -> arb:
+    total = arb(0)
+    for exponents, c in p.terms():
+        term = arb(c)
+        for name, e in zip(p.context().names(), exponents, strict=True):
+            term *= known[name] ** int(e) if e else 1
+        total += term
+    return total
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_derivatives_are_those_of_the_potential(seed: int) -> None:
     """Divided differences of the potential from the nodes' coordinates, with 400 bits and a step of 2^-60."""
@@ -377,7 +398,7 @@ def test_derivatives_are_those_of_the_potential(seed: int) -> None:
         point = {name: exact(value) for name, value in v.items()}
 
         def u(i: int, j: int) -> arb:
-            return potential({**point, "th1": exact(th1) + i * h, "th2": exact(th2) + j * h})
+            return energy({**point, "th1": exact(th1) + i * h, "th2": exact(th2) + j * h})
 
         d = energy_at(v)(exact(th1), exact(th2))
         l1, l2 = point["L1"], point["L2"]
