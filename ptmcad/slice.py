@@ -65,7 +65,8 @@ class Slice:
     count : which count tells two regions apart.
     title : the picture's title, the name when empty.
     reference : published answers, as read from the record; never used by the computation.
-    text : each parameter as the user wrote it, for reports.
+    text : each parameter as the user wrote it, for reports; and any of k, l0, l0_1, l0_2 and l0_3 that such a text
+        names, even where it is not among the parameters. An axis has only the text of the parameter that it is.
     """
 
     name: str
