@@ -46,10 +46,15 @@ def fault(name: str, expression: Expression, axes: Axes, max_work: int | None = 
     return ""
 
 
-def unproved(name: str, expression: Expression, axes: Axes) -> str:
-    """What is not proved of a parameter, in words; empty when all is."""
+def unproved(name: str, expression: Expression, axes: Axes, max_work: int | None = None) -> str:
+    """What is not proved of a parameter, in words; empty when all is.
+
+    Parameters
+    ----------
+    max_work : see `ptmcad.positivity.decide`.
+    """
     for asked in dict.fromkeys((Need.NO_POLE, need(name, expression))):
-        verdict = decide(expression, axes, asked)
+        verdict = decide(expression, axes, asked, max_work)
         if isinstance(verdict, Undecided):
             return (
                 f"it is not proved that {name} is {asked.value} in the whole window: its sign is not decided "

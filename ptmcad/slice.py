@@ -65,7 +65,8 @@ class Slice:
     count : which count tells two regions apart.
     title : the picture's title, the name when empty.
     reference : published answers, as read from the record; never used by the computation.
-    text : each parameter as the user wrote it, for reports.
+    text : each parameter as the user wrote it, for reports; and any of k, l0, l0_1, l0_2 and l0_3 that such a text
+        names, even where it is not among the parameters. An axis has only the text of the parameter that it is.
     """
 
     name: str
@@ -110,12 +111,15 @@ class Slice:
             yield "no load"
 
 
-def without_free_lengths(parameters: Mapping[str, Expression], what: str) -> dict[str, Expression]:
+def without_free_lengths(
+    parameters: Mapping[str, Expression], what: str, instead: str = "ptmcad classify encloses them"
+) -> dict[str, Expression]:
     """The parameters for algebra, which would leave free lengths out: they have to be zero.
 
     Parameters
     ----------
     what : that is not computed otherwise, as the start of a sentence.
+    instead : what is computed, for the same sentence.
 
     Raises
     ------
@@ -125,7 +129,7 @@ def without_free_lengths(parameters: Mapping[str, Expression], what: str) -> dic
     if any(parameters[name].numerator for name in FREE_LENGTHS if name in parameters):
         raise ConfigError(
             f"{what} not computed for springs with a free length, which bring in square roots and curves of degree "
-            "over 1000; ptmcad classify encloses them"
+            f"over 1000; {instead}"
         )
     return {name: value for name, value in parameters.items() if name not in FREE_LENGTHS}
 

@@ -252,8 +252,8 @@ def test_the_exact_engine_does_not_resume() -> None:
     ("words", "what"),
     [
         (["variety"], "the discriminant variety is"),
-        (["range", "--along", "rho", "--over", "L2"], "ranges are"),
-        (["range", "--along", "rho", "--at", "L2=1", "--path", "1"], "ranges are"),
+        (["range", "--along", "rho", "--over", "L2"], "widths over a second axis (--over) are"),
+        (["range", "--along", "rho", "--at", "L2=1", "--path", "1"], "exact ends and paths of poses are"),
     ],
     ids=["variety", "widths", "path"],
 )

@@ -156,7 +156,12 @@ def test_a_reader_does_not_do_the_work_of_an_engine(monkeypatch: pytest.MonkeyPa
     """No time limit holds while a record is read, so that what takes long is left to what knows one."""
     asked: list[int] = []
     work = definite._work
-    monkeypatch.setattr(definite, "negative_or_zero", lambda *given: asked.append(given[-1]) or definite.Answer.OPEN)
+
+    def undecided(*given: Any) -> definite.Answer:
+        asked.append(given[-1])
+        return definite.Answer.OPEN
+
+    monkeypatch.setattr(definite, "negative_or_zero", undecided)
     decide.cache_clear()
     slice = slice_from_mapping(record(L1=SLOW_TO_DECIDE))
     assert set(asked) == {READING}

@@ -141,3 +141,14 @@ def test_what_elimination_can_not_do_is_told(
 ) -> None:
     assert run(["range", *arguments, "--critical"]) == 2
     assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("at", [[], ["--at", "L2=3/2"]], ids=["over alone", "with a line"])
+def test_widths_with_free_lengths_are_refused_and_the_line_is_named(
+    at: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Ranges along one axis are computed, so it is not said that none are."""
+    assert run(["range", FIG4, "--along", "rho", "--over", "L2", *at, "--set", "l0=1/5"]) == 2
+    message = capsys.readouterr().err
+    assert "widths over a second axis (--over) are not computed for springs with a free length" in message
+    assert "is enclosed where the other has a value (--at)" in message

@@ -179,6 +179,8 @@ FALSE: dict[str, tuple[Change, str]] = {
     "potential": (lambda r: with_potential(r, "1/2*k1*", "1/2*k2*"), "equations"),
     "sign of a load": (lambda r: with_potential(r, "- F3*", "+ F3*"), "equations"),
     "a potential that is a program": (lambda r: with_potential(r, "1/2*k1*", "exit()*k1*"), "equations"),
+    "the absolute value of a load": (lambda r: with_potential(r, " - F3*", " - sqrt(F3^2)*"), "equations"),
+    "a load's 45th digit": (lambda r: with_potential(r, " - F3*", f" - (1 + 1/{10**45})*F3*"), "equations"),
     "unknowns": (lambda r: replace(r, system=replace(r.system, unknowns=("th2", "th1"))), "equations"),
     "another load": (lambda r: with_text(r, "F3", "-11"), "parameters as written"),
     "status": (lambda r: replace(r, status=Status.EXACT), "form"),

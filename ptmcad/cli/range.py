@@ -119,12 +119,15 @@ def answer(slice: Slice, request: Request) -> Answer:
     """
     from ptmcad import ranges
     from ptmcad.ranges import certified, document, table
+    from ptmcad.ranges.strips import refuse_free_lengths
 
     only_line = not request.over and request.start is None
     if only_line and certified.has_free_lengths(slice, request.along, request.at):
         return _enclosed(slice, request)
     if request.critical:
         raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
+    if request.over:
+        refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not tell what to leave out
     texts, parts = [slice.heading], {}
     pictures: dict[str, Callable[[Path], None]] = {}
     if request.at:

@@ -2,17 +2,18 @@
 
 Guarantee: what leaves here is complete and exact; no length or stiffness is known to be out of the range that the
 geometry needs. Where its sign could not be decided at once (see `ptmcad.positivity`) it is left to the engines, which
-decide or refuse: `ptmcad.domain.prove`.
+decide or refuse: `ptmcad.domain.prove`. A slice's texts name only its axes and each
+other.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from ptmcad.config.parameters import PARAMETERS, Kind
 from ptmcad.config.record import Record, Window
-from ptmcad.domain import fault
+from ptmcad.domain import fault, unproved
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.expressions import Expression, axis, did_you_mean, names_in, parse
 from ptmcad.positivity import READING
@@ -65,7 +66,7 @@ def slice_of(record: Record) -> Slice:
         count=record.count,
         title=record.title,
         reference=record.reference,
-        text={name: _written(name, record) for name in effective},
+        text=_texts(effective, resolved, record, (axes[0], axes[1])),
     )
 
 
@@ -86,11 +87,33 @@ def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fracti
     return values
 
 
+def _texts(
+    effective: Iterable[str], resolved: Mapping[str, Expression], record: Record, axes: tuple[Axis, Axis]
+) -> dict[str, str]:
+    """What the parameters were written as, and every name in those texts, but for the axes.
+
+    A k that the springs do not have by default, say, is no parameter of the mechanism, but "k/10" says nothing without
+    it. No engine looks at the sign of such a name, so it has to be proved here.
+    """
+    texts = {name: _written(name, record) for name in effective}
+    waiting = list(texts.values())
+    while waiting:
+        for name in names_in(waiting.pop()):
+            if name in texts or name in record.axes:
+                continue
+            problem = "" if resolved[name].is_constant else unproved(name, resolved[name], axes, READING)
+            if problem:
+                raise _place_of(name, record).error(problem)
+            texts[name] = _written(name, record)
+            waiting.append(texts[name])
+    return {name: texts[name] for name in PARAMETERS if name in texts}
+
+
 def _written(name: str, record: Record) -> str:
     if name in record.axes:
         return name
     if name in FREE_LENGTHS and name not in record.values:
-        return _written("l0", record)  # which the slice does not name
+        return _written("l0", record)  # which the slice need not name
     return record.values[name].text if name in record.values else PARAMETERS[name].default
 
 

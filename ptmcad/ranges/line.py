@@ -203,7 +203,9 @@ def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
         parameters = {n: restricted(e, varying, value) for n, e in slice.parameters.items()}
     except ExpressionError as error:
         raise ConfigError(str(error), key=f"at {other}") from error
-    parameters = without_free_lengths(parameters, "ranges are")
+    parameters = without_free_lengths(
+        parameters, "exact ends and paths of poses are", "ptmcad range with --at alone encloses the ends"
+    )
     return Line(slice.axes[varying], {other: value}, parameters)
 
 

@@ -53,6 +53,21 @@ class Strip:
     fibre: Interval
 
 
+def refuse_free_lengths(slice: Slice) -> None:
+    """Refuse what strips can not answer.
+
+    Raises
+    ------
+    ConfigError
+        When springs have a free length.
+    """
+    without_free_lengths(
+        slice.parameters,
+        "widths over a second axis (--over) are",
+        "the range along one axis is enclosed where the other has a value (--at)",
+    )
+
+
 def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
     """The strips of a slice over the axis that is not ``along``, from the left.
 
@@ -64,7 +79,7 @@ def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
         When the slice is degenerate or leaves the domain of the geometry.
     """
     base = 1 - slice.axis_names.index(along)
-    without_free_lengths(slice.parameters, "ranges are")
+    refuse_free_lengths(slice)
     system = system_of(slice.mechanism)
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     x, y = ((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)

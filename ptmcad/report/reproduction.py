@@ -41,16 +41,21 @@ def reproduction(slice: Slice) -> Reproduction:
 def _given(slice: Slice, written: Mapping[str, str]) -> dict[str, str]:
     """The values that a record has to give: not those of the axes, nor the defaults."""
     names = slice.axis_names
-    values = {}
+    # k and l0 are no parameters where the springs do not have them, but other texts may name them
+    alone = {name: text for name, text in written.items() if name not in slice.parameters}
+    values = {name: text for name, text in alone.items() if name != "l0" or text != PARAMETERS[name].default}
     for name, expression in slice.parameters.items():
         text = written.get(name, expression.to_text(names))
+        if name in _SPRINGS and name not in names and "k" in alone:
+            values[name] = text  # else the k would be that spring's too
+            continue
         if name in names or (name in PARAMETERS and text == PARAMETERS[name].default and name not in ("L1", "k")):
             continue
         if name in _SPRINGS and "k" in slice.parameters and expression == slice.parameters["k"]:
             continue
         values[name] = text
     free = {values.get(name, "") for name in FREE_LENGTHS}
-    if len(free) == 1 and "l0" not in names and (text := free.pop()) and "l0" not in text:
+    if len(free) == 1 and "l0" not in (*names, *alone) and (text := free.pop()) and "l0" not in text:
         values = {name: value for name, value in values.items() if name not in FREE_LENGTHS} | {"l0": text}
     return values
 

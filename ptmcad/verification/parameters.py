@@ -11,27 +11,50 @@ from fractions import Fraction
 from math import lcm
 
 from ptmcad.errors import ExpressionError
-from ptmcad.expressions import axis, names_in, parse
+from ptmcad.expressions import Expression, axis, names_in, parse
 from ptmcad.plane import PlanePolynomial
 from ptmcad.regionmap import Kind
-from ptmcad.slice import Slice
+from ptmcad.slice import FREE_LENGTHS, Slice
 from ptmcad.verification.claims import PLANE, Claims
 from ptmcad.verification.model import equation_factors
 from ptmcad.verification.report import Violation
 from ptmcad.verification.variety import factors
 
+AUXILIARY = ("k", "l0", *FREE_LENGTHS)
+"""Names that may be kept as texts alone, because other texts name them: k and l0, which are no parameters of the
+mechanism, and free lengths that are zero."""
+
 
 def check_text(claims: Claims) -> str:
     """Each parameter as the user wrote it is the one that was computed with, and an axis stands for itself."""
     slice = claims.result.slice
-    if set(slice.text) != set(slice.parameters):
+    alone = slice.text.keys() - slice.parameters.keys()
+    if slice.parameters.keys() - slice.text.keys() or not alone <= {*AUXILIARY} - {*slice.axis_names}:
         raise Violation("a parameter lacks the text that it was written as, or a text its parameter")
     for index, name in enumerate(slice.axis_names):
         if name in slice.parameters and (slice.parameters[name] - axis(index)).numerator:
             raise Violation(f"{name} is an axis, but the parameter {name} is {_shown(slice, name)}")
-    if "k" in slice.text and not any("k" in _names(n, slice.text[n]) for n in slice.text if n != "k"):
-        raise Violation("the parameter k is stored, but nothing depends on it")
+    for name in sorted(alone | ({"k", "l0"} & slice.text.keys())):
+        if not any(name in _names(n, text) for n, text in slice.text.items() if n != name):
+            raise Violation(f"the parameter {name} is stored, but nothing depends on it")
+    for name, expression in written(slice).items():
+        if name in slice.parameters and (expression - slice.parameters[name]).numerator:
+            raise Violation(f"{name} was written as {slice.text[name][:60]!r}, but is {_shown(slice, name)}")
+        if name in alone and name in FREE_LENGTHS and expression.numerator:
+            raise Violation(f"{name} was written as {slice.text[name][:60]!r}, but is left out as if it were zero")
+    return f"{len(slice.text)} parameters"
+
+
+def written(slice: Slice) -> dict[str, Expression]:
+    """What each text says, by the axes and by texts explained before it.
+
+    Raises
+    ------
+    Violation
+        When one is no expression, or names what is not explained.
+    """
     known = {slice.axis_names[0]: axis(0), slice.axis_names[1]: axis(1)}
+    found = {}
     waiting = dict(slice.text)
     while waiting:
         # one whose names are all known by now, so that nothing is explained by itself
@@ -40,13 +63,11 @@ def check_text(claims: Claims) -> str:
             raise Violation(f"the texts kept for {', '.join(sorted(waiting))[:80]} name what is not explained")
         name, text = ready, waiting.pop(ready)
         try:
-            written = parse(text, known)
+            found[name] = parse(text, known)
         except ExpressionError as error:
             raise Violation(f"the text kept for {name}, {text[:40]!r}, is no expression: {error}") from error
-        if (written - slice.parameters[name]).numerator:
-            raise Violation(f"{name} was written as {text[:60]!r}, but is {_shown(slice, name)}")
-        known.setdefault(name, written)
-    return f"{len(slice.text)} parameters"
+        known.setdefault(name, found[name])
+    return found
 
 
 def _shown(slice: Slice, name: str) -> str:

@@ -208,7 +208,8 @@ def frame(r: RegionMap) -> Iterator[Alteration]:
             changed = replace(r.slice, parameters={**r.slice.parameters, name: new},
                               text={**r.slice.text, name: new.to_text(r.slice.axis_names)})  # fmt: skip
             yield partial(replace, r, slice=changed)
-    for right, wrong in (("1/2*k1", "1/2*k2"), (" - F3*", " + F3*"), ("1/2*k3", "1/3*k3")):
+    for right, wrong in (("1/2*k1", "1/2*k2"), (" - F3*", " + F3*"), ("1/2*k3", "1/3*k3"),
+                         (" - F3*", " - sqrt(F3^2)*"), (" - F4*", f" - F3/{10**45} - F4*")):  # fmt: skip
         yield partial(replace, r, system=replace(r.system, potential=r.system.potential.replace(right, wrong)))
     yield partial(replace, r, system=replace(r.system, unknowns=swapped(r.system.unknowns, 0, 1)))
 

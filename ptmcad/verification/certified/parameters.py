@@ -10,11 +10,12 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
-from ptmcad.expressions import Expression
+from ptmcad.expressions import Expression, axis
 from ptmcad.slice import FREE_LENGTHS, Slice
 from ptmcad.verification.certified.energy import NAMES, Energy
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.parameters import AUXILIARY, written
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.signs import Sign, has_no_pole, is_in_domain
 
@@ -26,6 +27,8 @@ Values = dict[str, Fraction]
 def check_domain(claims: Claims) -> str:
     """Every parameter is in the whole open window what the geometry and the engines' proofs ask for.
 
+    So are k and l0 where others are only written with them: a record is refused for their signs too.
+
     Returns
     -------
     What was proved, and of which parameters it was not.
@@ -33,13 +36,14 @@ def check_domain(claims: Claims) -> str:
     slice = claims.result.slice
     window = [(_rational(a.low), _rational(a.high)) for a in slice.axes]
     here, unchecked = (window[0], window[1]), []
-    for name, expression in slice.parameters.items():
+    asked = _expressions(slice)
+    for name, expression in asked.items():
         pole = has_no_pole(expression, here)
         if pole is Sign.WRONG:
             raise Violation(f"{name} has a pole in the window")
         sign = Sign.PROVED
-        if name in (*POSITIVE, *NOT_NEGATIVE):
-            strict = name in POSITIVE or (name == "rho" and bool(expression.numerator))
+        if name in (*POSITIVE, *NOT_NEGATIVE, "k", "l0"):
+            strict = name in (*POSITIVE, "k") or (name == "rho" and bool(expression.numerator))
             sign = is_in_domain(expression, here, strict)
             if sign is Sign.WRONG:
                 raise Violation(f"{name} is {'not positive' if strict else 'negative'} somewhere in the window")
@@ -47,7 +51,13 @@ def check_domain(claims: Claims) -> str:
             unchecked.append(name)
     if unchecked:
         return Unchecked(f"{', '.join(unchecked)}: of too high degree, or zero at a point that could not be told")
-    return f"{len(slice.parameters)} parameters"
+    return f"{len(asked)} parameters"
+
+
+def _expressions(slice: Slice) -> dict[str, Expression]:
+    """The parameters, and k or l0 (or a free length that is zero) where only an axis or a text tells of it."""
+    named = {name: axis(index) for index, name in enumerate(slice.axis_names) if name in AUXILIARY}
+    return {**named, **written(slice), **slice.parameters}
 
 
 def exact(value: Fraction) -> arb:
