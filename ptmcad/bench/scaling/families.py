@@ -164,7 +164,9 @@ def certified_window() -> Slice:
 def tolerances(size: int, seed: int) -> tuple[Run]:
     """One certified map with the tolerance 1 / size, by one thread."""
     from ptmcad.interval.engine import certified_map
+    from ptmcad.interval.loading import load
 
+    load()  # compiles, once in a process: neither its time nor its steps are the map's
     watch = Stages()
     boxes = 0
 
