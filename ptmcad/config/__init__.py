@@ -23,8 +23,9 @@ from ptmcad.config.parameters import PARAMETERS, Kind, Parameter, unknown_parame
 from ptmcad.config.record import RECORD_KEYS, Record, count_of, file_name, number_text, portable_file, record_of
 from ptmcad.config.resolution import MAX_DEGREE, number_of, point_of, slice_of
 from ptmcad.errors import ConfigError
-from ptmcad.expressions import Expression, constant, did_you_mean
+from ptmcad.expressions import Expression, constant
 from ptmcad.slice import Count, Slice
+from ptmcad.syntax import did_you_mean
 from ptmcad.yamltree import Place, Scalar, Tree, from_python, read_file
 
 __all__ = [

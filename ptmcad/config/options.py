@@ -11,7 +11,7 @@ from dataclasses import replace
 from ptmcad.config.parameters import PARAMETERS, unknown_parameter
 from ptmcad.config.record import Record, Window, check_axis_name
 from ptmcad.errors import ConfigError
-from ptmcad.expressions import did_you_mean
+from ptmcad.syntax import did_you_mean
 from ptmcad.yamltree import Place, Scalar
 
 

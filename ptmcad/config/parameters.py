@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from ptmcad.expressions import did_you_mean
+from ptmcad.syntax import did_you_mean
 
 
 class Kind(Enum):

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.config.parameters import PARAMETERS, unknown_parameter
-from ptmcad.expressions import NAME, did_you_mean
 from ptmcad.slice import Count, unstorable
+from ptmcad.syntax import NAME, did_you_mean
 from ptmcad.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
 RECORD_KEYS = ("name", "title", "notes", "mechanism", "parameters", "axes", "count", "reference")

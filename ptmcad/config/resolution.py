@@ -14,8 +14,9 @@ from ptmcad.config.parameters import PARAMETERS, Kind
 from ptmcad.config.record import Record, Window
 from ptmcad.domain import fault
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.expressions import Expression, axis, did_you_mean, names_in, parse
+from ptmcad.expressions import Expression, axis, names_in, parse
 from ptmcad.slice import FREE_LENGTHS, Axis, Slice
+from ptmcad.syntax import did_you_mean
 from ptmcad.yamltree import Place, Scalar
 
 _SPRINGS = ("k1", "k2", "k3")
