@@ -306,6 +306,7 @@ def test_mappings() -> None:
 def test_every_parameter_can_be_an_axis() -> None:
     for name, parameter in PARAMETERS.items():
         if name != "L1":
+            assert parameter.window is not None
             low, high = parameter.window
             assert slice_from_options(slice=f"L1,{name}").axes[1].low == Fraction(low) < Fraction(high)
 
