@@ -6,16 +6,16 @@ rational function of the two axes), its window is a nonempty rectangle, and no n
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 from unicodedata import category
 
 from ptmcad.errors import ConfigError
 from ptmcad.expressions import Expression
-from ptmcad.mechanism import Mechanism, mechanism_of, ptm
+from ptmcad.mechanism import Mechanism, known_of, ptm
 
 
 def unstorable(data: Any) -> str | None:
@@ -90,8 +90,8 @@ class Slice:
 
     @property
     def description(self) -> Mechanism:
-        """The mechanism that the slice is of."""
-        return mechanism_of(self.mechanism)
+        """The mechanism that the slice is of; in a stored result it may be one of which nothing is known."""
+        return known_of(self.mechanism)
 
     @property
     def heading(self) -> str:
@@ -111,7 +111,10 @@ class Slice:
             yield "no load"
 
 
-def merged(values: Mapping[str, str], mechanism: Mechanism) -> dict[str, str]:
+_Value = TypeVar("_Value", bound=Hashable)
+
+
+def merged(values: Mapping[str, _Value], mechanism: Mechanism) -> dict[str, _Value]:
     """Values as shown: a shorthand in place of its parameters where these agree, and not beside them where not."""
     shown = dict(values)
     for shorthand, names in mechanism.shorthands.items():

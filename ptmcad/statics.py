@@ -264,7 +264,7 @@ def _arb(value: Fraction) -> arb:
 def _assembled(model: Model, state: State, numbers: Iterator[Enclosure]) -> Pose:
     """The pose from its numbers in the order of `_numbers`."""
     c1, s1, c2, s2 = (next(numbers) for _ in range(4))
-    th1, degrees1, th2, degrees2 = (next(numbers) for _ in range(4))
+    first, degrees1, second, degrees2 = (next(numbers) for _ in range(4))
     nodes: dict[str, Vector] = {name: (next(numbers), next(numbers)) for name in state.nodes}
     springs = tuple(
         Spring(name, start, end, stiffness, next(numbers), next(numbers))
@@ -274,7 +274,7 @@ def _assembled(model: Model, state: State, numbers: Iterator[Enclosure]) -> Pose
     multiplicity = state.point.multiplicity
     index = (low.high < 0) + (high.high < 0) if multiplicity == 1 else None
     return Pose(
-        angles=(th1, th2),
+        angles=(first, second),
         degrees=(degrees1, degrees2),
         cosines_sines=(c1, s1, c2, s2),
         nodes=nodes,

@@ -201,7 +201,7 @@ def test_data_flows_one_way(path: Path) -> None:
     if part(path) == "export":
         assert imported_parts(path) <= {
             "export", "slicevariety", "polynomial_text", "plane", "regionmap", "numerals", "errors", "expressions",
-            "syntax",
+            "syntax", "mechanism",
         }  # fmt: skip
     if part(path) == "yamltree":
         assert imported_parts(path) <= {"errors", "textfile"}
@@ -213,7 +213,7 @@ def test_the_report_tells_what_the_result_holds_and_computes_nothing(path: Path)
     if part(path) == "report":
         assert imported_parts(path) <= {
             "report", "regionmap", "slice", "plane", "polynomial_text", "table", "numerals", "errors", "version",
-            "render", "config", "yamltree", "document", "textfile",
+            "render", "config", "yamltree", "document", "textfile", "mechanism",
         }  # fmt: skip
     elif part(path) != "cli":
         assert "report" not in imported_parts(path)

@@ -5,10 +5,10 @@ Guarantee: nothing here computes an equilibrium; a description that was read can
 
 from __future__ import annotations
 
-from ptmcad.mechanism.description import Kind, Mechanism, Parameter, described
+from ptmcad.mechanism.description import Kind, Mechanism, Parameter, Support, described
 from ptmcad.mechanism.ptm import ptm
 
-__all__ = ["Kind", "Mechanism", "Parameter", "described", "mechanism_of", "ptm"]
+__all__ = ["Kind", "Mechanism", "Parameter", "Support", "described", "known_of", "mechanism_of", "ptm"]
 
 
 def mechanism_of(name: str) -> Mechanism:
@@ -19,4 +19,12 @@ def mechanism_of(name: str) -> Mechanism:
     KeyError
         When there is none; `ptmcad.config` refuses such names before.
     """
-    return {"ptm": ptm}[name]()
+    return _BUILT_IN[name]()
+
+
+def known_of(name: str) -> Mechanism:
+    """What is known of a mechanism by its name, as a stored result has it: nothing of one that is not built in."""
+    return _BUILT_IN[name]() if name in _BUILT_IN else Mechanism(name, {}, {}, {}, (), {}, (), ())
+
+
+_BUILT_IN = {"ptm": ptm}

@@ -102,6 +102,11 @@ class Load(NamedTuple):
     x: Tree
     y: Tree
 
+    @property
+    def names(self) -> tuple[str, str]:
+        """Its components as text: the forces' names where they are parameters."""
+        return text_of(self.x), text_of(self.y)
+
 
 @dataclass(frozen=True)
 class Mechanism:
@@ -187,6 +192,30 @@ class Mechanism:
         return tuple(
             name for name, (x, y) in self.points.items() if {*names_of(x), *names_of(y)} & self.unknowns.keys()
         )
+
+    @cached_property
+    def units(self) -> tuple[str, str]:
+        """The first length and the first force: what the others are measured in; an empty name where there is none."""
+        return self.first(Kind.LENGTH), self.first(Kind.FORCE)
+
+    @cached_property
+    def pivots(self) -> Mapping[str, str]:
+        """The angles that turn a bar about a point that no unknown moves, to those points."""
+        return {
+            angle: start
+            for angle in self.angles
+            for bar in self.bars
+            for start, end in (bar, bar[::-1])
+            if start not in self.moving and any(angle in names_of(tree) for tree in self.points[end])
+        }
+
+    def first(self, kind: Kind) -> str:
+        """The first parameter of a kind; an empty name when there is none."""
+        return next((name for name, parameter in self.parameters.items() if parameter.kind is kind), "")
+
+    def held(self, support: Support) -> str:
+        """The first point that is held so; an empty name when there is none."""
+        return next((name for name, kind in self.supports.items() if kind is support), "")
 
     def kind(self, name: str) -> Kind:
         """What a parameter measures."""

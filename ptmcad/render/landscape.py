@@ -80,10 +80,10 @@ class Energy:
     terms: Terms
     roots: tuple[tuple[float, Terms], ...] = ()
 
-    def __call__(self, th1: Floats, th2: Floats) -> Floats:
+    def __call__(self, *angles: Floats) -> Floats:
         """Over arrays of angles in radians."""
-        bases = (np.cos(th1), np.sin(th1), np.cos(th2), np.sin(th2))
-        shape = np.broadcast(th1, th2).shape
+        bases = [function(angle) for angle in angles for function in (np.cos, np.sin)]
+        shape = np.broadcast(*angles).shape
         total = _sum(self.terms, bases, shape)
         for factor, square in self.roots:
             total += factor * np.sqrt(np.maximum(_sum(square, bases, shape), 0.0))
