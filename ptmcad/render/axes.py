@@ -66,9 +66,9 @@ def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
 
 def symbol(name: str) -> str:
     """A parameter's name as it is printed: ``L1`` as L₁, ``F3x`` as F₃ₓ, ``rho`` as ρ; other names as they are."""
-    match = re.fullmatch(r"([A-Za-z])(\d{1,2}x?)", name)
+    match = re.fullmatch(r"([A-Za-z]|th)(\d{1,2}x?)", name)
     if match:
-        return match[1] + match[2].translate(_SUBSCRIPT)
+        return ("θ" if match[1] == "th" else match[1]) + match[2].translate(_SUBSCRIPT)
     return _GREEK.get(name, name)
 
 

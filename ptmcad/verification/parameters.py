@@ -16,9 +16,13 @@ from ptmcad.plane import PlanePolynomial
 from ptmcad.regionmap import Kind
 from ptmcad.slice import Slice
 from ptmcad.verification.claims import PLANE, Claims
+from ptmcad.verification.derivation import NOT_NEGATIVE, PARAMETERS, POSITIVE, SHORTHANDS
 from ptmcad.verification.model import equation_factors
 from ptmcad.verification.report import Violation
 from ptmcad.verification.variety import factors
+
+_BOUNDING = tuple(name for name in PARAMETERS if name in (*POSITIVE, *NOT_NEGATIVE))
+"""Lengths and stiffnesses: where one vanishes, the slice ends."""
 
 
 def check_text(claims: Claims) -> str:
@@ -29,8 +33,9 @@ def check_text(claims: Claims) -> str:
     for index, name in enumerate(slice.axis_names):
         if name in slice.parameters and (slice.parameters[name] - axis(index)).numerator:
             raise Violation(f"{name} is an axis, but the parameter {name} is {_shown(slice, name)}")
-    if "k" in slice.text and not any("k" in _names(n, slice.text[n]) for n in slice.text if n != "k"):
-        raise Violation("the parameter k is stored, but nothing depends on it")
+    for shorthand in slice.text.keys() & set(SHORTHANDS):
+        if not any(shorthand in _names(n, slice.text[n]) for n in slice.text if n != shorthand):
+            raise Violation(f"the parameter {shorthand} is stored, but nothing depends on it")
     known = {slice.axis_names[0]: axis(0), slice.axis_names[1]: axis(1)}
     waiting = dict(slice.text)
     while waiting:
@@ -66,7 +71,7 @@ def check_boundary(claims: Claims) -> str:
     needed: dict[PlanePolynomial, str] = {}
     for name, e in claims.result.slice.parameters.items():
         parts = [e.denominator]
-        if name in ("L1", "L2", "k1", "k2", "k3", "rho"):
+        if name in _BOUNDING:
             parts.append(e.numerator)
         for terms in parts:
             for factor in _expression_factors(terms):

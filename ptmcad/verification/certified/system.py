@@ -14,9 +14,9 @@ from flint import arb, ctx
 
 from ptmcad.verification.certified.energy import NAMES
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.derivation import ANGLES, MECHANISM, Place, work
 from ptmcad.verification.report import Violation
 
-UNKNOWNS = ("th1", "th2")
 _LONGEST = 5_000
 _POINTS = 3
 
@@ -24,34 +24,31 @@ _POINTS = 3
 def check_potential(claims: Claims, seed: str) -> str:
     """The unknowns, and the potential in them."""
     system = claims.result.system
-    if system.unknowns != UNKNOWNS:
-        raise Violation(f"the unknowns are {system.unknowns}, not {UNKNOWNS}")
+    if system.unknowns != ANGLES:
+        raise Violation(f"the unknowns are {system.unknowns}, not {ANGLES}")
     if system.relations or system.gradient or system.hessian:
         raise Violation("a certified map has no relations, and its gradient and Hessian follow from the potential")
     expression = _parsed(system.potential)
     rng = random.Random(seed)
     with ctx.workprec(128):
         for _ in range(_POINTS):
-            point = {name: arb(rng.randrange(1, 2**20)) / 2**18 for name in (*NAMES, *UNKNOWNS)}
+            point = {name: arb(rng.randrange(1, 2**20)) / 2**18 for name in (*NAMES, *ANGLES)}
             stored, true = _value(expression, point), _energy(point)
             if not (stored - true).contains(0) or not (stored - true).rad() < 1e-25:
                 difference = float((stored - true).mid())
                 raise Violation(f"the stored potential differs from the mechanism's by {difference:.3g} somewhere")
-    return f"the potential in {len(UNKNOWNS)} unknowns and {len(NAMES)} parameters"
+    return f"the potential in {len(ANGLES)} unknowns and {len(NAMES)} parameters"
 
 
 def _energy(v: Mapping[str, arb]) -> arb:
-    nodes = (
-        (arb(0), arb(0)), (v["rho"], arb(0)),
-        (v["L1"] * v["th1"].cos(), v["L1"] * v["th1"].sin()),
-        (v["rho"] - v["L2"] * v["th2"].cos(), v["L2"] * v["th2"].sin()),
-    )  # fmt: skip
-    energy = -v["F3x"] * nodes[2][0] - v["F3"] * nodes[2][1] - v["F4x"] * nodes[3][0] - v["F4"] * nodes[3][1]
-    for number, (one, two) in enumerate(((0, 3), (1, 2), (2, 3)), 1):
-        across, up = nodes[two][0] - nodes[one][0], nodes[two][1] - nodes[one][1]
-        stretch = (across * across + up * up).sqrt() - v[f"l0_{number}"]
-        energy += v[f"k{number}"] * stretch * stretch / 2
-    return energy
+    place = Place(v, {angle: (v[angle].cos(), v[angle].sin()) for angle in ANGLES})
+    points = place.points()
+    energy = work(place, points)
+    for spring in MECHANISM.springs:
+        across, up = (points[spring.end][i] - points[spring.start][i] for i in (0, 1))
+        stretch = arb(across * across + up * up).sqrt() - place.value(spring.free)
+        energy += place.value(spring.stiffness) * stretch * stretch / 2
+    return arb(energy)
 
 
 def _parsed(text: str) -> ast.expr:
