@@ -6,7 +6,7 @@ stand inside of cosines and sines only, and every tree can be evaluated in any r
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
@@ -86,7 +86,7 @@ class Parameter:
 
 
 class Spring(NamedTuple):
-    """A spring between two points; its name is that of its stiffness where this is one name, else of its points."""
+    """A spring between two points; its name, which no other has, is that of its stiffness or is made of its points'."""
 
     name: str
     start: str
@@ -179,12 +179,11 @@ class Mechanism:
     @cached_property
     def shorthands(self) -> Mapping[str, tuple[str, ...]]:
         """Parameters that only stand for others, such as one stiffness for all springs, to those others."""
-        names = dict.fromkeys(p.alias_of for p in self.parameters.values() if p.alias_of)
-        return {
-            name: tuple(other for other, p in self.parameters.items() if p.alias_of == name)
-            for name in names
-            if name not in self.variables
-        }
+        found: dict[str, list[str]] = {}
+        for name, parameter in self.parameters.items():
+            if parameter.alias_of:
+                found.setdefault(parameter.alias_of, []).append(name)
+        return {name: tuple(others) for name, others in found.items() if name not in self.variables}
 
     @cached_property
     def moving(self) -> tuple[str, ...]:
@@ -312,7 +311,7 @@ def _parameters(entries: Mapping[str, Any]) -> dict[str, Parameter]:
 
 
 def _springs(entries: Sequence[Any], reader: _Reader, points: Mapping[str, object]) -> tuple[Spring, ...]:
-    springs: list[Spring] = []
+    springs: dict[str, Spring] = {}
     for n, entry in enumerate(entries, 1):
         key = f"springs.{n}"
         fields = _mapping(entry, key)
@@ -324,10 +323,12 @@ def _springs(entries: Sequence[Any], reader: _Reader, points: Mapping[str, objec
         stiffness = reader.tree(fields["k"], f"{key}.k")
         free = reader.tree(fields["free"], f"{key}.free") if "free" in fields else _ZERO
         name = stiffness.name if isinstance(stiffness, Name) else f"{start}{end}"
-        if any(spring.name == name for spring in springs):
+        if name in springs:
             name = f"{start}{end}"
-        springs.append(Spring(name, start, end, stiffness, free))
-    return tuple(springs)
+        if name in springs:
+            name = f"{start}{end}_{n}"
+        springs[name] = Spring(name, start, end, stiffness, free)
+    return tuple(springs.values())
 
 
 class _Reader:
@@ -336,9 +337,9 @@ class _Reader:
     def __init__(self, parameters: Mapping[str, Parameter], unknowns: Mapping[str, UnknownKind]):
         lengths = [name for name, kind in unknowns.items() if kind is UnknownKind.LENGTH]
         angles = [name for name, kind in unknowns.items() if kind is UnknownKind.ANGLE]
-        self.fixed = _Names((*parameters,), (), tuple(unknowns))
-        self.moving = _Names((*parameters, *lengths), tuple(angles), ())
-        self.names = (*parameters, *unknowns)
+        self.fixed = _Names(parameters, (), unknowns)
+        self.moving = _Names((*parameters, *lengths), angles, ())
+        self.names = dict.fromkeys((*parameters, *unknowns))
 
     def tree(self, value: object, key: str, *, moving: bool = False) -> Tree:
         tree = _tree(value, key)
@@ -373,8 +374,9 @@ class _Names:
     excluded : unknowns that may not occur.
     """
 
-    def __init__(self, constants: tuple[str, ...], angles: tuple[str, ...], excluded: tuple[str, ...]):
-        self.constants, self.angles, self.excluded = constants, angles, excluded
+    def __init__(self, constants: Iterable[str], angles: Iterable[str], excluded: Iterable[str]):
+        # dictionaries for their order and for fast look-up: a hostile record has thousands of names
+        self.constants, self.angles, self.excluded = map(dict.fromkeys, (constants, angles, excluded))
 
     def constant(self, value: Fraction) -> _Degree:
         return _Degree(0)
@@ -393,11 +395,11 @@ class _Names:
 
     sin = cos
 
-    def _check(self, name: str, known: tuple[str, ...]) -> None:
+    def _check(self, name: str, known: Mapping[str, None]) -> None:
         if name in self.excluded:
             raise ExpressionError(f"{name} is an unknown: only points may depend on it")
         if name not in known:
-            hint = did_you_mean(name, self.constants + self.angles) or f"; the names are {', '.join(known)}"
+            hint = did_you_mean(name, self.constants | self.angles) or f"; the names are {', '.join(known)}"
             raise ExpressionError(f"unknown name '{name[:MAX_NAME]}'{hint}")
 
 
