@@ -5,8 +5,9 @@ Guarantee: nothing here computes an equilibrium; a description that was read can
 
 from __future__ import annotations
 
-from ptmcad.mechanism.description import Kind, Mechanism, Parameter, Support, described
+from ptmcad.mechanism.description import Kind, Mechanism, Parameter, Support
 from ptmcad.mechanism.ptm import ptm
+from ptmcad.mechanism.record import described
 
 __all__ = ["Kind", "Mechanism", "Parameter", "Support", "described", "known_of", "mechanism_of", "ptm"]
 

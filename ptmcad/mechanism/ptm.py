@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from ptmcad.mechanism.description import Mechanism, described
+from ptmcad.mechanism.description import Mechanism
+from ptmcad.mechanism.record import described
 
 RECORD = {
     "name": "ptm",
