@@ -38,6 +38,8 @@ if sys.platform != "win32":
 UNCHANGED = "earlier files are as they were"
 UNFINISHED = "the next ptmcad that reads or writes results in this folder completes this"
 _PAUSE = 0.01
+_SILENCE = 1.0
+"""Seconds after which a process that waits for the lock as long as it takes says so."""
 
 
 class Disk:
@@ -84,20 +86,24 @@ def locked(folder: Path, patience: float | None = None) -> Iterator[bool]:
         yield False
         return
     try:
-        yield _lock(descriptor, patience)
+        yield _lock(descriptor, folder, patience)
     finally:
         os.close(descriptor)
 
 
-def _lock(descriptor: int, patience: float | None) -> bool:
-    until = None if patience is None else time.monotonic() + patience
+def _lock(descriptor: int, folder: Path, patience: float | None) -> bool:
+    until, silent = time.monotonic() + (_SILENCE if patience is None else patience), True
     while True:
         try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX if until is None else fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB if silent else fcntl.LOCK_EX)
         except BlockingIOError:
-            if until is None or time.monotonic() >= until:
+            if time.monotonic() < until:
+                time.sleep(_PAUSE)
+            elif patience is None:
+                silent = False
+                tell(Topic.WAITING, str(folder))
+            else:
                 raise
-            time.sleep(_PAUSE)
         except OSError:  # a file system without locks
             return False
         else:

@@ -24,12 +24,17 @@ def need(name: str, expression: Expression) -> Need:
     return Need.NOT_NEGATIVE if kind.may_vanish else Need.NO_POLE
 
 
-def fault(name: str, expression: Expression, axes: Axes) -> str:
-    """What a point of the window contradicts, in words; empty when there is no such point, or none was found."""
-    pole = decide(expression, axes, Need.NO_POLE)
+def fault(name: str, expression: Expression, axes: Axes, max_work: int | None = None) -> str:
+    """What a point of the window contradicts, in words; empty when there is no such point, or none was found.
+
+    Parameters
+    ----------
+    max_work : see `ptmcad.positivity.decide`.
+    """
+    pole = decide(expression, axes, Need.NO_POLE, max_work)
     if isinstance(pole, Witness):
         return f"division by zero inside the window: the denominator of {name} vanishes {_pole_place(pole, axes)}"
-    verdict = decide(expression, axes, need(name, expression))
+    verdict = decide(expression, axes, need(name, expression), max_work)
     if isinstance(verdict, Witness):
         value = number(verdict.value)
         least = "not be negative" if need(name, expression) is Need.NOT_NEGATIVE else "be positive"

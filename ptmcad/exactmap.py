@@ -33,6 +33,7 @@ from ptmcad.cad.curves import Curve, curve
 from ptmcad.cad.projection import predicted_cost, project
 from ptmcad.cad.stacks import Avoided, lift
 from ptmcad.counting import DegeneratePoint, Equilibria, equilibria, solutions_at
+from ptmcad.domain import prove_slice
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
 from ptmcad.models import ParametricSystem, system_of
 from ptmcad.models.elimination import elimination_system
@@ -131,7 +132,7 @@ def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVari
     ConfigError
         When springs have a free length: then the variety is out of algebra's reach.
     HypothesisError
-        When the slice is degenerate or has infinitely many equilibria.
+        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
     """
     without_free_lengths(slice.parameters, "the discriminant variety is")
     now = perf_counter()
@@ -154,6 +155,7 @@ def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozen
     ----------
     relative : largest relative width of areas' bounds, None when they are not asked for.
     """
+    prove_slice(slice)
     system = system_of(slice.mechanism)
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     window = tuple((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)

@@ -64,9 +64,7 @@ def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         raise OutputError(f"the folder {folder} can not be made: {reason(error)}; choose another with --out") from error
-    for name in names:
-        if (folder / name).is_dir():
-            raise OutputError(f"{folder / name} is a folder, so no file can be written there; choose another --out")
+    _check_kinds(folder, names)
     try:
         with suppress(BlockingIOError), locked(folder, LOCK_PATIENCE) as alone:
             if alone:  # otherwise what is left of a dead process cannot be told from what a live one uses
@@ -84,6 +82,30 @@ def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
         raise OutputError(
             f"the folder {folder} can not be written to: {reason(error)}; choose another with --out"
         ) from error
+
+
+def _check_kinds(folder: Path, names: Iterable[str]) -> None:
+    """Refuse to replace what is no file: a rename would remove a device as well.
+
+    A symbolic link is replaced if it leads to a file or nowhere; what it leads to stays as it is.
+
+    Raises
+    ------
+    OutputError
+        With the path and what is there.
+    """
+    for name in names:
+        try:
+            mode = (folder / name).stat().st_mode
+        except (OSError, ValueError):  # nothing there; or a name that writing will refuse, with the reason
+            continue
+        if not stat.S_ISREG(mode):
+            kind = next((what for test, what in _KINDS if test(mode)), "no regular file")
+            raise OutputError(f"{folder / name} is {kind}, so no file can be written there; choose another --out")
+
+
+_KINDS = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"),
+          (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"))  # fmt: skip
 
 
 def write_files(folder: Path, writers: Mapping[str, Writer]) -> tuple[Path, ...]:
@@ -108,6 +130,7 @@ def _under_own_names(folder: Path, temporaries: Mapping[Path, Path]) -> tuple[Pa
         if alone:
             settle(folder)
             _check_free(folder, [target.name for target in temporaries])
+        _check_kinds(folder, [target.name for target in temporaries])
         put_into_place(temporaries)
     return tuple(temporaries)
 

@@ -29,6 +29,11 @@ from ptmcad.slice import Axis
 MAX_SPLITS = 400
 MAX_WORK = 2_000_000
 """Additions of Bernstein coefficients; less than a second."""
+READING = 10**8
+"""Work of algebra, in the unit of `ptmcad.algebra.definite.MAX_WORK`, while a record is read: some tenth of a second.
+
+A reader answers at once and knows no time limit; an engine, which does, asks again without this bound.
+"""
 MAX_SHOWN = 10**40
 """Numerators and denominators from here on are shown rounded."""
 
@@ -82,8 +87,12 @@ PROVED = Proved()
 
 
 @lru_cache(maxsize=256)
-def decide(expression: Expression, axes: Axes, need: Need) -> Verdict:
+def decide(expression: Expression, axes: Axes, need: Need, max_work: int | None = None) -> Verdict:
     """Whether a rational function is in the whole open window what it needs to be.
+
+    Parameters
+    ----------
+    max_work : of algebra, `ptmcad.algebra.definite.MAX_WORK` when None.
 
     Guarantee
     ---------
@@ -97,12 +106,12 @@ def decide(expression: Expression, axes: Axes, need: Need) -> Verdict:
         return Witness(middle, below) if need is Need.NO_POLE else Undecided((window,))
     side = 1 if below > 0 else -1
     if need is Need.NO_POLE:
-        verdict = _decided(_times(expression.denominator, side), window, strict=True)
+        verdict = _decided(_times(expression.denominator, side), window, True, max_work)
         if isinstance(verdict, Witness):
             other = middle if verdict.value < 0 else None
             return Witness(verdict.point, side * verdict.value, verdict.distance, other)
         return verdict
-    verdict = _decided(_times(expression.numerator, side), window, strict=need is Need.POSITIVE)
+    verdict = _decided(_times(expression.numerator, side), window, need is Need.POSITIVE, max_work)
     if isinstance(verdict, Witness) and verdict.value:
         below = polynomial_value(expression.denominator, *verdict.point)
         if below == 0:
@@ -136,12 +145,12 @@ def polynomial_value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fract
     return sum((c * x**i * y**j for i, j, c in terms), Fraction(0))
 
 
-def _decided(terms: tuple[Term, ...], window: Box, strict: bool) -> Verdict:
+def _decided(terms: tuple[Term, ...], window: Box, strict: bool, max_work: int | None) -> Verdict:
     """Whether a polynomial is positive, or not negative, in the open window."""
     if not terms:
         return Witness(_middle(window), Fraction(0)) if strict else PROVED
     found = _by_halving(terms, window, strict)
-    return _by_algebra(terms, window, strict, found) if isinstance(found, Undecided) else found
+    return _by_algebra(terms, window, strict, found, max_work) if isinstance(found, Undecided) else found
 
 
 # --------------------------------------------------------------------------------------------------- by halving
@@ -303,13 +312,14 @@ def _power_in_bernstein(power: int, degree: int, interval: Interval) -> list[Fra
 # --------------------------------------------------------------------------------------------------- by algebra
 
 
-def _by_algebra(terms: tuple[Term, ...], window: Box, strict: bool, left: Undecided) -> Verdict:
+def _by_algebra(terms: tuple[Term, ...], window: Box, strict: bool, left: Undecided, max_work: int | None) -> Verdict:
     """The same, for what halving has left."""
     from ptmcad.algebra import definite  # only here: few records need it, and FLINT takes long to load
     from ptmcad.algebra.polynomials import from_fraction, from_terms, to_fraction
 
     x, y = ((from_fraction(low), from_fraction(high)) for low, high in window)
-    answer = definite.negative_or_zero(from_terms(terms)[0], x, y, strict)
+    bound = definite.MAX_WORK if max_work is None else max_work
+    answer = definite.negative_or_zero(from_terms(terms)[0], x, y, strict, bound)
     if answer is definite.Answer.PROVED:
         return PROVED
     if answer is definite.Answer.OPEN:

@@ -206,6 +206,8 @@ class _Watch:
                     self.told[topic] = texts
                     if topic is Topic.TEMPORARY:
                         self.temporaries += texts
+                    if topic is Topic.WAITING:
+                        _say(f"waiting   another process is writing in {texts[0]}\n")
             elif end == self.printed:
                 self.text += data
 
@@ -216,7 +218,7 @@ class _Watch:
         if ended < 0 or deserted or self.caught or self.out_of_time or Topic.EXHAUSTED in self.told:
             self._tidy()
         if self.caught:
-            if Topic.RESUMABLE in self.told:
+            if Topic.RESUMABLE in self.told or self.told.get(Topic.RESULT, [""])[0] == "complete":
                 self._stopped(f"by {signal.Signals(self.caught[0]).name}")
             return 128 + self.caught[0]
         text = self.text.decode(errors="replace")

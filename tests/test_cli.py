@@ -236,9 +236,27 @@ def test_sigterm_removes_the_temporary_files(tmp_path: Path) -> None:
     assert (tmp_path / "fig4.json").read_text() == "old"
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
+def test_what_is_no_file_is_not_replaced(tmp_path: Path) -> None:
+    """A rename would have removed a device; /dev/null itself, for the superuser."""
+    os.mkfifo(tmp_path / "a.json")
+    (tmp_path / "b.json").symlink_to("a.json")
+    (tmp_path / "c.json").symlink_to("nowhere")
+    for name in ("a.json", "b.json"):
+        for attempt in (
+            lambda name=name: check_writable(tmp_path, ("c.json", name)),
+            lambda name=name: write_files(tmp_path, {name: text_writer("new")}),
+        ):
+            with pytest.raises(OutputError, match=rf"{name} is a pipe, so no file can be written there"):
+                attempt()
+    write_files(tmp_path, {"c.json": text_writer("new")})
+    assert names(tmp_path) == ["a.json", "b.json", "c.json"]
+    assert not (tmp_path / "c.json").is_symlink()
+
+
 def test_write_files_replaces_all_or_none(tmp_path: Path) -> None:
     (tmp_path / "b.json").mkdir()
-    with pytest.raises(OutputError, match=r"b\.json can not be written"):
+    with pytest.raises(OutputError, match=r"b\.json is a folder, so no file can be written"):
         write_files(tmp_path, {"b.json": text_writer("new")})
     assert names(tmp_path) == ["b.json"]
     umask = os.umask(0o027)

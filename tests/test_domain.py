@@ -13,12 +13,14 @@ from typing import Any
 import pytest
 
 from ptmcad.algebra import definite
+from ptmcad.algebra.polynomials import from_terms
 from ptmcad.cli import run
 from ptmcad.config import slice_from_mapping
 from ptmcad.domain import prove, prove_slice, unproved
-from ptmcad.errors import ConfigError, GeometryError
+from ptmcad.errors import ConfigError, GeometryError, PtmcadError
+from ptmcad.exactmap import exact_map
 from ptmcad.expressions import axis, parse
-from ptmcad.positivity import decide
+from ptmcad.positivity import READING, decide
 from ptmcad.ranges.certified import certified_intervals
 from ptmcad.slice import Axis, Slice
 
@@ -132,7 +134,7 @@ def test_a_zero_function_is_no_length() -> None:
 
 
 def test_undecided_is_read_but_not_certified(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The exact engine proves signs at a sample of each cell itself; the certified one asks for a proof first."""
+    """Each engine asks for a proof first."""
     engine = pytest.importorskip("ptmcad.interval.engine")
     decide.cache_clear()
     monkeypatch.setattr(definite, "MAX_WORK", 0)
@@ -142,7 +144,31 @@ def test_undecided_is_read_but_not_certified(monkeypatch: pytest.MonkeyPatch) ->
     )
     with pytest.raises(GeometryError, match="not proved that L1 is positive"):
         engine.certified_map(slice)
+    with pytest.raises(GeometryError, match="not proved that L1 is positive"):
+        exact_map(slice_from_mapping(record(L1="(m^3 + n^3 - m*n - 1/7)^2 + 1e-40")))
     decide.cache_clear()
+
+
+SLOW_TO_DECIDE = "(m - 1.37)^24 + (n - 0.1)^24 + 1e-216"
+
+
+def test_a_reader_does_not_do_the_work_of_an_engine(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No time limit holds while a record is read, so that what takes long is left to what knows one."""
+    asked: list[int] = []
+    work = definite._work
+    monkeypatch.setattr(definite, "negative_or_zero", lambda *given: asked.append(given[-1]) or definite.Answer.OPEN)
+    decide.cache_clear()
+    slice = slice_from_mapping(record(L1=SLOW_TO_DECIDE))
+    assert set(asked) == {READING}
+    f = from_terms(slice.parameters["L1"].numerator)[0]
+    assert READING < work(f, 0) < definite.MAX_WORK
+    decide.cache_clear()
+
+
+def test_an_isolated_zero_is_refused_by_the_exact_engine_too() -> None:
+    """Between lines of a grid, at a point with irrational coordinates: once an exact map was made of it."""
+    with pytest.raises(PtmcadError, match="L1 is 0 near m = "):
+        exact_map(slice_from_mapping(record(L1="(m^2 - 2)^2 + (n^2 - 3)^2")))
 
 
 @pytest.mark.parametrize(("at", "sign"), [("1/20", True), ("1/10", True), ("100000001/10^9", False), ("1", False)])

@@ -215,9 +215,11 @@ def test_a_signal_stops_drawing(tmp_path: Path, stay: str) -> None:
     computing = running.arrive()
     assert len(running.files()) == 3
     running.process.send_signal(signal.SIGTERM)
-    assert running.end() == (143, "")
+    status, errors = running.end()
+    assert status == 143
+    assert errors.startswith("stopped: by SIGTERM; the complete result is in ")
     assert not lives(computing)
-    assert running.files() == old
+    assert running.files() == {**old, "fig2.complete.json": NEW["fig2.json"]}
 
 
 @linux
@@ -338,7 +340,7 @@ OLDER = {"json": "old", "png": "old picture"}
     ],
 )
 def test_waiting_for_the_folder(tmp_path: Path, ended: str, certified: bool, old: dict[str, str]) -> None:
-    """Nothing is put into place without the lock; what can be gone on from, or a limit ends, goes to a new name."""
+    """Nothing is put into place without the lock; what was computed goes to a new name."""
     before = put(tmp_path, **old)
     held = os.open(tmp_path / "out", os.O_RDONLY)
     work = "import fcntl, stat\n" + WAITING + (CERTIFIED if certified else "")
@@ -362,7 +364,7 @@ def test_waiting_for_the_folder(tmp_path: Path, ended: str, certified: bool, old
         os.close(held)
     files = {name: text for name, text in running.files().items() if not name.startswith(".")}
     saved = {"fig2.complete.json": NEW["fig2.json"]}
-    if ended == "kill -9 of the program" or (ended.startswith("SIG") and not certified):
+    if ended == "kill -9 of the program":
         assert (files, errors) == (before, b"")
     else:
         assert files == {**before, **saved}

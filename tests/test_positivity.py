@@ -175,6 +175,7 @@ def test_what_is_too_much_work_is_undecided_and_never_proved(monkeypatch: pytest
         patch.setattr(definite, "MAX_WORK", 0)
         verdict = decide(valley, AXES, Need.NOT_NEGATIVE)
         assert isinstance(verdict, Undecided)
+        assert decide(valley, AXES, Need.NOT_NEGATIVE, 0) == verdict
         for (x0, x1), (y0, y1) in verdict.boxes:
             assert 0 <= x0 < x1 <= 2
             assert -3 <= y0 < y1 <= 1
@@ -183,15 +184,38 @@ def test_what_is_too_much_work_is_undecided_and_never_proved(monkeypatch: pytest
     assert decide(valley, AXES, Need.NOT_NEGATIVE) is PROVED
 
 
-def test_a_zero_at_a_point_with_algebraic_coordinates_is_not_taken_for_positive() -> None:
-    touching = (X**2 - 2) ** 2 + (Y**2 - Q(1, 3)) ** 2
+@pytest.mark.parametrize(
+    ("text", "x", "y"),
+    [
+        pytest.param("(rho^2 - 2)^2 + (F^2 - 1/3)^2", (2, 2), (2, Q(1, 3)), id="two square roots"),
+        pytest.param("(rho^2 - 2)^2 + (F^2 - 4 + 2*rho)^2", (2, 2), None, id="one over the other"),
+        pytest.param("(rho^3 - 2)^2 + (F^5 + rho - 1)^4", (3, 2), None, id="a quintic over a cubic, of order 4"),
+        pytest.param("(rho^2 - 2)^2*(F^2 + 1) + (F^2 - 1/3)^2*(rho + 1)", (2, 2), (2, Q(1, 3)), id="with weights"),
+    ],
+)
+def test_a_zero_at_a_point_with_algebraic_coordinates_is_found(
+    text: str, x: tuple[int, Q], y: tuple[int, Q] | None
+) -> None:
+    touching = parse(text, NAMES)
     verdict = decide(touching, AXES, Need.POSITIVE)
-    assert isinstance(verdict, Undecided)
-    ((x, _), (y, _)) = verdict.boxes[0]
-    assert abs(x**2 - 2) < Q(1, 10**9)
-    assert abs(y**2 - Q(1, 3)) < Q(1, 10**9)
+    assert isinstance(verdict, Witness)
+    assert verdict.value == 0 < verdict.distance < Q(1, 10**9)
+    for place_of, power in zip(verdict.point, (x, y), strict=True):
+        if power is not None:
+            assert abs(place_of ** power[0] - power[1]) < Q(1, 10**9)
+    assert abs(float(touching.evaluate(*verdict.point))) < 1e-9
     assert decide(touching, AXES, Need.NOT_NEGATIVE) is PROVED
-    assert decide(1 / touching, AXES, Need.NO_POLE) == verdict
+    assert isinstance(decide(1 / touching, AXES, Need.NO_POLE), Witness)
+    assert decide(touching + Q(1, 10**30), AXES, Need.POSITIVE) is PROVED
+
+
+@pytest.mark.parametrize("high", [Fraction(0), Fraction(-1)])
+def test_a_zero_over_an_irrational_abscissa_on_the_edge_is_none_inside(high: Fraction) -> None:
+    """At F = 0 or F = -1, which ends the fibre or lies inside of it."""
+    axes = (AXES[0], Axis("F", Fraction(-3), high))
+    touching = parse("(rho^2 - 2)^2 + F^2*(F + 1)^2*(F^2 + 1)", NAMES)
+    assert isinstance(decide(touching, axes, Need.POSITIVE), Witness) == (high == 0)
+    assert decide(parse("(rho^2 - 2)^2 + F^2*(F^2 + 1)", NAMES), axes, Need.POSITIVE) is PROVED
 
 
 def test_zeros_are_told_with_their_place() -> None:

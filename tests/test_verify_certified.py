@@ -27,7 +27,6 @@ from ptmcad.verification.certified.parameters import energy_at, energy_over, exa
 from ptmcad.verification.certified.points import all_equilibria, counts_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.sweep import sweep
-from ptmcad.verification.certified.system import _energy as potential
 
 pytest.importorskip("numba")
 
@@ -364,6 +363,21 @@ def random_values(rng: random.Random) -> dict[str, Fraction]:
 
     found = {name: positive() for name in NAMES}
     return found | {name: Fraction(rng.randint(-300, 300), 100) for name in ("F3", "F4", "F3x", "F4x")}
+
+
+def potential(v: dict[str, arb]) -> arb:
+    """The energy from the coordinates of the four nodes."""
+    nodes = (
+        (arb(0), arb(0)), (v["rho"], arb(0)),
+        (v["L1"] * v["th1"].cos(), v["L1"] * v["th1"].sin()),
+        (v["rho"] - v["L2"] * v["th2"].cos(), v["L2"] * v["th2"].sin()),
+    )  # fmt: skip
+    energy = -v["F3x"] * nodes[2][0] - v["F3"] * nodes[2][1] - v["F4x"] * nodes[3][0] - v["F4"] * nodes[3][1]
+    for number, (one, two) in enumerate(((0, 3), (1, 2), (2, 3)), 1):
+        across, up = nodes[two][0] - nodes[one][0], nodes[two][1] - nodes[one][1]
+        stretch = (across * across + up * up).sqrt() - v[f"l0_{number}"]
+        energy += v[f"k{number}"] * stretch * stretch / 2
+    return energy
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -1,7 +1,7 @@
 """Whether a polynomial is negative, or zero, somewhere in an open rectangle: decided, not sampled.
 
-Guarantee: `PROVED` and a `Found` point are theorems. `OPEN` is returned only where the work would be more than
-`MAX_WORK`, or a zero at a point with algebraic coordinates can neither be proved nor excluded to `BITS` bits.
+Guarantee: `PROVED` and a `Found` point are theorems. `OPEN` is returned only where the work would be more than was
+allowed, `Near` only where a zero over an irrational abscissa can not be told from an end of the fibre to `BITS` bits.
 
 Why this decides. Write p as a constant times powers of different irreducible factors over Q. An irreducible f that
 changes sign does so across a curve; two factors meet in finitely many points; so p changes sign in the rectangle if and
@@ -10,7 +10,8 @@ both variables has simple roots over every abscissa that is not a root of its di
 fibre is constant between abscissae that are roots of it or of f on the two long edges. So f changes sign in the open
 rectangle if and only if it has a root over the sample of one of these intervals. When it has none, its only zeros are
 isolated ones, where its gradient vanishes; over these the discriminant has a multiple root, because its derivative by
-the coefficients of f is there a multiple of (1, v, v^2, ...), v being the double root.
+the coefficients of f is there a multiple of (1, v, v^2, ...), v being the double root. In the fibre over such an
+abscissa all zeros are multiple, so they are the zeros of the greatest common divisor of f and its derivative there.
 
 References: McCallum, J. Symb. Comp. 5 (1988), on projections; Gelfand, Kapranov and Zelevinsky, Discriminants,
 Resultants and Multidimensional Determinants, chapter 1, on the derivative of the discriminant.
@@ -45,13 +46,15 @@ from ptmcad.algebra.real_roots import (
     squarefree_part,
 )
 from ptmcad.algebra.resultants import discriminant
+from ptmcad.algebra.tower import common_divisor, derivative, quotient
 from ptmcad.algebra.window import Interval
 
 MAX_WORK = 2 * 10**10
 """Of a discriminant: values, times the cube of the degree, times the bits of a coefficient; some twenty seconds."""
 BITS = 400
 """To which the distance of a polynomial from zero over a singular abscissa is looked at."""
-_HALVINGS = 60
+_HALVINGS, _SHOWN = 60, 40
+"""Parts of 2^-60 of a fibre are not halved any more; zeros are told to 2^-40 of it."""
 
 Point = tuple[fmpq, fmpq]
 
@@ -85,7 +88,9 @@ class Near:
     point: Point
 
 
-def negative_or_zero(p: Coefficient, x: Interval, y: Interval, zero: bool) -> Found | Near | Answer:
+def negative_or_zero(
+    p: Coefficient, x: Interval, y: Interval, zero: bool, max_work: int = MAX_WORK
+) -> Found | Near | Answer:
     """A point of the open rectangle where p is negative or, if asked for, zero; or that there is none.
 
     Parameters
@@ -93,6 +98,7 @@ def negative_or_zero(p: Coefficient, x: Interval, y: Interval, zero: bool) -> Fo
     p : not the zero polynomial.
     x, y : intervals; one may be a single number if p does not depend on that axis.
     zero : whether a zero counts.
+    max_work : for each discriminant, in the unit of `MAX_WORK`.
     """
     factors = factors_with_multiplicity(p)
     undecided: Near | Answer | None = None
@@ -100,7 +106,7 @@ def negative_or_zero(p: Coefficient, x: Interval, y: Interval, zero: bool) -> Fo
         odd = multiplicity % 2 == 1
         if not odd and not zero:
             continue
-        crossing = _crossing(f, x, y)
+        crossing = _crossing(f, x, y, max_work)
         if crossing is Answer.OPEN:
             undecided = crossing
         elif isinstance(crossing, _Crossing):
@@ -151,7 +157,7 @@ def _narrow(root: RealRoot, window: Interval) -> RealRoot:
     return near
 
 
-def _crossing(f: Coefficient, x: Interval, y: Interval) -> _Crossing | Answer:
+def _crossing(f: Coefficient, x: Interval, y: Interval, max_work: int) -> _Crossing | Answer:
     """Where an irreducible polynomial changes sign in the open rectangle, if it does."""
     degrees = [int(d) for d in f.degrees()]
     if min(degrees) == 0:
@@ -159,7 +165,7 @@ def _crossing(f: Coefficient, x: Interval, y: Interval) -> _Crossing | Answer:
         roots = isolate(coefficients_in(f, 1 - across)[0], *((x, y)[across]))
         return _Crossing(across, (y, x)[across], roots[0]) if roots else Answer.PROVED
     base = _base(f)
-    if _work(f, base) > MAX_WORK:
+    if _work(f, base) > max_work:
         return Answer.OPEN
     window, fibre = ((x, y), (y, x))[base]
     rows = coefficients_in(f, 1 - base)
@@ -244,10 +250,13 @@ def _isolated_zero(f: Coefficient, x: Interval, y: Interval) -> Found | Near | N
         for root in isolate(m, *window):
             found = _over_rational(rows, m, fibre) if m.degree() == 1 else _over_irrational(rows, root, fibre)
             if found is not None:
-                heights, exact = found
-                u, v = (_narrow(root, window).middle if m.degree() > 1 else _only_root(m)), heights.middle
-                point = (u, v) if base == 0 else (v, u)
-                return Found(point, heights.is_rational, heights.high - heights.low) if exact else Near(point)
+                height, sure = found
+                there = _narrow(root, window)
+                point = (there.middle, height.middle) if base == 0 else (height.middle, there.middle)
+                if not sure:
+                    return Near(point)
+                distance = max(there.high - there.low, height.high - height.low)
+                return Found(point, distance == 0, distance)
     return None
 
 
@@ -265,20 +274,28 @@ def _over_rational(
 def _over_irrational(
     rows: Sequence[UnivariatePolynomial], root: RealRoot, fibre: Interval
 ) -> tuple[RealRoot, bool] | None:
-    """Where in the open fibre over an algebraic abscissa no sign is proved; None when it is proved everywhere.
+    """Where the polynomial is zero in the open fibre over an algebraic abscissa; None when it is nowhere.
 
-    Zeros at the fibre's ends are divided out first, exactly: they are outside of the open rectangle.
+    The second value is False where that is not sure. Zeros at the fibre's ends are divided out first, exactly: they are
+    outside of the open rectangle.
     """
     modulus = fmpq_poly(root.polynomial)
     width = fibre[1] - fibre[0]
     along = _composed(rows, fmpq_poly([fibre[0], width]))
     there = _without_zeros_at_0(_composed(_without_zeros_at_0(along, modulus), fmpq_poly([1, -1])), modulus)
-    coefficients = _at(there, root)
-    place = _undecided_part(coefficients)
-    if place is None:
+    part = _undecided_part(_at(there, root))
+    if part is None:
         return None
-    v = fibre[1] - width * place  # the second composition turned the fibre round
-    return RealRoot(root.polynomial, v, v), False
+    multiple = common_divisor(there, derivative(there), modulus)
+    if len(multiple) == 1:
+        return None  # a zero would be simple, and f would change sign there
+    simple = quotient(multiple, common_divisor(multiple, derivative(multiple), modulus), modulus)
+    part = _undecided_part(_at(simple, root), zero=True)
+    if part is None:
+        return None
+    low, high, sure = part
+    # the second composition turned the fibre round
+    return RealRoot(root.polynomial, fibre[1] - width * high, fibre[1] - width * low), sure
 
 
 def _composed(rows: Sequence[fmpq_poly | fmpz_poly], inner: fmpq_poly) -> list[fmpq_poly]:
@@ -306,8 +323,13 @@ def _at(coefficients: Sequence[fmpq_poly], root: RealRoot) -> list[arb]:
         return [arb_poly(c)(ball) for c in coefficients]
 
 
-def _undecided_part(coefficients: Sequence[arb]) -> fmpq | None:
-    """The middle of a part of [0, 1] on which no sign is proved; None when there is no zero in it."""
+def _undecided_part(coefficients: Sequence[arb], zero: bool = False) -> tuple[fmpq, fmpq, bool] | None:
+    """A part of [0, 1] on which no sign is proved; None when there is no zero in [0, 1].
+
+    Parameters
+    ----------
+    zero : whether a part at whose ends the signs differ will do; the last value returned says that it is one.
+    """
     n = len(coefficients) - 1
     with ctx.workprec(2 * BITS):
         bernstein = [
@@ -318,8 +340,10 @@ def _undecided_part(coefficients: Sequence[arb]) -> fmpq | None:
             b, low, width = parts.pop()
             if all(c > 0 for c in b) or all(c < 0 for c in b):
                 continue
+            if zero and b[0] * b[-1] < 0 and width < fmpq(1, 2**_SHOWN):
+                return low, low + width, True
             if width < fmpq(1, 2**_HALVINGS):
-                return low + width / 2
+                return low, low + width, False
             left, right = _halved(b)
             parts.append((left, low, width / 2))
             parts.append((right, low + width / 2, width / 2))

@@ -1,8 +1,8 @@
 """From a record's texts to exact expressions and numbers.
 
 Guarantee: what leaves here is complete and exact; no length or stiffness is known to be out of the range that the
-geometry needs. Where its sign could not be decided (see `ptmcad.positivity`) it is left to the engines, which decide or
-refuse: `ptmcad.domain.prove`, and the exact engine's samples.
+geometry needs. Where its sign could not be decided at once (see `ptmcad.positivity`) it is left to the engines, which
+decide or refuse: `ptmcad.domain.prove`.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from ptmcad.domain import fault
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.expressions import Expression, axis, names_in, parse
 from ptmcad.mechanism import Kind, Mechanism, mechanism_of
+from ptmcad.positivity import READING
 from ptmcad.slice import Axis, Slice
 from ptmcad.syntax import did_you_mean
 from ptmcad.yamltree import Place, Scalar
@@ -180,7 +181,7 @@ def _check_value(name: str, expression: Expression, record: Record, axes: tuple[
     if expression.is_constant:
         _check_number(name, expression.constant(), place)
         return
-    problem = fault(name, expression, axes)
+    problem = fault(name, expression, axes, READING)
     if problem:
         raise place.error(problem)
 

@@ -39,7 +39,8 @@ def axis_weights(slice: Slice) -> tuple[float, float]:
         for v in (2, 3):
             point[v] = generator.uniform(-np.pi, np.pi)
         run(program(tape), point, point, low, high, 0, len(tape))
-        slopes = np.abs(low[tape.outputs[0]].reshape(4, 2) + high[tape.outputs[0]].reshape(4, 2)) / 2
+        with np.errstate(over="ignore", invalid="ignore"):  # samples without a finite slope are left out below
+            slopes = np.abs(low[tape.outputs[0]].reshape(4, 2) + high[tape.outputs[0]].reshape(4, 2)) / 2
         sizes[k] = slopes.max(axis=1)
     usable: NDArray[np.float64] = sizes[np.isfinite(sizes).all(axis=1)]
     if not len(usable):

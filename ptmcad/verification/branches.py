@@ -150,8 +150,6 @@ def _by_series(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Ef
 def _along(rows: Sequence[arb_poly], half: fmpq, height: arb, degree: int, effort: Effort) -> arb | None:
     center, length = height.mid(), degree + 1
     near = _shifted([row.truncate(length) for row in rows], arb_poly([center]))
-    if near[1][0].contains(0):
-        raise PrecisionTooLow  # the root is simple
     start = arb_series([height - center], prec=length)
     polynomial = arb_poly([center, *(c.mid() for c in _series(near, start, length)[1:])])
     d = _shifted(rows, polynomial)
@@ -231,7 +229,7 @@ def _series(d: Sequence[arb_poly], start: arb_series, order: int) -> list[arb]:
                 slope = slope * t + value
                 value = value * t + arb_series(row.coeffs()[:length], prec=length)
             if slope.coeffs() == [] or slope.coeffs()[0].contains(0):
-                raise PrecisionTooLow
+                raise PrecisionTooLow  # the root is simple
             t = t - value / slope
         found = t.coeffs()
     finally:

@@ -30,7 +30,7 @@ def check_solutions(claims: Claims) -> str:
     """Every solution of every cell."""
     number = 0
     for n, cell in enumerate(claims.result.cells):
-        if cell.total is None or cell.index is None or len(cell.solutions) != cell.total:
+        if len(cell.solutions) != cell.total:
             raise Violation(f"cell {n} has {len(cell.solutions)} boxes of solutions, but {cell.total} equilibria")
         _check_disjoint(n, cell)
         values = claims.parameters_at(*cell.sample)

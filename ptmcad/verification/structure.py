@@ -90,7 +90,7 @@ def check_critical_values(claims: Claims) -> str:
         low, high = rational(value.low), rational(value.high)
         interval = f"[{text_of(value.low)}, {text_of(value.high)}]"
         p = polynomial(value)
-        if p.degree() < 1 or not previous < low <= high < claims.base[1]:
+        if not previous < low <= high < claims.base[1]:
             raise Violation(f"critical value {n} in {interval} is not above the one before it and in "
                             "the window")  # fmt: skip
         if (roots := roots_within(p, low, high)) != 1:

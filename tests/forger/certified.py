@@ -213,6 +213,18 @@ def frame(r: RegionMap) -> Iterator[Alteration]:
     yield partial(replace, r, system=replace(r.system, unknowns=swapped(r.system.unknowns, 0, 1)))
 
 
+def potentials(r: RegionMap) -> Iterator[Alteration]:
+    """Potentials that agree with the true one where all parameters are small and positive, or nearly everywhere."""
+    true = r.system.potential
+    tower = "(" * 6 + "(F3/4)" + "^9)" * 6
+    for text in (
+        true.replace("F3*L1*sin", "sqrt(F3^2)*L1*sin"), f"{true} + {tower}", f"{true} + F3/1{'0' * 200}",
+        f"{true} + (F3 - 1)*(F3 - 2)*(F3 - 3)", f"{true} + sqrt(sin(th1)^2) - sin(th1)",
+        f"{true} + sqrt((rho - L2)^2) + rho - L2",
+    ):  # fmt: skip
+        yield partial(replace, r, system=replace(r.system, potential=text))
+
+
 def true_covers(r: RegionMap) -> Iterator[Alteration]:
     """Rectangles in halves, on a finer lattice, more of them, all cells but one."""
     cover = cover_of(r)
@@ -240,6 +252,6 @@ def true_words(r: RegionMap) -> Iterator[Alteration]:
 
 FALSE = (
     counts, counts_exchanged, boxes, cover_with_a_gap, cover_left_out, cover_not_normal, shares_and_levels, areas,
-    samples, partition, frame,
+    samples, partition, frame, potentials,
 )  # fmt: skip
 TRUE = (true_covers, true_words)

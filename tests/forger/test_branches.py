@@ -9,6 +9,7 @@ from functools import cache, partial
 from typing import Any
 
 import pytest
+from flint import arb, arb_poly, ctx, fmpq
 
 from forger.consistency import drop, kept, put, swapped, with_plan
 from forger.maps import named
@@ -34,7 +35,8 @@ from ptmcad.slice import Axis, Count, Point
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.auxiliary import check_auxiliary
-from ptmcad.verification.claims import Claims
+from ptmcad.verification.branches import Effort, PrecisionTooLow, _along
+from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.counts import check_counts
 from ptmcad.verification.derivation import rational
 from ptmcad.verification.fibre import Fibre
@@ -140,6 +142,28 @@ def first(r: RegionMap, **what: Any) -> int:
     return next(k for k, c in enumerate(r.components) if all(getattr(c, n) == v for n, v in what.items()))
 
 
+def bare(r: RegionMap) -> RegionMap:
+    """A partial result without cells, and without components that would separate some."""
+    return replace(
+        r, status=Status.PARTIAL, undetermined=Fraction(1), critical_values=(), stacks=(), cells=(), adjacencies=(),
+        non_adjacencies=(), regions=(), components=tuple(replace(c, separates=False) for c in r.components),
+    )  # fmt: skip
+
+
+def walled(r: RegionMap) -> int:
+    """The number of the first stack that has walls."""
+    return next(n for n, stack in enumerate(r.stacks) if stack.walls)
+
+
+def joined(r: RegionMap) -> RegionMap:
+    """The cells of the second region are in the first one, and it is said to have them; so as many are stored."""
+    cells = tuple(replace(c, region=0 if c.region == 1 else c.region) for c in r.cells)
+    members = tuple(n for n, c in enumerate(cells) if c.region == 0)
+    return replace(r, cells=cells, regions=put(put(r.regions, 0, cells=members), 1, cells=()))
+
+
+FOLD = {"L1": 1, "L2": 1, "rho": 1, "k1": 1, "k2": 1, "k3": 1, "F3": 0, "F4": 0, "F3x": 0, "F4x": 0}
+"""Where three equilibria become one, so that det H vanishes at a solution."""
 LINE = PlanePolynomial.of([(1, 0, 1), (0, 0, -1000)])
 DIAGONAL = PlanePolynomial.of([(1, 0, 1), (0, 1, -1)])
 
@@ -190,16 +214,22 @@ SHAPE: list[tuple[str, Change, str]] = [
     ("fig3", lambda r: replace(r, undetermined=HALF), "0.5 of the window is said to be undetermined, but all cells"),
     ("fig3", with_slice(mechanism="other"), "the mechanism 'other' is not known"),
     ("fig3", with_slice(count=Count.ADMISSIBLE), "an exact map has no admissible counts"),
+    *(("fig3", partial(lambda name, r: with_slice(parameters={n: e for n, e in {**r.slice.parameters, "L3": constant(1)
+        }.items() if n != name})(r), name), "its parameters are others") for name in ("F3", "")),
     ("fig3", lambda r: replace(r, base=2), "the window is empty"),
+    ("fig3", lambda r: with_slice(axes=put(r.slice.axes, 0, low=r.slice.axes[0].high))(r), "the window is empty"),
     ("fig3", of("cells", 0, admissible=0), "counts of admissible equilibria"),
     ("fig3", of("regions", 0, admissible=0), "counts of admissible equilibria"),
-    ("fig3", lambda r: replace(r, stacks=(), undetermined=Fraction(1)), "there are no stacks"),
-    ("fig3", lambda r: replace(r, status=Status.PARTIAL, undetermined=Fraction(1), critical_values=(), stacks=(),
-                               cells=(), adjacencies=(), non_adjacencies=(), regions=()), "said to separate regions"),
+    ("fig3", lambda r: replace(bare(r), status=Status.EXACT), "there are no stacks"),
+    *(("fig3", partial(lambda name, r: replace(bare(r), **{name: getattr(r, name)}), name), "there are no stacks")
+      for name in ("critical_values", "cells", "adjacencies", "non_adjacencies", "regions")),
+    ("fig3", lambda r: replace(bare(r), components=r.components), "said to separate regions"),
     ("fig3", lambda r: replace(r, critical_values=r.critical_values[1:]), "5 critical values do not part 7 stacks"),
     ("fig3", of("stacks", 1, left=4), "stack 1 is said to lie between critical values 4 and 1, not 0 and 1"),
     ("fig3", of("stacks", 0, cells=(7,)), "stack 0 has cells"),
     ("fig2", of("stacks", 0, walls=(Wall(99, 0),) * 2), "on component 99, which is not used"),
+    ("fig3", lambda r: of("stacks", walled(r), walls=(Wall(first(r, left_out=NO_POINT), 0),) * len(
+        r.stacks[walled(r)].walls))(r), "which is not used"),
     ("fig3", of("cells", 0, level=5), "cell 0 is not the one at level 0 of stack 0"),
     ("fig3", lambda r: replace(r, cells=(*r.cells, r.cells[0])), "12 cells are stored, the stacks have 11"),
     ("fig3", of("adjacencies", 0, first=99), "adjacency 0 joins cells 99 and"),
@@ -220,6 +250,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_text, "fig3", with_text("L1", "$"), "the text kept for 'L1', '.', is no expression"),
     (check_text, "fig3", with_text("L1", "2"), "L1 was written as '2', but is 1"),
     (check_system, "fig3", with_system(potential="a b"), "the potential is not a sum of monomials"),
+    (check_system, "fig3", with_system(potential=" + ".join(["L1"] * 20_001)), "is not a sum of monomials"),
     (check_system, "fig3", with_system(potential="0*L1"), "the potential has a zero coefficient"),
     (check_system, "fig3", with_system(potential="L9"), "the potential names 'L9'"),
     (check_system, "fig3", with_system(unknowns=("a",)), "the unknowns are"),
@@ -234,6 +265,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
      "is not irreducible"),
     (check_irreducible, "fig3", lambda r: replace(r, components=(*r.components, r.components[0])), "is stored twice"),
     (norm, "fig3", lambda r: replace(r, complex_solutions=8), "complex solutions at .*, not 8"),
+    (norm, "fig3", with_values(**FOLD), "det H vanishes at .*, which is on no stored component"),
     (norm, "fig3", more_components(Component(LINE, Kind.CRITICAL)), "is no factor of the norm of det H"),
     (norm, "fig3", kind_of(0, Kind.INFINITY), "component 0 is said to be at infinity, but det H vanishes on it"),
     (norm, "fig3", lambda r: replace(r, components=r.components[1:]), "a curve of the variety is missing or wrong"),
@@ -249,6 +281,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_left_out, "fig3", of("components", 0, left_out=NO_POINT), "is left out, but runs through the window"),
     (check_plan, "fig3", lambda r: replace(r, plan=r.plan[1:]), "the plan has 12 steps, not 13"),
     (check_plan, "fig3", of("plan", 0, reason="nobody asked"), "step 0 of the plan is not"),
+    (check_plan, "fig3", of("plan", 0, what="nothing"), "step 0 of the plan is not"),
     (check_plan, "fig3", keeping("no-real-points"), "without a point in the window is left out, but the plan says"),
     (check_plan, "fig3", lambda r: with_plan(of("components", first(r, left_out=NO_POINT, kind=Kind.BOUNDARY),
                                                 left_out="")(r)), "is used, but it has no point in the window"),
@@ -264,6 +297,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (auxiliary, "fig3", keeping("hermite-matrix"), "'hermite-matrix' was kept, but a factor of the Hermite matrix's"),
     (auxiliary, "fig3+sign-curve+no-areas", more_components(Component(PlanePolynomial(()), Kind.AUXILIARY)),
      "a function that defines curves vanishes at the random point"),
+    (auxiliary, "fig3+sign-curve+no-areas", with_values(**FOLD), "a function that defines curves vanishes"),
     (check_critical_values, "fig3", of("critical_values", 0, polynomial=(1, 2, 3)), "is no irreducible factor"),
     (check_critical_values, "fig3", lambda r: replace(r, critical_values=swapped(r.critical_values, 0, 1)),
      "is not above the one before it"),
@@ -283,12 +317,17 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_solutions, "fig3", of("cells", 0, solutions=()), "has 0 boxes of solutions, but"),
     (check_solutions, "fig3", lambda r: of("cells", 0, solutions=put(r.cells[0].solutions, 0, radius=Fraction(2)))(r),
      "box 0 is not a box around a point of the torus"),
+    *((check_solutions, "fig3", partial(lambda changes, r: of("cells", 0, solutions=put(r.cells[0].solutions, 0,
+        **changes))(r), changes), "box 0 is not a box around a point of the torus")
+      for changes in ({"radius": Fraction(0)}, {"center": (Fraction(1),) * 3}, {"center": (Fraction(3),) * 4})),
     (check_solutions, "fig3", lambda r: of("cells", 0, solutions=r.cells[0].solutions[:1] * (r.cells[0].total or 0))(r),
      "the boxes 0 and 1 of its solutions meet"),
     (check_solutions, "fig3", lambda r: of("cells", 0, solutions=put(r.cells[0].solutions, 0,
         center=(Fraction(3, 5), Fraction(4, 5), Fraction(5, 13), Fraction(12, 13))))(r), "no solution was found in th"),
     (check_solutions, "fig3", lambda r: of("cells", 0, solutions=put(r.cells[0].solutions, 0, signs="??"))(r),
      "has eigenvalues of signs"),
+    (check_solutions, "fig3", of("cells", 0, total=None), "boxes of solutions, but None equilibria"),
+    (check_solutions, "fig3", of("cells", 0, index=None), "the solutions have index .*, the cell None"),
     (check_solutions, "fig3", of("cells", 0, index=(9, 9, 9)), "the solutions have index .*, the cell"),
     (check_adjacencies, "fig3", lambda r: replace(r, adjacencies=(*r.adjacencies, r.adjacencies[0])), "is stored twic"),
     (check_adjacencies, "fig3", lambda r: of("adjacencies", across(r), segment=None)(r), "are not neighbours in one s"),
@@ -313,6 +352,9 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
         if a.below and a.left[0] != r.stacks[a.critical_value].cells[0]), below=None)(r),
      "a segment is missing, and the cells do not reach the window's edge"),
     (check_non_adjacencies, "fig4", lambda r: of("non_adjacencies", next(k for k, a in enumerate(r.non_adjacencies)
+        if a.above and a.left[-1] != r.stacks[a.critical_value].cells[-1]), above=None)(r),
+     "a segment is missing, and the cells do not reach the window's edge"),
+    (check_non_adjacencies, "fig4", lambda r: of("non_adjacencies", next(k for k, a in enumerate(r.non_adjacencies)
         if a.below and a.above), reason=Reason.EDGE)(r), "half-branches between cells .* are not closed because"),
     (check_merges, "fig2", lambda r: of("adjacencies", inside(r), component=None)(r), "crosses no component, but"),
     (check_merges, "fig2", of("adjacencies", 0, merge=Merge.PROVEN), "is 's?e?.*', not 'proven'"),
@@ -320,12 +362,14 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_regions, "fig3", lambda r: of("cells", r.regions[0].cells[-1], region=1)(r), "are joined, but in regions"),
     (check_regions, "fig3", lambda r: replace(r, regions=(*r.regions, r.regions[0])), "4 regions are stored, the adja"),
     (check_regions, "fig3", of("regions", 0, cells=(0,)), "region 0 is said to have cells"),
+    (check_regions, "fig3", joined, r"region 0 is said to have cells \(.*\), not \("),
     (check_regions, "fig3", of("regions", 0, stable=9), "region 0: stable is"),
     (check_regions, "fig3", lambda r: of("regions", 0, sample=r.regions[1].sample)(r), "the sample of region 0 is not"),
     (check_areas, "diagonal", area(0, Fraction(0), Fraction(2)), "no area in the window is between"),
     (check_areas, "diagonal", lambda r: replace(r, regions=(replace(r.regions[0], area=(HALF, HALF)),)), "the only re"),
     (check_areas, "diagonal", area(0, HALF, HALF * (1 + Fraction(1, 10**90))), "too narrow"),
     (check_areas, "diagonal", area(0, HALF, HALF + Fraction(1, 1000)), "could not be confirmed with"),
+    (check_areas, "diagonal", area(0, HALF - Fraction(1, 10**3), HALF - Fraction(1, 10**9)), "region 0: its area is"),
     (check_areas, "diagonal", area(0, HALF + Fraction(1, 10**9), HALF + Fraction(1, 10**3)), "region 0: its area is"),
 ]  # fmt: skip
 
@@ -346,6 +390,24 @@ def test_references_of_tables_to_each_other(name: str, change: Change, words: st
 def test_rejecting_branches(check: Check, name: str, change: Change, words: str) -> None:
     true = diagonal() if name == "diagonal" else the(name)
     rejected(check, change(true), words)
+
+
+@pytest.mark.parametrize(
+    ("check", "name"),
+    [
+        (auxiliary, "fig3+hermite-matrix+no-areas"),
+        (auxiliary, "fig3+sign-curve+no-areas"),
+        (check_plan, "fig3+no-real-points+no-areas"),
+        (check_plan, "fig3+infinity+no-areas"),
+        (check_plan, "fig3+axis-order+no-areas"),
+        (check_plan, "7"),  # a random slice whose base is the second axis
+    ],
+)
+def test_what_was_kept_is_no_fault(check: Check, name: str) -> None:
+    """A curve of the Hermite matrix alone is auxiliary, curves without points are used, where that was asked for."""
+    r = the(name)
+    assert {*name.split("+")[1:]} - {"no-areas"} <= kept(r)
+    check(Claims(r))
 
 
 def test_the_diagonal_is_true_where_it_is_used() -> None:
@@ -369,3 +431,15 @@ def test_counts_without_a_zero_euler_sum_are_a_fault_of_the_check(monkeypatch: p
 def test_a_degenerate_sample(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Fibre, "morse_index", lambda self: None)
     rejected(check_counts, the("fig3"), "an equilibrium is degenerate at")
+
+
+@pytest.mark.parametrize("distance", [Fraction(0), Fraction(1, 2**70)])
+def test_branches_that_are_not_told_apart_ask_for_more_precision(distance: Fraction) -> None:
+    """Of (v - 1)^2 = u^2 + distance^2, at the middle of a panel."""
+    square = distance**2
+    n = square.denominator
+    curve = PlaneCurve(0, ((0, 2, n), (0, 1, -2 * n), (0, 0, n - square.numerator), (2, 0, -n)))
+    rows = [arb_poly(row)(arb_poly([0, 1])) for row in curve.in_v]
+    effort = Effort(arb(2) ** -20, fmpq(1, 8), fmpq(1, 2**20), (fmpq(0), fmpq(2)), (2,))
+    with ctx.workprec(64), pytest.raises(PrecisionTooLow):
+        _along(rows, fmpq(1, 8), arb(1), 2, effort)

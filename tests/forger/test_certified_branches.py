@@ -1,0 +1,414 @@
+"""Every branch by which a check of a certified map rejects it is reached, and says what is wrong.
+
+The maps are made here by hand, each of two cells that a strip of the cover parts in a window without a curve: so they
+need no compiled code, and there is one on every place that a proof stops at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache, partial
+from typing import Any
+
+import pytest
+from flint import ctx
+
+import ptmcad
+from forger.consistency import put
+from ptmcad.cover import Cover, Rectangle
+from ptmcad.expressions import axis, parse
+from ptmcad.plane import PlanePolynomial
+from ptmcad.regionmap import (
+    Adjacency,
+    Cell,
+    Component,
+    CriticalValue,
+    Kind,
+    Merge,
+    NonAdjacency,
+    Reason,
+    Region,
+    RegionMap,
+    Solution,
+    Stack,
+    Status,
+    System,
+)
+from ptmcad.slice import Count, Point
+from ptmcad.verification.certified import points, sampling
+from ptmcad.verification.certified.energy import NAMES
+from ptmcad.verification.certified.equilibria import Square, Unproved, equilibria
+from ptmcad.verification.certified.parameters import check_domain, energy_at, energy_over, exact, values_at
+from ptmcad.verification.certified.points import all_equilibria, check_points, cones, counts_of
+from ptmcad.verification.certified.sampling import Place, check_boxes
+from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
+from ptmcad.verification.certified.system import check_potential
+from ptmcad.verification.report import Violation
+
+Change = Callable[[RegionMap], RegionMap]
+Check = Callable[[CertifiedClaims], str]
+
+POTENTIAL = (
+    "1/2*k1*(sqrt((rho - L2*cos(th2))^2 + (L2*sin(th2))^2) - l0_1)^2"
+    " + 1/2*k2*(sqrt((rho - L1*cos(th1))^2 + (L1*sin(th1))^2) - l0_2)^2"
+    " + 1/2*k3*(sqrt((rho - L1*cos(th1) - L2*cos(th2))^2 + (L2*sin(th2) - L1*sin(th1))^2) - l0_3)^2"
+    " - F3x*L1*cos(th1) - F3*L1*sin(th1) - F4x*(rho - L2*cos(th2)) - F4*L2*sin(th2)"
+)
+STEPS = 8
+UNEQUAL: tuple[Rectangle, ...] = ((2, 4, 0, STEPS),)
+"""A strip from the window's lower to its upper edge, left of the middle: the first cell is the one on the right."""
+EQUAL: tuple[Rectangle, ...] = ((3, 5, 0, STEPS),)
+WHERE: dict[str, tuple[str, str, dict[str, str]]] = {
+    "springs": ("5/4", "1", {"L1": "1", "k": "100", "F3": "-10", "F4": "-10", "l0": "1/5"}),
+    "pitchfork": ("19/20", "1", {"L1": "1", "k": "1"}),
+    # with spring 3 of length 3, the others of length 5, no load and no pull
+    "slack": ("3", "4", {"L1": "4", "k": "1", "l0_1": "5", "l0_2": "5", "l0_3": "3"}),
+    "crease": ("1", "1", {"L1": "3/2", "k": "1", "l0": "1/5", "F3": "-1/10", "F4": "-5"}),
+    "other-crease": ("1", "3/2", {"L1": "1.00075", "k": "1", "l0": "1/5", "F3": "-1/10", "F4": "-1/10"}),
+}
+"""The lower left corner of the window, which has a width of a thousandth, and the parameters."""
+
+
+@cache
+def made(name: str, count: str = "stable", rectangles: tuple[Rectangle, ...] = UNEQUAL) -> RegionMap:
+    """A map near a place, with the counts and boxes that `ptmcad.verification` finds."""
+    x, y, parameters = WHERE[name]
+    sides = [[str(Fraction(c)), str(Fraction(c) + Fraction(1, 1000))] for c in (x, y)]
+    slice = ptmcad.slice_from_mapping({
+        "name": name, "mechanism": "ptm", "count": count, "parameters": parameters,
+        "axes": {"rho": sides[0], "L2": sides[1]},
+    })  # fmt: skip
+    left, right = rectangles[0][0], STEPS - rectangles[0][1]
+    window = Fraction(1, 10**6)
+    r = RegionMap(
+        slice=slice, status=Status.CERTIFIED, system=System(("th1", "th2"), (), POTENTIAL, (), ()), base=0,
+        complex_solutions=0, components=(), critical_values=(), stacks=(), cells=(), adjacencies=(),
+        non_adjacencies=(), regions=(), plan=(), undetermined=1 - Fraction(left + right, STEPS), versions={},
+        precision={}, cover=Cover(STEPS, rectangles),
+    )  # fmt: skip
+    claims = CertifiedClaims(r)
+    cells, regions = [], []
+    for n, (u, width) in enumerate(((STEPS - right + 1, right), (1, left))):
+        sample = Point(("rho", "L2"), *claims.off_lattice(Fraction(u), Fraction(3)))
+        given = values_at(claims, *sample)
+        energy, found = all_equilibria(given, slice.count)
+        c = counts_of(energy, given, found, slice.count)
+        boxes = tuple(Solution((Fraction(e.th1), Fraction(e.th2)), Fraction(1, 2**20), e.signs)
+                      for e in found if slice.count in (Count.TOTAL, Count.INDEX) or e.signs == "++")  # fmt: skip
+        cells.append(Cell(None, n, sample, n, c.total, c.stable, c.index, boxes, c.admissible))
+        regions.append(Region(c.stable, c.total, c.index, (window * width / STEPS, window), (n,), sample, c.admissible))
+    return replace(r, cells=tuple(cells), regions=tuple(regions))
+
+
+springs, total = partial(made, "springs"), partial(made, "springs", "total")
+equal, pitchfork = partial(made, "springs", "stable", EQUAL), partial(made, "pitchfork", "total")
+admissible = partial(made, "springs", "admissible")
+
+
+@pytest.mark.parametrize("make", [springs, total, equal, pitchfork, admissible])
+def test_the_maps_are_true(make: Callable[[], RegionMap]) -> None:
+    report = ptmcad.verify(make(), boxes=1)
+    assert report.ok, report.violation
+
+
+def of(table: str, k: int, **changes: Any) -> Change:
+    """An entry of a table with other values."""
+    return lambda r: replace(r, **{table: put(getattr(r, table), k, **changes)})
+
+
+def both(k: int, **changes: Any) -> Change:
+    """A cell and its region, which are told by the same number here, with other counts."""
+    return lambda r: of("regions", k, **changes)(of("cells", k, **changes)(r))
+
+
+def having(**changes: Any) -> Change:
+    return lambda r: replace(r, **changes)
+
+
+def with_cover(*rectangles: Rectangle, steps: int = STEPS) -> Change:
+    return having(cover=Cover(steps, rectangles))
+
+
+def with_slice(**changes: Any) -> Change:
+    return lambda r: replace(r, slice=replace(r.slice, **changes))
+
+
+def with_axis(k: int, low: int, high: int) -> Change:
+    return lambda r: with_slice(axes=put(r.slice.axes, k, low=Fraction(low), high=Fraction(high)))(r)
+
+
+def without(name: str) -> Change:
+    return lambda r: with_slice(parameters={n: e for n, e in r.slice.parameters.items() if n != name})(r)
+
+
+def with_parameter(name: str, text: str) -> Change:
+    known = {"rho": axis(0), "L2": axis(1)}
+    return lambda r: with_slice(parameters={**r.slice.parameters, name: parse(text, known)})(r)
+
+
+def sample_at(n: int, u: Fraction | int, v: Fraction | int) -> Change:
+    """A cell's sample at a place in lattice steps."""
+
+    def change(r: RegionMap) -> RegionMap:
+        return of("cells", n, sample=Point(("rho", "L2"), *CertifiedClaims(r).off_lattice(Fraction(u), Fraction(v))))(r)
+
+    return change
+
+
+def with_solution(k: int, **changes: Any) -> Change:
+    """A box of the first cell."""
+    return lambda r: of("cells", 0, solutions=put(r.cells[0].solutions, k, **changes))(r)
+
+
+def with_system(**changes: Any) -> Change:
+    return lambda r: replace(r, system=replace(r.system, **changes))
+
+
+def plus(text: str) -> Change:
+    """The true potential and something more."""
+    return with_system(potential=f"{POTENTIAL} + {text}")
+
+
+def instead(old: str, new: str) -> Change:
+    assert old in POTENTIAL
+    return with_system(potential=POTENTIAL.replace(old, new))
+
+
+def beside(r: RegionMap) -> RegionMap:
+    """The first box just touches its equilibrium, so that nobody can tell whether it is in the box."""
+    s = r.cells[0].solutions[0]
+    return with_solution(0, center=(s.center[0] + s.radius, s.center[1]))(r)
+
+
+def reaching(r: RegionMap) -> RegionMap:
+    """The box of one equilibrium reaches to another one, and nobody can tell whether this one is in it."""
+    for j, one in enumerate(r.cells[0].solutions):
+        for other in r.cells[0].solutions:
+            far = max(abs(a - b) for a, b in zip(one.center, other.center, strict=True))
+            if 0 < far < 1:
+                return with_solution(j, radius=far)(r)
+    raise AssertionError("no two equilibria are near each other")
+
+
+def not_asked_for(r: RegionMap) -> RegionMap:
+    """The box of a saddle among those of the minima, which are as many as there should be."""
+    saddle = next(s for s in total().cells[0].solutions if s.signs == "+-")
+    return of("cells", 0, solutions=(saddle, *r.cells[0].solutions[1:]))(r)
+
+
+def area(k: int, low: Fraction, high: Fraction) -> Change:
+    return of("regions", k, area=(low, high))
+
+
+WINDOW = Fraction(1, 10**6)
+"""The area of the windows of all maps."""
+TINY = Fraction(1, 10**30)
+LINE = Component(PlanePolynomial.of([(1, 0, 1)]), Kind.CRITICAL)
+POWER = "(" * 6 + "(F3/4)" + "^9)" * 6
+"""Less than 10^-20000 where the load is from 0 to 3.6, and more than 10^200000 where it is -10."""
+
+ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
+    (check_form, springs, having(status=Status.EXACT), "the status is 'exact', and there is a cover"),
+    (check_form, springs, having(cover=None), "the status is 'certified', and there is no cover"),
+    (check_form, springs, with_slice(mechanism="other"), "the mechanism 'other' is not known, or its parameters are"),
+    (check_form, springs, without("F3"), "the mechanism 'ptm' is not known, or its parameters are others"),
+    (check_form, springs, with_parameter("L3", "1"), "the mechanism 'ptm' is not known, or its parameters are others"),
+    (check_form, springs, with_axis(0, 1, 1), "the window is empty"),
+    (check_form, springs, with_axis(1, 2, 1), "the window is empty"),
+    (check_form, springs, having(components=(LINE,)), "a certified map has components"),
+    (check_form, springs, having(critical_values=(CriticalValue((0, 1), Fraction(0), Fraction(0), ""),)),
+     "a certified map has critical_values"),
+    (check_form, springs, having(stacks=(Stack(None, None, Fraction(1), (), (0,)),)), "a certified map has stacks"),
+    (check_form, springs, having(adjacencies=(Adjacency(0, 1, None, None, Merge.PROVEN),)), "map has adjacencies"),
+    (check_form, springs, having(non_adjacencies=(NonAdjacency(0, (0,), (1,), None, None, Reason.POINT),)),
+     "a certified map has non_adjacencies"),
+    (check_form, springs, having(base=1), "a certified map has a base axis or a number of complex solutions"),
+    (check_form, springs, having(complex_solutions=6), "has a base axis or a number of complex solutions"),
+    (check_form, springs, with_cover(*UNEQUAL, steps=0), "the lattice has 0 steps, which is not a power of two"),
+    (check_form, springs, with_cover(*UNEQUAL, steps=12), "the lattice has 12 steps"),
+    (check_form, springs, with_cover(*UNEQUAL, steps=2**41), "the lattice has 2199023255552 steps"),
+    *((check_form, springs, with_cover(q), rf"\({', '.join(map(str, q))}\) is not a rectangle of the lattice")
+      for q in ((-1, 4, 0, 8), (4, 4, 0, 8), (4, 2, 0, 8), (2, 9, 0, 8), (2, 4, -1, 8), (2, 4, 3, 3), (2, 4, 0, 9))),
+    (check_form, springs, with_cover(*UNEQUAL, *UNEQUAL), r"the rectangles \(2, .*\) and \(2, .*\) are not sorted"),
+    (check_form, springs, with_cover(*UNEQUAL, (0, 1, 0, 1)), r"the rectangles \(2, .*\) and \(0, .*\) are not sorted"),
+    (check_form, springs, of("cells", 1, total=4), r"cell 1 has the counts \['stable', 'total'\], not \['stable'\]"),
+    (check_form, springs, of("regions", 0, stable=None), r"region 0 has the counts \[\], not \['stable'\]"),
+    (check_form, admissible, of("cells", 0, admissible=None), r"cell 0 has the counts \['stable'\], not \['admiss"),
+    (check_form, total, of("cells", 0, index=None), r"cell 0 has the counts \['stable', 'total'\], not \['index'"),
+    (check_form, springs, of("cells", 1, stack=0), "cell 1 of a certified map has a stack"),
+    (check_form, springs, of("cells", 1, stable=-1), "cell 1 has a negative count"),
+    (check_form, admissible, of("cells", 0, admissible=-1), "cell 0 has a negative count"),
+    *((check_components, springs, sample_at(1, u, v), "the sample of cell 1 is not in the window")
+      for u, v in ((0, 3), (8, 3), (-1, 3), (1, 0), (1, 8), (1, 9))),
+    (check_components, springs, sample_at(1, 3, 3), "the sample of cell 1 is in a rectangle of the cover"),
+    (check_components, springs, sample_at(1, 2, 3), "the sample of cell 1 is in a rectangle of the cover"),
+    (check_components, springs, sample_at(1, 6, 2), "the samples of cells 0 and 1 are not parted by the cover"),
+    (check_components, springs, of("cells", 0, level=1), "cell 0 is said to be component 1 by area, but 0 are larger"),
+    (check_components, springs, of("cells", 1, level=0), "cell 1 is said to be component 0 by area, but 1 are larger"),
+    (check_components, equal, of("cells", 1, level=0), "two cells are said to be the same component"),
+    (check_components, springs, having(undetermined=Fraction(1, 5)), "share of the window is 0.25, not 0.2"),
+    (check_regions, springs, of("regions", 0, cells=(1,)), r"region 0 is said to have cells \(1,\), not \(0,\)"),
+    (check_regions, springs, of("regions", 0, cells=(0, 1)), r"region 0 is said to have cells \(0, 1\), not \(0,\)"),
+    (check_regions, springs, lambda r: replace(r, regions=(*r.regions, replace(r.regions[0], cells=()))),
+     r"region 2 is said to have cells \(\), not \(\)"),
+    (check_regions, springs, lambda r: of("regions", 0, cells=(0, 1))(of("cells", 1, region=0)(r)),
+     r"region 0 joins cells \(0, 1\), which are not proved to be connected"),
+    (check_regions, springs, of("regions", 1, stable=7), "region 1: stable is 7, in its cells {.}"),
+    (check_regions, total, of("regions", 1, index=(1, 1, 0)), r"region 1: index is \(1, 1, 0\), in its cells"),
+    (check_regions, springs, lambda r: of("regions", 0, sample=r.regions[1].sample)(r),
+     "the sample of region 0 is not the sample of one of its cells"),
+    (check_regions, springs, area(0, -TINY, WINDOW), "region 0 is said to have at least the area -"),
+    (check_regions, springs, area(0, WINDOW / 2 + TINY, WINDOW), "region 0 is said to have at least .*, but only 5e-"),
+    (check_regions, springs, area(0, WINDOW / 4, WINDOW * 3 / 4 - TINY), "region 0 is said to have at most the area"),
+    (check_regions, springs, area(1, WINDOW / 4, WINDOW / 2 - TINY), "region 1 is said to have at most the area"),
+    (check_regions, springs, lambda r: having(regions=r.regions[:1])(r), "a cell is in no region"),
+    (check_domain, springs, with_parameter("F3", "1/(rho - 1.2503)"), "F3 has a pole in the window"),
+    (check_domain, springs, with_parameter("L1", "rho - 1.2503"), "L1 is not positive somewhere in the window"),
+    (check_domain, springs, with_parameter("l0_1", "rho - 1.2503"), "l0_1 is negative somewhere in the window"),
+    (check_domain, springs, with_parameter("rho", "rho - 1.2503"), "rho is not positive somewhere in the window"),
+    (check_potential, springs, with_system(unknowns=("th2", "th1")), "the unknowns are"),
+    (check_potential, springs, with_system(relations=("1",)), "a certified map has no relations"),
+    (check_potential, springs, with_system(gradient=("1",)), "a certified map has no relations"),
+    (check_potential, springs, with_system(hessian=(("1",),)), "a certified map has no relations"),
+    (check_potential, springs, with_system(potential="1 + " * 1250 + "1"), "is not a formula in the names"),
+    *((check_potential, springs, plus(text), "is not a formula in the names")
+      for text in ("0*L1**2", "0*\N{GREEK SMALL LETTER ALPHA}", "1.5", "0 # L1", "0\n", "0\0", "0x0", "0*1_0",
+                   "L1 % L2", "cos(th1, th2)", "0if L1 else 0", "0*L1[0]", "0*L1.real")),
+    *((check_potential, springs, plus(text), "the stored potential can not be read")
+      for text in ("1 +", "((1)", "01", "1" * 4400, "(" * 250 + "0" + ")" * 250)),
+    (check_potential, springs, with_system(potential="+".join("1" * 2000)), "too many parts within each other"),
+    *((check_potential, springs, plus(text), "the stored potential has a part that is no formula")
+      for text in ("exit()", "True", "L9", "th1 - th1", "sin(2*th1)", "L1^-1", "L1^10", "L1^F3", "2^3^2", "1/L1",
+                   "1/(L1 - L1)", "tan(th1)", "sin(L1)", "+L1", "(0 if L1 else 0)", "l1")),
+    (check_potential, springs, plus("(L1 + L2 + rho + k1 + F3)^9"), "a product of more than 2000 terms"),
+    (check_potential, springs, plus(POWER), "too many terms, too high a degree or too long numbers"),
+    (check_potential, springs, plus("((L1^9)^9)^9"), "too many terms, too high a degree or too long numbers"),
+    (check_potential, springs, plus("(((9^9)^9)^9)^9"), "too many terms, too high a degree or too long numbers"),
+    (check_potential, springs, plus(" + ".join(f"{n}*(L1 + L2 + rho + k1)^5*({name} + 1)^5*L1^{n}"
+        for n in range(1, 5) for name in ("F3", "F4", "k2"))), "too many terms, too high a degree or too long numbers"),
+    (check_potential, springs, instead("F3*L1", "sqrt(F3^2)*L1"), "a root of what is no spring's length: 'sqrt"),
+    (check_potential, springs, instead("1/2*k1", "1/2*k2"), "the stored potential differs from the mechanism's by"),
+    (check_potential, springs, instead("- F3*", "+ F3*"), "the stored potential differs from the mechanism's by"),
+    (check_potential, springs, plus("F3/1" + "0" * 300), "the stored potential differs from the mechanism's by"),
+    (check_potential, springs, plus("(F3 - 1)*(F3 - 2)*(F3 - 3)"), "the stored potential differs from the mechanism's"),
+    (check_points, springs, both(0, stable=0), "cell 0, at .*: said to have stable 0; there are stable [1-9]"),
+    (check_points, admissible, both(0, admissible=0), "said to have stable .*; there are stable ., admissible [1-9]"),
+    (check_points, total, both(0, index=(0, 0, 0)), r"said to have .* index \(0, 0, 0\); there are total"),
+    (check_points, springs, of("cells", 0, solutions=()), "0 boxes of solutions for [1-9] equilibria"),
+    (check_points, springs, lambda r: of("cells", 0, solutions=r.cells[0].solutions * 2)(r), "boxes of solutions for"),
+    (check_points, total, lambda r: with_solution(1, center=r.cells[0].solutions[0].center)(r),
+     r"the solution 1 near \(.*\) is stored twice, or not asked for"),
+    (check_points, springs, not_asked_for, r"the solution 0 near \(.*\) is stored twice, or not asked for"),
+    (check_points, springs, with_solution(0, signs="--"), r"at the solution 0 has eigenvalues of signs \+\+, not '--'"),
+    *((check_points, springs, with_solution(0, **changes), "box 0 of the solutions is not a box of two angles")
+      for changes in ({"center": (Fraction(0),)}, {"radius": Fraction(0)}, {"radius": 1 + TINY},
+                      {"center": (Fraction(0), Fraction(9))})),
+    (check_points, springs, with_solution(0, center=(Fraction(3), Fraction(3))), "has 0 equilibria, not one"),
+    (check_points, springs, beside, "has 0 equilibria, not one"),
+    (check_points, pitchfork, reaching, "has 1 equilibria, not one"),
+    (check_points, springs, with_parameter("L1", "-1"), "cell 0, at rho=.*: L1 is not positive"),
+    (check_points, springs, with_parameter("k3", "0"), "cell 0, at rho=.*: k3 is not positive"),
+    (check_points, springs, with_parameter("rho", "-1"), "cell 0, at rho=.*: rho is negative"),
+    (check_points, springs, with_parameter("l0_2", "-1"), "cell 0, at rho=.*: l0_2 is negative"),
+    (check_points, springs, lambda r: with_parameter("F3", f"1/(rho - {r.cells[0].sample[0]})")(r), "zero|pole"),
+    (check_points, partial(made, "pitchfork"), sample_at(0, 400, 0), r"confirmed: an equilibrium near \(.*\) may be"),
+    (check_points, partial(made, "crease", "total"), sample_at(0, 6, 6), "confirmed: rho equals the length of a bar"),
+    (check_points, partial(made, "other-crease", "total"), sample_at(0, 6, 3), "confirmed: rho equals the length"),
+    (check_points, partial(made, "slack", "admissible"), sample_at(0, 0, 0), "a spring may be as long as its free"),
+    (partial(check_boxes, seed="branches", number=1), springs, both(0, stable=7), "in cell 0, which is said to have"),
+    (partial(check_boxes, seed="branches", number=1), total, both(0, total=7), "in cell 0, which is said to have"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("check", "make", "change", "words"), ROWS, ids=lambda x: x[:40] if isinstance(x, str) else "")
+def test_rejecting_branches(check: Check, make: Callable[[], RegionMap], change: Change, words: str) -> None:
+    with pytest.raises(Violation, match=words):
+        check(CertifiedClaims(change(make())))
+
+
+def test_counts_that_contradict_eulers_sum_are_a_fault_of_the_check(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(points, "cones", lambda energy, values: 3)
+    with pytest.raises(Violation, match=r"minima, saddles and maxima .* with 3 cones contradict Euler's sum"):
+        check_points(CertifiedClaims(total()))
+
+
+def test_boxes_tell_where_points_can_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At a point where rho = L2 nothing is proved of all counts, but around it there are no others."""
+    r = made("crease", "total")
+    c = r.cells[0]
+    assert c.index is not None
+    more = (c.index[0] + 1, c.index[1] + 1, c.index[2])
+    forged = both(0, index=more, total=sum(more), stable=more[0])(r)
+    monkeypatch.setattr(sampling, "_place", lambda *_, **__: Place(6, 6, 1, 0))
+    assert "1 boxes" in check_boxes(CertifiedClaims(r), "branches", 1)
+    with pytest.raises(Violation, match=r"cell 0 does not have total .*, as is proved for the box around \("):
+        check_boxes(CertifiedClaims(forged), "branches", 1)
+
+
+def right_angle(**changes: int) -> dict[str, Fraction]:
+    """Parameters of bars that meet at a right angle, unloaded, with a pull of 3 and 4 along them where they meet."""
+    given = {"L1": 3, "L2": 4, "rho": 5, "k1": 1, "k2": 1, "k3": 1} | changes
+    return {name: Fraction(given.get(name, 0)) for name in NAMES}
+
+
+@pytest.mark.parametrize(("free_length", "peaks"), [(4, 0), (6, 2)])
+def test_a_cone_is_a_peak_when_it_outweighs_the_slope(free_length: int, peaks: int) -> None:
+    given = right_angle(l0_3=free_length)
+    assert cones(energy_at(given), given) == peaks
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [({"l0_3": 5}, "at the point where spring 3 has length zero"), ({"L2": 3, "rho": 0, "l0_3": 1}, "rho is zero and")],
+)
+def test_a_cone_that_can_not_be_told(changes: dict[str, int], words: str) -> None:
+    given = right_angle(**changes)
+    with pytest.raises(Unproved, match=words):
+        cones(energy_at(given), given)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("L1", "rho - 1.2505", "L1 may be zero"), ("k2", "-1", "k2 may be zero"),
+        ("rho", "rho - 1.2505", "rho may be negative"), ("l0_3", "-1", "l0_3 may be negative"),
+        ("F3", "1/(rho - 1.2505)", "a parameter may have a pole"),
+    ],
+)  # fmt: skip
+def test_no_box_is_proved_outside_of_the_domain(name: str, text: str, words: str) -> None:
+    """And a place where all boxes are like that is counted as not checked."""
+    r = with_parameter(name, text)(springs())
+    x, y = (exact(a.low).union(exact(a.high)) for a in r.slice.axes)
+    with pytest.raises(Unproved, match=words):
+        energy_over(r.slice, x, y)
+
+
+DEGENERATE: Square = (0.0, 2.0**-20, 0.0, 2.0**-20)
+"""Around the equilibrium that three equilibria become at the pitchfork."""
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"start": [DEGENERATE], "smallest": 2.0**-26}, r"an equilibrium near \(.*\) may be degenerate"),
+        ({"budget": 3}, "3 squares were not enough"),
+    ],
+)
+def test_a_search_that_gives_up(options: dict[str, Any], words: str) -> None:
+    given = right_angle(L1=1, L2=1, rho=1)
+    with ctx.workprec(53), pytest.raises(Unproved, match=words):
+        equilibria(energy_at(given), False, **options)
+
+
+def test_equilibria_that_are_gone_on_with_are_different_and_persist() -> None:
+    r = total()
+    given = values_at(CertifiedClaims(r), *r.cells[0].sample)
+    energy, found = all_equilibria(given, Count.TOTAL)
+    again, _ = equilibria(energy, False, near=found)
+    assert len(again) == len(found)
+    with pytest.raises(Unproved, match="two equilibria may meet"):
+        equilibria(energy, False, near=[*found, found[0]])
+    with pytest.raises(Unproved, match=r"the equilibrium near \(.*\) may not persist"):
+        equilibria(energy, False, near=[replace(found[0], th1=found[0].th1 + 0.5)])
