@@ -10,19 +10,18 @@ from collections.abc import Mapping
 
 from ptmcad.errors import GeometryError
 from ptmcad.expressions import Expression
+from ptmcad.mechanism import Kind, ptm
 from ptmcad.positivity import Axes, Need, Undecided, Witness, decide, named, number, place
-from ptmcad.slice import FREE_LENGTHS, Slice
-
-POSITIVE = ("L1", "L2", "k1", "k2", "k3", "k")
-BASE = "rho"
-"""Positive, or zero everywhere."""
+from ptmcad.slice import Slice
 
 
 def need(name: str, expression: Expression) -> Need:
     """What a parameter needs to be, besides having no pole."""
-    if name in POSITIVE or (name == BASE and expression.numerator):
+    kind = _kind(name)
+    # a base is positive, or zero everywhere
+    if kind.is_positive or (kind is Kind.BASE and expression.numerator):
         return Need.POSITIVE
-    return Need.NOT_NEGATIVE if name in (BASE, "l0", *FREE_LENGTHS) else Need.NO_POLE
+    return Need.NOT_NEGATIVE if kind.may_vanish else Need.NO_POLE
 
 
 def fault(name: str, expression: Expression, axes: Axes, max_work: int | None = None) -> str:
@@ -40,7 +39,7 @@ def fault(name: str, expression: Expression, axes: Axes, max_work: int | None = 
         value = number(verdict.value)
         least = "not be negative" if need(name, expression) is Need.NOT_NEGATIVE else "be positive"
         return (
-            f"a {_KINDS[name]} must {least} in the whole window, but {name} is {value} {place(verdict, axes)}: "
+            f"a {_kind(name).noun} must {least} in the whole window, but {name} is {value} {place(verdict, axes)}: "
             "narrow the window"
         )
     return ""
@@ -88,9 +87,6 @@ def _pole_place(pole: Witness, axes: Axes) -> str:
     return f"between {named(pole.other, axes)} and {named(pole.point, axes)}"
 
 
-_KINDS = {
-    **dict.fromkeys(("L1", "L2"), "length"),
-    **dict.fromkeys(("k", "k1", "k2", "k3"), "stiffness"),
-    BASE: "base length",
-    **dict.fromkeys(("l0", *FREE_LENGTHS), "free length"),
-}
+def _kind(name: str) -> Kind:
+    parameters = ptm().parameters
+    return parameters[name].kind if name in parameters else Kind.NUMBER

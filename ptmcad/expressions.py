@@ -1,8 +1,8 @@
-"""Rational functions in the two axes of a slice, and the parser that reads them from text.
+"""Rational functions in the two axes of a slice, and what a text means as one of them.
 
 Guarantee: every coefficient is exact (``0.1`` is 1/10, ``1e-30`` is 10^-30); nothing is rounded, nothing is evaluated
 as Python. Any text is answered within a fraction of a second, by an `Expression` or by an `ExpressionError`:
-the limits below bound the work.
+the limits of `ptmcad.syntax` and those below bound the work.
 
 >>> rho, force = axis(0), axis(1)
 >>> str(parse("-0.1*rho^2 + 3/4", {"rho": rho}))
@@ -13,10 +13,8 @@ True
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from fractions import Fraction
 from functools import partial
 from math import comb, gcd, lcm
@@ -24,14 +22,13 @@ from operator import add, mul, sub, truediv
 
 from ptmcad.errors import ExpressionError, PoleError
 from ptmcad.numerals import text_of
+from ptmcad.syntax import Call, Name, Number, Power, Step, interpret, unknown_name
+from ptmcad.syntax import names_in as names_in_text
+from ptmcad.syntax import parse as tree_of
 
 Term = tuple[int, int, Fraction]
 _Polynomial = dict[tuple[int, int], Fraction]
 
-MAX_TEXT = 10_000
-MAX_DIGITS = 2_000
-MAX_DECIMAL_EXPONENT = 1_000
-MAX_DEPTH = 100
 MAX_EXPONENT = 64
 MAX_DEGREE = 64
 MAX_TERMS = 300
@@ -281,30 +278,9 @@ def _polynomial_text(terms: tuple[Term, ...], names: tuple[str, str]) -> str:
     return text or "0"
 
 
-# ------------------------------------------------------------------------------------------------------- the parser
+# ------------------------------------------------------------------------------------------------------ from a text
 
-NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-_TOKEN = re.compile(
-    r"(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
-    r"|(?P<name>[A-Za-z][A-Za-z0-9_]*)"
-    r"|(?P<operator>\*\*|[-+*/^()])"
-)
-_BLANK = re.compile(r"[ \t]*")
-_NOT_NUMBERS = frozenset({"nan", "inf", "infinity"})
-_WRITE_INSTEAD = {
-    "−": "-", "–": "-", "—": "-", "×": "*", "·": "*", "⋅": "*", "∗": "*", "÷": "/", "⁄": "/", "∕": "/",
-    "²": "^2", "³": "^3", "ρ": "rho", "½": "1/2", "¼": "1/4", "¾": "3/4", ",": "a decimal point",
-}  # fmt: skip
-_BINDING = {"+": 1, "-": 1, "*": 2, "/": 2}
 _OPERATION: dict[str, Callable[[Expression, Expression], Expression]] = {"+": add, "-": sub, "*": mul, "/": truediv}
-_UNARY_BINDING = 3
-
-
-@dataclass(frozen=True, slots=True)
-class _Token:
-    kind: str  # number, name, operator, end
-    text: str
-    position: int
 
 
 def parse(text: str | int | Fraction, names: Mapping[str, Expression] | None = None) -> Expression:
@@ -321,7 +297,7 @@ def parse(text: str | int | Fraction, names: Mapping[str, Expression] | None = N
     ------
     ExpressionError
         With the position of the offending character: not arithmetic, an unknown name, a division by zero, or one of
-        the limits of this module (length, depth, digits, exponent, degree, number of terms, size of numbers).
+        the limits (length, depth, digits, exponent, degree, number of terms, size of numbers).
     """
     if isinstance(text, bool) or not isinstance(text, str | int | Fraction):
         raise ExpressionError(
@@ -329,7 +305,7 @@ def parse(text: str | int | Fraction, names: Mapping[str, Expression] | None = N
         )
     if not isinstance(text, str):
         return constant(text)
-    return _Parser(text, names or {}).run()
+    return interpret(tree_of(text), _InTheAxes(names or {}))
 
 
 def rational(text: str | int | Fraction) -> Fraction:
@@ -352,166 +328,71 @@ def names_in(text: str | int | Fraction) -> tuple[str, ...]:
     Raises
     ------
     ExpressionError
-        If a character can not stand in an expression.
+        If a character cannot stand in an expression.
     """
     if not isinstance(text, str):
         return ()
-    return tuple(dict.fromkeys(token.text for token in _tokens(text) if token.kind == "name"))
+    return names_in_text(text)
 
 
-def did_you_mean(name: str, known: Mapping[str, object] | tuple[str, ...]) -> str:
-    """``"; did you mean 'rho'?"``, or the empty string when nothing known is close."""
-    close = get_close_matches(name[:100], list(known), n=1)
-    if not close:
-        close = [other for other in known if other.lower() == name.lower()]
-    return f"; did you mean '{close[0]}'?" if close else ""
+class _InTheAxes:
+    """The interpretation of a text as a rational function of the axes, with a budget for the arithmetic."""
 
-
-def _tokens(text: str) -> list[_Token]:
-    if len(text) > MAX_TEXT:
-        raise ExpressionError(f"the expression has {len(text)} characters, more than {MAX_TEXT}")
-    tokens = []
-    position = _blank(text, 0)
-    while position < len(text):
-        match = _TOKEN.match(text, position)
-        if match is None:
-            raise _bad_character(text, position)
-        kind = match.lastgroup or ""
-        if kind == "number" and (after := NAME.match(text, match.end())):
-            raise ExpressionError(
-                f"'{_short(match.group())}' and '{_short(after.group())}' stand side by side: write * between them",
-                after.start(),
-            )
-        tokens.append(_Token(kind, match.group(), position))
-        position = _blank(text, match.end())
-    tokens.append(_Token("end", "", len(text)))
-    return tokens
-
-
-def _blank(text: str, position: int) -> int:
-    match = _BLANK.match(text, position)
-    return match.end() if match else position
-
-
-def _bad_character(text: str, position: int) -> ExpressionError:
-    character = text[position]
-    if character in _WRITE_INSTEAD:
-        remedy = f": write {_WRITE_INSTEAD[character]}"
-    elif character == "_":
-        remedy = ": a name starts with a letter, and digits are not grouped"
-    else:
-        remedy = ": an expression has numbers, names, + - * / ^ and parentheses"
-    shown = repr(character) if character.isascii() else f"'{character}' (U+{ord(character):04X})"
-    return ExpressionError(f"the character {shown} can not be used{remedy}", position)
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= 40 else f"{text[:30]}..."
-
-
-class _Parser:
-    """Precedence climbing; one pass, with a budget for the arithmetic."""
-
-    def __init__(self, text: str, names: Mapping[str, Expression]):
-        self.tokens = _tokens(text)
+    def __init__(self, names: Mapping[str, Expression]):
         self.names = names
-        self.index = 0
         self.work = 0
 
-    def run(self) -> Expression:
-        value = self.climb(0, 0)
-        token = self.tokens[self.index]
-        if token.kind == "end":
-            return value
-        if token.text == ")":
-            raise ExpressionError("this ')' has no '(' before it", token.position)
-        raise ExpressionError(f"'{_short(token.text)}' is not expected here: is an operator missing?", token.position)
+    def number(self, number: Number) -> Expression:
+        return constant(number.value)
 
-    def next(self) -> _Token:
-        token = self.tokens[self.index]
-        self.index += token.kind != "end"
-        return token
+    def name(self, name: Name) -> Expression:
+        if name.name in self.names:
+            return self.names[name.name]
+        raise unknown_name(name.name, name.position, self.names)
 
-    def climb(self, binding: int, depth: int) -> Expression:
-        """Read operands and operators that bind tighter than `binding`."""
-        left = self.operand(depth)
-        while (found := _BINDING.get(self.tokens[self.index].text, 0)) > binding:
-            operator = self.next()
-            right = self.climb(found, depth + 1)
-            left = self.combine(operator, left, right)
-        return left
+    def call(self, call: Call) -> Expression:
+        if call.function in self.names:
+            raise ExpressionError(f"'{call.function}' is no function here: is an operator missing?", call.position)
+        raise unknown_name(call.function, call.position, self.names)
 
-    def operand(self, depth: int) -> Expression:
-        token = self.next()
-        if depth > MAX_DEPTH:
-            raise ExpressionError(f"more than {MAX_DEPTH} levels of nesting", token.position)
-        if token.text in ("+", "-"):
-            value = self.climb(_UNARY_BINDING, depth + 1)
-            return -value if token.text == "-" else value
-        if token.kind == "number":
-            value = constant(_number(token))
-        elif token.kind == "name":
-            value = self.name(token)
-        elif token.text == "(":
-            value = self.climb(0, depth + 1)
-            closing = self.next()
-            if closing.text != ")":
-                raise ExpressionError("this '(' is never closed", token.position)
-        elif token.kind == "end":
-            raise ExpressionError("the expression is empty" if self.index == 0 else "the expression ends too early",
-                                  token.position)  # fmt: skip
-        else:
-            raise ExpressionError(f"'{token.text}' is not expected here: a number or a name is missing", token.position)
-        power = self.tokens[self.index]
-        if power.text in ("^", "**"):
-            self.next()
-            value = self.power(power, value, self.operand(depth + 1))
-        return value
+    def negative(self, value: Expression) -> Expression:
+        return -value
 
-    def name(self, token: _Token) -> Expression:
-        if token.text in self.names:
-            return self.names[token.text]
-        if token.text.lower() in _NOT_NUMBERS:
-            raise ExpressionError(f"'{token.text}' is not a number that can be computed with", token.position)
-        raise ExpressionError(
-            f"unknown name '{_short(token.text)}'{did_you_mean(token.text, self.names)}", token.position
-        )
-
-    def combine(self, operator: _Token, left: Expression, right: Expression) -> Expression:
-        if operator.text == "/" and not right.numerator:
-            raise ExpressionError("division by zero", operator.position)
+    def joined(self, left: Expression, step: Step, right: Expression) -> Expression:
+        if step.operator == "/" and not right.numerator:
+            raise ExpressionError("division by zero", step.position)
         spread = (len(left.numerator) + len(left.denominator)) * (len(right.numerator) + len(right.denominator))
-        self.spend(spread * (1 + (_bits(left) + _bits(right)) // 512), operator.position)
+        self.spend(spread * (1 + (_bits(left) + _bits(right)) // 512), step.position)
         degrees = (left.degree, right.degree)
-        adds_up = operator.text in "*/" or not (left.is_polynomial and right.is_polynomial)
+        adds_up = step.operator in "*/" or not (left.is_polynomial and right.is_polynomial)
         if (sum(degrees) if adds_up else max(degrees)) > MAX_DEGREE:
-            raise ExpressionError(f"the degree exceeds {MAX_DEGREE}", operator.position)
-        return self.limited(partial(_OPERATION[operator.text], left, right), operator.position)
+            raise ExpressionError(f"the degree exceeds {MAX_DEGREE}", step.position)
+        return self.limited(partial(_OPERATION[step.operator], left, right), step.position)
 
-    def power(self, operator: _Token, base: Expression, exponent: Expression) -> Expression:
+    def power(self, base: Expression, power: Power, exponent: Expression) -> Expression:
         if not exponent.is_constant or exponent.constant().denominator != 1:
-            raise ExpressionError("the exponent is not an integer", operator.position)
+            raise ExpressionError("the exponent is not an integer", power.position)
         n = exponent.constant().numerator
         if n < 0 and not base.numerator:
-            raise ExpressionError("division by zero", operator.position)
+            raise ExpressionError("division by zero", power.position)
         if base.is_constant:
             if abs(base.constant()) not in (0, 1) and abs(n) * _bits(base) > MAX_BITS:
-                raise ExpressionError(f"the power has more than {MAX_BITS} bits", operator.position)
+                raise ExpressionError(f"the power has more than {MAX_BITS} bits", power.position)
             if abs(base.constant()) in (0, 1):
                 n = n % 2 if n <= 0 else 2 - n % 2
         else:
             if abs(n) > MAX_EXPONENT:
-                raise ExpressionError(f"an exponent of a name is at most {MAX_EXPONENT}", operator.position)
+                raise ExpressionError(f"an exponent of a name is at most {MAX_EXPONENT}", power.position)
             terms = max(len(base.numerator), len(base.denominator))
             if abs(n) * base.degree > MAX_DEGREE or abs(n) * _bits(base) > MAX_BITS:
                 raise ExpressionError(
                     f"the power is too large (degree over {MAX_DEGREE} or numbers over {MAX_BITS} bits)",
-                    operator.position,
+                    power.position,
                 )
             if min(comb(terms + abs(n) - 1, abs(n)), comb(abs(n) * base.degree + 2, 2)) > MAX_TERMS:
-                raise ExpressionError(f"the power has more than {MAX_TERMS} terms", operator.position)
-            self.spend(MAX_TERMS * terms, operator.position)
-        return self.limited(partial(base.__pow__, n), operator.position)
+                raise ExpressionError(f"the power has more than {MAX_TERMS} terms", power.position)
+            self.spend(MAX_TERMS * terms, power.position)
+        return self.limited(partial(base.__pow__, n), power.position)
 
     def spend(self, work: int, position: int) -> None:
         self.work += work
@@ -525,21 +406,6 @@ class _Parser:
         if _bits(value) > MAX_BITS:
             raise ExpressionError(f"a number in the expression has more than {MAX_BITS} bits", position)
         return value
-
-
-def _number(token: _Token) -> Fraction:
-    """The exact value of a number token."""
-    digits, _, exponent = token.text.lower().partition("e")
-    if len(digits) > MAX_DIGITS:
-        raise ExpressionError(f"a number has more than {MAX_DIGITS} digits", token.position)
-    if len(exponent) > 6 or abs(int(exponent or "0")) > MAX_DECIMAL_EXPONENT:
-        raise ExpressionError(f"a decimal exponent is at most {MAX_DECIMAL_EXPONENT}", token.position)
-    whole, _, decimals = digits.partition(".")
-    if len(whole) > 1 and whole.startswith("0"):
-        raise ExpressionError(f"'{_short(token.text)}' starts with 0: drop the leading zeros", token.position)
-    scale = int(exponent or "0") - len(decimals)
-    value = int(whole + decimals)
-    return Fraction(value * 10**scale) if scale >= 0 else Fraction(value, 10**-scale)
 
 
 def _bits(expression: Expression) -> int:

@@ -15,12 +15,12 @@ from importlib import import_module
 from time import perf_counter
 
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.expressions import did_you_mean
 from ptmcad.memory import check_room, loading
 from ptmcad.plan import is_certified
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.savings import kept, load_all
 from ptmcad.slice import Count, Slice, without_free_lengths
+from ptmcad.syntax import did_you_mean
 
 ENGINES = ("auto", "exact", "certified")
 

@@ -9,9 +9,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from ptmcad.enclosure import Enclosure, exact_text
+from ptmcad.mechanism import Mechanism, known_of
 from ptmcad.poses import Pose, Poses
 from ptmcad.regionmap import Status
-from ptmcad.slice import FREE_LENGTHS
+from ptmcad.slice import merged
 
 WIDTH = 100
 _KINDS = {0: "stable", 1: "saddle", 2: "maximum"}
@@ -39,18 +40,20 @@ def table(poses: Poses, digits: int | None = None) -> str:
     if poses.equilibria:
         lines += [
             "",
-            *_wrapped("units", _UNITS),
+            *_wrapped("units", _units(known_of(poses.mechanism))),
             *(_wrapped("tense", [_TENSE]) if poses.equilibria[0].admissible is not None else []),
         ]
     return "\n".join(lines)
 
 
-_UNITS = [
-    "lengths and coordinates in that of L1",
-    "forces in that of F3",
-    "energies and the Hessian's eigenvalues in their product",
-    "angles between rod and base, th1 at A1 and th2 at A2",
-]
+def _units(mechanism: Mechanism) -> list[str]:
+    length, force = mechanism.units
+    return [
+        f"lengths and coordinates in that of {length}",
+        f"forces in that of {force}",
+        "energies and the Hessian's eigenvalues in their product",
+        "angles between rod and base, " + " and ".join(f"{angle} at {at}" for angle, at in mechanism.pivots.items()),
+    ]
 
 
 _TENSE = "stable, and every spring longer than its free length; a negative force pushes"
@@ -58,13 +61,9 @@ _TENSE = "stable, and every spring longer than its free length; a negative force
 
 def _point(poses: Poses) -> list[str]:
     values = {name: exact_text(value) for name, value in poses.parameters.items()}
-    springs = {values[name] for name in ("k1", "k2", "k3")}
-    if len(springs) == 1:
-        values = {n: v for n, v in values.items() if n not in ("k1", "k2", "k3")} | {"k": springs.pop()}
-    free = {values[name] for name in FREE_LENGTHS if name in values}
-    if len(free) == 1:
-        values = {n: v for n, v in values.items() if n not in FREE_LENGTHS} | {"l0": free.pop()}
-    loads = [name for name in values if name.startswith("F")]
+    mechanism = known_of(poses.mechanism)
+    values = merged(values, mechanism)
+    loads = [name for name in values if name in mechanism.forces]
     parts = [f"{name} = {value}" for name, value in values.items() if name not in loads]
     return parts + ([f"{n} = {values[n]}" for n in loads if values[n] != "0"] or ["no load"])
 
@@ -101,6 +100,7 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
     found = poses.equilibria
     if not found:
         return []
+    mechanism = known_of(poses.mechanism)
 
     def column(header: str, unit: str, numbers: Sequence[Enclosure]) -> Column:
         return header, unit, [x.text(digits) for x in numbers]
@@ -118,12 +118,12 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
     angles = [
         column(name, unit, [getattr(p, field)[i] for p in found])
         for field, unit in (("angles", "rad"), ("degrees", "deg"))
-        for i, name in enumerate(("th1", "th2"))
+        for i, name in enumerate(mechanism.angles)
     ]
     nodes = [
         column(f"{name} {axis}", "", [p.nodes[name][i] for p in found])
         for name in found[0].nodes
-        if name not in ("A1", "A2")
+        if name in mechanism.moving
         for i, axis in enumerate("xy")
     ]
     springs = [

@@ -13,7 +13,7 @@ from importlib import import_module
 from importlib.util import find_spec
 
 from ptmcad.errors import ConfigError
-from ptmcad.expressions import did_you_mean
+from ptmcad.syntax import did_you_mean
 
 ALL = "all"
 """Stands for every saving."""

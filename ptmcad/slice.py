@@ -6,15 +6,16 @@ rational function of the two axes), its window is a nonempty rectangle, and no n
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 from unicodedata import category
 
 from ptmcad.errors import ConfigError
 from ptmcad.expressions import Expression
+from ptmcad.mechanism import Mechanism, known_of, ptm
 
 
 def unstorable(data: Any) -> str | None:
@@ -85,7 +86,13 @@ class Slice:
     @property
     def has_free_lengths(self) -> bool:
         """Whether some spring has a free length that is not zero everywhere; algebra can not answer then."""
-        return any(bool(self.parameters[name].numerator) for name in FREE_LENGTHS if name in self.parameters)
+        own = self.description.free_lengths
+        return any(bool(self.parameters[name].numerator) for name in own if name in self.parameters)
+
+    @property
+    def description(self) -> Mechanism:
+        """The mechanism that the slice is of; in a stored result it may be one of which nothing is known."""
+        return known_of(self.mechanism)
 
     @property
     def heading(self) -> str:
@@ -94,21 +101,30 @@ class Slice:
 
     def _fixed(self) -> Iterator[str]:
         values = {name: expression.to_text(self.axis_names) for name, expression in self.parameters.items()}
-        springs = {values[name] for name in ("k1", "k2", "k3") if name in values}
-        if len(springs) == 1:
-            values = {n: v for n, v in values.items() if n not in ("k1", "k2", "k3")} | {"k": springs.pop()}
-        else:
-            values.pop("k", None)
-        free = {values[name] for name in FREE_LENGTHS if name in values}
-        if len(free) == 1:
-            values = {n: v for n, v in values.items() if n not in FREE_LENGTHS} | {"l0": free.pop()}
-        loads = [name for name in values if name.startswith("F")]
+        description = self.description
+        values = merged(values, description)
+        loads = [name for name in values if name in description.forces]
         for name, value in values.items():
             if value not in (name, "0"):
                 shown = value if len(value) <= LONGEST else self.text.get(name, value)
                 yield f"{name} = {shown if len(shown) <= LONGEST else shown[: LONGEST - 1] + '…'}"
         if loads and all(values[name] == "0" for name in loads):
             yield "no load"
+
+
+_Value = TypeVar("_Value", bound=Hashable)
+
+
+def merged(values: Mapping[str, _Value], mechanism: Mechanism) -> dict[str, _Value]:
+    """Values as shown: a shorthand in place of its parameters where these agree, and not beside them where not."""
+    shown = dict(values)
+    for shorthand, names in mechanism.shorthands.items():
+        own = {shown[name] for name in names if name in shown}
+        if len(own) == 1:
+            shown = {name: value for name, value in shown.items() if name not in names} | {shorthand: own.pop()}
+        else:
+            shown.pop(shorthand, None)
+    return shown
 
 
 def without_free_lengths(
@@ -134,8 +150,8 @@ def without_free_lengths(
     return {name: value for name, value in parameters.items() if name not in FREE_LENGTHS}
 
 
-FREE_LENGTHS = ("l0_1", "l0_2", "l0_3")
-"""Free lengths of the springs A1A4, A2A3, A3A4; a slice without free lengths need not have them."""
+FREE_LENGTHS = ptm().free_lengths
+"""A slice without free lengths need not have them."""
 LONGEST = 24
 """Longer values are cut in a heading."""
 

@@ -17,12 +17,13 @@ from ptmcad.algebra.fibre import Fibre
 from ptmcad.algebra.points import RealPoint, points, real_values
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.counting import DegeneratePoint, point_system
+from ptmcad.mechanism import ptm
+from ptmcad.mechanism.evaluate import value_at
 from ptmcad.memory import check_room, loading
-from ptmcad.models.ptm import ptm_nodes, ptm_system
+from ptmcad.models.geometry import geometry_of, system_from
 from ptmcad.models.system import polynomial_at
 from ptmcad.poses import Pose, Poses
 from ptmcad.regionmap import Status
-from ptmcad.slice import FREE_LENGTHS
 from ptmcad.statics import Model, State, pose_of, state_at
 
 INFINITELY_MANY = "infinitely many equilibria"
@@ -34,8 +35,8 @@ def poses_at(parameters: Mapping[str, Fraction], digits: int) -> Poses:
 
     Parameters
     ----------
-    parameters : all of `ptmcad.models.ptm.PARAMETERS`, and the free lengths if some is not zero: then the answer comes
-        from `ptmcad.interval.poses`.
+    parameters : all of the mechanism's ``without_free_lengths``, and the free lengths if some is not zero: then the
+        answer comes from `ptmcad.interval.poses`.
     digits : significant digits that every enclosure settles.
 
     Raises
@@ -43,24 +44,26 @@ def poses_at(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     ArithmeticError
         When two ways to the same fact disagree, which would be a fault of this program.
     """
-    if any(parameters.get(name) for name in FREE_LENGTHS):
+    mechanism = ptm()
+    if any(parameters.get(name) for name in mechanism.free_lengths):
         with loading("the certified engine"):
             from ptmcad.interval.poses import certified_poses
         check_room("the certified engine")
         return certified_poses(parameters, digits)
-    system = ptm_system()
+    system = system_from(mechanism)
     values = {name: fmpq(v.numerator, v.denominator) for name, v in parameters.items()}
     try:
         point = point_system(system, values)
     except DegeneratePoint:
-        return Poses("ptm", parameters, (), Status.UNDECIDED, digits, 0, INFINITELY_MANY)
+        return Poses(mechanism.name, parameters, (), Status.UNDECIDED, digits, 0, INFINITELY_MANY)
     found = points(point.algebra)
     coordinates = {
         name: (polynomial_at(system, x, values), polynomial_at(system, y, values))
-        for name, (x, y) in ptm_nodes().items()
+        for name, (x, y) in geometry_of(mechanism).nodes.items()
     }
     hessian = (point.hessian[0][0], point.hessian[0][1], point.hessian[1][1])
-    model = Model(parameters, coordinates, polynomial_at(system, system.potential, values), hessian)
+    springs = tuple((s.name, s.start, s.end, value_at(s.stiffness, parameters)) for s in mechanism.springs)
+    model = Model(springs, coordinates, polynomial_at(system, system.potential, values), hessian)
     states = _states(model, found.real)
     results = [pose_of(model, state, digits) for state in states]
     poses = [pose for pose, _ in results]
@@ -71,7 +74,7 @@ def poses_at(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     # of equal energies the larger value of the separating form comes first, in which ``found.real`` increases
     order = sorted(range(len(poses)), key=lambda k: (poses[k].stable is not True, energies[k], -k))
     return Poses(
-        "ptm",
+        mechanism.name,
         parameters,
         tuple(poses[k] for k in order),
         Status.ON_VARIETY if degenerate else Status.EXACT,

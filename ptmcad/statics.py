@@ -21,7 +21,6 @@ from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.points import RealPoint, value_at
 from ptmcad.balls import enclosed
 from ptmcad.enclosure import Enclosure
-from ptmcad.models.ptm import SPRINGS
 from ptmcad.models.system import RationalPolynomial
 from ptmcad.poses import Pose, Spring, Vector
 
@@ -38,10 +37,11 @@ class Model:
 
     Attributes
     ----------
+    springs : name, ends and stiffness of each.
     hessian : its entries 11, 12 and 22.
     """
 
-    parameters: Mapping[str, Fraction]
+    springs: tuple[tuple[str, str, str, Fraction], ...]
     nodes: Mapping[str, tuple[RationalPolynomial, RationalPolynomial]]
     potential: RationalPolynomial
     hessian: tuple[RationalPolynomial, RationalPolynomial, RationalPolynomial]
@@ -109,7 +109,7 @@ def state_at(model: Model, point: RealPoint) -> State:
     """
     nodes = {name: (value_at(point, x), value_at(point, y)) for name, (x, y) in model.nodes.items()}
     squares = []
-    for start, end, _ in SPRINGS:
+    for _, start, end, _ in model.springs:
         dx, dy = (nodes[end][i] - nodes[start][i] for i in (0, 1))
         squares.append(dx * dx + dy * dy)
     h11, h12, h22 = (value_at(point, h) for h in model.hessian)
@@ -167,10 +167,9 @@ def _numbers(model: Model, state: State) -> Iterator[_Number]:
     for x, y in state.nodes.values():
         yield number(x)
         yield number(y)
-    for (_, _, stiffness), square in zip(SPRINGS, state.squares, strict=True):
+    for (*_, k), square in zip(model.springs, state.squares, strict=True):
         length = _square_root(number(square))
         yield length
-        k = model.parameters[stiffness]
         yield _Number(None if length.exact is None else k * length.exact, length.ball * _arb(k))
     yield number(state.energy)
     yield from _eigenvalues(number(state.trace), number(state.spread), state.eigenvalue)
@@ -265,16 +264,17 @@ def _arb(value: Fraction) -> arb:
 def _assembled(model: Model, state: State, numbers: Iterator[Enclosure]) -> Pose:
     """The pose from its numbers in the order of `_numbers`."""
     c1, s1, c2, s2 = (next(numbers) for _ in range(4))
-    th1, degrees1, th2, degrees2 = (next(numbers) for _ in range(4))
+    first, degrees1, second, degrees2 = (next(numbers) for _ in range(4))
     nodes: dict[str, Vector] = {name: (next(numbers), next(numbers)) for name in state.nodes}
     springs = tuple(
-        Spring(name, start, end, model.parameters[name], next(numbers), next(numbers)) for start, end, name in SPRINGS
+        Spring(name, start, end, stiffness, next(numbers), next(numbers))
+        for name, start, end, stiffness in model.springs
     )
     energy, low, high = numbers
     multiplicity = state.point.multiplicity
     index = (low.high < 0) + (high.high < 0) if multiplicity == 1 else None
     return Pose(
-        angles=(th1, th2),
+        angles=(first, second),
         degrees=(degrees1, degrees2),
         cosines_sines=(c1, s1, c2, s2),
         nodes=nodes,

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ptmcad.cli import run
-from ptmcad.config import PARAMETERS, load, slice_from_mapping, slice_from_options
+from ptmcad.config import PARAMETERS, load, point_from_mapping, slice_from_mapping, slice_from_options
 from ptmcad.errors import ConfigError
 from ptmcad.expressions import axis, constant
 from ptmcad.slice import FREE_LENGTHS, Count
@@ -306,6 +306,7 @@ def test_mappings() -> None:
 def test_every_parameter_can_be_an_axis() -> None:
     for name, parameter in PARAMETERS.items():
         if name != "L1":
+            assert parameter.window is not None
             low, high = parameter.window
             assert slice_from_options(slice=f"L1,{name}").axes[1].low == Fraction(low) < Fraction(high)
 
@@ -325,3 +326,17 @@ def test_a_title_with_a_hidden_character_is_refused(tmp_path: Path) -> None:
     path.write_text('name: t\ntitle: "a\\u202Eb"\naxes: {rho: [3, 4], L2: [0, 1]}\n', encoding="utf-8")
     with pytest.raises(ConfigError, match="U\\+202E"):
         load(path)
+
+
+@pytest.mark.parametrize(("shorthand", "names"), [("k", ("k1", "k2", "k3")), ("l0", FREE_LENGTHS)])
+def test_a_value_for_all_springs_that_none_takes_is_refused_at_points_too(
+    shorthand: str, names: tuple[str, ...]
+) -> None:
+    given = dict.fromkeys(names, "1")
+    assert point_from_mapping(given)[names[0]] == 1
+    with pytest.raises(
+        ConfigError, match=f"{names[0]}, {names[1]} and {names[2]} are all given: leave it out"
+    ) as caught:
+        point_from_mapping(given | {shorthand: "2"})
+    assert caught.value.key == shorthand
+    assert point_from_mapping(given | {shorthand: "2", names[2]: f"{shorthand}/2"})[names[2]] == 1

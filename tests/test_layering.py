@@ -123,8 +123,10 @@ def test_verification_shares_no_code_with_what_it_verifies(path: Path) -> None:
     """Only the result's own data classes, and FLINT, are common to both; and the engine never asks its checker."""
     if part(path) == "verification":
         assert imported_parts(path) <= {
-            "verification", "regionmap", "cover", "plane", "expressions", "slice", "errors", "numerals",
+            "verification", "regionmap", "cover", "plane", "expressions", "slice", "errors", "numerals", "syntax",
+            "mechanism",
         }  # fmt: skip
+        assert "ptmcad.mechanism.evaluate" not in {module for module, _ in imports(path)}
     elif part(path) not in {"cli", "__init__"}:
         assert "verification" not in imported_parts(path)
 
@@ -189,11 +191,18 @@ def test_data_flows_one_way(path: Path) -> None:
     if part(path) not in {"cli", "bench", "render", "report", "paper", "stress", "__main__"}:
         allowed = {"regionmap": {"render"}, "slicevariety": {"export"}, "export": {"export"}}.get(part(path), set())
         assert not imported_parts(path) & {"cli", "bench", "render", "export"} - allowed
-    if part(path) in {"errors", "expressions", "textfile"}:
+    if part(path) in {"errors", "textfile"}:
         assert imported_parts(path) <= {"errors", "numerals"}
+    if part(path) == "syntax":
+        assert imported_parts(path) <= {"errors"}
+    if part(path) == "expressions":
+        assert imported_parts(path) <= {"errors", "numerals", "syntax"}
+    if part(path) == "mechanism":
+        assert imported_parts(path) <= {"mechanism", "syntax", "errors"}
     if part(path) == "export":
         assert imported_parts(path) <= {
             "export", "slicevariety", "polynomial_text", "plane", "regionmap", "numerals", "errors", "expressions",
+            "syntax", "mechanism",
         }  # fmt: skip
     if part(path) == "yamltree":
         assert imported_parts(path) <= {"errors", "textfile"}
@@ -205,7 +214,7 @@ def test_the_report_tells_what_the_result_holds_and_computes_nothing(path: Path)
     if part(path) == "report":
         assert imported_parts(path) <= {
             "report", "regionmap", "slice", "plane", "polynomial_text", "table", "numerals", "errors", "version",
-            "render", "config", "yamltree", "document", "textfile",
+            "render", "config", "yamltree", "document", "textfile", "mechanism",
         }  # fmt: skip
     elif part(path) != "cli":
         assert "report" not in imported_parts(path)

@@ -12,13 +12,13 @@ from types import SimpleNamespace
 import pytest
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.models.ptm import ptm_system
+from ptmcad.models import system_of
 
 NAMES = ("L1", "L2", "rho", "k", "F3", "F4", "F3x", "F4x", "c1", "s1", "c2", "s2", "t1", "t2")
 RING = fmpq_mpoly_ctx.get(NAMES, Ordering.degrevlex)
 V = SimpleNamespace(**dict(zip(NAMES, RING.gens(), strict=True)))
 ZERO = RING.constant(0)
-SYSTEM = ptm_system()
+SYSTEM = system_of("ptm")
 
 
 def with_equal_springs(p: fmpq_mpoly) -> fmpq_mpoly:

@@ -149,10 +149,10 @@ def test_the_reference_agrees_with_signatures_of_hermite_forms(seed: int) -> Non
     from flint import fmpq
 
     from ptmcad.counting import count_by_signature
-    from ptmcad.models.ptm import ptm_system
+    from ptmcad.models import system_of
 
     p = dict(random_case(seed, 0).sibling.parameters)  # type: ignore[union-attr]
-    counts = count_by_signature(ptm_system(), {n: fmpq(v.numerator, v.denominator) for n, v in p.items()})
+    counts = count_by_signature(system_of("ptm"), {n: fmpq(v.numerator, v.denominator) for n, v in p.items()})
     indices = [pose.index for pose in sextic_poses({n: Fraction(v) for n, v in p.items()})]
     assert (indices.count(0), indices.count(1), indices.count(2)) == counts.index
 

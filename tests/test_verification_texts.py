@@ -194,8 +194,9 @@ def test_an_undecided_sign_of_what_is_only_named_is_refused() -> None:
 def energy() -> str:
     pytest.importorskip("numba")
     from ptmcad.interval.statement import system_text
+    from ptmcad.mechanism import ptm
 
-    return system_text().potential
+    return system_text(ptm()).potential
 
 
 TRUE = [

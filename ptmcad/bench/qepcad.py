@@ -120,7 +120,7 @@ def question(slice: Slice) -> Question | str:
     """The sextic of a slice, or the reason why there is none to put to QEPCAD."""
     if slice.mechanism != "ptm":
         return f"the sextic is the paper's mechanism's, not that of {slice.mechanism}"
-    if any(name.startswith("l0") and value.numerator for name, value in slice.parameters.items()):
+    if slice.has_free_lengths:
         return "with free lengths there is no sextic"
     if not all(value.is_polynomial for value in slice.parameters.values()):
         return "a parameter is not a polynomial in the axes"

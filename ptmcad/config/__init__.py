@@ -19,12 +19,14 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.config.options import ranges_of, settings_of, with_axes
-from ptmcad.config.parameters import PARAMETERS, Kind, Parameter, unknown_parameter
+from ptmcad.config.parameters import PARAMETERS, unknown_parameter
 from ptmcad.config.record import RECORD_KEYS, Record, count_of, file_name, number_text, portable_file, record_of
 from ptmcad.config.resolution import MAX_DEGREE, number_of, point_of, slice_of
 from ptmcad.errors import ConfigError
-from ptmcad.expressions import Expression, constant, did_you_mean
+from ptmcad.expressions import Expression, constant
+from ptmcad.mechanism import Kind, Parameter
 from ptmcad.slice import Count, Slice
+from ptmcad.syntax import did_you_mean
 from ptmcad.yamltree import Place, Scalar, Tree, from_python, read_file
 
 __all__ = [

@@ -11,7 +11,7 @@ from dataclasses import replace
 from ptmcad.config.parameters import PARAMETERS, unknown_parameter
 from ptmcad.config.record import Record, Window, check_axis_name
 from ptmcad.errors import ConfigError
-from ptmcad.expressions import did_you_mean
+from ptmcad.syntax import did_you_mean
 from ptmcad.yamltree import Place, Scalar
 
 
@@ -62,10 +62,13 @@ def with_axes(record: Record, slice: str, sets: Mapping[str, Scalar], ranges: Ma
         elif name in record.axes:
             axes[name] = record.axes[name]
         elif name in PARAMETERS:
-            low, high = PARAMETERS[name].window
+            window = PARAMETERS[name].window
+            if window is None:
+                raise place.error(f"{name} has no usual range: add --range {name}=LO:HI")
+            low, high = window
             axes[name] = Window(Scalar(low, place), Scalar(high, place), place)
         else:
-            hint = did_you_mean(name, tuple(PARAMETERS))
+            hint = did_you_mean(name, PARAMETERS)
             raise place.error(f"'{name}' is no parameter{hint}; any new name needs --range {name}=LO:HI")
     for name in record.axes:
         if name in PARAMETERS and name not in axes and name not in sets and name not in record.values:

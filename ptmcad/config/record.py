@@ -11,11 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.config.parameters import PARAMETERS, unknown_parameter
-from ptmcad.expressions import NAME, did_you_mean
+from ptmcad.mechanism import ptm
 from ptmcad.slice import Count, unstorable
+from ptmcad.syntax import NAME, did_you_mean
 from ptmcad.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
 RECORD_KEYS = ("name", "title", "notes", "mechanism", "parameters", "axes", "count", "reference")
+BUILT_IN = ptm().name
 _MAX_NAME = 100
 _MAX_TITLE = 300
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -38,7 +40,7 @@ class Record:
 
     name: str = ""
     title: str = ""
-    mechanism: str = "ptm"
+    mechanism: str = BUILT_IN
     values: Mapping[str, Scalar] = field(default_factory=dict)
     axes: Mapping[str, Window] = field(default_factory=dict)
     count: Count = Count.STABLE
@@ -54,8 +56,8 @@ def record_of(tree: Tree) -> Record:
             raise _node_place(node, key, tree).error(f"unknown key{hint}")
     entries = tree.entries
     mechanism = entries.get("mechanism")
-    if mechanism is not None and (not isinstance(mechanism, Scalar) or mechanism.text != "ptm"):
-        raise mechanism.place.error("unknown mechanism: the one that is built is 'ptm', the paper's")
+    if mechanism is not None and (not isinstance(mechanism, Scalar) or mechanism.text != BUILT_IN):
+        raise mechanism.place.error(f"unknown mechanism: the one that is built is '{BUILT_IN}', the paper's")
     return Record(
         name=_file_name(entries["name"]) if "name" in entries else _name_of_file(tree.place.file),
         title=_title(entries["title"]) if "title" in entries else "",

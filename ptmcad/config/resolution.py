@@ -11,17 +11,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
-from ptmcad.config.parameters import PARAMETERS, Kind
+from ptmcad.config.parameters import PARAMETERS
 from ptmcad.config.record import Record, Window
 from ptmcad.domain import fault, unproved
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.expressions import Expression, axis, did_you_mean, names_in, parse
+from ptmcad.expressions import Expression, axis, names_in, parse
+from ptmcad.mechanism import Kind, Mechanism, mechanism_of
 from ptmcad.positivity import READING
-from ptmcad.slice import FREE_LENGTHS, Axis, Slice
+from ptmcad.slice import Axis, Slice
+from ptmcad.syntax import did_you_mean
 from ptmcad.yamltree import Place, Scalar
 
-_SPRINGS = ("k1", "k2", "k3")
-_MAY_VANISH = (Kind.BASE, Kind.FREE_LENGTH)
 MAX_DEGREE = 32
 """Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far more."""
 
@@ -39,24 +39,21 @@ def slice_of(record: Record) -> Slice:
     for name, expression in resolved.items():
         if name not in record.axes:
             _check_value(name, expression, record, (axes[0], axes[1]))
-    springs_set = all(spring in record.values or spring in record.axes for spring in _SPRINGS)
-    without_free_lengths = not any(resolved[name].numerator for name in FREE_LENGTHS)
-    effective = {
-        name: expression
-        for name, expression in resolved.items()
-        if not (name == "k" and springs_set)
-        and name != "l0"  # what the three free lengths have by default
-        and not (name in FREE_LENGTHS and without_free_lengths)
-    }
-    _check_stiffness_is_used(record, springs_set)
-    _check_free_length_is_used(record)
+    mechanism = mechanism_of(record.mechanism)
+    given = {*record.values, *record.axes}
+    without_free_lengths = not any(resolved[name].numerator for name in mechanism.free_lengths)
+    left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)}
+    if without_free_lengths:
+        left_out.update(mechanism.free_lengths)
+    effective = {name: expression for name, expression in resolved.items() if name not in left_out}
+    _check_shorthands_are_used(record, mechanism, given)
     for index, name in enumerate(record.axes):
         if not any(expression.uses(index) for expression in effective.values()):
-            hint = did_you_mean(name, tuple(PARAMETERS)) if name not in PARAMETERS else ""
+            hint = did_you_mean(name, PARAMETERS) if name not in PARAMETERS else ""
             remedy = f"no parameter depends on it{hint or ';'} use it in an expression, such as F3: {name}"
-            if name in PARAMETERS:
-                own = FREE_LENGTHS if PARAMETERS[name].kind is Kind.FREE_LENGTH else _SPRINGS
-                remedy = f"{own[0]}, {own[1]} and {own[2]} are all given and none depends on it; use it in one of them"
+            if name in mechanism.shorthands:
+                own = _listed(mechanism.shorthands[name])
+                remedy = f"{own} are all given and none depends on it; use it in one of them"
             raise record.axes[name].place.error(f"the axis {name} is not used: {remedy}")
     return Slice(
         name=record.name or "slice-" + "-".join(record.axes),
@@ -72,6 +69,7 @@ def slice_of(record: Record) -> Slice:
 
 def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fraction]:
     """Resolve a record to a point; ``axes`` holds the values of its axes that are no parameters."""
+    mechanism = mechanism_of(record.mechanism)
     resolved = _Resolution(record, axes).run()
     values = {}
     for name, expression in resolved.items():
@@ -79,12 +77,16 @@ def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fracti
         value = expression.constant()
         _check_number(name, value, place)
         values[name] = value
-    _check_stiffness_is_used(record, all(spring in record.values for spring in _SPRINGS))
-    del values["k"], values["l0"]  # what k1, k2 and k3, or l0_1, l0_2 and l0_3 have by default
-    if not any(values[name] for name in FREE_LENGTHS):
-        for name in FREE_LENGTHS:
-            del values[name]
-    return values
+    _check_shorthands_are_used(record, mechanism, set(record.values))
+    left_out = {*mechanism.shorthands}  # the parameters that they stand for are there
+    if not any(values[name] for name in mechanism.free_lengths):
+        left_out.update(mechanism.free_lengths)
+    return {name: value for name, value in values.items() if name not in left_out}
+
+
+def _is_left_out(name: str, mechanism: Mechanism, given: set[str]) -> bool:
+    """Whether a slice does not name a shorthand: one of free lengths, or one whose parameters are all given."""
+    return mechanism.kind(name) is Kind.FREE_LENGTH or given.issuperset(mechanism.shorthands[name])
 
 
 def _texts(
@@ -112,9 +114,12 @@ def _texts(
 def _written(name: str, record: Record) -> str:
     if name in record.axes:
         return name
-    if name in FREE_LENGTHS and name not in record.values:
-        return _written("l0", record)  # which the slice need not name
-    return record.values[name].text if name in record.values else PARAMETERS[name].default
+    if name in record.values:
+        return record.values[name].text
+    parameter = PARAMETERS[name]
+    if parameter.alias_of and parameter.kind is Kind.FREE_LENGTH:
+        return _written(parameter.alias_of, record)  # which the slice need not name
+    return parameter.default
 
 
 def _axis(name: str, window: Window) -> Axis:
@@ -123,10 +128,12 @@ def _axis(name: str, window: Window) -> Axis:
         raise window.place.error(f"the range of {name} is empty: {low} to {high}")
     if low > high:
         raise window.place.error(f"the range of {name} is reversed: write [{high}, {low}]")
-    if name in PARAMETERS and PARAMETERS[name].kind is not Kind.FORCE and low < 0:
-        least = "not negative" if PARAMETERS[name].kind in _MAY_VANISH else "positive"
-        raise window.place.error(f"the range of {name} goes below zero, but a {PARAMETERS[name].kind.value} is "
-                                 f"{least}: start it at 0 or above")  # fmt: skip
+    kind = PARAMETERS[name].kind if name in PARAMETERS else Kind.NUMBER
+    if low < 0 and (kind.is_positive or kind.may_vanish):
+        least = "not negative" if kind.may_vanish else "positive"
+        raise window.place.error(
+            f"the range of {name} goes below zero, but a {kind.noun} is {least}: start it at 0 or above"
+        )
     return Axis(name, low, high)
 
 
@@ -209,24 +216,21 @@ def _place_of(name: str, record: Record) -> Place:
 def _check_number(name: str, value: Fraction, place: Place) -> None:
     """Refuse a number that the geometry excludes."""
     kind = PARAMETERS[name].kind
-    if kind is not Kind.FORCE and (value < 0 or (value == 0 and kind not in _MAY_VANISH)):
-        least = "not negative" if kind in _MAY_VANISH else "positive"
-        raise place.error(f"{name} is {value}, but a {kind.value} must be {least}")
+    if (kind.is_positive and value <= 0) or (kind.may_vanish and value < 0):
+        least = "not negative" if kind.may_vanish else "positive"
+        raise place.error(f"{name} is {value}, but a {kind.noun} must be {least}")
 
 
-def _check_stiffness_is_used(record: Record, springs_set: bool) -> None:
-    """Refuse a k that nothing uses."""
-    if not springs_set or "k" not in record.values:
-        return
-    if not any("k" in _names_in_scalar(scalar) for name, scalar in record.values.items() if name != "k"):
-        raise record.values["k"].place.error("has no effect, since k1, k2 and k3 are all given: leave it out")
+def _check_shorthands_are_used(record: Record, mechanism: Mechanism, given: set[str]) -> None:
+    """Refuse a value for all springs, such as k or l0, that none of them takes."""
+    for shorthand, names in mechanism.shorthands.items():
+        if shorthand not in record.values or not given.issuperset(names):
+            continue
+        if not any(shorthand in _names_in_scalar(s) for name, s in record.values.items() if name != shorthand):
+            raise record.values[shorthand].place.error(
+                f"has no effect, since {_listed(names)} are all given: leave it out"
+            )
 
 
-def _check_free_length_is_used(record: Record) -> None:
-    """Refuse an l0 that nothing uses."""
-    if "l0" not in record.values or not all(name in record.values or name in record.axes for name in FREE_LENGTHS):
-        return
-    if not any("l0" in _names_in_scalar(scalar) for name, scalar in record.values.items() if name != "l0"):
-        raise record.values["l0"].place.error(
-            f"has no effect, since {', '.join(FREE_LENGTHS[:2])} and {FREE_LENGTHS[2]} are all given: leave it out"
-        )
+def _listed(names: tuple[str, ...]) -> str:
+    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]

@@ -10,7 +10,7 @@ from ptmcad.document.cover import read_cover
 from ptmcad.document.node import Node, opened
 from ptmcad.document.writing import FORMAT
 from ptmcad.errors import ExpressionError
-from ptmcad.expressions import NAME, Expression, parse
+from ptmcad.expressions import Expression, parse
 from ptmcad.expressions import axis as axis_function
 from ptmcad.plane import PlanePolynomial
 from ptmcad.regionmap import (
@@ -34,6 +34,7 @@ from ptmcad.regionmap import (
     Wall,
 )
 from ptmcad.slice import Axis, Count, Point, Slice
+from ptmcad.syntax import NAME
 
 # Limits far beyond any slice's result, like those of `ptmcad.document.node`.
 MAX_TEXT = 60_000_000

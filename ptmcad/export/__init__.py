@@ -13,8 +13,8 @@ from ptmcad.export.code import maple, mathematica, sympy
 from ptmcad.export.document import FORMAT, document
 from ptmcad.export.inputs import msolve, qepcad
 from ptmcad.export.listing import latex, listing
-from ptmcad.expressions import did_you_mean
 from ptmcad.slicevariety import SliceVariety
+from ptmcad.syntax import did_you_mean
 
 __all__ = ["FORMAT", "FORMATS", "variety_text"]
 

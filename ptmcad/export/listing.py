@@ -23,16 +23,18 @@ def fixed_parameters(variety: SliceVariety) -> str:
     """
     names = variety.slice.axis_names
     values = {name: value.to_text(names) for name, value in variety.slice.parameters.items()}
-    springs = {values.pop(name) for name in ("k1", "k2", "k3")} if values.keys() >= {"k1", "k2", "k3"} else set()
-    if len(springs) == 1:
-        values["k"] = springs.pop()
-    elif springs:
-        values.pop("k", None)
-        values |= {n: variety.slice.parameters[n].to_text(names) for n in ("k1", "k2", "k3")}
+    mechanism = variety.slice.description
+    for shorthand, own_names in mechanism.shorthands.items():
+        own = {name: values.pop(name) for name in own_names if name in values}
+        if len(set(own.values())) == 1:
+            values[shorthand] = next(iter(own.values()))
+        else:
+            values.pop(shorthand, None)
+            values |= own
     return ", ".join(
         f"{name} = {value if len(value) <= _LONGEST_VALUE else value[:_LONGEST_VALUE] + '...'}"
         for name, value in values.items()
-        if value != name and not (name.startswith("F") and value == "0")
+        if value != name and not (name in mechanism.forces and value == "0")
     )
 
 

@@ -69,7 +69,7 @@ class Assembler:
         return RegionMap(
             slice=self.slice,
             status=status,
-            system=system_text(),
+            system=system_text(self.slice.description),
             base=0,
             complex_solutions=0,
             components=(),

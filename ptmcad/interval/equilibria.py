@@ -14,11 +14,12 @@ from ptmcad.interval.mechanism import Mechanism, cross, dot, mechanism
 from ptmcad.interval.parameters import parameter_formulas
 from ptmcad.interval.system import System, system
 from ptmcad.interval.tape import Tape, record
+from ptmcad.mechanism import ptm
 from ptmcad.slice import Slice
 
 TH1, TH2 = 2, 3
 """Numbers of the angles' variables."""
-_STIFFNESS_AND_LOADS = ("k1", "k2", "k3", "F3", "F4", "F3x", "F4x")
+_STIFFNESS_AND_LOADS = ptm().stiffnesses + ptm().forces
 
 
 @dataclass(frozen=True, slots=True, eq=False)

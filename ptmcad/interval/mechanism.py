@@ -16,8 +16,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ptmcad.interval.formula import Formula, Graph, direction, inverse_length, length, meet
+from ptmcad.mechanism import ptm
 
-NAMES = ("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x", "l0_1", "l0_2", "l0_3")
+NAMES = ptm().variables
 Vector = tuple[Formula, Formula]
 
 

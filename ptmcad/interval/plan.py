@@ -28,4 +28,4 @@ def beforehand(slice: Slice, keep: frozenset[str]) -> tuple[PlanStep, ...]:
 
 def unloaded(slice: Slice) -> bool:
     """Whether no load acts, on a base that is certainly positive in the open window."""
-    return positive_base(slice) and not any(slice.parameters[name].numerator for name in ("F3", "F4", "F3x", "F4x"))
+    return positive_base(slice) and not any(slice.parameters[name].numerator for name in slice.description.forces)

@@ -23,11 +23,13 @@ from ptmcad.interval.arb_evaluation import ball
 from ptmcad.interval.arb_isolation import Box, refined
 from ptmcad.interval.points import point_counter
 from ptmcad.interval.system import System
+from ptmcad.mechanism import ptm
+from ptmcad.mechanism.evaluate import value_at
 from ptmcad.poses import Pose, Poses, Spring
 from ptmcad.regionmap import Solution, Status
 from ptmcad.slice import Axis, Count, Slice
 
-SPRINGS = (("A1", "A4", "1"), ("A2", "A3", "2"), ("A3", "A4", "3"))
+MECHANISM = ptm()
 MORE_BITS = 3000
 """A number that so many bits beyond the digits asked for do not tell from zero stays undecided."""
 NOT_TOLD = (
@@ -59,23 +61,23 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     counter = point_counter(slice)
     counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
     if not counts.decided:
-        return Poses("ptm", parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
+        return Poses(MECHANISM.name, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
     poses, most = [], 0
     for solution in counts.solutions:
         pose, bits = _pose(parameters, counter.equilibria_at(Fraction(0), Fraction(0)).equations, solution, digits)
         most = max(most, bits)
         if pose is None:
-            return Poses("ptm", parameters, (), Status.UNDECIDED, digits, most, ZERO)
+            return Poses(MECHANISM.name, parameters, (), Status.UNDECIDED, digits, most, ZERO)
         poses.append(pose)
     peaks = _PEAKS.get(counts.cones or 0, "")
-    return Poses("ptm", parameters, tuple(_ordered(poses)), Status.CERTIFIED, digits, most, peaks)
+    return Poses(MECHANISM.name, parameters, tuple(_ordered(poses)), Status.CERTIFIED, digits, most, peaks)
 
 
 def _point_slice(parameters: Mapping[str, Fraction]) -> Slice:
     """The mechanism at a point as a slice on whose axes nothing depends."""
     constants = {name: 0 * axis(0) + value for name, value in parameters.items()}
     unit = (Fraction(0), Fraction(1))
-    return Slice("point", "ptm", (Axis("x", *unit), Axis("y", *unit)), constants)
+    return Slice("point", MECHANISM.name, (Axis("x", *unit), Axis("y", *unit)), constants)
 
 
 def _ordered(poses: Sequence[Pose]) -> list[Pose]:
@@ -229,18 +231,24 @@ def _quantities(
 def _assembled(parameters: Mapping[str, Fraction], at: Mapping[str, Enclosure], signs: str, flat: bool) -> Pose:
     springs = tuple(
         Spring(
-            f"k{n}", start, end, parameters[f"k{n}"], at[f"length{n}"], at[f"force{n}"], parameters[f"l0_{n}"]
+            spring.name,
+            spring.start,
+            spring.end,
+            value_at(spring.stiffness, parameters),
+            at[f"length{n}"],
+            at[f"force{n}"],
+            value_at(spring.free, parameters),
         )
-        for start, end, n in SPRINGS
-    )  # fmt: skip
+        for n, spring in enumerate(MECHANISM.springs, 1)
+    )
     index = signs.count("-")
     if index != (at["low"].high < 0) + (at["high"].high < 0):
         raise ArithmeticError("the Hessian's eigenvalues contradict the index that was proved")
     return Pose(
-        angles=(at["th1"], at["th2"]),
+        angles=(at[MECHANISM.angles[0]], at[MECHANISM.angles[1]]),
         degrees=(at["degrees1"], at["degrees2"]),
         cosines_sines=(at["c1"], at["s1"], at["c2"], at["s2"]),
-        nodes={name: (at[f"{name}x"], at[f"{name}y"]) for name in ("A1", "A2", "A3", "A4")},
+        nodes={name: (at[f"{name}x"], at[f"{name}y"]) for name in MECHANISM.points},
         springs=springs,
         energy=at["energy"],
         eigenvalues=(at["low"], at["high"]),

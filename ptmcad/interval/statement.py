@@ -1,6 +1,6 @@
 """What a certified map says of its problem: the equations as text, and the plan.
 
-Guarantee: the potential is that of `ptmcad.interval.mechanism`, in the names of problem records.
+Guarantee: the potential is written from the mechanism's description, in the names of problem records.
 """
 
 from __future__ import annotations
@@ -9,21 +9,38 @@ from collections.abc import Sequence
 
 from ptmcad.interval.curves import Curve
 from ptmcad.interval.plan import beforehand
+from ptmcad.mechanism import Mechanism
 from ptmcad.regionmap import PlanStep, System
 from ptmcad.slice import Slice
-
-_VECTORS = (
-    ("rho - L2*cos(th2)", "L2*sin(th2)"),
-    ("rho - L1*cos(th1)", "L1*sin(th1)"),
-    ("rho - L1*cos(th1) - L2*cos(th2)", "L2*sin(th2) - L1*sin(th1)"),
-)
+from ptmcad.syntax import Chain, Negative, Number, Step, Tree, to_text
 
 
-def system_text() -> System:
+def system_text(mechanism: Mechanism) -> System:
     """The mechanism's potential with square roots; gradient and Hessian are its derivatives by the unknowns."""
-    springs = [f"1/2*k{n}*(sqrt(({x})^2 + ({y})^2) - l0_{n})^2" for n, (x, y) in enumerate(_VECTORS, 1)]
-    work = "F3x*L1*cos(th1) - F3*L1*sin(th1) - F4x*(rho - L2*cos(th2)) - F4*L2*sin(th2)"
-    return System(("th1", "th2"), (), " + ".join(springs) + " - " + work, (), ())
+    energy = []
+    for spring in mechanism.springs:
+        (x0, y0), (x1, y1) = mechanism.points[spring.start], mechanism.points[spring.end]
+        length = f"sqrt(({_difference(x1, x0)})^2 + ({_difference(y1, y0)})^2)"
+        energy.append(f"1/2*{_factor(spring.stiffness)}*({length} - {_factor(spring.free)})^2")
+    work = [
+        f" - {_factor(force)}*{_factor(coordinate)}"
+        for load in mechanism.loads
+        for force, coordinate in zip((load.x, load.y), mechanism.points[load.point], strict=True)
+    ]
+    return System(tuple(mechanism.unknowns), (), " + ".join(energy) + "".join(work), (), ())
+
+
+def _difference(tree: Tree, less: Tree) -> str:
+    match tree, less:
+        case _, Number(value) if value == 0:
+            return to_text(tree)
+        case Chain(first, steps), _ if tree.is_sum:
+            return to_text(Chain(first, (*steps, Step("-", less))))
+    return to_text(Chain(tree, (Step("-", less),)))
+
+
+def _factor(tree: Tree) -> str:
+    return f"({to_text(tree)})" if isinstance(tree, Chain | Negative) else to_text(tree)
 
 
 def plan_of(slice: Slice, curves: Sequence[Curve], keep: frozenset[str] = frozenset()) -> tuple[PlanStep, ...]:

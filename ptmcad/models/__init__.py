@@ -1,19 +1,20 @@
-"""Mechanisms: each model turns its geometry into a `ParametricSystem`."""
+"""Mechanisms as polynomial systems: a description turned into a `ParametricSystem`."""
 
 from __future__ import annotations
 
-from ptmcad.models.ptm import ptm_system
+from ptmcad.mechanism import mechanism_of
+from ptmcad.models.geometry import system_from
 from ptmcad.models.system import ParametricSystem
 
 __all__ = ["ParametricSystem", "system_of"]
 
 
 def system_of(mechanism: str) -> ParametricSystem:
-    """The parametric system of a mechanism by its name.
+    """The parametric system of a built-in mechanism by its name.
 
     Raises
     ------
     KeyError
-        When no model has that name; `config` refuses such names before.
+        When there is none of that name; `config` refuses such names before.
     """
-    return {"ptm": ptm_system}[mechanism]()
+    return system_from(mechanism_of(mechanism))

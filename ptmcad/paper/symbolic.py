@@ -1,6 +1,6 @@
 """The mechanism's equations in SymPy, in the paper's symbols, translated from the exact model.
 
-Guarantee: potential, gradient and Hessian are those of `ptmcad.models.ptm`, with k1 = k2 = k3 = k; nothing of the paper
+Guarantee: potential, gradient and Hessian are those of `ptmcad.models`, with k1 = k2 = k3 = k; nothing of the paper
 enters them. What is printed in the paper is in `ptmcad.paper.printed`, and the two are compared as polynomials.
 
 The symbols: L1, L2, rho, k, F3, F4, F3x, F4x; c1, s1, c2, s2 for cosines and sines; t1, t2 for tangents of half angles.
@@ -14,7 +14,8 @@ from typing import Any
 
 import sympy as sp
 
-from ptmcad.models.ptm import nodes, ptm_system
+from ptmcad.mechanism import ptm
+from ptmcad.models.geometry import geometry_of, system_from
 
 Expr = Any
 """A SymPy expression; SymPy has no types of its own for a type checker."""
@@ -35,7 +36,7 @@ _PARAMETERS = {"L1": L1, "L2": L2, "rho": rho, "k1": k, "k2": k, "k3": k, "F3": 
 
 
 def _expression(p: Any) -> Expr:
-    ring = ptm_system().ring
+    ring = system_from(ptm()).ring
     parameters = [_PARAMETERS[name] for name in ring.parameters]
     total = sp.Integer(0)
     for powers, part in ring.split(p).items():
@@ -50,13 +51,13 @@ def _expression(p: Any) -> Expr:
 @lru_cache(maxsize=1)
 def potential() -> Expr:
     """U in c1, s1, c2, s2; Wenger & Chablat (1) with horizontal forces added."""
-    return _expression(ptm_system().potential)
+    return _expression(system_from(ptm()).potential)
 
 
 @lru_cache(maxsize=1)
 def coordinates() -> Mapping[str, tuple[Expr, Expr]]:
     """The nodes A1, A2, A3 and A4 of the model."""
-    return {name: (_expression(x), _expression(y)) for name, (x, y) in nodes(ptm_system().ring).items()}
+    return {name: (_expression(x), _expression(y)) for name, (x, y) in geometry_of(ptm()).nodes.items()}
 
 
 def by_angle(expression: Expr, number: int) -> Expr:
@@ -68,14 +69,14 @@ def by_angle(expression: Expr, number: int) -> Expr:
 @lru_cache(maxsize=1)
 def gradient() -> tuple[Expr, Expr]:
     """dU/dth1 and dU/dth2."""
-    first, second = (_expression(g) for g in ptm_system().gradient)
+    first, second = (_expression(g) for g in system_from(ptm()).gradient)
     return first, second
 
 
 @lru_cache(maxsize=1)
 def hessian() -> tuple[Expr, Expr, Expr]:
     """H(1,1), H(1,2) and H(2,2)."""
-    (a, b), (_, d) = ((_expression(h) for h in row) for row in ptm_system().hessian)
+    (a, b), (_, d) = ((_expression(h) for h in row) for row in system_from(ptm()).hessian)
     return a, b, d
 
 

@@ -23,8 +23,7 @@ from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.counting import equilibria
 from ptmcad.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.errors import ConfigError
-from ptmcad.models import system_of
-from ptmcad.models.ptm import PARAMETERS
+from ptmcad.models import ParametricSystem, system_of
 from ptmcad.models.system import polynomial_at
 from ptmcad.poses import Pose
 from ptmcad.ranges.line import Line, critical_values, line_of
@@ -139,13 +138,14 @@ def pose_paths(
     numbers = tuple(n for n, _ in critical_values(line))
     if any(n.compare(start) == 0 for n in numbers):
         raise ConfigError(f"{along} = {start} is a critical value: start beside it", key="--path")
-    poses = poses_at(_parameters(line, start), DIGITS)
+    system = system_of(slice.mechanism)
+    poses = poses_at(_parameters(system, line, start), DIGITS)
     stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable]
     if number is not None and number - 1 not in stable:
         raise ConfigError(
             f"{number} is none of the {len(stable)} stable poses at {along} = {start}, counted from 1", key="--pose"
         )
-    family = Family(system_of(slice.mechanism), line.parameters)
+    family = Family(system, line.parameters)
     chosen = stable if number is None else [number - 1]
     return PosePaths(
         slice.name,
@@ -156,8 +156,9 @@ def pose_paths(
     )
 
 
-def _parameters(line: Line, value: Fraction) -> dict[str, Fraction]:
-    return {n: e.evaluate(value, Fraction(0)) for n, e in line.parameters.items() if n in PARAMETERS}
+def _parameters(system: ParametricSystem, line: Line, value: Fraction) -> dict[str, Fraction]:
+    used = system.ring.parameters
+    return {n: e.evaluate(value, Fraction(0)) for n, e in line.parameters.items() if n in used}
 
 
 def _path(
@@ -265,7 +266,7 @@ def _meeting(family: Family, line: Line, number: AlgebraicNumber, current: Reach
 
 def _equilibria(family: Family, line: Line, value: Fraction) -> list[tuple[Reached, int]] | None:
     """All equilibria at a value that is not critical, with their Morse indices; None when one was not enclosed."""
-    values = _parameters(line, value)
+    values = _parameters(family.system, line, value)
     found = []
     for solution in equilibria(family.system, {n: from_fraction(v) for n, v in values.items()}).solutions:
         with ctx.workprec(BITS):
@@ -280,7 +281,7 @@ def _equilibria(family: Family, line: Line, value: Fraction) -> list[tuple[Reach
 
 def _energy(family: Family, line: Line, reached: Reached) -> Enclosure:
     """The potential at a place."""
-    values = {n: from_fraction(v) for n, v in _parameters(line, reached.value).items()}
+    values = {n: from_fraction(v) for n, v in _parameters(family.system, line, reached.value).items()}
     with ctx.workprec(BITS):
         unknowns = [f(a) for a in reached.angles for f in (arb.cos, arb.sin)]
         total = arb(0)

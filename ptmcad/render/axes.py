@@ -11,9 +11,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from ptmcad.mechanism import Kind
 from ptmcad.slice import Slice
 
-_UNITS = (("rho|L[12]", "length"), ("k[123]?", "force/length"), ("F[34]x?", "force"))
+_UNITS = {Kind.LENGTH: "length", Kind.BASE: "length", Kind.STIFFNESS: "force/length", Kind.FORCE: "force"}
 _GREEK = {"rho": "ρ", "alpha": "α", "beta": "β", "theta": "θ", "lambda": "λ", "mu": "μ", "phi": "φ", "kappa": "κ"}
 _SUBSCRIPT = str.maketrans("0123456789x", "₀₁₂₃₄₅₆₇₈₉ₓ")
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -65,21 +66,21 @@ def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
 
 def symbol(name: str) -> str:
     """A parameter's name as it is printed: ``L1`` as L₁, ``F3x`` as F₃ₓ, ``rho`` as ρ; other names as they are."""
-    match = re.fullmatch(r"([A-Za-z])(\d{1,2}x?)", name)
+    match = re.fullmatch(r"([A-Za-z]|th)(\d{1,2}x?)", name)
     if match:
-        return match[1] + match[2].translate(_SUBSCRIPT)
+        return ("θ" if match[1] == "th" else match[1]) + match[2].translate(_SUBSCRIPT)
     return _GREEK.get(name, name)
 
 
 def unit(slice: Slice, axis: int) -> str:
     """The unit of an axis, empty when none is known: that of the parameters which are a number times the axis."""
-    if slice.mechanism != "ptm":
-        return ""
+    parameters = slice.description.parameters
     exponents = (1, 0) if axis == 0 else (0, 1)
     found = set()
     for name, expression in slice.parameters.items():
         if expression.is_polynomial and [term[:2] for term in expression.numerator] == [exponents]:
-            found |= {u for pattern, u in _UNITS if re.fullmatch(pattern, name)}
+            known = parameters.get(name)
+            found |= {_UNITS[known.kind]} if known is not None and known.kind in _UNITS else set()
     return found.pop() if len(found) == 1 else ""
 
 

@@ -24,7 +24,9 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
-from ptmcad.models.ptm import potential, ptm_system
+from ptmcad.mechanism import ptm
+from ptmcad.mechanism.evaluate import value_at
+from ptmcad.models.geometry import squared_lengths, system_from
 from ptmcad.models.system import polynomial_at
 from ptmcad.numerals import magnitude
 from ptmcad.poses import Pose, Poses
@@ -78,10 +80,10 @@ class Energy:
     terms: Terms
     roots: tuple[tuple[float, Terms], ...] = ()
 
-    def __call__(self, th1: Floats, th2: Floats) -> Floats:
+    def __call__(self, *angles: Floats) -> Floats:
         """Over arrays of angles in radians."""
-        bases = (np.cos(th1), np.sin(th1), np.cos(th2), np.sin(th2))
-        shape = np.broadcast(th1, th2).shape
+        bases = [function(angle) for angle in angles for function in (np.cos, np.sin)]
+        shape = np.broadcast(*angles).shape
         total = _sum(self.terms, bases, shape)
         for factor, square in self.roots:
             total += factor * np.sqrt(np.maximum(_sum(square, bases, shape), 0.0))
@@ -94,32 +96,21 @@ class Energy:
 
 def energy_of(parameters: Mapping[str, Fraction]) -> Energy:
     """The energy at these parameters, its constant part taken out and its size made about 1."""
-    system = ptm_system()
+    mechanism = ptm()
+    system = system_from(mechanism)
     values = {name: from_fraction(parameters[name]) for name in system.ring.parameters}
-    exact = {m: to_fraction(c) for m, c in polynomial_at(system, potential(system.ring), values).items()}
-    offset = exact.pop((0, 0, 0, 0), Fraction(0))
+    exact = {m: to_fraction(c) for m, c in polynomial_at(system, system.potential, values).items()}
+    offset = exact.pop((0,) * 2 * system.dimension, Fraction(0))
     unit = Fraction(10) ** magnitude(max(map(abs, exact.values()), default=Fraction(1)))
     roots = []
-    for number, square in enumerate(_squared_lengths(parameters), 1):
-        pull = parameters[f"k{number}"] * parameters.get(f"l0_{number}", Fraction(0))
+    for spring, square in zip(mechanism.springs, squared_lengths(mechanism), strict=True):
+        free = value_at(spring.free, dict.fromkeys(mechanism.free_lengths, Fraction(0)) | dict(parameters))
+        pull = value_at(spring.stiffness, parameters) * free
         if pull:
-            offset += pull * parameters[f"l0_{number}"] / 2
-            roots.append((float(-pull / unit), tuple((m, float(c)) for m, c in square.items())))
+            offset += pull * free / 2
+            terms = polynomial_at(system, square, values)
+            roots.append((float(-pull / unit), tuple((m, float(to_fraction(c))) for m, c in terms.items())))
     return Energy(offset, unit, tuple((m, float(c / unit)) for m, c in sorted(exact.items())), tuple(roots))
-
-
-def _squared_lengths(p: Mapping[str, Fraction]) -> tuple[dict[tuple[int, ...], Fraction], ...]:
-    """Of the springs A1A4, A2A3 and A3A4, by exponents of c1, s1, c2, s2."""
-    rho, p1, p2 = p["rho"], p["L1"], p["L2"]
-    one, c1, c2 = (0, 0, 0, 0), (1, 0, 0, 0), (0, 0, 1, 0)
-    return (
-        {one: rho**2 + p2**2, c2: -2 * rho * p2},
-        {one: rho**2 + p1**2, c1: -2 * rho * p1},
-        {
-            one: rho**2 + p1**2 + p2**2, c1: -2 * rho * p1, c2: -2 * rho * p2,
-            (1, 0, 1, 0): 2 * p1 * p2, (0, 1, 0, 1): -2 * p1 * p2,
-        },
-    )  # fmt: skip
 
 
 def draw_landscape(poses: Poses) -> Figure:

@@ -18,9 +18,10 @@ from ptmcad.render.legend import INK, SWATCH, Mark
 from ptmcad.render.sketch import (
     AMPLITUDE,
     BAR_WIDTHS,
-    BARS,
+    BASE,
     GROUND,
     LABEL_SIZE,
+    MECHANISM,
     PIN,
     SLIDER,
     SUPPORT,
@@ -45,8 +46,9 @@ PALE = Style(("#a9bacb", "#f3d9ba"), "#8f8f8f", "#d9a3b2", "#a3a3a3", "#666666")
 
 def draw_sketch(axes: Any, seen: Sketch, style: Style, prefix: str) -> None:
     """Draw a sketch into axes of which a unit is a point."""
-    _base(axes, seen.nodes["A1"], seen.nodes["A2"], style, prefix)
-    for (start, end), names, width, colour, z in zip(seen.bars, BARS, BAR_WIDTHS, style.bars, (2, 3), strict=True):
+    _base(axes, seen.nodes[BASE[0]], seen.nodes[BASE[1]], style, prefix)
+    drawn = zip(seen.bars, MECHANISM.bars, BAR_WIDTHS, style.bars, (2, 3), strict=True)
+    for (start, end), names, width, colour, z in drawn:
         _line(axes, (start, end), colour, width, f"{prefix}bar-{''.join(names)}", z)
     for number, points in enumerate(seen.springs):
         _line(axes, points, "white", 2.4, "", 4)
@@ -86,7 +88,7 @@ def _arrow(start: Position, end: Position, colour: str, gid: str | None = None) 
 
 
 def _base(axes: Any, fixed: Position, sliding: Position, style: Style, prefix: str) -> None:
-    """The telescopic base, the support under A1 and the slider around A2."""
+    """The telescopic base, the support under its fixed end and the slider around the other."""
     _line(axes, (fixed, sliding), style.base, 1.8, f"{prefix}base", 1)
     _line(axes, (fixed, sliding), "white", 0.7, "", 1.1)
     for artist in (*_support(*fixed, style.base), _slider(*sliding, style.base)):

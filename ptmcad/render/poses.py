@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ptmcad.enclosure import Enclosure
+from ptmcad.mechanism import known_of
 from ptmcad.numerals import magnitude, shortest_text
 from ptmcad.poses import Pose, Poses
 from ptmcad.render.axes import symbol
@@ -24,7 +25,7 @@ from ptmcad.render.legend import INK, Entry, draw_legend, height
 from ptmcad.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark
 from ptmcad.render.printing import settings
 from ptmcad.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Frame, arrow_lengths, frame_of, sketch
-from ptmcad.slice import FREE_LENGTHS
+from ptmcad.slice import merged
 
 MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
 """In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of the title."""
@@ -144,14 +145,9 @@ def assigned(name: str, value: Fraction) -> str:
 
 def values(poses: Poses) -> list[str]:
     """The parameters with their values; equal stiffnesses or free lengths as one; loads only where there are any."""
-    shown = dict(poses.parameters)
-    springs = {shown[name] for name in ("k1", "k2", "k3") if name in shown}
-    if len(springs) == 1:
-        shown = {n: v for n, v in shown.items() if n not in ("k1", "k2", "k3", "k")} | {"k": springs.pop()}
-    free = {shown[name] for name in FREE_LENGTHS if name in shown}
-    if len(free) == 1:
-        shown = {n: v for n, v in shown.items() if n not in FREE_LENGTHS} | {"l0": free.pop()}
-    loads = {name: value for name, value in shown.items() if name.startswith("F")}
+    mechanism = known_of(poses.mechanism)
+    shown = merged(poses.parameters, mechanism)
+    loads = {name: value for name, value in shown.items() if name in mechanism.forces}
     rest = {name: value for name, value in shown.items() if name not in loads}
     texts = [assigned(name, value) for name, value in rest.items()]
     texts += [assigned(name, value) for name, value in loads.items() if value]

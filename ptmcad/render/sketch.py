@@ -12,13 +12,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import hypot
 
+from ptmcad.mechanism import Support, ptm
 from ptmcad.poses import Pose, Poses
 from ptmcad.render.axes import symbol
 from ptmcad.render.clearance import Box, Label, Placed, Position, Stroke, distance, place, polyline
 
-BARS = (("A1", "A3"), ("A2", "A4"))
+MECHANISM = ptm()
+BASE = (MECHANISM.held(Support.PIN), MECHANISM.held(Support.SLIDER_X))
+"""The points at the ends of the telescopic base."""
 BAR_WIDTHS = (5.5, 3.2)
-LOADS = (("A3", "F3x", "F3"), ("A4", "F4x", "F4"))
 WIDTH, MOST_HEIGHT, LEAST_HEIGHT, MARGIN = 200.0, 210.0, 112.0, 36.0
 PIN = 2.4
 SUPPORT, GROUND = (7.0, 10.0), 4.0
@@ -69,7 +71,7 @@ class Sketch:
 
     Attributes
     ----------
-    bars : in the order of `BARS`.
+    bars : in the order of the mechanism's.
     springs : polylines in the order of the pose's springs.
     """
 
@@ -101,7 +103,7 @@ def _sides(points: Iterable[tuple[Fraction, Fraction]]) -> tuple[tuple[Fraction,
 
 def arrow_lengths(poses: Poses) -> dict[str, float]:
     """The loads that are not zero, and the lengths of their arrows: by force, but none shorter than is seen."""
-    loads = {name: poses.parameters.get(name, Fraction(0)) for _, *names in LOADS for name in names}
+    loads = {name: poses.parameters.get(name, Fraction(0)) for load in MECHANISM.loads for name in load.names}
     largest = max(map(abs, loads.values()))
     return {
         name: (1 if load > 0 else -1) * max(SHORTEST_ARROW, LONGEST_ARROW * float(abs(load) / largest))
@@ -113,7 +115,7 @@ def arrow_lengths(poses: Poses) -> dict[str, float]:
 def sketch(pose: Pose, frame: Frame, arrows: Mapping[str, float]) -> Sketch:
     """A pose in a frame, with arrows of these lengths."""
     nodes = frame.nodes(pose)
-    bars = tuple((nodes[a], nodes[b]) for a, b in BARS)
+    bars = tuple((nodes[a], nodes[b]) for a, b in MECHANISM.bars)
     drawn = [Stroke(a, b, width / 2) for (a, b), width in zip(bars, BAR_WIDTHS, strict=True)]
     springs = []
     for spring in pose.springs:
@@ -121,7 +123,7 @@ def sketch(pose: Pose, frame: Frame, arrows: Mapping[str, float]) -> Sketch:
         springs.append(line)
         drawn += polyline(line, 0.5)
     placed_arrows = tuple(_arrows(nodes, arrows))
-    strokes = [*drawn, Stroke(nodes["A1"], nodes["A2"], 1.0)]
+    strokes = [*drawn, Stroke(nodes[BASE[0]], nodes[BASE[1]], 1.0)]
     strokes += [Stroke(arrow.start, arrow.end, 3.0) for arrow in placed_arrows]
     labels = place(_labels(nodes), strokes, _symbols(nodes), (2.0, 2.0, frame.width - 2.0, frame.height - 2.0))
     return Sketch(nodes, bars, tuple(springs), placed_arrows, tuple(labels))
@@ -131,9 +133,9 @@ def _symbols(nodes: Mapping[str, Position]) -> Iterator[Box]:
     """What pins, the support and the slider cover."""
     for x, y in nodes.values():
         yield x - PIN, y - PIN, x + PIN, y + PIN
-    (x, y) = nodes["A1"]
+    (x, y) = nodes[BASE[0]]
     yield x - SUPPORT[0] - 2, y - SUPPORT[1] - GROUND - 1, x + SUPPORT[0] + 2, y
-    (x, y) = nodes["A2"]
+    (x, y) = nodes[BASE[1]]
     yield x - SLIDER[0], y - SLIDER[1], x + SLIDER[0], y + SLIDER[1]
 
 
@@ -174,10 +176,11 @@ def _covered(line: Sequence[Position], drawn: Sequence[Stroke]) -> bool:
 
 def _arrows(nodes: Mapping[str, Position], lengths: Mapping[str, float]) -> Iterator[Arrow]:
     """The loads' arrows; where two would lie on each other, they stand side by side."""
-    shift = 2.6 if hypot(*(a - b for a, b in zip(nodes["A3"], nodes["A4"], strict=True))) < 5 else 0.0
-    for node, horizontal, vertical in LOADS:
-        x, y = nodes[node]
-        side = -shift if node == "A3" else shift
+    first, second = (nodes[load.point] for load in MECHANISM.loads)
+    shift = 2.6 if hypot(*(a - b for a, b in zip(first, second, strict=True))) < 5 else 0.0
+    for load, side in zip(MECHANISM.loads, (-shift, shift), strict=True):
+        x, y = nodes[load.point]
+        horizontal, vertical = load.names
         if horizontal in lengths:
             sign = 1 if lengths[horizontal] > 0 else -1
             yield Arrow(horizontal, (x + sign * PIN, y + side), (x + sign * PIN + lengths[horizontal], y + side))

@@ -118,8 +118,8 @@ function fillPanel(number, cell) {
   for (const pose of cell.equilibria) {
     const figure = html("figure", `pose ${pose.kind}`);
     const caption = html("figcaption");
-    caption.append(html("b", "", pose.kind), html("br"), `θ₁ = ${pose.angles[0]}`, html("br"), `θ₂ = ${pose.angles[1]}`,
-      html("br"), `U = ${pose.energy}`);
+    caption.append(html("b", "", pose.kind), html("br"), ...pose.angles.flatMap((text, n) => [`${MECHANISM.angles[n]} = ${text}`, html("br")]),
+      `U = ${pose.energy}`);
     figure.append(drawPose(cell, pose, frame), caption);
     const k = figures.length;
     figure.addEventListener("pointerenter", () => pointed(k, true));
@@ -127,8 +127,10 @@ function fillPanel(number, cell) {
     figures.push(figure);
     grid.append(figure);
   }
-  panel.append(grid, html("p", "hint", "Thick lines: the rods A₁A₃ and A₂A₄; zigzag: springs; arrows: the loads at A₃ and A₄. "
-    + "A₁ is pinned, A₂ sits on the slider. All poses are drawn to one scale; a strong frame means stable."));
+  panel.append(grid, html("p", "hint", `Thick lines: the rods ${MECHANISM.rods.map(nameOf).join(" and ")}; zigzag: springs; `
+    + `arrows: the loads at ${MECHANISM.loaded.map((point) => MECHANISM.points[point]).join(" and ")}. `
+    + `${MECHANISM.points[MECHANISM.pinned]} is pinned, ${MECHANISM.points[MECHANISM.sliding]} sits on the slider. `
+    + "All poses are drawn to one scale; a strong frame means stable."));
   const landscape = drawLandscape(cell, pointed);
   cells.redraw = landscape.redraw;
   const numbers = html("details");

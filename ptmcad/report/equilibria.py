@@ -7,10 +7,13 @@ equilibrium, as `ptmcad.verify` checks. Numbers that are not texts are for drawi
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, PoleError
+from ptmcad.mechanism import Kind, ptm
+from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.numerals import shortest_text, text_of
 from ptmcad.regionmap import Cell, RegionMap, Solution
 from ptmcad.report.bounds import (
@@ -25,18 +28,19 @@ from ptmcad.report.bounds import (
     times,
 )
 from ptmcad.report.potential import Potential, energy, potential_at
+from ptmcad.slice import merged
 
 KINDS = {"++": "stable", "+-": "saddle", "--": "maximum"}
 """What the signs of the Hessian's eigenvalues say."""
 
-UNKNOWNS = ("cos_th1", "sin_th1", "cos_th2", "sin_th2")
-NEEDED = ("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x")
+MECHANISM = ptm()
+UNKNOWNS = tuple(f"{function}_{angle}" for angle in MECHANISM.angles for function in ("cos", "sin"))
+NEEDED = MECHANISM.without_free_lengths
 """Unknowns and parameters of the paper's mechanism, without which there is no drawing of it."""
 
 LARGEST = 10**100
 """Of parameters and coefficients that can be drawn: their products stay far within the range of floating point."""
 
-SPRINGS = (("k1", "A1", "A4"), ("k2", "A2", "A3"), ("k3", "A3", "A4"))
 _DIGITS = 7
 
 Point = tuple[Bounds, Bounds]
@@ -66,10 +70,10 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     )
     return {
         "parameters": [[n, both(v)] for n, v in told(values).items()],
-        "loads": [[float(values["F3x"]), float(values["F3"])], [float(values["F4x"]), float(values["F4"])]]
+        "loads": [[float(value_at(load.x, values)), float(value_at(load.y, values))] for load in MECHANISM.loads]
         if drawn
         else [],
-        "base": float(values["rho"]) if drawn else 0.0,
+        "base": float(values[MECHANISM.first(Kind.BASE)]) if drawn else 0.0,
         "potential": [[*exponents, float(c)] for exponents, c in potential.items()] if drawn else [],
         "equilibria": _equilibria(cell, values, potential) if drawn else [],
     }
@@ -77,11 +81,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
 
 def told(values: Mapping[str, Value]) -> dict[str, Value]:
     """The parameters worth telling: one k when all springs have it."""
-    springs = {values.get(name) for name in ("k1", "k2", "k3")}
-    if len(springs) == 1 and None not in springs:
-        merged = {n: v for n, v in values.items() if n not in ("k1", "k2", "k3", "k")}
-        return merged | {"k": values["k1"]}
-    return {n: v for n, v in values.items() if n != "k"}
+    return merged({name: value for name, value in values.items() if name not in MECHANISM.shorthands}, MECHANISM)
 
 
 def _plain(value: Fraction) -> str:
@@ -104,10 +104,10 @@ def _equilibria(cell: Cell, values: Mapping[str, Fraction], potential: Potential
     boxes = [_box(s) for s in cell.solutions]
     energies = [energy(potential, box) for box in boxes]
     nodes = [_nodes(box, values) for box in boxes]
-    lengths = [[square_root(_squared_distance(where[a], where[b])) for _, a, b in SPRINGS] for where in nodes]
-    forces = [
-        [times(exactly(values[k]), length) for (k, _, _), length in zip(SPRINGS, row, strict=True)] for row in lengths
-    ]
+    springs = MECHANISM.springs
+    lengths = [[square_root(_squared_distance(where[s.start], where[s.end])) for s in springs] for where in nodes]
+    stiffnesses = [exactly(value_at(spring.stiffness, values)) for spring in springs]
+    forces = [[times(k, length) for k, length in zip(stiffnesses, row, strict=True)] for row in lengths]
     energy_place = last_place(energies, _DIGITS)
     coordinates = [x for where in nodes for place in where.values() for x in place]
     length_place = last_place([length for row in lengths for length in row] + coordinates, _DIGITS)
@@ -124,10 +124,10 @@ def _equilibria(cell: Cell, values: Mapping[str, Fraction], potential: Potential
                 "at": [float(sum(c) / 2) for c in box],
                 "energy": decimal_text(energies[k], energy_place),
                 "level": float(sum(energies[k]) / 2),
-                "nodes": [[float(sum(x) / 2) for x in nodes[k][n]] for n in ("A1", "A2", "A3", "A4")],
+                "nodes": [[float(sum(x) / 2) for x in where] for where in nodes[k].values()],
                 "places": [
                     f"({decimal_text(nodes[k][n][0], length_place)}, {decimal_text(nodes[k][n][1], length_place)})"
-                    for n in ("A3", "A4")
+                    for n in MECHANISM.moving
                 ],
                 "lengths": [decimal_text(length, length_place) for length in lengths[k]],
                 "forces": [decimal_text(force, force_place) for force in forces[k]],
@@ -148,15 +148,44 @@ def _box(solution: Solution) -> tuple[Bounds, ...]:
 
 
 def _nodes(box: tuple[Bounds, ...], values: Mapping[str, Fraction]) -> dict[str, Point]:
-    """A1 and A2 on the base, A3 at the end of the first rod, A4 at that of the second."""
-    first, second = exactly(values["L1"]), exactly(values["L2"])
-    base = exactly(values["rho"])
-    return {
-        "A1": (exactly(0), exactly(0)),
-        "A2": (base, exactly(0)),
-        "A3": (times(first, box[0]), times(first, box[1])),
-        "A4": (plus(base, times(times(second, exactly(-1)), box[2])), times(second, box[3])),
-    }
+    """Bounds of the coordinates of all points."""
+    within = _InBounds(box, values)
+    return {name: (evaluate(x, within).bounds, evaluate(y, within).bounds) for name, (x, y) in MECHANISM.points.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class _Bounded:
+    """Bounds as an element of a ring."""
+
+    bounds: Bounds
+
+    def __add__(self, other: _Bounded) -> _Bounded:
+        return _Bounded(plus(self.bounds, other.bounds))
+
+    def __sub__(self, other: _Bounded) -> _Bounded:
+        return _Bounded(plus(self.bounds, times(exactly(-1), other.bounds)))
+
+    def __mul__(self, other: _Bounded) -> _Bounded:
+        return _Bounded(times(self.bounds, other.bounds))
+
+
+class _InBounds:
+    """Values within bounds, at a box of cosines and sines."""
+
+    def __init__(self, box: tuple[Bounds, ...], values: Mapping[str, Fraction]):
+        self.box, self.values = box, values
+
+    def constant(self, value: Fraction) -> _Bounded:
+        return _Bounded(exactly(value))
+
+    def parameter(self, name: str) -> _Bounded:
+        return _Bounded(exactly(self.values[name]))
+
+    def cos(self, angle: str) -> _Bounded:
+        return _Bounded(self.box[2 * MECHANISM.angles.index(angle)])
+
+    def sin(self, angle: str) -> _Bounded:
+        return _Bounded(self.box[2 * MECHANISM.angles.index(angle) + 1])
 
 
 def _squared_distance(p: Point, q: Point) -> Bounds:

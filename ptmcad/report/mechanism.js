@@ -1,9 +1,8 @@
 // A pose as a drawing: supports, slider, rods, springs, loads. Lengths are in the mechanism's unit, y upwards.
 
-const NODES = ["A₁", "A₂", "A₃", "A₄"];
-const RODS = [[0, 2], [1, 3]];
-const SPRINGS = [[0, 3], [1, 2], [2, 3]];
-const SPRING_NAMES = ["A₁A₄", "A₂A₃", "A₃A₄"];
+// What is drawn, by the numbers of points: { points, rods, springs, loaded, moving, angles, pinned, sliding }.
+const MECHANISM = DATA.mechanism;
+const nameOf = (ends) => ends.map((point) => MECHANISM.points[point]).join("");
 
 function loadVectors(cell, size) {
   const most = Math.max(...cell.loads.map((f) => Math.hypot(f[0], f[1])));
@@ -22,7 +21,7 @@ function frameOf(cell) {
   const size = Math.max(right - left, high - low) || 1;
   for (const pose of cell.equilibria) {
     loadVectors(cell, size).forEach(([fx], k) => {
-      const tip = pose.nodes[2 + k][0] + fx;
+      const tip = pose.nodes[MECHANISM.loaded[k]][0] + fx;
       [left, right] = [Math.min(left, tip), Math.max(right, tip)];
     });
   }
@@ -33,7 +32,7 @@ function frameOf(cell) {
 // The vertical range of one pose, with its supports and loads: [bottom, height].
 function verticalRange(cell, pose, size) {
   const loads = loadVectors(cell, size);
-  const heights = [-0.1 * size, ...pose.nodes.map((node) => node[1]), ...loads.map((f, k) => pose.nodes[2 + k][1] + f[1])];
+  const heights = [-0.1 * size, ...pose.nodes.map((node) => node[1]), ...loads.map((f, k) => pose.nodes[MECHANISM.loaded[k]][1] + f[1])];
   const [low, high] = [Math.min(...heights), Math.max(...heights)];
   const pad = 0.06 * size;
   return [low - pad, high - low + 2 * pad];
@@ -64,26 +63,27 @@ function drawPose(cell, pose, frame) {
     "aria-label": `${pose.kind} pose, angles ${pose.angles.join(" and ")}`,
   });
   const nodes = pose.nodes;
+  const slider = nodes[MECHANISM.sliding];
   const right = left + width;
   const s = 0.045 * size;
   const line = (points, className) => picture.append(svg("path", { class: className, d: path(points) }));
-  line([[left + 0.02 * size, nodes[1][1] - 1.5 * s], [right - 0.02 * size, nodes[1][1] - 1.5 * s]], "rail");
+  line([[left + 0.02 * size, slider[1] - 1.5 * s], [right - 0.02 * size, slider[1] - 1.5 * s]], "rail");
   line([[0, 0], [-s, -1.5 * s], [s, -1.5 * s], [0, 0]], "ground");
   for (let k = -1; k <= 1; k += 1) line([[k * s, -1.5 * s], [(k - 0.7) * s, -2.2 * s]], "ground");
-  const [bx, by] = at([nodes[1][0] - 1.4 * s, nodes[1][1] + 0.8 * s]);
+  const [bx, by] = at([slider[0] - 1.4 * s, slider[1] + 0.8 * s]);
   picture.append(svg("rect", {
     class: "slider", x: bx.toFixed(2), y: by.toFixed(2), width: (2.8 * s * unit).toFixed(2), height: (1.6 * s * unit).toFixed(2),
   }));
   for (const k of [-0.8, 0.8]) {
-    const [cx, cy] = at([nodes[1][0] + k * s, nodes[1][1] - 1.15 * s]);
+    const [cx, cy] = at([slider[0] + k * s, slider[1] - 1.15 * s]);
     picture.append(svg("circle", { class: "slider", cx: cx.toFixed(2), cy: cy.toFixed(2), r: (0.35 * s * unit).toFixed(2) }));
   }
-  for (const [a, b] of SPRINGS) line(zigzag(nodes[a], nodes[b], 0.03 * size), "spring");
-  for (const [a, b] of RODS) line([nodes[a], nodes[b]], "bar");
+  for (const [a, b] of MECHANISM.springs) line(zigzag(nodes[a], nodes[b], 0.03 * size), "spring");
+  for (const [a, b] of MECHANISM.rods) line([nodes[a], nodes[b]], "bar");
   loadVectors(cell, size).forEach((f, k) => {
     const length = Math.hypot(f[0], f[1]);
     if (length === 0) return;
-    const [x, y] = nodes[2 + k];
+    const [x, y] = nodes[MECHANISM.loaded[k]];
     const [ex, ey] = [f[0] / length, f[1] / length];
     const h = Math.min(0.06 * size, 0.6 * length);
     const tip = [x + f[0], y + f[1]];
@@ -106,8 +106,8 @@ function springTable(cell) {
   box.setAttribute("aria-label", "Poses in numbers");
   const table = html("table", "stacked");
   const head = table.createTHead().insertRow();
-  const columns = ["pose", "θ₁", "θ₂", "energy", "A₃", "A₄"];
-  for (const name of SPRING_NAMES) columns.push(`length ${name}`, `force ${name}`);
+  const columns = ["pose", ...MECHANISM.angles, "energy", ...MECHANISM.moving.map((point) => MECHANISM.points[point])];
+  for (const name of MECHANISM.springs.map(nameOf)) columns.push(`length ${name}`, `force ${name}`);
   for (const text of columns) {
     const th = html("th", "", text);
     th.scope = "col";
@@ -116,7 +116,7 @@ function springTable(cell) {
   const body = table.createTBody();
   for (const pose of cell.equilibria) {
     const row = body.insertRow();
-    const entries = [pose.kind, pose.angles[0], pose.angles[1], pose.energy, pose.places[0], pose.places[1]];
+    const entries = [pose.kind, ...pose.angles, pose.energy, ...pose.places];
     pose.lengths.forEach((length, k) => entries.push(length, pose.forces[k]));
     entries.forEach((text, k) => {
       const entry = row.insertCell();

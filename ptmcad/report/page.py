@@ -15,6 +15,7 @@ from string import Template
 from typing import Any
 
 from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Support
 from ptmcad.numerals import text_of
 from ptmcad.regionmap import RegionMap
 from ptmcad.render.axes import symbol
@@ -23,7 +24,7 @@ from ptmcad.render.view import Shapes, shapes
 from ptmcad.report import sections
 from ptmcad.report.chart import Chart, chart, counts_text, pattern_defs
 from ptmcad.report.consistency import check_numbers
-from ptmcad.report.equilibria import at_sample, both
+from ptmcad.report.equilibria import MECHANISM, at_sample, both
 from ptmcad.report.error_curve import ErrorCurve, error_section
 from ptmcad.report.formulas import curves
 from ptmcad.report.frame import SIDE
@@ -122,6 +123,21 @@ def harmless(data: object) -> str:
     return text
 
 
+def _drawing() -> dict[str, Any]:
+    """What the script draws of the mechanism, by the numbers of its points."""
+    number = {name: n for n, name in enumerate(MECHANISM.points)}
+    return {
+        "points": [symbol(name) for name in MECHANISM.points],
+        "rods": [[number[a], number[b]] for a, b in MECHANISM.bars],
+        "springs": [[number[spring.start], number[spring.end]] for spring in MECHANISM.springs],
+        "loaded": [number[load.point] for load in MECHANISM.loads],
+        "moving": [number[name] for name in MECHANISM.moving],
+        "angles": [symbol(name) for name in MECHANISM.angles],
+        "pinned": number[MECHANISM.held(Support.PIN)],
+        "sliding": number[MECHANISM.held(Support.SLIDER_X)],
+    }
+
+
 def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
     """What the script shows and draws."""
     names = result.slice.axis_names
@@ -129,7 +145,8 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "side": SIDE,
         "base": result.base,
         "axes": [symbol(name) for name in names],
-        "drawable": result.slice.mechanism == "ptm",
+        "drawable": result.slice.mechanism == MECHANISM.name,
+        "mechanism": _drawing(),
         "regions": [{"area": certified_digits(r.area), "counts": counts_text(r)} for r in result.regions],
         "stacks": [list(s.cells) for s in result.stacks],
         "cells": [

@@ -11,13 +11,12 @@ import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from ptmcad.config import PARAMETERS, slice_from_mapping, slice_from_options
+from ptmcad.config import slice_from_mapping, slice_from_options
 from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Kind
 from ptmcad.numerals import text_of
-from ptmcad.slice import FREE_LENGTHS, Count, Slice
+from ptmcad.slice import Count, Slice
 from ptmcad.yamltree import plain_data, read_text
-
-_SPRINGS = ("k1", "k2", "k3")
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,22 +40,30 @@ def reproduction(slice: Slice) -> Reproduction:
 def _given(slice: Slice, written: Mapping[str, str]) -> dict[str, str]:
     """The values that a record has to give: not those of the axes, nor the defaults."""
     names = slice.axis_names
-    # k and l0 are no parameters where the springs do not have them, but other texts may name them
+    mechanism = slice.description
+    always = (mechanism.first(Kind.LENGTH), mechanism.first(Kind.STIFFNESS))  # what the reader compares others with
+    # shorthands are no parameters where the springs do not have them, but other texts may name them
     alone = {name: text for name, text in written.items() if name not in slice.parameters}
-    values = {name: text for name, text in alone.items() if name != "l0" or text != PARAMETERS[name].default}
+    values = {
+        name: text for name, text in alone.items()
+        if mechanism.kind(name) is not Kind.FREE_LENGTH or text != mechanism.parameters[name].default
+    }  # fmt: skip
     for name, expression in slice.parameters.items():
         text = written.get(name, expression.to_text(names))
-        if name in _SPRINGS and name not in names and "k" in alone:
-            values[name] = text  # else the k would be that spring's too
+        known = mechanism.parameters.get(name)
+        if known is not None and name not in names and known.alias_of in alone and known.kind is Kind.STIFFNESS:
+            values[name] = text  # else the shorthand would be that spring's too
             continue
-        if name in names or (name in PARAMETERS and text == PARAMETERS[name].default and name not in ("L1", "k")):
+        if name in names or (known is not None and text == known.default and name not in always):
             continue
-        if name in _SPRINGS and "k" in slice.parameters and expression == slice.parameters["k"]:
+        if known is not None and expression == slice.parameters.get(known.alias_of):
             continue
         values[name] = text
-    free = {values.get(name, "") for name in FREE_LENGTHS}
-    if len(free) == 1 and "l0" not in (*names, *alone) and (text := free.pop()) and "l0" not in text:
-        values = {name: value for name, value in values.items() if name not in FREE_LENGTHS} | {"l0": text}
+    for shorthand, own in mechanism.shorthands.items():
+        if mechanism.kind(shorthand) is Kind.FREE_LENGTH and shorthand not in (*names, *alone):
+            free = {values.get(name, "") for name in own}
+            if len(free) == 1 and (text := free.pop()) and shorthand not in text:
+                values = {name: value for name, value in values.items() if name not in own} | {shorthand: text}
     return values
 
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ptmcad.errors import ConfigError, shown
-from ptmcad.expressions import did_you_mean
 from ptmcad.stress.case import Case
 from ptmcad.stress.points import point_cases
 from ptmcad.stress.slices import slice_cases
+from ptmcad.syntax import did_you_mean
 
 ALL = "all"
 """The name that stands for every named case."""

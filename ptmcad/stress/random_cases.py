@@ -7,18 +7,25 @@ which come from the second method; points beside a fold or a cusp have those of 
 from __future__ import annotations
 
 import random
+from collections.abc import Mapping
 from fractions import Fraction
 
+from ptmcad.mechanism import ptm
+from ptmcad.mechanism.evaluate import value_at
 from ptmcad.stress.case import Case, PointAnswer, PointQuestion
 from ptmcad.stress.constructions import Degenerate as DegeneratePose
 from ptmcad.stress.constructions import beside_cusp, beside_fold, cusp, fold, rational_pose
 from ptmcad.stress.points import CONSTRUCTED, ten
 from ptmcad.stress.reference import Degenerate, sextic_poses
+from ptmcad.syntax import Tree
 
 KINDS = ("scaled", "mirrored", "swapped", "fold", "cusp")
 LARGEST = 30
 """Scales are 10^-30 to 10^30, distances from a fold 10^-30 to 10^-3."""
 ORIGINAL = "symmetry of the equations: counts of the tame original, by the second method"
+
+_MECHANISM = ptm()
+_ACROSS, _ALONG = _MECHANISM.symmetries
 
 Values = dict[str, Fraction]
 
@@ -46,25 +53,27 @@ def random_case(seed: int, number: int) -> Case:
 
 def stiffened(p: Values, factor: Fraction) -> Values:
     """Stiffnesses and forces multiplied: the equilibria stay."""
-    return {name: v * factor if name[0] in "kF" else v for name, v in p.items()}
+    pulled = _MECHANISM.stiffnesses + _MECHANISM.forces
+    return {name: v * factor if name in pulled else v for name, v in p.items()}
 
 
 def stretched(p: Values, factor: Fraction) -> Values:
     """Lengths and forces multiplied: the equilibria stay."""
-    return {name: v if name[0] == "k" else v * factor for name, v in p.items()}
+    return {name: v if name in _MECHANISM.stiffnesses else v * factor for name, v in p.items()}
 
 
 def mirrored(p: Values) -> Values:
     """Vertical forces reversed: the angles change their signs."""
-    return {name: -v if name in ("F3", "F4") else v for name, v in p.items()}
+    return _substituted(p, _ALONG)
 
 
 def swapped(p: Values) -> Values:
     """Left and right exchanged: the angles are too."""
-    return {
-        "L1": p["L2"], "L2": p["L1"], "rho": p["rho"], "k1": p["k2"], "k2": p["k1"], "k3": p["k3"],
-        "F3": p["F4"], "F4": p["F3"], "F3x": -p["F4x"], "F4x": -p["F3x"],
-    }  # fmt: skip
+    return _substituted(p, _ACROSS)
+
+
+def _substituted(p: Values, symmetry: Mapping[str, Tree]) -> Values:
+    return {name: value_at(symmetry[name], p) if name in symmetry else v for name, v in p.items()}
 
 
 def _tame(dice: random.Random) -> tuple[Values, PointAnswer]:

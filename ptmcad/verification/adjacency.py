@@ -30,7 +30,7 @@ from flint import fmpq, fmpz_poly
 
 from ptmcad.regionmap import Adjacency, Cell, CriticalValue, NonAdjacency, Reason, Segment
 from ptmcad.verification.claims import Claims, is_root, short, side
-from ptmcad.verification.fibre import rational
+from ptmcad.verification.derivation import rational
 from ptmcad.verification.report import Violation
 from ptmcad.verification.structure import inside_stack, points_over
 from ptmcad.verification.sturm import points_apart, roots_between

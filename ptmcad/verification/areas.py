@@ -19,7 +19,7 @@ from ptmcad.numerals import approximate_text
 from ptmcad.regionmap import Region
 from ptmcad.verification.branches import Branch, Effort, PrecisionTooLow, integral_over
 from ptmcad.verification.claims import Claims, bracket, fraction
-from ptmcad.verification.fibre import rational
+from ptmcad.verification.derivation import rational
 from ptmcad.verification.report import Violation
 
 NARROWEST = 10**60

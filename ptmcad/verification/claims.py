@@ -16,7 +16,8 @@ from ptmcad.errors import PoleError
 from ptmcad.numerals import approximate_text, text_of
 from ptmcad.plane import PlanePolynomial
 from ptmcad.regionmap import CriticalValue, RegionMap
-from ptmcad.verification.fibre import Fibre, NotFinite, fibre, rational
+from ptmcad.verification.derivation import rational
+from ptmcad.verification.fibre import Fibre, NotFinite, fibre
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import roots_between, roots_within
 

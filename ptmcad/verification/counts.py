@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from ptmcad.numerals import text_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.fibre import LENGTHS_AND_STIFFNESSES
+from ptmcad.verification.derivation import NOT_NEGATIVE, POSITIVE
 from ptmcad.verification.report import Violation
 
 
@@ -36,7 +36,7 @@ def check_counts(claims: Claims) -> str:
 
 def _not_positive(values: Mapping[str, Fraction]) -> str | None:
     """A length or stiffness that is not positive, or None."""
-    for name in LENGTHS_AND_STIFFNESSES:
+    for name in POSITIVE:
         if values[name] <= 0:
             return name
-    return "rho" if values["rho"] < 0 else None
+    return next((name for name in NOT_NEGATIVE if values.get(name, 0) < 0), None)

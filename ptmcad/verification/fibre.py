@@ -1,6 +1,6 @@
 """The equilibria over one rational point, by a route of its own: geometry, Groebner basis at the point, trace forms.
 
-Guarantee: exact. The potential is formed here from the coordinates of the four nodes, in rational numbers, and
+Guarantee: exact. The potential is formed from the coordinates of the nodes, in rational numbers, by `derivation`, and
 differentiated here; nothing is taken from `ptmcad.models`, so a mistake there or here shows as a contradiction.
 
 The order is graded reverse lexicographic with s2 > c2 > s1 > c1, FLINT's own Buchberger algorithm runs at the point
@@ -18,8 +18,7 @@ from itertools import pairwise, product
 
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
-LENGTHS_AND_STIFFNESSES = ("L1", "L2", "k1", "k2", "k3")
-PARAMETERS = (*LENGTHS_AND_STIFFNESSES, "rho", "F3", "F4", "F3x", "F4x")
+from ptmcad.verification.derivation import ANGLES, PARAMETERS, Place, potential, rational
 
 _RATIONAL: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("s2", "c2", "s1", "c1"), Ordering.degrevlex)
 _INTEGER: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(("s2", "c2", "s1", "c1"), Ordering.degrevlex)
@@ -32,13 +31,8 @@ class NotFinite(ArithmeticError):
     """The equations have infinitely many complex solutions at the point."""
 
 
-def rational(value: Fraction) -> fmpq:
-    """A Python fraction as a FLINT rational."""
-    return fmpq(value.numerator, value.denominator)
-
-
 def _d(p: fmpq_mpoly, angle: int) -> fmpq_mpoly:
-    """The derivative with respect to th1 or th2."""
+    """The derivative with respect to the first or the second angle."""
     c, s, names = (_C1, _S1, ("c1", "s1")) if angle == 1 else (_C2, _S2, ("c2", "s2"))
     return c * p.derivative(names[1]) - s * p.derivative(names[0])
 
@@ -142,7 +136,7 @@ class Fibre:
 
 
 def fibre(values: Mapping[str, Fraction]) -> Fibre:
-    """The fibre over rational values of the ten parameters.
+    """The fibre over rational values of the parameters.
 
     Raises
     ------
@@ -156,18 +150,8 @@ def fibre(values: Mapping[str, Fraction]) -> Fibre:
 
 
 def _potential(values: Mapping[str, Fraction]) -> fmpq_mpoly:
-    v = {name: rational(values[name]) for name in PARAMETERS}
-    one = _RATIONAL.constant(1)
-    nodes = {
-        1: (0 * one, 0 * one),
-        2: (v["rho"] * one, 0 * one),
-        3: (v["L1"] * _C1, v["L1"] * _S1),
-        4: (v["rho"] - v["L2"] * _C2, v["L2"] * _S2),
-    }
-    energy = -v["F3x"] * nodes[3][0] - v["F3"] * nodes[3][1] - v["F4x"] * nodes[4][0] - v["F4"] * nodes[4][1]
-    for start, end, stiffness in ((1, 4, v["k1"]), (2, 3, v["k2"]), (3, 4, v["k3"])):
-        across, up = (nodes[end][i] - nodes[start][i] for i in (0, 1))
-        energy += (stiffness / 2) * (across * across + up * up)
+    circles = dict(zip(ANGLES, ((_C1, _S1), (_C2, _S2)), strict=True))
+    energy: fmpq_mpoly = potential(Place({name: rational(values[name]) for name in PARAMETERS}, circles))
     return energy
 
 

@@ -13,7 +13,7 @@ from ptmcad.numerals import approximate_text
 from ptmcad.regionmap import Cell, Merge, Status
 from ptmcad.slice import Count
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.fibre import PARAMETERS
+from ptmcad.verification.derivation import MECHANISM, PARAMETERS, SHORTHANDS
 from ptmcad.verification.report import Violation
 
 
@@ -25,7 +25,7 @@ def check_shape(claims: Claims) -> str:
     if r.undetermined != (0 if r.stacks else 1):
         raise Violation(f"{approximate_text(r.undetermined)} of the window is said to be undetermined, but "
                         f"{'all cells' if r.stacks else 'no cells'} are stored")  # fmt: skip
-    if r.slice.mechanism != "ptm" or set(r.slice.parameters) - {"k"} != set(PARAMETERS):
+    if r.slice.mechanism != MECHANISM.name or set(r.slice.parameters) - set(SHORTHANDS) != set(PARAMETERS):
         raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
     if r.slice.count not in _KEYS:
         raise Violation(f"an exact map has no {r.slice.count.value} counts by which its regions could be told apart")

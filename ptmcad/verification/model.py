@@ -1,7 +1,7 @@
 """The mechanism's equations, derived here once more, against the text of those that were solved.
 
 Guarantee: potential, gradient and Hessian in the result equal, on the torus cos^2 + sin^2 = 1 of each angle, those that
-follow from the coordinates of the four nodes; as polynomials in all parameters, so for every slice at once.
+follow from the coordinates of the nodes; as polynomials in all parameters, so for every slice at once.
 """
 
 from __future__ import annotations
@@ -14,10 +14,8 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
 from ptmcad.numerals import fraction_of
 from ptmcad.regionmap import System
 from ptmcad.verification.claims import PLANE, Claims
-from ptmcad.verification.fibre import PARAMETERS
+from ptmcad.verification.derivation import ANGLES, PARAMETERS, UNKNOWNS, Place, potential
 from ptmcad.verification.report import Violation
-
-UNKNOWNS = ("cos_th1", "sin_th1", "cos_th2", "sin_th2")
 
 _RING: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get((*UNKNOWNS, *PARAMETERS), Ordering.lex)
 _NAMES = (*UNKNOWNS, *PARAMETERS)
@@ -38,25 +36,16 @@ def _on_torus(p: fmpq_mpoly) -> fmpq_mpoly:
 
 @cache
 def _relations() -> tuple[fmpq_mpoly, ...]:
-    c1, s1, c2, s2 = (_variable(name) for name in UNKNOWNS)
-    return (c1 * c1 + s1 * s1 - 1, c2 * c2 + s2 * s2 - 1)
+    return tuple(c * c + s * s - 1 for c, s in _circles().values())
+
+
+def _circles() -> dict[str, tuple[fmpq_mpoly, fmpq_mpoly]]:
+    return {angle: (_variable(f"cos_{angle}"), _variable(f"sin_{angle}")) for angle in ANGLES}
 
 
 @cache
 def _potential() -> fmpq_mpoly:
-    c1, s1, c2, s2 = (_variable(name) for name in UNKNOWNS)
-    v = {name: _variable(name) for name in PARAMETERS}
-    zero = _RING.constant(0)
-    nodes = {
-        1: (zero, zero),
-        2: (v["rho"], zero),
-        3: (v["L1"] * c1, v["L1"] * s1),
-        4: (v["rho"] - v["L2"] * c2, v["L2"] * s2),
-    }
-    energy = -v["F3x"] * nodes[3][0] - v["F3"] * nodes[3][1] - v["F4x"] * nodes[4][0] - v["F4"] * nodes[4][1]
-    for start, end, stiffness in ((1, 4, v["k1"]), (2, 3, v["k2"]), (3, 4, v["k3"])):
-        across, up = (nodes[end][i] - nodes[start][i] for i in (0, 1))
-        energy += fmpq(1, 2) * stiffness * (across * across + up * up)
+    energy: fmpq_mpoly = potential(Place({name: _variable(name) for name in PARAMETERS}, _circles()))
     return energy
 
 

@@ -14,14 +14,17 @@ from ptmcad.errors import ExpressionError
 from ptmcad.expressions import Expression, axis, names_in, parse
 from ptmcad.plane import PlanePolynomial
 from ptmcad.regionmap import Kind
-from ptmcad.slice import FREE_LENGTHS, Slice
+from ptmcad.slice import Slice
 from ptmcad.verification.claims import PLANE, Claims
+from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, PARAMETERS, POSITIVE
 from ptmcad.verification.model import equation_factors
 from ptmcad.verification.report import Violation
 from ptmcad.verification.variety import factors
 
-AUXILIARY = ("k", "l0", *FREE_LENGTHS)
-"""Names that may be kept as texts alone, because other texts name them: k and l0, which are no parameters of the
+_BOUNDING = tuple(name for name in PARAMETERS if name in (*POSITIVE, *NOT_NEGATIVE))
+"""Lengths and stiffnesses: where one vanishes, the slice ends."""
+AUXILIARY = (*MECHANISM.shorthands, *MECHANISM.free_lengths)
+"""Names that may be kept as texts alone, because other texts name them: shorthands, which are no parameters of the
 mechanism, and free lengths that are zero."""
 
 
@@ -34,13 +37,13 @@ def check_text(claims: Claims) -> str:
     for index, name in enumerate(slice.axis_names):
         if name in slice.parameters and (slice.parameters[name] - axis(index)).numerator:
             raise Violation(f"{name} is an axis, but the parameter {name} is {_shown(slice, name)}")
-    for name in sorted(alone | ({"k", "l0"} & slice.text.keys())):
+    for name in sorted(alone | (MECHANISM.shorthands.keys() & slice.text.keys())):
         if not any(name in _names(n, text) for n, text in slice.text.items() if n != name):
             raise Violation(f"the parameter {name} is stored, but nothing depends on it")
     for name, expression in written(slice).items():
         if name in slice.parameters and (expression - slice.parameters[name]).numerator:
             raise Violation(f"{name} was written as {slice.text[name][:60]!r}, but is {_shown(slice, name)}")
-        if name in alone and name in FREE_LENGTHS and expression.numerator:
+        if name in alone and name in MECHANISM.free_lengths and expression.numerator:
             raise Violation(f"{name} was written as {slice.text[name][:60]!r}, but is left out as if it were zero")
     return f"{len(slice.text)} parameters"
 
@@ -87,7 +90,7 @@ def check_boundary(claims: Claims) -> str:
     needed: dict[PlanePolynomial, str] = {}
     for name, e in claims.result.slice.parameters.items():
         parts = [e.denominator]
-        if name in ("L1", "L2", "k1", "k2", "k3", "rho"):
+        if name in _BOUNDING:
             parts.append(e.numerator)
         for terms in parts:
             for factor in _expression_factors(terms):

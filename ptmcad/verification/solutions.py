@@ -18,7 +18,8 @@ from flint import arb, arb_mat, ctx
 
 from ptmcad.regionmap import Cell, Solution
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.fibre import rational
+from ptmcad.verification.derivation import ANGLES, PARAMETERS, Place, potential, rational
+from ptmcad.verification.jets import circle
 from ptmcad.verification.report import Violation
 
 BITS = (64, 128, 256, 512, 1024, 2048, 4096)
@@ -64,34 +65,20 @@ def _check_disjoint(n: int, cell: Cell) -> None:
 
 
 class _Energy:
-    """Gradient and Hessian of the potential in balls; derived by hand from the nodes' coordinates.
-
-    With A3 = L1 (c1, s1), A4 = (rho - L2 c2, L2 s2), the derivatives of A3 and A4 by their angles are
-    L1 (-s1, c1) and L2 (s2, c2), the second ones -L1 (c1, s1) and L2 (c2, -s2).
-    """
+    """Gradient and Hessian of the potential in balls, by jets of what the description lists."""
 
     def __init__(self, values: Mapping[str, Fraction]):
-        self.v = {name: arb(rational(value)) for name, value in values.items()}
+        self.parameters = {name: arb(rational(values[name])) for name in PARAMETERS}
 
     def __call__(self, x: list[arb]) -> tuple[list[arb], list[list[arb]]]:
-        v, (c1, s1, c2, s2) = self.v, x
-        at3, at4 = (v["L1"] * c1, v["L1"] * s1), (v["rho"] - v["L2"] * c2, v["L2"] * s2)
-        d3, d4 = (-v["L1"] * s1, v["L1"] * c1), (v["L2"] * s2, v["L2"] * c2)
-        e3, e4 = (-v["L1"] * c1, -v["L1"] * s1), (v["L2"] * c2, -v["L2"] * s2)
-        # forces on the nodes, taken negative: derivatives of the energy by their coordinates
-        on3 = (v["k2"] * (at3[0] - v["rho"]) + v["k3"] * (at3[0] - at4[0]) - v["F3x"],
-               v["k2"] * at3[1] + v["k3"] * (at3[1] - at4[1]) - v["F3"])  # fmt: skip
-        on4 = (v["k1"] * at4[0] + v["k3"] * (at4[0] - at3[0]) - v["F4x"],
-               v["k1"] * at4[1] + v["k3"] * (at4[1] - at3[1]) - v["F4"])  # fmt: skip
-        gradient = [_dot(on3, d3), _dot(on4, d4)]
-        h11 = (v["k2"] + v["k3"]) * _dot(d3, d3) + _dot(on3, e3)
-        h22 = (v["k1"] + v["k3"]) * _dot(d4, d4) + _dot(on4, e4)
-        h12 = -v["k3"] * _dot(d3, d4)
-        return gradient, [[h11, h12], [h12, h22]]
-
-
-def _dot(a: tuple[arb, arb], b: tuple[arb, arb]) -> arb:
-    return a[0] * b[0] + a[1] * b[1]
+        angles = range(len(ANGLES))
+        circles = {angle: circle(k, x[2 * k], x[2 * k + 1]) for k, angle in enumerate(ANGLES)}
+        energy = potential(Place(self.parameters, circles))
+        zero = arb(0)
+        return (
+            [energy.slopes.get(i, zero) for i in angles],
+            [[energy.bends.get((min(i, j), max(i, j)), zero) for j in angles] for i in angles],
+        )
 
 
 def _signs(values: Mapping[str, Fraction], solution: Solution) -> str | None:

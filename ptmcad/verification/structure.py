@@ -17,8 +17,8 @@ from flint import fmpq, fmpz_poly
 from ptmcad.numerals import text_of
 from ptmcad.regionmap import CriticalValue
 from ptmcad.verification.claims import Claims, PlaneCurve, polynomial, short, side
+from ptmcad.verification.derivation import rational
 from ptmcad.verification.elimination import discriminant, resultant
-from ptmcad.verification.fibre import rational
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import isolating_intervals, roots_between, roots_within
 

@@ -25,7 +25,7 @@ from ptmcad.models import system_of
 from ptmcad.regionmap import RegionMap, Status
 from ptmcad.slice import Count, Point
 from ptmcad.verification.claims import Claims, bracket, fraction
-from ptmcad.verification.fibre import rational
+from ptmcad.verification.derivation import rational
 
 
 def regions_in_another_order(r: RegionMap) -> Iterator[Alteration]:

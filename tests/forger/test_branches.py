@@ -38,7 +38,8 @@ from ptmcad.verification.auxiliary import check_auxiliary
 from ptmcad.verification.branches import Effort, PrecisionTooLow, _along
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.counts import check_counts
-from ptmcad.verification.fibre import Fibre, rational
+from ptmcad.verification.derivation import rational
+from ptmcad.verification.fibre import Fibre
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ptmcad.models import system_of
-from ptmcad.models.ptm import nodes
+from ptmcad.mechanism import ptm
+from ptmcad.models.geometry import geometry_of
 from ptmcad.paper import printed
 from ptmcad.paper.claim import Claim, Outcome, judge, unchecked
 from ptmcad.paper.claims.overall import when_infinite
@@ -45,8 +45,7 @@ from ptmcad.paper.symbolic import (
 
 
 def fixed_point() -> Outcome:
-    ring = system_of("ptm").ring
-    at = nodes(ring)
+    at = geometry_of(ptm()).nodes
     moving = tuple(
         name for name in ("A1", "A2") if any(any(sum(e) for e in p.to_dict()) for p in at[name])
     )  # fmt: skip

@@ -20,7 +20,9 @@ from dataclasses import dataclass
 
 from flint import arb
 
-NAMES = ("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x", "l0_1", "l0_2", "l0_3")
+from ptmcad.verification.derivation import MECHANISM
+
+NAMES = MECHANISM.variables
 Pair = tuple[arb, arb]
 _ANY = arb(0, 1)
 

@@ -11,16 +11,16 @@ from fractions import Fraction
 from flint import arb, fmpq
 
 from ptmcad.expressions import Expression, axis
-from ptmcad.slice import FREE_LENGTHS, Slice
+from ptmcad.mechanism import Kind
+from ptmcad.slice import Slice
 from ptmcad.verification.certified.energy import NAMES, Energy
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, POSITIVE
 from ptmcad.verification.parameters import AUXILIARY, written
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.signs import Sign, has_no_pole, is_in_domain
 
-POSITIVE = ("L1", "L2", "k1", "k2", "k3")
-NOT_NEGATIVE = ("rho", *FREE_LENGTHS)
 Values = dict[str, Fraction]
 
 
@@ -42,8 +42,9 @@ def check_domain(claims: Claims) -> str:
         if pole is Sign.WRONG:
             raise Violation(f"{name} has a pole in the window")
         sign = Sign.PROVED
-        if name in (*POSITIVE, *NOT_NEGATIVE, "k", "l0"):
-            strict = name in (*POSITIVE, "k") or (name == "rho" and bool(expression.numerator))
+        kind = MECHANISM.kind(name)
+        if kind.is_positive or kind.may_vanish:
+            strict = kind.is_positive or (kind is Kind.BASE and bool(expression.numerator))
             sign = is_in_domain(expression, here, strict)
             if sign is Sign.WRONG:
                 raise Violation(f"{name} is {'not positive' if strict else 'negative'} somewhere in the window")
@@ -77,7 +78,7 @@ def values_at(claims: Claims, x: Fraction, y: Fraction) -> Values:
     Violation
         When one has a pole there, or is outside its domain.
     """
-    values = {name: Fraction(0) for name in FREE_LENGTHS} | claims.parameters_at(x, y)
+    values = {name: Fraction(0) for name in MECHANISM.free_lengths} | claims.parameters_at(x, y)
     for name in POSITIVE:
         if values[name] <= 0:
             raise Violation(f"{name} is not positive")
@@ -102,7 +103,7 @@ def energy_over(slice: Slice, x: arb, y: arb) -> Energy:
     Unproved
         When a parameter may have a pole there, or be outside its domain.
     """
-    values = {name: arb(0) for name in FREE_LENGTHS}
+    values = {name: arb(0) for name in MECHANISM.free_lengths}
     for name, expression in slice.parameters.items():
         values[name] = _over(expression, x, y)
         if name in POSITIVE and not values[name] > 0:

@@ -12,10 +12,11 @@ from itertools import pairwise
 
 from ptmcad.numerals import text_of
 from ptmcad.regionmap import Status
-from ptmcad.slice import FREE_LENGTHS, Count
+from ptmcad.slice import Count
 from ptmcad.verification.certified.energy import NAMES
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.derivation import MECHANISM, SHORTHANDS
 from ptmcad.verification.report import Violation
 
 MOST_STEPS = 2**40
@@ -95,7 +96,8 @@ def check_form(claims: CertifiedClaims) -> str:
     r = claims.result
     if r.cover is None or r.status not in (Status.CERTIFIED, Status.PARTIAL):
         raise Violation(f"the status is {r.status.value!r}, and there is {'no' if r.cover is None else 'a'} cover")
-    if r.slice.mechanism != "ptm" or not set(NAMES) - set(FREE_LENGTHS) <= set(r.slice.parameters) <= {"k", *NAMES}:
+    needed, known = set(MECHANISM.without_free_lengths), {*SHORTHANDS, *NAMES}
+    if r.slice.mechanism != MECHANISM.name or not needed <= set(r.slice.parameters) <= known:
         raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
     if any(axis.low >= axis.high for axis in r.slice.axes):
         raise Violation("the window is empty")

@@ -1,6 +1,6 @@
 """Check of the stored potential of a certified map, as a polynomial in the springs' lengths.
 
-Guarantee: exact. The text equals the energy that follows from the four nodes' coordinates, as a function of all
+Guarantee: exact. The text equals the energy that follows from the nodes' coordinates, as a function of all
 parameters and both angles: both are polynomials over Q in the parameters, cosines, sines and lengths l_i, modulo
 cos^2 + sin^2 = 1 and l_i^2 = q_i, and their normal forms are the same. A root is read only where it is a length.
 
@@ -18,11 +18,11 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.verification.certified.energy import NAMES
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.derivation import ANGLES, MECHANISM, UNKNOWNS, Place, work
 from ptmcad.verification.report import Violation
 
-UNKNOWNS = ("th1", "th2")
-_LENGTHS = ("l1", "l2", "l3")
-_CIRCLES = ("cos_th1", "sin_th1", "cos_th2", "sin_th2")
+_LENGTHS = tuple(f"l{n}" for n in range(1, len(MECHANISM.springs) + 1))
+_CIRCLES = UNKNOWNS
 _NAMES = (*_LENGTHS, *_CIRCLES, *NAMES)
 _RING: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(_NAMES, Ordering.lex)
 _LONGEST = 5_000
@@ -35,8 +35,8 @@ _MOST_TERMS, _MOST_DEGREE, _MOST_BITS = 2_000, 60, 2_000
 def check_potential(claims: Claims) -> str:
     """The unknowns, and the potential in them."""
     system = claims.result.system
-    if system.unknowns != UNKNOWNS:
-        raise Violation(f"the unknowns are {system.unknowns}, not {UNKNOWNS}")
+    if system.unknowns != ANGLES:
+        raise Violation(f"the unknowns are {system.unknowns}, not {ANGLES}")
     if system.relations or system.gradient or system.hessian:
         raise Violation("a certified map has no relations, and its gradient and Hessian follow from the potential")
     try:
@@ -46,7 +46,7 @@ def check_potential(claims: Claims) -> str:
     difference = _reduced(stored - _energy())
     if not difference.is_zero():
         raise Violation(f"the stored potential differs from the mechanism's by {str(difference)[:80]}")
-    return f"the potential in {len(UNKNOWNS)} unknowns and {len(NAMES)} parameters"
+    return f"the potential in {len(ANGLES)} unknowns and {len(NAMES)} parameters"
 
 
 def _variable(name: str) -> fmpq_mpoly:
@@ -54,28 +54,22 @@ def _variable(name: str) -> fmpq_mpoly:
 
 
 @cache
-def _nodes() -> tuple[tuple[fmpq_mpoly, fmpq_mpoly], ...]:
-    v = {name: _variable(name) for name in _NAMES}
-    zero = _RING.constant(0)
-    return (
-        (zero, zero), (v["rho"], zero),
-        (v["L1"] * v["cos_th1"], v["L1"] * v["sin_th1"]),
-        (v["rho"] - v["L2"] * v["cos_th2"], v["L2"] * v["sin_th2"]),
-    )  # fmt: skip
+def _place() -> Place:
+    circles = {angle: (_variable(f"cos_{angle}"), _variable(f"sin_{angle}")) for angle in ANGLES}
+    return Place({name: _variable(name) for name in NAMES}, circles)
 
 
 @cache
 def _circles() -> tuple[fmpq_mpoly, ...]:
-    c1, s1, c2, s2 = (_variable(name) for name in _CIRCLES)
-    return (c1 * c1 + s1 * s1 - 1, c2 * c2 + s2 * s2 - 1)
+    return tuple(c * c + s * s - 1 for c, s in _place().circles.values())
 
 
 @cache
 def _squares() -> tuple[fmpq_mpoly, ...]:
     """The squares of the springs' lengths in cosines and sines, in normal form."""
-    found = []
-    for one, two in ((0, 3), (1, 2), (2, 3)):
-        across, up = (_nodes()[two][i] - _nodes()[one][i] for i in (0, 1))
+    found, points = [], _place().points()
+    for spring in MECHANISM.springs:
+        across, up = (points[spring.end][i] - points[spring.start][i] for i in (0, 1))
         square = across * across + up * up
         for circle in _circles():
             square = divmod(square, circle)[1]
@@ -94,11 +88,11 @@ def _reduced(p: fmpq_mpoly) -> fmpq_mpoly:
 
 @cache
 def _energy() -> fmpq_mpoly:
-    v, nodes = {name: _variable(name) for name in _NAMES}, _nodes()
-    energy = -v["F3x"] * nodes[2][0] - v["F3"] * nodes[2][1] - v["F4x"] * nodes[3][0] - v["F4"] * nodes[3][1]
-    for n in (1, 2, 3):
-        stretch = v[f"l{n}"] - v[f"l0_{n}"]
-        energy += fmpq(1, 2) * v[f"k{n}"] * stretch * stretch
+    place = _place()
+    energy: fmpq_mpoly = work(place, place.points())
+    for length, spring in zip(_LENGTHS, MECHANISM.springs, strict=True):
+        stretch = _variable(length) - place.value(spring.free)
+        energy += stretch * stretch * (place.value(spring.stiffness) * fmpq(1, 2))
     return energy
 
 
@@ -136,7 +130,9 @@ def _value(node: ast.expr) -> fmpq_mpoly:
                     return _product(a, b)
                 case ast.Div() if b.is_constant() and not b.is_zero():
                     return _product(a, _RING.constant(1 / b.coeffs()[0]))
-        case ast.Call(func=ast.Name(id="sin" | "cos" as name), args=[ast.Name(id="th1" | "th2" as angle)], keywords=[]):
+        case ast.Call(func=ast.Name(id="sin" | "cos" as name), args=[ast.Name(id=angle)], keywords=[]) if (
+            angle in ANGLES
+        ):
             return _variable(f"{name}_{angle}")
         case ast.Call(func=ast.Name(id="sqrt"), args=[inner], keywords=[]):
             square = _reduced(_value(inner))

@@ -1,0 +1,31 @@
+"""Mechanisms as data: a description, read from a record, that engines and checkers derive their formulas from.
+
+Guarantee: nothing here computes an equilibrium; a description that was read can be evaluated in any ring.
+"""
+
+from __future__ import annotations
+
+from ptmcad.mechanism.description import Kind, Mechanism, Parameter, Support
+from ptmcad.mechanism.ptm import ptm
+from ptmcad.mechanism.record import described
+
+__all__ = ["Kind", "Mechanism", "Parameter", "Support", "described", "known_of", "mechanism_of", "ptm"]
+
+
+def mechanism_of(name: str) -> Mechanism:
+    """The built-in mechanism of a name.
+
+    Raises
+    ------
+    KeyError
+        When there is none; `ptmcad.config` refuses such names before.
+    """
+    return _BUILT_IN[name]()
+
+
+def known_of(name: str) -> Mechanism:
+    """What is known of a mechanism by its name, as a stored result has it: nothing of one that is not built in."""
+    return _BUILT_IN[name]() if name in _BUILT_IN else Mechanism(name, {}, {}, {}, (), {}, (), ())
+
+
+_BUILT_IN = {"ptm": ptm}

@@ -1,0 +1,222 @@
+"""A planar mechanism as data: parameters, unknowns, points, bars, springs and loads; coordinates are expression trees.
+
+Guarantee: what `ptmcad.mechanism.record` has read is consistent: every name that occurs is a parameter, an unknown or a
+point, angles stand inside of cosines and sines only, and every tree has a value in any ring (`evaluate`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from typing import NamedTuple
+
+from ptmcad.syntax import Tree, names_of
+from ptmcad.syntax import to_text as text_of
+
+
+class Kind(Enum):
+    """What a parameter measures; it decides which values make sense."""
+
+    LENGTH = "length"
+    BASE = "base"
+    STIFFNESS = "stiffness"
+    FREE_LENGTH = "free length"
+    FORCE = "force"
+    ANGLE = "angle"
+    NUMBER = "number"
+
+    @property
+    def noun(self) -> str:
+        """As a message names it."""
+        return "base length" if self is Kind.BASE else self.value
+
+    @property
+    def is_positive(self) -> bool:
+        """Whether zero makes no sense, nor anything below."""
+        return self in (Kind.LENGTH, Kind.STIFFNESS)
+
+    @property
+    def may_vanish(self) -> bool:
+        """Whether zero makes sense, but nothing below."""
+        return self in (Kind.BASE, Kind.FREE_LENGTH)
+
+
+class UnknownKind(Enum):
+    """Where an unknown lives."""
+
+    ANGLE = "angle"
+    """on the circle"""
+    LENGTH = "length"
+    """on the line"""
+
+
+class Support(Enum):
+    """What holds a point, for drawings."""
+
+    PIN = "pin"
+    SLIDER_X = "slider x"
+    SLIDER_Y = "slider y"
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of a mechanism.
+
+    Attributes
+    ----------
+    default : a number, or the name of the parameter that this one is an alias of.
+    window : the range that ``--slice`` takes for it, if there is one.
+    alias_of : the parameter that stands for this one where it is not given.
+    """
+
+    name: str
+    kind: Kind
+    default: str
+    window: tuple[str, str] | None
+    alias_of: str = ""
+
+
+class Spring(NamedTuple):
+    """A spring between two points; its name, which no other has, is that of its stiffness or is made of its points'."""
+
+    name: str
+    start: str
+    end: str
+    stiffness: Tree
+    free: Tree
+
+
+class Load(NamedTuple):
+    """A dead force at a point."""
+
+    point: str
+    x: Tree
+    y: Tree
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Its components as text: the forces' names where they are parameters."""
+        return text_of(self.x), text_of(self.y)
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """A mechanism and what follows from its description alone.
+
+    Attributes
+    ----------
+    parameters : by name; free lengths come last, and an alias after what it is an alias of.
+    unknowns : in the order in which solutions list them.
+    points : to the trees of their coordinates, in the unit of the lengths.
+    bars : pairs of points, for drawings.
+    springs, loads : in the record's order.
+    symmetries : substitutions of parameters and unknowns under which the energy changes by what no unknown is in.
+    """
+
+    name: str
+    parameters: Mapping[str, Parameter]
+    unknowns: Mapping[str, UnknownKind]
+    points: Mapping[str, tuple[Tree, Tree]]
+    bars: tuple[tuple[str, str], ...]
+    supports: Mapping[str, Support]
+    springs: tuple[Spring, ...]
+    loads: tuple[Load, ...]
+    symmetries: tuple[Mapping[str, Tree], ...] = ()
+
+    def __hash__(self) -> int:
+        return hash((self.name, *self.parameters, *self.points))
+
+    @cached_property
+    def angles(self) -> tuple[str, ...]:
+        """The unknowns on the circle."""
+        return tuple(name for name, kind in self.unknowns.items() if kind is UnknownKind.ANGLE)
+
+    @cached_property
+    def variables(self) -> tuple[str, ...]:
+        """The parameters that geometry, springs or loads use, in their order."""
+        used = {name for tree in self._trees() for name in names_of(tree)}
+        return tuple(name for name in self.parameters if name in used)
+
+    @cached_property
+    def free_lengths(self) -> tuple[str, ...]:
+        """The variables that are free lengths."""
+        return tuple(name for name in self.variables if self.kind(name) is Kind.FREE_LENGTH)
+
+    @cached_property
+    def without_free_lengths(self) -> tuple[str, ...]:
+        """The other variables: those of the polynomial energy of springs without free lengths."""
+        return tuple(name for name in self.variables if self.kind(name) is not Kind.FREE_LENGTH)
+
+    @cached_property
+    def positive(self) -> tuple[str, ...]:
+        """The variables that have to be positive: bars' lengths and stiffnesses."""
+        return tuple(name for name in self.variables if self.kind(name).is_positive)
+
+    @cached_property
+    def nonnegative(self) -> tuple[str, ...]:
+        """The variables that may be zero, but not negative: bases and free lengths."""
+        return tuple(name for name in self.variables if self.kind(name).may_vanish)
+
+    @cached_property
+    def stiffnesses(self) -> tuple[str, ...]:
+        """The variables that are stiffnesses."""
+        return tuple(name for name in self.variables if self.kind(name) is Kind.STIFFNESS)
+
+    @cached_property
+    def forces(self) -> tuple[str, ...]:
+        """The variables that are forces."""
+        return tuple(name for name in self.variables if self.kind(name) is Kind.FORCE)
+
+    @cached_property
+    def shorthands(self) -> Mapping[str, tuple[str, ...]]:
+        """Parameters that only stand for others, such as one stiffness for all springs, to those others."""
+        found: dict[str, list[str]] = {}
+        for name, parameter in self.parameters.items():
+            if parameter.alias_of:
+                found.setdefault(parameter.alias_of, []).append(name)
+        return {name: tuple(others) for name, others in found.items() if name not in self.variables}
+
+    @cached_property
+    def moving(self) -> tuple[str, ...]:
+        """The points whose coordinates depend on an unknown."""
+        return tuple(
+            name for name, (x, y) in self.points.items() if {*names_of(x), *names_of(y)} & self.unknowns.keys()
+        )
+
+    @cached_property
+    def units(self) -> tuple[str, str]:
+        """The first length and the first force: what the others are measured in; an empty name where there is none."""
+        return self.first(Kind.LENGTH), self.first(Kind.FORCE)
+
+    @cached_property
+    def pivots(self) -> Mapping[str, str]:
+        """The angles that turn a bar about a point that no unknown moves, to those points."""
+        return {
+            angle: start
+            for angle in self.angles
+            for bar in self.bars
+            for start, end in (bar, bar[::-1])
+            if start not in self.moving and any(angle in names_of(tree) for tree in self.points[end])
+        }
+
+    def first(self, kind: Kind) -> str:
+        """The first parameter of a kind; an empty name when there is none."""
+        return next((name for name, parameter in self.parameters.items() if parameter.kind is kind), "")
+
+    def held(self, support: Support) -> str:
+        """The first point that is held so; an empty name when there is none."""
+        return next((name for name, kind in self.supports.items() if kind is support), "")
+
+    def kind(self, name: str) -> Kind:
+        """What a parameter measures."""
+        return self.parameters[name].kind
+
+    def _trees(self) -> Iterator[Tree]:
+        for point in self.points.values():
+            yield from point
+        for spring in self.springs:
+            yield from (spring.stiffness, spring.free)
+        for load in self.loads:
+            yield from (load.x, load.y)
