@@ -25,6 +25,7 @@ from ptmcad.verification.certified.energy import NAMES, Energy
 from ptmcad.verification.certified.equilibria import TORUS, Unproved, equilibria
 from ptmcad.verification.certified.parameters import energy_at, energy_over, exact
 from ptmcad.verification.certified.points import all_equilibria, counts_of
+from ptmcad.verification.certified.sampling import _beside, _by_area
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.sweep import sweep
 from ptmcad.verification.certified.system import _energy as potential
@@ -264,9 +265,53 @@ def test_random_places_beside_rectangles_find_a_shifted_cover(stable: RegionMap)
     kept = sorted({*kept, *((a, b, 0, by + 1) for a, b, c, _ in stable.cover.rectangles if c == 0)})
     false = consistent(stable, Cover(steps, tuple(kept)), stable.cells)
     assert ptmcad.verify(false, boxes=0).ok
-    report = ptmcad.verify(false, seed=3, boxes=60)
+    report = ptmcad.verify(false, seed=3, boxes=24)
     assert report.violation is not None
     assert report.violation.startswith("random boxes:")
+
+
+def certified(count: str, axes: dict[str, list[str]], tolerance: Fraction, **parameters: str) -> RegionMap:
+    from ptmcad.interval.engine import certified_map
+
+    record = {"name": "small", "mechanism": "ptm", "parameters": parameters, "axes": axes, "count": count}
+    return certified_map(slice_from_mapping(record), tolerance=tolerance, jobs=1)
+
+
+def test_rectangles_that_tell_nothing_do_not_draw_places() -> None:
+    """A fifth of the window is false, and behind 1500 squares of no size; with this seed 40 places used to miss it."""
+    true = certified(
+        "stable", {"rho": ["6/5", "13/10"], "L2": ["9/10", "1"]}, Fraction(1, 50),
+        L1="3/2", k="100", F3="-10", F4="0", l0="1/5",
+    )  # fmt: skip
+    assert true.cover is not None
+    assert [c.stable for c in true.cells] == [2, 1]
+    steps, rng = true.cover.steps, random.Random(0)
+    corners = [(rng.randrange(steps // 4, steps // 2), rng.randrange(steps // 4, steps // 2)) for _ in range(1500)]
+    wall = steps * 4 // 5
+    cover = Cover(steps, tuple(sorted({*((u, u + 1, v, v + 1) for u, v in corners), (wall, wall + 1, 0, steps)})))
+    report = ptmcad.verify(consistent(true, cover, true.cells), seed=167)
+    assert report.violation is not None
+    assert report.violation.startswith("random boxes:")
+
+
+def test_places_are_spread_over_the_window(stable: RegionMap) -> None:
+    """One in each square of a grid, whatever the rectangles; and those beside rectangles are not where most are."""
+    assert stable.cover is not None
+    steps = stable.cover.steps
+    decoys = {(u, u + 1, steps // 2, steps // 2 + 1) for u in range(steps // 2, steps // 2 + 4000, 2)}
+    cover = Cover(steps, tuple(sorted({*decoys, (steps // 8, steps // 8 + 1, 0, steps)})))
+    claims = CertifiedClaims(replace(stable, cover=cover, cells=stable.cells[:1]))
+    by_area, without = _by_area(claims, random.Random(1), 40)
+    component = claims.sweep.areas[next(iter(claims.cell_of))]
+    free = Fraction(component, steps**2)
+    assert 256 * free - 33 <= len(by_area) == 256 - without
+    for side in (0, 1):
+        columns = Counter(int(16 * (p.u, p.v)[side] / steps) for p in by_area)
+        assert all(columns[k] >= (13 if side else 16) for k in range(4, 16))
+    beside = _beside(claims, random.Random(1), 40)
+    assert len(beside) == 40
+    near = [p for p in beside if abs(p.u - steps // 2) < steps // 16 and abs(p.v - steps // 2) < steps // 16]
+    assert len(near) <= 8
 
 
 @st.composite
@@ -309,7 +354,7 @@ def test_a_free_square_meets_no_rectangle(cover: Cover, u: int, v: int, half: in
     )
     # one that only touches the window's edge may be refused
     inside = half < u < cover.steps - half and half < v < cover.steps - half
-    free = sweep(cover).free_around(u, v, half)
+    free = sweep(cover).free_around(Fraction(u), Fraction(v), Fraction(half))
     assert not (free and (meets or u < half or v < half or max(u, v) + half > cover.steps))
     if inside and not meets:
         assert free
