@@ -247,10 +247,10 @@ def consistent(r: RegionMap, cover: Cover, cells: tuple[Cell, ...]) -> RegionMap
     )
 
 
-def test_random_places_find_that_a_curve_was_left_out(stable: RegionMap) -> None:
-    """All else agrees: only the points and boxes in the free area can tell."""
-    assert stable.cover is not None
-    false = consistent(stable, Cover(stable.cover.steps, ()), stable.cells[:1])
+@pytest.mark.parametrize("steps", [1, 2, 2**24])
+def test_random_places_find_that_a_curve_was_left_out(steps: int, stable: RegionMap) -> None:
+    """All else agrees: only the points and boxes in the free area can tell, however coarse the lattice is."""
+    false = consistent(stable, Cover(steps, ()), stable.cells[:1])
     assert ptmcad.verify(false, boxes=0).ok
     report = ptmcad.verify(false, seed=1, boxes=20)
     assert report.violation is not None
