@@ -24,9 +24,11 @@ from ptmcad.slice import Count, Point
 from ptmcad.verification.certified.energy import NAMES, Energy
 from ptmcad.verification.certified.equilibria import TORUS, Unproved, equilibria
 from ptmcad.verification.certified.parameters import energy_at, energy_over, exact
-from ptmcad.verification.certified.points import all_equilibria, counts_of
+from ptmcad.verification.certified.points import _only, all_equilibria, counts_of
+from ptmcad.verification.certified.sampling import _beside, _by_area
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.sweep import sweep
+from ptmcad.verification.report import Violation
 
 pytest.importorskip("numba")
 
@@ -246,10 +248,10 @@ def consistent(r: RegionMap, cover: Cover, cells: tuple[Cell, ...]) -> RegionMap
     )
 
 
-def test_random_places_find_that_a_curve_was_left_out(stable: RegionMap) -> None:
-    """All else agrees: only the points and boxes in the free area can tell."""
-    assert stable.cover is not None
-    false = consistent(stable, Cover(stable.cover.steps, ()), stable.cells[:1])
+@pytest.mark.parametrize("steps", [1, 2, 2**24])
+def test_random_places_find_that_a_curve_was_left_out(steps: int, stable: RegionMap) -> None:
+    """All else agrees: only the points and boxes in the free area can tell, however coarse the lattice is."""
+    false = consistent(stable, Cover(steps, ()), stable.cells[:1])
     assert ptmcad.verify(false, boxes=0).ok
     report = ptmcad.verify(false, seed=1, boxes=20)
     assert report.violation is not None
@@ -265,9 +267,168 @@ def test_random_places_beside_rectangles_find_a_shifted_cover(stable: RegionMap)
     kept = sorted({*kept, *((a, b, 0, by + 1) for a, b, c, _ in stable.cover.rectangles if c == 0)})
     false = consistent(stable, Cover(steps, tuple(kept)), stable.cells)
     assert ptmcad.verify(false, boxes=0).ok
-    report = ptmcad.verify(false, seed=3, boxes=60)
+    report = ptmcad.verify(false, seed=3, boxes=24)
     assert report.violation is not None
     assert report.violation.startswith("random boxes:")
+
+
+def certified(count: str, axes: dict[str, list[str]], tolerance: Fraction, **parameters: str) -> RegionMap:
+    from ptmcad.interval.engine import certified_map
+
+    record = {"name": "small", "mechanism": "ptm", "parameters": parameters, "axes": axes, "count": count}
+    return certified_map(slice_from_mapping(record), tolerance=tolerance, jobs=1)
+
+
+def test_rectangles_that_tell_nothing_do_not_draw_places() -> None:
+    """A fifth of the window is false, and behind 1500 squares of no size; with this seed 40 places used to miss it."""
+    true = certified(
+        "stable", {"rho": ["6/5", "13/10"], "L2": ["9/10", "1"]}, Fraction(1, 50),
+        L1="3/2", k="100", F3="-10", F4="0", l0="1/5",
+    )  # fmt: skip
+    assert true.cover is not None
+    assert [c.stable for c in true.cells] == [2, 1]
+    steps, rng = true.cover.steps, random.Random(0)
+    corners = [(rng.randrange(steps // 4, steps // 2), rng.randrange(steps // 4, steps // 2)) for _ in range(1500)]
+    wall = steps * 4 // 5
+    cover = Cover(steps, tuple(sorted({*((u, u + 1, v, v + 1) for u, v in corners), (wall, wall + 1, 0, steps)})))
+    report = ptmcad.verify(consistent(true, cover, true.cells), seed=167)
+    assert report.violation is not None
+    assert report.violation.startswith("random boxes:")
+
+
+CREASED = {"L1": "3/2", "L2": "1", "rho": "1", "k1": "100", "k2": "100", "l0_1": "1/5"}
+
+
+@pytest.fixture(scope="module")
+def creased() -> RegionMap:
+    """rho = L2 in the whole window, with two minima that mirror each other across the crease th2 = 0."""
+    return certified("stable", {"k3": ["5", "15"], "F3": ["-1/100", "1/100"]}, Fraction(1, 3), **CREASED)
+
+
+@pytest.mark.parametrize("steps", [1, 2, 16, 2**24])
+def test_a_map_on_a_crease(steps: int, creased: RegionMap) -> None:
+    """Neither of two minima beside a crease is lost; and a lattice of one step, with no rectangles, is one."""
+    true = replace(creased, cover=Cover(steps, ()))
+    report = ptmcad.verify(true, boxes=2)
+    assert report.ok, report.violation
+    assert "2 boxes" in report.table()
+    cell = creased.cells[0]
+    assert cell.stable == 2
+    for solution in cell.solutions:
+        false = with_region(with_cell(true, 0, stable=1, solutions=(solution,)), 0, stable=1)
+        violation = ptmcad.verify(false, boxes=2).violation
+        assert violation is not None
+        assert "said to have stable 1; there are stable 2" in violation
+
+
+def test_a_crease_in_the_middle_of_a_window_of_both_lengths() -> None:
+    """The sample has rho = L2, other places have not."""
+    axes = {"rho": ["99/100", "101/100"], "L2": ["99/100", "101/100"]}
+    given = {k: v for k, v in CREASED.items() if k not in axes}
+    true = certified("stable", axes, Fraction(1, 3), **given, k3="10")
+    assert (true.cells[0].sample[0], true.cells[0].stable) == (true.cells[0].sample[1], 2)
+    report = ptmcad.verify(true, boxes=2)
+    assert report.ok, report.violation
+
+
+def creased_values(**changes: str) -> dict[str, Fraction]:
+    given = {**CREASED, "k3": "9", **changes}
+    return {name: Fraction(given.get(name, "0")) for name in NAMES}
+
+
+MIRRORED = {"L1": "1", "L2": "3/2", "l0_1": "0", "l0_2": "1/5"}
+
+
+@pytest.mark.parametrize("changes", [{}, MIRRORED], ids=["rho = L2", "rho = L1"])
+def test_minima_on_both_sides_of_a_crease(changes: dict[str, str]) -> None:
+    """Places from a root finder in mpmath, with the energy from the nodes' coordinates."""
+    _, found = all_equilibria(creased_values(**changes), Count.STABLE)
+    places = sorted((round(e.th1, 4), round(e.th2, 4)) for e in found if e.signs == "++")
+    near = (0.0189, 0.2124) if not changes else (0.2124, 0.0189)
+    assert places == [(-near[0], -near[1]), near]
+
+
+@pytest.mark.parametrize("center", ["0.2124", "-0.2124", "6.0707", "6.4956"])
+def test_a_box_across_a_crease_may_hold_one_equilibrium(center: str) -> None:
+    """A turn away, too; a box around both of them is no box of one."""
+    energy, _ = all_equilibria(creased_values(), Count.STABLE)
+    th2 = Fraction(center)
+    side = 1 if th2 in (Fraction("0.2124"), Fraction("6.4956")) else -1
+    crossing = Solution((side * Fraction("0.0189"), th2), Fraction("0.22"), "++")
+    assert _only(energy, crossing, 0).signs == "++"
+    both = Solution((Fraction(0), th2 - side * Fraction("0.2124")), Fraction("0.25"), "++")
+    with pytest.raises(Violation, match="2 equilibria"):
+        _only(energy, both, 0)
+
+
+def test_no_proof_of_existence_crosses_a_crease() -> None:
+    """The square in which a minimum beside a crease is proved to be alone ends before it."""
+    energy, found = all_equilibria(creased_values(), Count.STABLE)
+    assert all(e.alone < abs(e.th2) for e in found)
+    assert energy(arb(0), arb(0, 0.01)).short == 1
+    assert [way.sides for way in energy.one_sided(arb(0), arb(0, 0.01))] == [(1, 0, 0), (-1, 0, 0)]
+    assert energy.one_sided(arb(0), arb(0.5, 0.01)) == []
+
+
+@pytest.mark.parametrize("count", ["stable", "admissible"])
+def test_bars_of_one_length_on_one_point(count: str) -> None:
+    """REFERENCE (mpmath): rho = 0 and L1 = L2, where spring 3 has no length on a circle; det H is 930 and 628."""
+    axes = {"F3": ["5", "6"], "F3x": ["5", "6"]}
+    true = certified(count, axes, Fraction(1, 3), rho="0", L1="1", L2="1", l0="1/5", F4="-10")
+    report = ptmcad.verify(true, boxes=2)
+    assert report.ok, report.violation
+    assert "2 boxes" in report.table()
+    assert report.violation is None
+    false = ptmcad.verify(recount(true, 0, 1), boxes=0)
+    assert false.violation is not None
+    assert "there are stable 2" in false.violation
+
+
+@pytest.mark.parametrize("bar", ["1", "6/5"])
+def test_derivatives_beside_the_crease_of_spring_3(bar: str) -> None:
+    """The crease's formulas and those for all configurations, on either side; th1 + th2 is near pi and -pi."""
+    point = creased_values(rho="0", L1=bar, L2=bar, l0_3="1/5", F3="5", F4="-10")
+    balls = {name: exact(value) for name, value in point.items()}
+    with ctx.workprec(200):
+        for th1, th2 in ((1.5, 1.6), (1.5, 1.7), (-1.5, -1.6), (-1.5, -1.7)):
+            one, two = energy_at(point)(arb(th1), arb(th2)), Energy(balls)(arb(th1), arb(th2))
+            for name in ("e1", "e2", "e11", "e12", "e21", "e22"):
+                assert abs(getattr(one, name) - getattr(two, name)) < 1e-10
+    assert energy_at(point)(arb(1.5, 0.1), arb(1.6, 0.1)).short == 3
+
+
+def test_rho_next_to_a_bar_of_one_length() -> None:
+    """REFERENCE (mpmath): 8 equilibria where rho - L1 is 6e-13; spring 2 of one of them is hardly longer."""
+    rho = Fraction(1597743721975, 1597743721974)
+    point = {n: Fraction(1, 5) if n[0] == "l" else Fraction(100) if n[0] == "k" else Fraction(0) for n in NAMES}
+    point |= {"rho": rho, "L1": Fraction(1), "L2": Fraction(208000000004, 160000000003)}
+    point |= {"F3": Fraction(-10), "F4": Fraction(-10)}
+    energy, found = all_equilibria(point, Count.TOTAL)
+    assert counts_of(energy, point, found, Count.TOTAL).index == (2, 4, 2)
+    (peak,) = (e for e in found if abs(e.th1) < 1e-9)
+    assert (peak.signs, round(peak.th1 * 1e14, 2), round(peak.th2, 6)) == ("--", -6.22, 3.032489)
+    box = Solution((Fraction(-6.219379885031517e-14), Fraction(3.03248855256242)), Fraction(1, 2**46), "--")
+    assert _only(energy, box, 0).signs == "--"
+
+
+def test_places_are_spread_over_the_window(stable: RegionMap) -> None:
+    """One in each square of a grid, whatever the rectangles; and those beside rectangles are not where most are."""
+    assert stable.cover is not None
+    steps = stable.cover.steps
+    decoys = {(u, u + 1, steps // 2, steps // 2 + 1) for u in range(steps // 2, steps // 2 + 4000, 2)}
+    cover = Cover(steps, tuple(sorted({*decoys, (steps // 8, steps // 8 + 1, 0, steps)})))
+    claims = CertifiedClaims(replace(stable, cover=cover, cells=stable.cells[:1]))
+    by_area, without = _by_area(claims, random.Random(1), 40)
+    component = claims.sweep.areas[next(iter(claims.cell_of))]
+    free = Fraction(component, steps**2)
+    assert 256 * free - 33 <= len(by_area) == 256 - without
+    for side in (0, 1):
+        columns = Counter(int(16 * (p.u, p.v)[side] / steps) for p in by_area)
+        assert all(columns[k] >= (13 if side else 16) for k in range(4, 16))
+    beside = _beside(claims, random.Random(1), 40)
+    assert len(beside) == 40
+    near = [p for p in beside if abs(p.u - steps // 2) < steps // 16 and abs(p.v - steps // 2) < steps // 16]
+    assert len(near) <= 8
 
 
 @st.composite
@@ -310,7 +471,7 @@ def test_a_free_square_meets_no_rectangle(cover: Cover, u: int, v: int, half: in
     )
     # one that only touches the window's edge may be refused
     inside = half < u < cover.steps - half and half < v < cover.steps - half
-    free = sweep(cover).free_around(u, v, half)
+    free = sweep(cover).free_around(Fraction(u), Fraction(v), Fraction(half))
     assert not (free and (meets or u < half or v < half or max(u, v) + half > cover.steps))
     if inside and not meets:
         assert free

@@ -71,10 +71,12 @@ def check_areas(claims: Claims) -> str:
     strip = rational(scale) / (16 * len(result.stacks))
     unconfirmed = "the precision did not suffice to confirm the areas"
     degrees: tuple[int, ...] = (2,)
+    # of the narrowest bounds' width: how far inside of them an area can be told to be
+    margin = fmpq(1, 64)
     for _ in range(ATTEMPTS):
         with ctx.workprec(bits):
             try:
-                open_region = _attempt(claims, strip, bits, degrees)
+                open_region = _attempt(claims, strip, margin, bits, degrees)
             except PrecisionTooLow:
                 bits = 2 * bits
                 continue
@@ -84,7 +86,7 @@ def check_areas(claims: Claims) -> str:
         if degrees == (2,):
             degrees = (2, 10)
         else:
-            bits, strip = 2 * bits, strip / 2**16
+            bits, strip, margin = 2 * bits, strip / 2**16, margin / 64
     raise Violation(unconfirmed)
 
 
@@ -93,7 +95,7 @@ def _doublings(scale: Fraction) -> int:
     return max(0, scale.denominator.bit_length() - scale.numerator.bit_length())
 
 
-def _attempt(claims: Claims, strip: fmpq, bits: int, degrees: tuple[int, ...]) -> str | None:
+def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int, degrees: tuple[int, ...]) -> str | None:
     """None when every enclosure is within its bounds; else which one could not be made narrow enough."""
     result = claims.result
     (start, stop), (low, high) = claims.base, claims.height
@@ -103,7 +105,7 @@ def _attempt(claims: Claims, strip: fmpq, bits: int, degrees: tuple[int, ...]) -
     brackets = [bracket(v, strip * width) for v in result.critical_values]
     lost = sum((b - a for a, b in brackets), fmpq(0)) * (high - low)
     bounds = [(arb(rational(r.area[0])), arb(rational(r.area[1]))) for r in result.regions]
-    share = min((b - a).mid() for a, b in bounds) / (64 * max(1, sum(len(s.walls) for s in result.stacks)))
+    share = min((b - a).mid() for a, b in bounds) * margin / max(1, sum(len(s.walls) for s in result.stacks))
     effort = Effort(share, width / 2**8, width / 2 ** (bits // 3), (low, high), degrees)
     whole = [arb(0) for _ in result.regions]
     panels: list[_Panel] = []

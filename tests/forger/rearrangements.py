@@ -129,6 +129,18 @@ def wider_areas(r: RegionMap) -> Iterator[Alteration]:
         yield partial(replace, r, regions=wide)
 
 
+def lopsided_areas(r: RegionMap) -> Iterator[Alteration]:
+    """Bounds of which one is as near as ever and the other one far away."""
+    whole = window_area(r)
+    if NO_AREAS in r.plan:
+        return
+    for k in (0, 1):
+        yield partial(
+            replace, r,
+            regions=tuple(replace(g, area=(Fraction(0), g.area[1]) if k else (g.area[0], whole)) for g in r.regions),
+        )  # fmt: skip
+
+
 def partial_status(r: RegionMap) -> Iterator[Alteration]:
     yield partial(replace, r, status=Status.PARTIAL)
 
@@ -185,6 +197,6 @@ def savings_without_trace(r: RegionMap) -> Iterator[Alteration]:
 
 KINDS = (
     regions_in_another_order, components_in_another_order, tables_in_another_order, other_segments, other_samples,
-    samples_of_other_cells, refined_critical_values, refined_boxes, wider_areas, partial_status, another_question,
+    samples_of_other_cells, refined_critical_values, refined_boxes, wider_areas, lopsided_areas, partial_status, another_question,
     other_units_of_force, other_words, component_left_in, savings_without_trace,
 )  # fmt: skip

@@ -37,12 +37,12 @@ from ptmcad.regionmap import (
     System,
 )
 from ptmcad.slice import Count, Point
-from ptmcad.verification.certified import points, sampling
+from ptmcad.verification.certified import points
 from ptmcad.verification.certified.energy import NAMES
 from ptmcad.verification.certified.equilibria import Square, Unproved, equilibria
 from ptmcad.verification.certified.parameters import check_domain, energy_at, energy_over, exact, values_at
 from ptmcad.verification.certified.points import all_equilibria, check_points, cones, counts_of
-from ptmcad.verification.certified.sampling import Place, check_boxes
+from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
 from ptmcad.verification.certified.system import check_potential
 from ptmcad.verification.report import Violation
@@ -332,19 +332,6 @@ def test_counts_that_contradict_eulers_sum_are_a_fault_of_the_check(monkeypatch:
     monkeypatch.setattr(points, "cones", lambda energy, values: 3)
     with pytest.raises(Violation, match=r"minima, saddles and maxima .* with 3 cones contradict Euler's sum"):
         check_points(CertifiedClaims(total()))
-
-
-def test_boxes_tell_where_points_can_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At a point where rho = L2 nothing is proved of all counts, but around it there are no others."""
-    r = made("crease", "total")
-    c = r.cells[0]
-    assert c.index is not None
-    more = (c.index[0] + 1, c.index[1] + 1, c.index[2])
-    forged = both(0, index=more, total=sum(more), stable=more[0])(r)
-    monkeypatch.setattr(sampling, "_place", lambda *_, **__: Place(6, 6, 1, 0))
-    assert "1 boxes" in check_boxes(CertifiedClaims(r), "branches", 1)
-    with pytest.raises(Violation, match=r"cell 0 does not have total .*, as is proved for the box around \("):
-        check_boxes(CertifiedClaims(forged), "branches", 1)
 
 
 def right_angle(**changes: int) -> dict[str, Fraction]:

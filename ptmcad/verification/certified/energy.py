@@ -3,6 +3,10 @@
 Guarantee: every ball contains the exact value at each configuration and for all parameters in the balls given; where a
 spring may have length zero, its direction is any unit vector and nothing is claimed of second derivatives.
 
+A *crease* is a circle of configurations in which a spring with a free length has no length: th2 = 0 where rho = L2,
+th1 = 0 where rho = L1, th1 + th2 = pi where rho = 0 and L1 = L2. The energy is smooth on either side of it and can be
+continued across it from each side, but the two continuations differ. `Energy.one_sided` gives them.
+
 With q_i the square of a spring's length l_i, m_i = k_i - k_i l0_i / l_i and the loads F:
 
     q1 = (rho - L2)^2 + 4 rho L2 sin^2(th2/2),    q2 = (rho - L1)^2 + 4 rho L1 sin^2(th1/2),
@@ -15,6 +19,7 @@ The second engine has unit vectors instead of the roots, and differentiates a gr
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -24,6 +29,8 @@ from ptmcad.verification.derivation import MECHANISM
 
 NAMES = MECHANISM.variables
 Pair = tuple[arb, arb]
+Sides = tuple[int, int, int]
+"""For each spring the side of its crease: 1 or -1, or 0 for the side that the balls are on."""
 _ANY = arb(0, 1)
 
 
@@ -56,15 +63,24 @@ class Energy:
     ----------
     values : a ball for each of `NAMES`; lengths and stiffnesses positive, free lengths not negative.
     crease1, crease2 : whether rho = L2, rho = L1 hold exactly; spring 1, 2 then has length zero at th2 = 0, th1 = 0.
+    crease3 : whether rho = 0 and L1 = L2 hold exactly; spring 3 then has length zero at th1 + th2 = pi.
+    sides : the sides of the creases whose formulas are continued across them.
     """
 
-    def __init__(self, values: Mapping[str, arb], crease1: bool = False, crease2: bool = False):
+    def __init__(
+        self,
+        values: Mapping[str, arb],
+        crease1: bool = False,
+        crease2: bool = False,
+        crease3: bool = False,
+        sides: Sides = (0, 0, 0),
+    ):
         self.values = dict(values)
         self.length1, self.length2, self.rho = values["L1"], values["L2"], values["rho"]
         self.k1, self.k2, self.k3 = values["k1"], values["k2"], values["k3"]
         self.p1, self.p2, self.p3 = (values[f"k{i}"] * values[f"l0_{i}"] for i in (1, 2, 3))
         self.f3, self.f4, self.f3x, self.f4x = values["F3"], values["F4"], values["F3x"], values["F4x"]
-        self.crease1, self.crease2 = crease1, crease2
+        self.crease1, self.crease2, self.crease3, self.sides = crease1, crease2, crease3, sides
         zero = arb(0) if crease1 else self.rho - self.length2
         self.gap1 = zero * zero
         zero = arb(0) if crease2 else self.rho - self.length1
@@ -90,14 +106,14 @@ class Energy:
         e12, e21 = -(length2 * k3c12), -(length1 * k3c12)
         short = 0
         if self.free2:
-            slope, bend = self._turning(th1, rs1, rc1, length1, self.gap2, self.product2, self.crease2)
+            slope, bend = self._turning(th1, rs1, rc1, length1, self.gap2, self.product2, self.crease2, self.sides[1])
             if bend is None:
                 short = 2
             else:
                 e1 -= self.p2 * slope
                 e11 -= self.p2 * bend
         if self.free1:
-            slope, bend = self._turning(th2, rs2, rc2, length2, self.gap1, self.product1, self.crease1)
+            slope, bend = self._turning(th2, rs2, rc2, length2, self.gap1, self.product1, self.crease1, self.sides[0])
             if bend is None:
                 e1 -= self.p2 * (_ANY if short == 2 else 0)
                 short = 1
@@ -106,6 +122,13 @@ class Energy:
                 e22 -= self.p1 * bend
         if not self.free3:
             return self._finished(e1, e2, e11, e12, e21, e22, short)
+        if self.crease3:
+            # l3 = 2 L |cos((th1 + th2)/2)|, L = L1 = L2
+            s, c = ((th1 + th2) / 2).sin_cos()
+            side = _side(c, self.sides[2])
+            if side:
+                slope, bend = self.p3 * side * s, self.p3 * side * c / 2
+                return self._finished(e1 + slope, e2 + slope, e11 + bend, e12 + bend, e21 + bend, e22 + bend, short)
         x, y = rho - length1 * c1 - length2 * c2, length2 * s2 - length1 * s1
         q3 = x * x + y * y
         if not q3 > 0:
@@ -135,24 +158,51 @@ class Energy:
         return Derivatives(e1, e2, e11, e12, e21, e22, short)
 
     def _turning(
-        self, angle: arb, rs: arb, rc: arb, bar: arb, gap: arb, product: arb, crease: bool
+        self, angle: arb, rs: arb, rc: arb, bar: arb, gap: arb, product: arb, crease: bool, given: int
     ) -> tuple[arb, arb | None]:
         """(dl/dth)/L and its derivative for the spring between a fixed point and the end of one bar of length L.
 
-        On a crease, l = 2 L |sin(th/2)|; the angle's ball lies then on one side of each multiple of 2 pi, and what is
-        returned are limits from that side.
+        On a crease l = 2 L |sin(th/2)|, of one sign on a side; these formulas are used on the side that is given, or
+        that the angle's ball is on.
         """
         half = angle / 2
         s, c = half.sin_cos()
+        if crease:
+            side = _side(s, given)
+            return (side * c, -side * s / 2) if side else (_ANY, None)
         q = gap + product * (s * s)
         if q > 0:
             inverse = q.rsqrt()
             slope = unit(rs * inverse)
             return slope, inverse * (rc - bar * (slope * slope))
-        if crease:
-            side = 1 if s.mid() > 0 else -1
-            return side * c, -side * s / 2
         return _ANY, None
+
+    @property
+    def creased(self) -> bool:
+        """Whether a spring with a free length has no length on a circle."""
+        return (self.crease1 and self.free1) or (self.crease2 and self.free2) or (self.crease3 and self.free3)
+
+    def one_sided(self, th1: arb, th2: arb) -> list[Energy]:
+        """The energies that are continued across the creases that the balls meet, from either side; else nothing.
+
+        A smooth equilibrium in the balls is one of at least one of them. The converse does not hold: a continuation may
+        have a zero on the other side of its crease, or on it.
+        """
+        if not self.creased:
+            return []
+        choices = [
+            (1, -1) if crease and free and value.contains(0) else (0,)
+            for crease, free, value in (
+                (self.crease1, self.free1, (th2 / 2).sin()),
+                (self.crease2, self.free2, (th1 / 2).sin()),
+                (self.crease3, self.free3, ((th1 + th2) / 2).cos()),
+            )
+        ]
+        ways = list(itertools.product(*choices))
+        if len(ways) == 1:
+            return []
+        creases = self.crease1, self.crease2, self.crease3
+        return [Energy(self.values, *creases, (one, two, three)) for one, two, three in ways]
 
     def cone(self, th1: arb, th2: arb) -> arb:
         """w1^2 + w2^2 + 2 w1 w2 c12 - (p3 s12)^2, zero at an equilibrium, whatever the direction of spring 3.
@@ -209,6 +259,11 @@ class Energy:
         return bool(trace + turned - self.p3 * l1 * l2 * (s12 * s12) / longest < 0)
 
 
+def _side(value: arb, given: int) -> int:
+    """The sign of what is zero on a crease: the one that is given, or the one it surely has; else 0."""
+    return given or int(value > 0) - int(value < 0)
+
+
 def unit(value: arb) -> arb:
     """A ball for a number that is known to lie from -1 to 1, given one ball for it."""
     return value if value.rad() < 1 else _ANY
@@ -217,4 +272,4 @@ def unit(value: arb) -> arb:
 def _without_third(energy: Energy) -> Energy:
     values = dict(energy.values)
     values["l0_3"] = arb(0)
-    return Energy(values, energy.crease1, energy.crease2)
+    return Energy(values, energy.crease1, energy.crease2, energy.crease3, energy.sides)

@@ -8,6 +8,11 @@ The test (Krawczyk 1969; Neumaier, Interval Methods for Systems of Equations, 5.
 middle m of a square X of half width R, let b bound the norm of I - C e'(X). If b < 1 then X has at most one equilibrium
 for each choice; and if, with d bounding |C e(m)|, d + b r < r for some r <= R, then the square of half width r around m
 has one.
+
+Both ask for one formula on all of X. On a crease (`ptmcad.verification.certified.energy`) there are two, one for each
+side, so no existence or uniqueness is proved in a square that meets one. It may only be discarded, when neither formula
+has a zero in all of the square, and is halved otherwise. What lies on the crease itself is no equilibrium, but the
+search does not end where a formula has a zero on it.
 """
 
 from __future__ import annotations
@@ -26,8 +31,9 @@ Square = tuple[float, float, float, float]
 _HALF = 101 / 32
 """A little more than pi, so that the first square has the whole torus."""
 TORUS: Square = (0.0, _HALF, 0.0, _HALF)
-_SMALLEST = 2.0**-34
-_SIZES = tuple(2.0**-k for k in (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 18, 21, 25, 30))
+SMALLEST = 2.0**-34
+"""Half the width of squares that are not halved again, unless another one is asked for."""
+_SIZES = tuple(2.0**-k for k in (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 18, 21, 25, 30, 35, 40, 43, 46))
 _NEAR = 2.0**-48
 """Steps of Newton's method below it are not worth another one ..."""
 _ROUGH = 2.0**-20
@@ -61,7 +67,7 @@ def equilibria(
     minima: bool,
     start: Iterable[Square] = (TORUS,),
     budget: int = 60_000,
-    smallest: float = _SMALLEST,
+    smallest: float = SMALLEST,
     near: Iterable[Equilibrium] = (),
 ) -> tuple[list[Equilibrium], int]:
     """The equilibria in the squares, and how many squares were looked at.
@@ -88,10 +94,15 @@ def equilibria(
         used += 1
         if used > budget:
             raise Unproved(f"{budget} squares were not enough")
-        d = energy(arb(m1, r1), arb(m2, r2))
+        th1, th2 = arb(m1, r1), arb(m2, r2)
+        d = energy(th1, th2)
         if _excluded(energy, square, d, minima) or any(_inside(square, e) for e in found):
             continue
-        if d.short == 0:
+        ways = energy.one_sided(th1, th2)
+        if ways:
+            if all(_without_zero(way, square, minima) for way in ways):
+                continue
+        elif d.short == 0:
             inverse = _inverse(d)
             if inverse is not None:
                 if _off_middle(energy, square, d, inverse):
@@ -128,6 +139,16 @@ def _excluded(energy: Energy, square: Square, d: Derivatives, minima: bool) -> b
     if not energy.cone(th1, th2).contains(0):
         return True
     return minima and d.short == 3 and energy.bends_down(th1, th2, d)
+
+
+def _without_zero(energy: Energy, square: Square, minima: bool) -> bool:
+    """Whether a continued energy has no equilibrium that is asked for in a square that meets its crease."""
+    m1, r1, m2, r2 = square
+    d = energy(arb(m1, r1), arb(m2, r2))
+    if _excluded(energy, square, d, minima):
+        return True
+    inverse = None if d.short else _inverse(d)
+    return inverse is not None and _off_middle(energy, square, d, inverse)
 
 
 def _inverse(d: Derivatives) -> tuple[float, float, float, float] | None:
@@ -277,4 +298,4 @@ def _first(d: Derivatives, r1: float, r2: float) -> bool:
     return by1 >= by2 if max(r1, r2) < 32 * min(r1, r2) else r1 >= r2
 
 
-__all__ = ["TORUS", "Equilibrium", "Square", "Unproved", "equilibria"]
+__all__ = ["SMALLEST", "TORUS", "Equilibrium", "Square", "Unproved", "equilibria"]

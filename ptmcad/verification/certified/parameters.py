@@ -90,9 +90,9 @@ def values_at(claims: Claims, x: Fraction, y: Fraction) -> Values:
 
 def energy_at(values: Mapping[str, Fraction]) -> Energy:
     """The energy at exact parameters."""
-    return Energy(
-        {name: exact(values[name]) for name in NAMES}, values["rho"] == values["L2"], values["rho"] == values["L1"]
-    )
+    rho, length1, length2 = values["rho"], values["L1"], values["L2"]
+    balls = {name: exact(values[name]) for name in NAMES}
+    return Energy(balls, rho == length2, rho == length1, rho == 0 and length1 == length2)
 
 
 def energy_over(slice: Slice, x: arb, y: arb) -> Energy:
@@ -110,7 +110,14 @@ def energy_over(slice: Slice, x: arb, y: arb) -> Energy:
             raise Unproved(f"{name} may be zero")
         if name in NOT_NEGATIVE and not (values[name] >= 0):
             raise Unproved(f"{name} may be negative")
-    return Energy({name: values[name] for name in NAMES})
+    rho, length1, length2 = (slice.parameters[name] for name in ("rho", "L1", "L2"))
+    creases = (_equal(rho, length2), _equal(rho, length1), not rho.numerator and _equal(length1, length2))
+    return Energy({name: values[name] for name in NAMES}, *creases)
+
+
+def _equal(one: Expression, two: Expression) -> bool:
+    """Whether two parameters are the same function, however it is written."""
+    return not (one - two).numerator
 
 
 def _over(expression: Expression, x: arb, y: arb) -> arb:

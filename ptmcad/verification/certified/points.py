@@ -17,7 +17,7 @@ from ptmcad.numerals import text_of
 from ptmcad.regionmap import Cell, MorseIndex, Solution
 from ptmcad.slice import Count
 from ptmcad.verification.certified.energy import Energy
-from ptmcad.verification.certified.equilibria import Equilibrium, Square, Unproved, equilibria
+from ptmcad.verification.certified.equilibria import SMALLEST, TORUS, Equilibrium, Square, Unproved, equilibria
 from ptmcad.verification.certified.parameters import Values, energy_at, exact, values_at
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
@@ -110,11 +110,24 @@ def all_equilibria(values: Values, count: Count) -> tuple[Energy, list[Equilibri
         with ctx.workprec(bits):
             energy = energy_at(values)
             try:
-                return energy, equilibria(energy, count in MINIMA)[0]
+                return energy, equilibria(energy, count in MINIMA, (TORUS,), smallest=_smallest(values))[0]
             except Unproved as unproved:
                 reason = unproved
     assert reason is not None
     raise reason
+
+
+def _smallest(values: Values) -> float:
+    """Half the width of squares that are not halved again: small, also against the length of a spring next to a crease.
+
+    Where rho is nearly L2 or L1, spring 1 or 2 turns once around while an angle changes by about their difference.
+    """
+    gaps = [
+        abs(values["rho"] - values[bar]) / values[bar]
+        for bar, free in (("L2", "l0_1"), ("L1", "l0_2"))
+        if values[free] and values["rho"] != values[bar]
+    ]
+    return min([SMALLEST, *(float(gap) / 256 for gap in gaps)])
 
 
 def counts_of(energy: Energy, values: Mapping[str, Fraction], found: list[Equilibrium], count: Count) -> Counts:
@@ -186,7 +199,7 @@ def _only(energy: Energy, solution: Solution, k: int) -> Equilibrium:
     radius = float(solution.radius) * (1 + 2.0**-40) + 2.0**-50
     start: Square = (x, radius, y, radius)
     with ctx.workprec(128):
-        inside, _ = equilibria(energy, False, [start])
+        inside, _ = equilibria(energy, False, [start], smallest=min(SMALLEST, radius / 1024))
         held = [e for e in inside if _in(e, solution)]
         open_ = [e for e in inside if e not in held and not _out(e, solution)]
     if len(held) != 1 or open_:

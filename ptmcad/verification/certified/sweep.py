@@ -77,15 +77,15 @@ class Sweep:
             return found if self._gap(k - 1, u) is not None else None
         return found
 
-    def free_around(self, u: int, v: int, half: int) -> bool:
-        """Whether the closed square of this half width around a lattice point is in one gap after the other."""
+    def free_around(self, u: Fraction, v: Fraction, half: Fraction) -> bool:
+        """Whether the closed square of this half width around a point is in one gap after the other."""
         if min(u, v) < half or max(u, v) + half > self.steps:
             return False
         first, last = bisect_left(self.lines, v - half), bisect_right(self.lines, v + half)
         # strips that the closed square meets, also along a line only
         for strip in range(max(first - 1, 0), min(last, len(self.gaps))):
             gaps = self.gaps[strip]
-            k = bisect_left(gaps, Fraction(u), key=_left) - 1
+            k = bisect_left(gaps, u, key=_left) - 1
             if k < 0 or not (gaps[k][0] < u - half and u + half < gaps[k][1]):
                 return False
         return True
