@@ -197,6 +197,6 @@ def savings_without_trace(r: RegionMap) -> Iterator[Alteration]:
 
 KINDS = (
     regions_in_another_order, components_in_another_order, tables_in_another_order, other_segments, other_samples,
-    samples_of_other_cells, refined_critical_values, refined_boxes, wider_areas, lopsided_areas, partial_status, another_question,
-    other_units_of_force, other_words, component_left_in, savings_without_trace,
+    samples_of_other_cells, refined_critical_values, refined_boxes, wider_areas, lopsided_areas, partial_status,
+    another_question, other_units_of_force, other_words, component_left_in, savings_without_trace,
 )  # fmt: skip

@@ -71,6 +71,11 @@ def test_no_adjacency_can_be_dropped(name: str, shipped: Callable[..., RegionMap
             assert found[0] == "no adjacency missing"
 
 
+def test_areas_next_to_one_of_their_bounds_are_confirmed(shipped: Callable[..., RegionMap]) -> None:
+    for make in rearrangements.lopsided_areas(shipped("fig3")):
+        assert violation(make(), "areas") is None
+
+
 def test_stacks_without_walls_need_a_pair(shipped: Callable[..., RegionMap]) -> None:
     """Where no half-branch runs to the line over a critical value there is one pair, whatever parity says."""
     r = shipped("fig3")
