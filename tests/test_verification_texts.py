@@ -58,7 +58,9 @@ NAMED = [
 ]
 
 
-@pytest.mark.parametrize(("parameters", "alone"), NAMED, ids=str)
+@pytest.mark.parametrize(
+    ("parameters", "alone"), NAMED, ids=lambda x: str(x) if isinstance(x, dict) else "-".join(sorted(x))
+)
 def test_names_in_texts_have_texts(parameters: dict[str, str], alone: set[str]) -> None:
     """Every name that a text names is explained, also where it is no parameter; the parameters are what they were."""
     try:
