@@ -16,7 +16,7 @@ help:
 	@echo "make test-slow  the thorough tests"
 	@echo "make test-oldest  the fast tests with the oldest versions of all packages that pyproject.toml states"
 	@echo "make fuzz       damaged and hostile records, results and points by the ten thousand, guided by coverage"
-	@echo "make check      ruff, its formatter and mypy in strict mode, on the tests less so"
+	@echo "make check      ruff, its formatter, what may import what, and mypy in strict mode, on the tests less so"
 	@echo "make bench      error, run time and memory on every slice in configs/, into docs/benchmarks/: ten minutes"
 	@echo "make ablation   what each saving is worth, into docs/benchmarks/: nine minutes"
 	@echo "make scaling    how time and memory grow, into docs/benchmarks/: three minutes"
@@ -80,6 +80,7 @@ fuzz: $(VENV)/.installed-fuzz
 check: $(VENV)/.installed-check
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
+	$(BIN)/lint-imports --no-cache
 	$(BIN)/python -m mypy
 	cd tests && ../$(BIN)/python -m mypy --config-file mypy.ini .
 
@@ -89,16 +90,16 @@ $(VENV)/.installed-bench: $(VENV)/.installed
 	@touch $@
 
 bench: $(VENV)/.installed-bench
-	$(BIN)/python -m ptmcad.bench --rounds 3 --picture-rounds 1 --out docs/benchmarks
+	$(BIN)/python -m ptmcad.studies.bench --rounds 3 --picture-rounds 1 --out docs/benchmarks
 	$(BIN)/ptmcad bench $(PAPER:%=configs/%.yaml) --time-limit 36 --out docs/benchmarks
 	$(BIN)/ptmcad bench $(filter-out $(PAPER:%=configs/%.yaml),$(wildcard configs/*.yaml)) --quick --rounds 1 --time-limit 5 \
 		--method exact --method certified --method companion --page --out docs/benchmarks
 
 ablation: $(VENV)/.installed
-	$(BIN)/python -m ptmcad.bench.ablation --out docs/benchmarks
+	$(BIN)/python -m ptmcad.studies.bench.ablation --out docs/benchmarks
 
 scaling: $(VENV)/.installed-bench
-	$(BIN)/python -m ptmcad.bench.scaling --out docs/benchmarks
+	$(BIN)/python -m ptmcad.studies.bench.scaling --out docs/benchmarks
 
 stress: $(VENV)/.installed
 	$(BIN)/ptmcad stress all --random 25 --format table,json,md,png --out docs/benchmarks

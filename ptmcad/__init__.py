@@ -8,42 +8,44 @@
 
 from __future__ import annotations
 
+from ptmcad import methods as _methods  # noqa: F401 - first: it enters the methods that the answers' classes take
 from ptmcad.version import __version__
 
 TYPE_CHECKING = False  # type checkers take it for true; the module typing would be half of the way to `__main__.main`
 if TYPE_CHECKING:
     from typing import Any
 
-    from ptmcad.config import load, slice_from_mapping, slice_from_options
-    from ptmcad.enclosure import AlgebraicNumber, Enclosure
-    from ptmcad.exactmap import slice_variety
-    from ptmcad.pipeline import classify
-    from ptmcad.poses import Pose, Poses, solve
-    from ptmcad.ranges import intervals, operation_widths, pose_paths
-    from ptmcad.regionmap import RegionMap
-    from ptmcad.slice import Count, Point, Slice
-    from ptmcad.slicevariety import SliceVariety
+    from ptmcad.answer.poses import Pose, Poses
+    from ptmcad.answer.regionmap import RegionMap
+    from ptmcad.answer.slicevariety import SliceVariety
+    from ptmcad.ask.classification import classify
+    from ptmcad.ask.ranges import intervals, operation_widths, pose_paths
+    from ptmcad.ask.solving import solve
+    from ptmcad.exact.engine import slice_variety
+    from ptmcad.question.config import load, slice_from_mapping, slice_from_options
+    from ptmcad.question.slice import Count, Point, Slice
+    from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
     from ptmcad.verification import VerifyReport, verify
 
 _HOMES = {
-    "load": "config",
-    "slice_from_mapping": "config",
-    "slice_from_options": "config",
-    "AlgebraicNumber": "enclosure",
-    "Enclosure": "enclosure",
-    "classify": "pipeline",
-    "slice_variety": "exactmap",
-    "Pose": "poses",
-    "Poses": "poses",
-    "solve": "poses",
-    "intervals": "ranges",
-    "operation_widths": "ranges",
-    "pose_paths": "ranges",
-    "RegionMap": "regionmap",
-    "Count": "slice",
-    "Point": "slice",
-    "Slice": "slice",
-    "SliceVariety": "slicevariety",
+    "load": "question.config",
+    "slice_from_mapping": "question.config",
+    "slice_from_options": "question.config",
+    "AlgebraicNumber": "text.enclosure",
+    "Enclosure": "text.enclosure",
+    "classify": "ask.classification",
+    "slice_variety": "exact.engine",
+    "Pose": "answer.poses",
+    "Poses": "answer.poses",
+    "solve": "ask.solving",
+    "intervals": "ask.ranges",
+    "operation_widths": "ask.ranges",
+    "pose_paths": "ask.ranges",
+    "RegionMap": "answer.regionmap",
+    "Count": "question.slice",
+    "Point": "question.slice",
+    "Slice": "question.slice",
+    "SliceVariety": "answer.slicevariety",
     "VerifyReport": "verification",
     "verify": "verification",
 }

@@ -26,7 +26,7 @@ def main() -> "NoReturn":
     for number in heeded:
         signal.signal(number, lambda caught, _frame: os._exit(128 + caught))  # there is nothing to tidy up yet
     try:
-        from ptmcad.supervisor import supervise
+        from ptmcad.process.supervisor import supervise
     except (MemoryError, OSError, ImportError, SystemError) as error:  # the caller's limits, or a broken installation
         _refuse(error)
     supervise(_command_line, heeded)

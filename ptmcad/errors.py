@@ -14,7 +14,7 @@
   * LimitReached           -- a time limit stopped the computation: exit status 3 (so does the memory limit, which the
                               operating system enforces: a MemoryError, or an abort that `supervisor` sees)
 
-"Undecided" is not in this tree: it is a value (`ptmcad.regionmap.Status.UNDECIDED`), never an exception.
+"Undecided" is not in this tree: it is a value (`ptmcad.answer.regionmap.Status.UNDECIDED`), never an exception.
 
 Guarantee: the text of every exception of the tree is one line of at most `LONGEST` characters that a terminal shows as
 they are, whatever the input that it quotes.

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from ptmcad.config import slice_from_options
-from ptmcad.cover import Cover
-from ptmcad.regionmap import Cell, PlanStep, Region, RegionMap, Solution, Status, System
-from ptmcad.slice import Count, Point, Slice
+from ptmcad.answer.regionmap import Cell, PlanStep, Region, RegionMap, Solution, Status, System
+from ptmcad.cover.rectangles import Cover
+from ptmcad.question.config import slice_from_options
+from ptmcad.question.slice import Count, Point, Slice
 
 STEPS = 16
 CROSS = ((0, 16, 7, 8), (10, 11, 0, 16), (10, 11, 3, 5))

@@ -6,12 +6,13 @@ from collections.abc import Callable
 from fractions import Fraction
 from math import hypot
 
-from ptmcad.config import slice_from_mapping
-from ptmcad.cover import Cover, Rectangle, components
+from ptmcad.answer.regionmap import Cell, Region, RegionMap, Status, System
+from ptmcad.cover import components
 from ptmcad.cover.borders import area_bounds
+from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.cover.samples import samples
-from ptmcad.regionmap import Cell, Region, RegionMap, Status, System
-from ptmcad.slice import Count, Point
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.slice import Count, Point
 
 Function = Callable[[float, float], tuple[float, float]]
 """Value at a point of the unit square, and a bound of the gradient's length on the whole square."""

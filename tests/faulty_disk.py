@@ -6,7 +6,7 @@ import errno
 from collections.abc import Callable, Collection
 from pathlib import Path
 
-from ptmcad.commit import Disk
+from ptmcad.process.commit import Disk
 
 
 class Killed(BaseException):

@@ -11,9 +11,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 
-from ptmcad.expressions import constant
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import Cell, Component, Kind, Merge, NonAdjacency, Reason, RegionMap, Solution, Status
+from ptmcad.answer.regionmap import Cell, Component, Kind, Merge, NonAdjacency, Reason, RegionMap, Solution, Status
+from ptmcad.text.expressions import constant
+from ptmcad.text.plane import PlanePolynomial
 
 
 def put(items: tuple, k: int, **changes: object) -> tuple:  # type: ignore[type-arg]

@@ -19,8 +19,8 @@ from pathlib import Path
 
 import pytest
 
-from ptmcad.bench import qepcad
-from ptmcad.bench.process import Outcome, run
+from ptmcad.studies.bench import qepcad
+from ptmcad.studies.bench.process import Outcome, run
 
 SINGULAR = shutil.which("Singular")
 QEPCAD = qepcad.command()

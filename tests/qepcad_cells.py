@@ -17,10 +17,10 @@ from programs import ProgramError, monomials, qepcad_session
 from singular_slice import CountingFormula, integral
 
 from ptmcad import RegionMap
-from ptmcad.bench import qepcad
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import CriticalValue
-from ptmcad.slice import Axis
+from ptmcad.answer.regionmap import CriticalValue
+from ptmcad.question.slice import Axis
+from ptmcad.studies.bench import qepcad
+from ptmcad.text.plane import PlanePolynomial
 
 # a label, where the factor comes from (one line or more), and last the factor itself
 _FACTOR = re.compile(r"^[AP]_(\d+),(\d+)\s*= .*\n(?:\s+= .*\n)*?\s+= (.*)\n\s*\n", re.MULTILINE)

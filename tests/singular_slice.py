@@ -19,7 +19,7 @@ import yaml
 from programs import Monomials, ProgramError, monomials, singular
 from shipped_records import EXACT
 
-from ptmcad.plane import PlanePolynomial
+from ptmcad.text.plane import PlanePolynomial
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 SHIPPED = tuple(path.stem for path in EXACT)

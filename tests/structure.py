@@ -6,8 +6,8 @@ from collections import defaultdict
 from fractions import Fraction
 
 from ptmcad import Count, RegionMap
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import Cell, Merge, Status
+from ptmcad.answer.regionmap import Cell, Merge, Status
+from ptmcad.text.plane import PlanePolynomial
 
 
 def key(cell: Cell, count: Count) -> object:

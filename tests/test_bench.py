@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 from shipped_records import EXACT
 
-from ptmcad import config
-from ptmcad.bench import qepcad, report, suite
-from ptmcad.bench.__main__ import _exact_records
-from ptmcad.bench.process import Outcome, Usage, run
+from ptmcad.question import config
+from ptmcad.studies.bench import qepcad, report, suite
+from ptmcad.studies.bench.__main__ import _exact_records
+from ptmcad.studies.bench.process import Outcome, Usage, run
 
 CONFIGS = Path(__file__).resolve().parents[1] / "configs"
 

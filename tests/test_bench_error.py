@@ -18,16 +18,16 @@ from hypothesis import strategies as st
 
 import ptmcad
 from ptmcad.algebra.polynomials import from_fraction, from_plane
-from ptmcad.bench import companion, multistart
-from ptmcad.bench.cover_error import cover_error
-from ptmcad.bench.distance import distances, grid_boundary
-from ptmcad.bench.error import grid_error, wrong_areas
-from ptmcad.bench.methods import question
-from ptmcad.bench.reference import COUNTS, Reference, Walls, centres, reference, regions, shown_count, walls
-from ptmcad.cad.curves import curve
-from ptmcad.cad.polyline import FLAT, Chord, chords
-from ptmcad.cad.stacks import roots_over
-from ptmcad.plane import PlanePolynomial
+from ptmcad.exact.cad.curves import curve
+from ptmcad.exact.cad.polyline import FLAT, Chord, chords
+from ptmcad.exact.cad.stacks import roots_over
+from ptmcad.studies.bench import companion, multistart
+from ptmcad.studies.bench.cover_error import cover_error
+from ptmcad.studies.bench.distance import distances, grid_boundary
+from ptmcad.studies.bench.error import grid_error, wrong_areas
+from ptmcad.studies.bench.methods import question
+from ptmcad.studies.bench.reference import COUNTS, Reference, Walls, centres, reference, regions, shown_count, walls
+from ptmcad.text.plane import PlanePolynomial
 
 CONFIGS = Path(__file__).resolve().parents[1] / "configs"
 ZERO, ONE = Fraction(0), Fraction(1)

@@ -15,14 +15,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ptmcad.bench.compare import BAD, Change, Verdict, compare, comparison_table
-from ptmcad.bench.document import study_of, write_study, write_table
-from ptmcad.bench.study import Figures, Measurement, Study, Times, outward, smallest_grid
-from ptmcad.bench.words import curve_file, curves, page, sentences, terminal
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
-from ptmcad.render.errortime import Curve, Spot, draw_error_time
-from ptmcad.report.error_curve import read_error_curve
+from ptmcad.show.report.error_curve import read_error_curve
+from ptmcad.studies.bench.compare import BAD, Change, Verdict, compare, comparison_table
+from ptmcad.studies.bench.document import study_of, write_study, write_table
+from ptmcad.studies.bench.errortime import Curve, Spot, draw_error_time
+from ptmcad.studies.bench.study import Figures, Measurement, Study, Times, outward, smallest_grid
+from ptmcad.studies.bench.words import curve_file, curves, page, sentences, terminal
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIGS = ROOT / "configs"

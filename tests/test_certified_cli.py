@@ -23,13 +23,13 @@ import pytest
 from certified_map import certified_map, free_slice
 
 import ptmcad
+from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli import run
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cover import Cover
+from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.handover import Receiver, Topic, connect, disconnect
-from ptmcad.regionmap import RegionMap, Status
-from ptmcad.supervisor import LATE, _Watch
+from ptmcad.process.handover import Receiver, Topic, connect, disconnect
+from ptmcad.process.supervisor import LATE, _Watch
 
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = json.loads((ROOT / "docs" / "region-map.schema.json").read_text(encoding="utf-8"))
@@ -52,15 +52,15 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
             raise LimitReached("the time limit was reached", partial=certified_map(slice.count, Status.PARTIAL))
         return replace(certified_map(slice.count), slice=slice, timings={"curves": 1.0})
 
-    compiled, module = ModuleType("ptmcad.interval.compiled"), ModuleType("ptmcad.interval.engine")
+    compiled, module = ModuleType("ptmcad.certified.compiled"), ModuleType("ptmcad.certified.engine")
     module.certified_map = stand_in  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "ptmcad.interval.compiled", compiled)
-    monkeypatch.setitem(sys.modules, "ptmcad.interval.engine", module)
-    loading = ModuleType("ptmcad.interval.loading")
+    monkeypatch.setitem(sys.modules, "ptmcad.certified.compiled", compiled)
+    monkeypatch.setitem(sys.modules, "ptmcad.certified.engine", module)
+    loading = ModuleType("ptmcad.certified.loading")
     loading.load = lambda progress: None  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "ptmcad.interval.loading", loading)
+    monkeypatch.setitem(sys.modules, "ptmcad.certified.loading", loading)
     # the map made by hand has more counts than its question needs, which a stored map must not have
-    monkeypatch.setattr("ptmcad.verification.certified.verify.contradiction", lambda result: "")
+    monkeypatch.setattr("ptmcad.verification.certified.checks.contradiction", lambda result: "")
     return calls
 
 
@@ -86,7 +86,7 @@ def test_the_check_of_a_map_to_go_on_from_is_part_of_the_time_limit(
         clock["ahead"] += 1000
         return ""
 
-    monkeypatch.setattr("ptmcad.verification.certified.verify.contradiction", slow)
+    monkeypatch.setattr("ptmcad.verification.certified.checks.contradiction", slow)
     options = ["--out", str(tmp_path), "--resume", str(tmp_path / SAVED), "--timeout"]
     for limit, least, most in (("3600", 2400, 2600), ("600", 0, 1)):
         engine.clear()
@@ -147,7 +147,7 @@ def test_the_time_limit_saves_the_map_so_far(
 def test_without_numba_there_is_one_clear_message(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for name in [name for name in sys.modules if name.startswith("ptmcad.interval.")]:
+    for name in [name for name in sys.modules if name.startswith("ptmcad.certified.")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "numba", None)
     assert run(["classify", *HAND, "--out", str(tmp_path)]) == 2
@@ -189,8 +189,8 @@ here, tests = Path(sys.argv.pop(1)), sys.argv.pop(1)
 sys.path.insert(0, tests)
 import certified_map as by_hand
 from ptmcad.errors import LimitReached
-from ptmcad.regionmap import Status
-from ptmcad.slice import Count
+from ptmcad.answer.regionmap import Status
+from ptmcad.question.slice import Count
 
 def arrived():
     (here / "arrived").touch()
@@ -207,11 +207,11 @@ def certified_map(slice, *, partial, deadline, **options):
     search()
     return replace(by_hand.certified_map(Count.STABLE), slice=slice)
 for name in ("compiled", "loading", "engine"):
-    sys.modules["ptmcad.interval." + name] = ModuleType(name)
-sys.modules["ptmcad.interval.loading"].load = load
-sys.modules["ptmcad.interval.engine"].certified_map = certified_map
-sys.modules["ptmcad.render"] = ModuleType("render")
-sys.modules["ptmcad.render"].draw = draw
+    sys.modules["ptmcad.certified." + name] = ModuleType(name)
+sys.modules["ptmcad.certified.loading"].load = load
+sys.modules["ptmcad.certified.engine"].certified_map = certified_map
+sys.modules["ptmcad.show.render"] = ModuleType("render")
+sys.modules["ptmcad.show.render"].draw = draw
 from ptmcad.__main__ import main
 main()
 """
@@ -262,12 +262,12 @@ def test_compiling_is_no_part_of_the_time_limit(
     clock = {"ahead": 0}
     monotonic, counter = time.monotonic, perf_counter
     monkeypatch.setattr(time, "monotonic", lambda: monotonic() + clock["ahead"])
-    monkeypatch.setattr("ptmcad.pipeline.perf_counter", lambda: counter() + clock["ahead"])
+    monkeypatch.setattr("ptmcad.ask.classification.perf_counter", lambda: counter() + clock["ahead"])
 
     def load(progress: object) -> None:
         clock["ahead"] += 1000
 
-    monkeypatch.setattr(sys.modules["ptmcad.interval.loading"], "load", load)
+    monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", load)
     begun, counted = monotonic(), counter()
     read, write = os.pipe()
     connect(write)
@@ -325,13 +325,13 @@ def _resumed_and_stopped(earlier: RegionMap, found: RegionMap) -> None:
         assert handed == ([found] if found.undetermined < earlier.undetermined else [])
         raise LimitReached("the time limit was reached", partial=found)
 
-    loading, module = ModuleType("ptmcad.interval.loading"), ModuleType("ptmcad.interval.engine")
+    loading, module = ModuleType("ptmcad.certified.loading"), ModuleType("ptmcad.certified.engine")
     loading.load = lambda progress: None  # type: ignore[attr-defined]
     module.certified_map = stand_in  # type: ignore[attr-defined]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(sys.modules, "ptmcad.interval.compiled", ModuleType("ptmcad.interval.compiled"))
-        patch.setitem(sys.modules, "ptmcad.interval.loading", loading)
-        patch.setitem(sys.modules, "ptmcad.interval.engine", module)
+        patch.setitem(sys.modules, "ptmcad.certified.compiled", ModuleType("ptmcad.certified.compiled"))
+        patch.setitem(sys.modules, "ptmcad.certified.loading", loading)
+        patch.setitem(sys.modules, "ptmcad.certified.engine", module)
         ptmcad.classify(earlier.slice, resume=earlier, partial=handed.append)
 
 
@@ -344,7 +344,7 @@ WINDOW = ["--slice", "rho,L2", "--range", "rho=1/2:1", "--range", "L2=5/4:7/4", 
 MARKING = """
 import sys
 from pathlib import Path
-from ptmcad import handover
+from ptmcad.process import handover
 
 marker, tell = Path(sys.argv.pop(1)), handover.tell
 

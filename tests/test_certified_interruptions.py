@@ -20,7 +20,7 @@ import pytest
 
 pytest.importorskip("numba")
 
-from ptmcad.regionmap import RegionMap, Status
+from ptmcad.answer.regionmap import RegionMap, Status
 
 ROOT = Path(__file__).resolve().parents[1]
 NAMES = ("free02", "free-load", "free-l0-L1")
@@ -30,7 +30,7 @@ NOTHING = "was still being loaded or compiled", "the first level of the search w
 WATCHING = """
 import sys
 from pathlib import Path
-from ptmcad import handover
+from ptmcad.process import handover
 
 marker, tell = Path(sys.argv.pop(1)), handover.tell
 

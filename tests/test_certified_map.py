@@ -16,13 +16,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ptmcad
+from ptmcad.answer.regionmap import Location, RegionMap, Status
 from ptmcad.cli import run
-from ptmcad.cover import Cover, union_area
+from ptmcad.cover import union_area
+from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
-from ptmcad.exactmap import exact_map
-from ptmcad.ranges.strips import strips
-from ptmcad.regionmap import Location, RegionMap, Status
-from ptmcad.slice import Count, Slice
+from ptmcad.exact.engine import exact_map
+from ptmcad.exact.ranges.strips import strips
+from ptmcad.question.slice import Count, Slice
 
 SCHEMA = json.loads((Path(__file__).parent.parent / "docs" / "region-map.schema.json").read_text(encoding="utf-8"))
 

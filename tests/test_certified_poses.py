@@ -13,13 +13,14 @@ import pytest
 from click.testing import CliRunner
 
 from ptmcad import Poses, solve
+from ptmcad.answer.poses import Pose
+from ptmcad.answer.regionmap import Status
+from ptmcad.certified.intervals import certified_intervals
 from ptmcad.cli.range import command
-from ptmcad.config import slice_from_options
 from ptmcad.errors import ConfigError
-from ptmcad.poses import Pose
-from ptmcad.ranges.certified import certified_intervals, table
-from ptmcad.regionmap import Status
-from ptmcad.render.landscape import energy_of
+from ptmcad.question.config import slice_from_options
+from ptmcad.show.ranges.certified import table
+from ptmcad.show.render.landscape import energy_of
 from tests.dense_search import dense_search, derivatives
 
 SCHEMA = json.loads((Path(__file__).parent.parent / "docs" / "poses.schema.json").read_text(encoding="utf-8"))

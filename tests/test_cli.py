@@ -18,14 +18,14 @@ from typing import Any
 
 import pytest
 
+from ptmcad.answer.regionmap import Status
 from ptmcad.cli import COMMANDS, group, run
 from ptmcad.errors import ConfigError, LimitReached, OutputError
-from ptmcad.output import check_writable, text_writer, write_files
-from ptmcad.regionmap import Status
+from ptmcad.process.output import check_writable, text_writer, write_files
 
 ROOT = Path(__file__).parent.parent
 FIG4 = ROOT / "configs" / "fig4.yaml"
-needs_engine = pytest.mark.skipif(find_spec("ptmcad.pipeline") is None, reason="the engine is not built yet")
+needs_engine = pytest.mark.skipif(find_spec("ptmcad.ask.classification") is None, reason="the engine is not built yet")
 
 
 class StandIn:
@@ -64,13 +64,13 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         if "draw raises" in calls:
             raise calls["draw raises"]
 
-    pipeline = ModuleType("ptmcad.pipeline")
+    pipeline = ModuleType("ptmcad.ask.classification")
     pipeline.classify = classify  # type: ignore[attr-defined]
     pipeline.prepare = lambda *_: None  # type: ignore[attr-defined]
-    render = ModuleType("ptmcad.render")
+    render = ModuleType("ptmcad.show.render")
     render.draw = draw  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "ptmcad.pipeline", pipeline)
-    monkeypatch.setitem(sys.modules, "ptmcad.render", render)
+    monkeypatch.setitem(sys.modules, "ptmcad.ask.classification", pipeline)
+    monkeypatch.setitem(sys.modules, "ptmcad.show.render", render)
     return calls
 
 
@@ -209,7 +209,7 @@ def test_engine_errors_have_status_2(engine: dict[str, Any], tmp_path: Path) -> 
 def test_sigterm_removes_the_temporary_files(tmp_path: Path) -> None:
     program = (
         "import sys, time, types\n"
-        "pipeline, render = types.ModuleType('ptmcad.pipeline'), types.ModuleType('ptmcad.render')\n"
+        "pipeline, render = types.ModuleType('ptmcad.ask.classification'), types.ModuleType('ptmcad.show.render')\n"
         "class Result:\n"
         "    cover, status = None, types.SimpleNamespace(value='exact')\n"
         "    def to_json(self, timings): return 'new'\n"
@@ -217,7 +217,7 @@ def test_sigterm_removes_the_temporary_files(tmp_path: Path) -> None:
         "    path.write_text('half'); time.sleep(60)\n"
         "pipeline.classify, pipeline.prepare = lambda slice, **options: Result(), lambda *_: None\n"
         "render.draw = draw\n"
-        "sys.modules.update({'ptmcad.pipeline': pipeline, 'ptmcad.render': render})\n"
+        "sys.modules.update({'ptmcad.ask.classification': pipeline, 'ptmcad.show.render': render})\n"
         "from ptmcad.cli import main\n"
         f"main(['classify', {str(FIG4)!r}, '--out', {str(tmp_path)!r}])\n"
     )
@@ -332,7 +332,7 @@ def test_help_examples_run(
 
 def test_start_up_is_lean() -> None:
     program = (
-        "import sys, ptmcad.cli, ptmcad.cli.classify, ptmcad.config\n"
+        "import sys, ptmcad.cli, ptmcad.cli.classify, ptmcad.question.config\n"
         "print([m for m in ('numpy', 'flint', 'sympy', 'matplotlib', 'asyncio') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)

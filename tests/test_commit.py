@@ -15,12 +15,12 @@ from faulty_disk import FaultyDisk, Killed
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ptmcad import commit
 from ptmcad.cli.stored import read_result
-from ptmcad.commit import UNCHANGED, UNFINISHED, recover
 from ptmcad.errors import ConfigError, OutputError
-from ptmcad.journal import REDO, UNDO, journals
-from ptmcad.output import check_writable, save_stopped, text_writer, where_saved, write_files
+from ptmcad.process import commit
+from ptmcad.process.commit import UNCHANGED, UNFINISHED, recover
+from ptmcad.process.journal import REDO, UNDO, journals
+from ptmcad.process.output import check_writable, save_stopped, text_writer, where_saved, write_files
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="without locks nothing is recovered")
 
@@ -343,7 +343,7 @@ def test_a_stopped_result_loses_no_other(
     text = WHOLE if whole else PARTIAL + " "
     held = os.open(tmp_path, os.O_RDONLY)
     if busy:
-        monkeypatch.setattr("ptmcad.output.LOCK_PATIENCE", 0.02)
+        monkeypatch.setattr("ptmcad.process.output.LOCK_PATIENCE", 0.02)
         fcntl.flock(held, fcntl.LOCK_EX)
     saved = save_stopped(target, text, whole=whole, beside=beside)
     os.close(held)

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from ptmcad.cli import run
-from ptmcad.config import PARAMETERS, load, point_from_mapping, slice_from_mapping, slice_from_options
 from ptmcad.errors import ConfigError
-from ptmcad.expressions import axis, constant
-from ptmcad.slice import FREE_LENGTHS, Count
+from ptmcad.question.config import PARAMETERS, load, point_from_mapping, slice_from_mapping, slice_from_options
+from ptmcad.question.slice import FREE_LENGTHS, Count
+from ptmcad.text.expressions import axis, constant
 
 CONFIGS = sorted((Path(__file__).parent.parent / "configs").glob("*.yaml"))
 SHIPPED = ["fig2", "fig3", "fig4", "fig5-caption", "fig5-text", "forces", "free-l0-L1", "free-l0-L32", "free-load",

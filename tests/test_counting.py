@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from shipped_records import EXACT
 
 from ptmcad import load
-from ptmcad.counting import DegeneratePoint, count_by_isolation, count_by_signature
-from ptmcad.models import system_of
+from ptmcad.exact.counting import DegeneratePoint, count_by_isolation, count_by_signature
+from ptmcad.exact.models import system_of
 
 SYSTEM = system_of("ptm")
 SHIPPED = [path.stem for path in EXACT]

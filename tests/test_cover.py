@@ -14,10 +14,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ptmcad.cover import MOST_STEPS, Cover, Rectangle, components, from_boxes, union_area
+from ptmcad.cover import components, from_boxes, union_area
 from ptmcad.cover.borders import area_bounds
 from ptmcad.cover.filling import combined, filled, gathered, pockets, simplified
 from ptmcad.cover.outlines import outlines
+from ptmcad.cover.rectangles import MOST_STEPS, Cover, Rectangle
 from ptmcad.cover.samples import samples, simplest_between
 
 UNIT = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))

@@ -12,13 +12,13 @@ import pytest
 import sympy
 from programs import needs_msolve
 
-from ptmcad import msolve
+from ptmcad.algebra import msolve
 from ptmcad.algebra.critical_lengths import NAMES, critical_system
 from ptmcad.algebra.signed import signed_solutions
-from ptmcad.config import slice_from_options
+from ptmcad.certified.intervals import certified_intervals
 from ptmcad.errors import ConfigError
-from ptmcad.ranges.certified import certified_intervals
-from ptmcad.ranges.free_lengths import critical_free_lengths, critical_on_line
+from ptmcad.exact.ranges.free_lengths import critical_free_lengths, critical_on_line
+from ptmcad.question.config import slice_from_options
 
 RHO, RODS, LOADS = Fraction(7, 10), (Fraction(1), Fraction(3, 2)), (Fraction(-1, 10), Fraction(-1, 10))
 

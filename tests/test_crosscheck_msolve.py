@@ -11,7 +11,7 @@ from conftest import shipped
 from programs import ProgramError, needs_msolve, real_solutions
 from singular_slice import SHIPPED, axes, parameters
 
-from ptmcad.regionmap import Status
+from ptmcad.answer.regionmap import Status
 
 pytestmark = needs_msolve
 

@@ -14,9 +14,9 @@ from qepcad_cells import DISPLAY, Decomposition, compare, decided, decomposition
 from singular_slice import SHIPPED, axes, counting_formulas
 
 from ptmcad import RegionMap
-from ptmcad.bench.qepcad import Question, Task, Terms, question
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import CriticalValue, Kind, Stack, Status, Wall
+from ptmcad.answer.regionmap import CriticalValue, Kind, Stack, Status, Wall
+from ptmcad.studies.bench.qepcad import Question, Task, Terms, question
+from ptmcad.text.plane import PlanePolynomial
 
 pytestmark = needs_qepcad
 
@@ -25,7 +25,8 @@ QUICK = ("fig2", "fig3", "fig4", "rods")
 LIFTED = ("fig2", "fig3", "forces", "rods")
 """Slices on which QEPCAD lifts over the sections of the base axis too in seconds; fig. 4 takes it over a minute."""
 WITH_SEXTIC = tuple(name for name in SHIPPED if name != "fig2")
-"""On fig. 2 theta2 = pi is an equilibrium everywhere, which t2 = tan(theta2/2) loses: see `ptmcad.bench.qepcad`."""
+"""On fig. 2 theta2 = pi is an equilibrium everywhere, which t2 = tan(theta2/2) loses: see
+`ptmcad.studies.bench.qepcad`."""
 
 
 def slow_unless(names: tuple[str, ...], quick: tuple[str, ...]) -> list[object]:

@@ -9,8 +9,8 @@ import pytest
 from programs import ProgramError, needs_singular, singular
 from singular_slice import SHIPPED, SOLUTIONS, axes, critical_curves, improper_curves, solutions_over
 
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import Component, Kind
+from ptmcad.answer.regionmap import Component, Kind
+from ptmcad.text.plane import PlanePolynomial
 
 pytestmark = needs_singular
 

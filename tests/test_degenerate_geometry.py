@@ -19,7 +19,7 @@ from structure import check_structure
 from test_topology import KNOWN
 
 from ptmcad import RegionMap, classify, slice_from_mapping, verify
-from ptmcad.regionmap import Merge, Status
+from ptmcad.answer.regionmap import Merge, Status
 
 TINY = Fraction(1, 10**40)
 SQUARE = ("-2", "2", "-2", "2")

@@ -10,13 +10,13 @@ from flint import fmpq
 
 from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
 from ptmcad.algebra.trigonometric import TrigonometricRing
-from ptmcad.counting import count_by_isolation, count_by_signature, equilibria, solutions_at
+from ptmcad.answer.regionmap import Kind
 from ptmcad.errors import DimensionError
-from ptmcad.models import ParametricSystem, system_of
-from ptmcad.models.system import first_minor, from_potential
-from ptmcad.ranges.tracking import Family
-from ptmcad.regionmap import Kind
-from ptmcad.variety import discriminant_variety
+from ptmcad.exact.counting import count_by_isolation, count_by_signature, equilibria, solutions_at
+from ptmcad.exact.models import ParametricSystem, system_of
+from ptmcad.exact.models.system import first_minor, from_potential
+from ptmcad.exact.ranges.tracking import Family
+from ptmcad.exact.variety import discriminant_variety
 
 VALUES = {"k": fmpq(1, 100), "F": fmpq(1)}
 

@@ -14,15 +14,15 @@ import pytest
 
 from ptmcad.algebra import definite
 from ptmcad.algebra.polynomials import from_terms
+from ptmcad.certified.intervals import certified_intervals
 from ptmcad.cli import run
-from ptmcad.config import slice_from_mapping
-from ptmcad.domain import prove, prove_slice, unproved
 from ptmcad.errors import ConfigError, GeometryError, PtmcadError
-from ptmcad.exactmap import exact_map
-from ptmcad.expressions import axis, parse
-from ptmcad.positivity import READING, decide
-from ptmcad.ranges.certified import certified_intervals
-from ptmcad.slice import Axis, Slice
+from ptmcad.exact.engine import exact_map
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.domain import prove, prove_slice, unproved
+from ptmcad.question.positivity import READING, decide
+from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.expressions import axis, parse
 
 DIPS = {
     "degree 20": "(m - 1/3)^20 - 1e-180",
@@ -115,7 +115,7 @@ def bare(**parameters: str) -> Slice:
 
 @pytest.mark.parametrize("name", ["L1", "L2", "rho", "k1", "k2", "k3", "l0_1", "l0_2", "l0_3"])
 def test_the_certified_engine_trusts_no_reader(name: str) -> None:
-    engine = pytest.importorskip("ptmcad.interval.engine")
+    engine = pytest.importorskip("ptmcad.certified.engine")
     with pytest.raises(GeometryError, match=f"but {name} is -.* at m = "):
         engine.certified_map(bare(**{name: DIPS["middle"]}))
     with pytest.raises(GeometryError, match=f"the denominator of {name} vanishes between m = "):
@@ -135,7 +135,7 @@ def test_a_zero_function_is_no_length() -> None:
 
 def test_undecided_is_read_but_not_certified(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each engine asks for a proof first."""
-    engine = pytest.importorskip("ptmcad.interval.engine")
+    engine = pytest.importorskip("ptmcad.certified.engine")
     decide.cache_clear()
     monkeypatch.setattr(definite, "MAX_WORK", 0)
     slice = slice_from_mapping(record(L1="(m^3 + n^3 - m*n - 1/7)^2 + 1e-40", l0="1/5"))

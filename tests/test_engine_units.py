@@ -29,10 +29,10 @@ from ptmcad.algebra.real_roots import (
 )
 from ptmcad.algebra.resultants import discriminant, interpolate, resultant
 from ptmcad.algebra.window import nowhere_zero
-from ptmcad.models import system_of
-from ptmcad.models.system import SliceSystem, at_point, on_slice
-from ptmcad.regionmap import Kind
-from ptmcad.variety import hermite_determinant
+from ptmcad.answer.regionmap import Kind
+from ptmcad.exact.models import system_of
+from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
+from ptmcad.exact.variety import hermite_determinant
 
 X, Y = PLANE.gens()
 SYSTEM = system_of("ptm")

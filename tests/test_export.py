@@ -31,13 +31,13 @@ from sympy.parsing.mathematica import parse_mathematica
 from test_polynomial_text import of_sympy, read_latex, read_maple
 
 import ptmcad
+from ptmcad.answer.regionmap import Kind, Status
+from ptmcad.answer.slicevariety import SliceVariety
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError, InfiniteSolutionsError
-from ptmcad.export import FORMATS
-from ptmcad.plane import PlanePolynomial
-from ptmcad.polynomial_text import Style, symbols
-from ptmcad.regionmap import Kind, Status
-from ptmcad.slicevariety import SliceVariety
+from ptmcad.show.export import FORMATS
+from ptmcad.show.polynomial_text import Style, symbols
+from ptmcad.text.plane import PlanePolynomial
 
 ROOT = Path(__file__).parent.parent
 QUICK = ("fig2", "fig3", "fig4", "rods")

@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from ptmcad.errors import ExpressionError, PoleError
-from ptmcad.expressions import Expression, axis, constant, names_in, parse, rational
+from ptmcad.text.expressions import Expression, axis, constant, names_in, parse, rational
 
 NAMES = {"rho": axis(0), "L2": axis(1)}
 small = st.fractions(min_value=-5, max_value=5, max_denominator=12)

@@ -8,19 +8,19 @@ from pathlib import Path
 
 import pytest
 
-from ptmcad.bench import ablation
 from ptmcad.cli import run
-from ptmcad.stress import campaign
-from ptmcad.stress.case import Case, PointAnswer
-from ptmcad.stress.named import chosen
-from ptmcad.stress.points import point
+from ptmcad.studies.bench import ablation
+from ptmcad.studies.stress import campaign
+from ptmcad.studies.stress.case import Case, PointAnswer
+from ptmcad.studies.stress.named import chosen
+from ptmcad.studies.stress.points import point
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
 @pytest.fixture(autouse=True)
 def without_numba(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [name for name in sys.modules if name.startswith("ptmcad.interval.")]:
+    for name in [name for name in sys.modules if name.startswith("ptmcad.certified.")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "numba", None)
 

@@ -16,11 +16,11 @@ from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.fibre import Fibre, coordinates_at, univariate_representation
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
 from ptmcad.algebra.resultants import balanced, discriminant, resultant
-from ptmcad.cad import area
-from ptmcad.counting import point_system
-from ptmcad.models import system_of
-from ptmcad.stress.measure import work_of
-from ptmcad.stress.slices import FIG4, LOADED, MapQuestion, ten
+from ptmcad.exact.cad import area
+from ptmcad.exact.counting import point_system
+from ptmcad.exact.models import system_of
+from ptmcad.studies.stress.measure import work_of
+from ptmcad.studies.stress.slices import FIG4, LOADED, MapQuestion, ten
 from ptmcad.verification.sturm import roots_between
 
 

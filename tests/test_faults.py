@@ -27,11 +27,11 @@ from hypothesis import strategies as st
 
 import ptmcad
 from ptmcad.cli import run
-from ptmcad.commit import recover
 from ptmcad.errors import ConfigError
-from ptmcad.handover import Receiver, Topic, connect, disconnect, tell
-from ptmcad.memory import bound_of, default_bound
-from ptmcad.output import check_writable, save_stopped, text_writer, write_files
+from ptmcad.process.commit import recover
+from ptmcad.process.handover import Receiver, Topic, connect, disconnect, tell
+from ptmcad.process.memory import bound_of, default_bound
+from ptmcad.process.output import check_writable, save_stopped, text_writer, write_files
 
 ROOT = Path(__file__).parent.parent
 FIG2 = ROOT / "configs" / "fig2.yaml"
@@ -70,9 +70,9 @@ def classify(slice, *, progress, partial, **options):
     engine(progress, partial)
     partial(Result("exact"))
     return Result("exact")
-pipeline, render = types.ModuleType("ptmcad.pipeline"), types.ModuleType("ptmcad.render")
+pipeline, render = types.ModuleType("ptmcad.ask.classification"), types.ModuleType("ptmcad.show.render")
 pipeline.classify, pipeline.prepare, render.draw = classify, lambda *_: None, draw
-sys.modules.update({"ptmcad.pipeline": pipeline, "ptmcad.render": render})
+sys.modules.update({"ptmcad.ask.classification": pipeline, "ptmcad.show.render": render})
 from ptmcad.__main__ import main
 main()
 """
@@ -387,7 +387,7 @@ def test_a_killed_program_takes_its_computation_along(tmp_path: Path) -> None:
 
 
 KILLER = """
-from ptmcad import commit
+from ptmcad.process import commit
 program = os.getpid()
 class Killing(commit.Disk):
     steps = 0

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ptmcad.expressions import axis, constant
-from ptmcad.interval.curves import Curve, curves
-from ptmcad.interval.evaluation import program, run
-from ptmcad.interval.formula import Graph
-from ptmcad.interval.parameters import slice_mechanism
-from ptmcad.interval.search import search_curve
-from ptmcad.interval.tape import record
-from ptmcad.slice import Axis, Count, Slice
+from ptmcad.certified.curves import Curve, curves
+from ptmcad.certified.evaluation import program, run
+from ptmcad.certified.formula import Graph
+from ptmcad.certified.parameters import slice_mechanism
+from ptmcad.certified.search import search_curve
+from ptmcad.certified.tape import record
+from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.text.expressions import axis, constant
 
 Vector = NDArray[np.float64]
 LOADED = {"F3": "-1/10", "F4": "-1/10"}

@@ -13,10 +13,10 @@ pytest.importorskip("numba")
 from dense_search import dense_search
 
 import ptmcad
-from ptmcad.config import load, slice_from_options
+from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import DegenerateSliceError, LimitReached
-from ptmcad.regionmap import RegionMap, Status
-from ptmcad.slice import Count, Slice
+from ptmcad.question.config import load, slice_from_options
+from ptmcad.question.slice import Count, Slice
 
 CONFIGS = Path(__file__).resolve().parents[1] / "configs"
 FREE = sorted(path.stem for path in CONFIGS.glob("free*.yaml"))

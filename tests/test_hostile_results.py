@@ -16,10 +16,10 @@ from typing import Any
 
 import pytest
 
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli import run
-from ptmcad.config import load
 from ptmcad.errors import ConfigError, shown_path
-from ptmcad.regionmap import RegionMap
+from ptmcad.question.config import load
 
 RECORD = "mechanism: ptm\nparameters: {L1: 1, F3: -10, F4: -10}\naxes: {rho: [2/5, 2/3], L2: [3/4, 1]}\n"
 HIDDEN = {"half of a pair": "\ud800", "escape": "\x1b[31m", "direction": "\u202e", "null": "\0", "line": "\u2028"}
@@ -29,7 +29,7 @@ Place = tuple[str | int, ...]
 @pytest.fixture(name="stored", scope="module")
 def small_map(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """A map of one cell, with a reference, as the JSON document that is stored."""
-    from ptmcad.pipeline import classify
+    from ptmcad.ask.classification import classify
 
     file = tmp_path_factory.mktemp("record") / "small.yaml"
     file.write_text(RECORD + 'reference: {source: "fig. 4,\\u00a0\\ttwo\\nlines", deep: {a: [b]}}\n', encoding="utf-8")

@@ -21,8 +21,8 @@ from pathlib import Path
 
 import pytest
 
-from ptmcad.commit import recover
-from ptmcad.output import check_writable
+from ptmcad.process.commit import recover
+from ptmcad.process.output import check_writable
 
 ROOT = Path(__file__).parent.parent
 ENDS = ("kill -9 of the computation", "kill -9 of the program", "kill -9 of both", "SIGINT", "SIGTERM", "SIGHUP")
@@ -32,7 +32,7 @@ import fcntl, os, pathlib, signal, stat, sys, time, types
 signal.signal(signal.SIGINT, lambda *_: os._exit(130))  # the interpreter's own start is not the program's
 here, step, engine = pathlib.Path(sys.argv.pop(1)), int(sys.argv.pop(1)), sys.argv.pop(1)
 program = os.getpid()
-from ptmcad import commit, handover
+from ptmcad.process import commit, handover
 def arrived(name):
     (here / "writing").write_text(str(os.getpid()))
     (here / "writing").rename(here / name)
@@ -62,7 +62,7 @@ handover.tell = telling
 def draw(result, path, samples):
     path.write_text(result.slice.count.value)
     (here / "drawn").touch()
-sys.modules["ptmcad.render"] = render = types.ModuleType("ptmcad.render")
+sys.modules["ptmcad.show.render"] = render = types.ModuleType("ptmcad.show.render")
 render.draw = draw
 if engine != "real":
     from types import SimpleNamespace as Some
@@ -80,7 +80,7 @@ if engine != "real":
         time.sleep(0.05)
         partial(Result(slice, engine))
         return Result(slice, engine)
-    sys.modules["ptmcad.pipeline"] = pipeline = types.ModuleType("ptmcad.pipeline")
+    sys.modules["ptmcad.ask.classification"] = pipeline = types.ModuleType("ptmcad.ask.classification")
     pipeline.classify, pipeline.prepare = classify, lambda *_: None
 from ptmcad.__main__ import main
 main()

@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ptmcad
-from ptmcad.expressions import axis
-from ptmcad.interval.arb_evaluation import ball, run_arb
-from ptmcad.interval.cones import cones
-from ptmcad.interval.mechanism import NAMES
-from ptmcad.interval.points import PointCount, PointCounter, point_counter
-from ptmcad.slice import Axis, Count, Slice
+from ptmcad.certified.arb_evaluation import ball, run_arb
+from ptmcad.certified.cones import cones
+from ptmcad.certified.mechanism import NAMES
+from ptmcad.certified.points import PointCount, PointCounter, point_counter
+from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.text.expressions import axis
 from tests.dense_search import dense_search
 
 UNIT = {"L1": Q(1), "k1": Q(1), "k2": Q(1), "k3": Q(1), "F3x": Q(0), "F4x": Q(0)}

@@ -1,233 +1,110 @@
-"""The layering that docs/architecture.md describes, read off the import statements."""
+"""The layering that docs/architecture.md describes: the contracts of pyproject.toml, and what they cannot express."""
 
 from __future__ import annotations
 
 import ast
+import inspect
 import json
+import pickle
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable
+from graphlib import TopologicalSorter
 from pathlib import Path
+from typing import Any
 
+import grimp
 import pytest
+from importlinter.cli import lint_imports
+
+import ptmcad
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "ptmcad"
-MODULES = sorted(PACKAGE.rglob("*.py"))
 
-EXACT = (
-    "interval",
-    "algebra",
-    "models",
-    "cad",
-    "counting",
-    "balls",
-    "statics",
-    "solving",
-    "variety",
-    "area",
-    "regions",
-    "regionmap",
-    "exactmap",
-    "interval",
-    "assembly",
-    "locate",
-    "ranges",
-    "verification",
-    "paper",
-    "stress",
-    "bench",
-)
 FLINT_POLYNOMIALS = ("poly", "mpoly", "mpoly_ctx", "mpoly_vec", "series")
 
 
-def part(path: Path) -> str:
-    """The folder or module right under the package that a file belongs to, such as ``cad`` or ``slice``."""
-    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+def test_the_contracts_hold(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(sys, "path", sys.path.copy())  # which it changes
+    status = lint_imports(config_filename=str(ROOT / "pyproject.toml"), no_cache=True)
+    assert status == 0, capsys.readouterr().out
 
 
-def imports(path: Path) -> Iterator[tuple[str, str]]:
-    """Every import in a file, at any depth: pairs of the module and the name taken from it, or an empty name."""
-    package = [PACKAGE.name, *path.relative_to(PACKAGE).parts[:-1]]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            for alias in node.names:
-                yield alias.name, ""
-        elif isinstance(node, ast.ImportFrom):
-            base = ".".join(package[: len(package) - node.level + 1]) if node.level else ""
-            module = ".".join(filter(None, (base, node.module or "")))
-            for alias in node.names:
-                yield module, alias.name
+def test_no_circle_among_modules() -> None:
+    """Not even one that an import inside of a function hides; a package's own `__init__` is a module like others."""
+    graph = grimp.build_graph("ptmcad", cache_dir=None, exclude_type_checking_imports=True)
+    TopologicalSorter({m: graph.find_modules_directly_imported_by(m) for m in graph.modules}).prepare()
 
 
-def imported_parts(path: Path) -> set[str]:
-    """The parts of ptmcad that a file imports, in either way of writing it."""
-    found = set()
-    for module, name in imports(path):
-        names = f"{module}.{name}".split(".")
-        if names[0] == PACKAGE.name and len(names) > 1:
-            found.add(names[1])
-    return found - {""}
+def test_flints_polynomials_stay_in_algebra() -> None:
+    """And in the checks, which must not use it: all else speaks of curves, cells and counts."""
+    rooms = (PACKAGE / "algebra", PACKAGE / "verification", PACKAGE / "studies" / "stress")
+    for path in PACKAGE.rglob("*.py"):
+        used: set[str] = set()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] == "flint":
+                used |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "flint":
+                used.add(node.attr)
+        if not any(path.is_relative_to(room) for room in rooms):
+            assert not [name for name in used if name.endswith(FLINT_POLYNOMIALS)], path
 
 
-def relative(path: Path) -> str:
-    return str(path.relative_to(ROOT))
+def test_answers_have_the_methods_that_they_declare() -> None:
+    """`ptmcad.methods` binds what type checkers read in the classes: the same names with the same signatures."""
+    for answer in (ptmcad.RegionMap, ptmcad.SliceVariety, ptmcad.Poses):
+        tree = ast.parse(Path(inspect.getfile(answer)).read_text(encoding="utf-8"))
+        (body,) = (n.body for n in tree.body if isinstance(n, ast.ClassDef) and n.name == answer.__name__)
+        (block,) = (n for n in body if isinstance(n, ast.If))
+        declared = {n.name: n.args for n in block.body if isinstance(n, ast.FunctionDef)}
+        assert declared.keys() == ptmcad.methods.METHODS[answer.__name__].keys()
+        for name, arguments in declared.items():
+            method = inspect.getattr_static(answer, name)
+            bound: Callable[..., Any] = getattr(method, "__func__", method)
+            (function,) = ast.parse(inspect.getsource(bound)).body
+            assert isinstance(function, ast.FunctionDef)
+            stub, real = (ast.unparse(a).split(", ")[1:] for a in (arguments, function.args))
+            assert stub == real, f"{answer.__name__}.{name}"
+            assert (bound.__name__, bound.__qualname__) == (name, f"{answer.__name__}.{name}")
 
 
-def test_relative_imports_are_resolved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The reader of imports itself: nothing escapes it by being written another way."""
-    monkeypatch.setattr(sys.modules[__name__], "PACKAGE", tmp_path / "ptmcad")
-    module = tmp_path / "ptmcad" / "interval" / "boxes.py"
-    module.parent.mkdir(parents=True)
-    module.write_text("import ptmcad.cad\nfrom ptmcad import algebra\nfrom ..variety import x\nfrom . import y\n")
-    assert imported_parts(module) == {"cad", "algebra", "variety", "interval"}
+def test_an_unpickled_answer_has_its_methods(tmp_path: Path) -> None:
+    """Also in a process that has imported nothing of ptmcad before."""
+    (tmp_path / "map").write_bytes(pickle.dumps(ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))))
+    loaded_after("import pickle; print(pickle.load(open('map', 'rb')).locate(L2='3/2', rho=1).stable)", tmp_path)
 
 
-@pytest.mark.parametrize("path", MODULES, ids=relative)
-def test_only_render_imports_matplotlib(path: Path) -> None:
-    tops = {module.partition(".")[0] for module, _ in imports(path)}
-    assert part(path) == "render" or not tops & {"matplotlib", "mpl_toolkits"}
-
-
-@pytest.mark.parametrize("path", MODULES, ids=relative)
-def test_flint_stays_in_the_exact_engine(path: Path) -> None:
-    """FLINT's numbers and balls are used where counts are made; its polynomials in algebra/ and in its checks."""
-    names = {name for module, name in imports(path) if module.partition(".")[0] == "flint"}
-    used = {
-        node.attr
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "flint"
-    }
-    if names or used:
-        assert part(path) in (*EXACT, "interval")
-    if part(path) not in {"algebra", "verification", "stress"}:
-        assert not [name for name in names | used if name.endswith(FLINT_POLYNOMIALS)]
-
-
-@pytest.mark.parametrize("path", MODULES, ids=relative)
-def test_the_engines_are_independent(path: Path) -> None:
-    """A check of one engine by the other proves something only while they share no mathematics."""
-    if part(path) == "interval":
-        assert not imported_parts(path) & {"algebra", "cad", "variety", "counting", "area"}
-
-
-@pytest.mark.parametrize("path", MODULES, ids=relative)
-def test_plane_geometry_is_of_no_engine(path: Path) -> None:
-    """What is connected outside of rectangles is a question about integers."""
-    if part(path) == "cover":
-        assert imported_parts(path) <= {"cover"}
-
-
-@pytest.mark.parametrize("path", MODULES, ids=relative)
-def test_verification_shares_no_code_with_what_it_verifies(path: Path) -> None:
-    """Only the result's own data classes, and FLINT, are common to both; and the engine never asks its checker."""
-    if part(path) == "verification":
-        assert imported_parts(path) <= {
-            "verification", "regionmap", "cover", "plane", "expressions", "slice", "errors", "numerals", "syntax",
-            "mechanism",
-        }  # fmt: skip
-        assert "ptmcad.mechanism.evaluate" not in {module for module, _ in imports(path)}
-    elif part(path) not in {"cli", "__init__"}:
-        assert "verification" not in imported_parts(path)
+def loaded_after(code: str, tmp_path: Path) -> set[str]:
+    """Every module loaded by a fresh interpreter that has run the code, and the packages that hold it."""
+    report = "import json, sys; print('\\n' + json.dumps(sorted(sys.modules)))"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}\n{report}"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return set(json.loads(done.stdout.splitlines()[-1]))
 
 
 def test_verification_loads_nothing_of_the_engine(tmp_path: Path) -> None:
     """Not even through another module."""
-    code = (
-        "import sys, ptmcad\n"
-        "ptmcad.verify\n"
-        "engine = ('algebra', 'cad', 'models', 'variety', 'counting', 'regions', 'pipeline', 'exactmap', 'locate')\n"
-        "loaded = [name for name in sys.modules if name.startswith(tuple('ptmcad.' + e for e in engine))\n"
-        "          and not name.startswith('ptmcad.regionmap')]\n"
-        "assert not loaded, loaded\n"
-    )
-    loaded_after(code, tmp_path)
-
-
-WATCHING = {
-    "__main__": {"cli", "supervisor"},
-    "supervisor": {"handover", "streams", "shortage", "output", "commit", "errors"},
-    "commit": {"handover", "journal", "errors"},
-    "journal": set(),
-    "handover": set(),
-    "streams": set(),
-    "shortage": set(),
-    "memory": {"errors", "handover", "shortage"},
-}
-
-
-@pytest.mark.parametrize("name", WATCHING)
-def test_what_watches_knows_nothing_of_what_is_computed(name: str) -> None:
-    assert imported_parts(PACKAGE / f"{name}.py") <= WATCHING[name]
-
-
-@pytest.mark.parametrize("path", MODULES, ids=relative)
-def test_stress_asks_the_engines_as_a_user_does(path: Path) -> None:
-    """The answers that ptmcad is held against share no mathematics with it, and nothing that computes knows of them."""
-    if part(path) == "stress":
-        assert not imported_parts(path) & {
-            "algebra", "cad", "counting", "variety", "solving", "statics", "models", "interval", "balls", "exactmap",
-        }  # fmt: skip
-    elif part(path) not in {"cli", "render"}:
-        assert "stress" not in imported_parts(path)
-
-
-@pytest.mark.parametrize("path", MODULES, ids=relative)
-def test_only_the_entry_forks(path: Path) -> None:
-    """A library function must not turn its caller's process into two."""
-    if part(path) not in {"__main__", "supervisor"}:
-        assert "supervisor" not in imported_parts(path)
+    loaded = loaded_after("import ptmcad; ptmcad.verify", tmp_path)
+    assert not loaded & {f"ptmcad.{room}" for room in ("algebra", "exact", "certified", "ask", "show")}
 
 
 def test_the_fork_comes_before_everything_large(tmp_path: Path) -> None:
     """Handlers are set and the process is forked while little is loaded: a copy of little costs little."""
-    loaded = loaded_after("import ptmcad.__main__, ptmcad.supervisor", tmp_path)
+    loaded = loaded_after("import ptmcad.__main__, ptmcad.process.supervisor", tmp_path)
     assert not loaded & {"click", "yaml", "flint", "numpy", "dataclasses", "pathlib", "subprocess"}
 
 
-@pytest.mark.parametrize("path", MODULES, ids=relative)
-def test_data_flows_one_way(path: Path) -> None:
-    """What computes knows nothing of how results are shown, asked for or timed."""
-    if part(path) not in {"cli", "bench", "render", "report", "paper", "stress", "__main__"}:
-        allowed = {"regionmap": {"render"}, "slicevariety": {"export"}, "export": {"export"}}.get(part(path), set())
-        assert not imported_parts(path) & {"cli", "bench", "render", "export"} - allowed
-    if part(path) in {"errors", "textfile"}:
-        assert imported_parts(path) <= {"errors", "numerals"}
-    if part(path) == "syntax":
-        assert imported_parts(path) <= {"errors"}
-    if part(path) == "expressions":
-        assert imported_parts(path) <= {"errors", "numerals", "syntax"}
-    if part(path) == "mechanism":
-        assert imported_parts(path) <= {"mechanism", "syntax", "errors"}
-    if part(path) == "export":
-        assert imported_parts(path) <= {
-            "export", "slicevariety", "polynomial_text", "plane", "regionmap", "numerals", "errors", "expressions",
-            "syntax", "mechanism",
-        }  # fmt: skip
-    if part(path) == "yamltree":
-        assert imported_parts(path) <= {"errors", "textfile"}
-
-
-@pytest.mark.parametrize("path", MODULES, ids=relative)
-def test_the_report_tells_what_the_result_holds_and_computes_nothing(path: Path) -> None:
-    """It may read, write down and draw; the engine is out of its reach, and only a command asks for it."""
-    if part(path) == "report":
-        assert imported_parts(path) <= {
-            "report", "regionmap", "slice", "plane", "polynomial_text", "table", "numerals", "errors", "version",
-            "render", "config", "yamltree", "document", "textfile", "mechanism",
-        }  # fmt: skip
-    elif part(path) != "cli":
-        assert "report" not in imported_parts(path)
-
-
 def test_the_report_does_without_matplotlib(tmp_path: Path) -> None:
-    """Outlines and colours are all that it takes from render/."""
-    assert not loaded_after("import ptmcad.report", tmp_path) & {"matplotlib", "sympy"}
+    """Outlines and colours are all that it takes from the pictures."""
+    assert not loaded_after("import ptmcad.show.report", tmp_path) & {"matplotlib", "sympy"}
 
 
 def test_reading_poses_loads_nothing_of_the_engine(tmp_path: Path) -> None:
     """Enclosures, poses, their document and table are free of any engine."""
-    code = "import ptmcad, ptmcad.document.poses, ptmcad.posetable; ptmcad.Poses, ptmcad.Enclosure"
+    code = "import ptmcad, ptmcad.show.document.poses, ptmcad.show.posetable; ptmcad.Poses, ptmcad.Enclosure"
     assert not loaded_after(code, tmp_path) & {"flint", "yaml", "numpy", "matplotlib", "sympy"}
 
 
@@ -236,16 +113,6 @@ def test_solving_needs_no_picture_or_symbolic_library(tmp_path: Path) -> None:
     loaded = loaded_after(code, tmp_path)
     assert "flint" in loaded
     assert not loaded & {"matplotlib", "sympy", "numpy"}
-
-
-def loaded_after(code: str, tmp_path: Path) -> set[str]:
-    """Top-level modules loaded by a fresh interpreter that has run the code."""
-    report = "import json, sys; print('\\n' + json.dumps(sorted({name.partition('.')[0] for name in sys.modules})))"
-    done = subprocess.run(
-        [sys.executable, "-c", f"{code}\n{report}"], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    return set(json.loads(done.stdout.splitlines()[-1]))
 
 
 def test_the_command_line_starts_lean(tmp_path: Path) -> None:

@@ -25,10 +25,10 @@ from test_faults import FIG2, IN_C, PARTIAL, ROOT, Running, classified, linux
 from ptmcad.cli import run
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError, PictureError
-from ptmcad.memory import ROOM, Bound, bounded, check_room, loading
-from ptmcad.output import text_writer
-from ptmcad.shortage import COMPUTING, IDLE, LITTLE, LOADING, Limit, Usage, Waiting, usage_of
-from ptmcad.streams import quiet_stream
+from ptmcad.process.memory import ROOM, Bound, bounded, check_room, loading
+from ptmcad.process.output import text_writer
+from ptmcad.process.shortage import COMPUTING, IDLE, LITTLE, LOADING, Limit, Usage, Waiting, usage_of
+from ptmcad.process.streams import quiet_stream
 
 pytestmark = linux
 MIB = 1 << 20
@@ -122,7 +122,7 @@ def test_a_library_that_does_not_say_why(monkeypatch: pytest.MonkeyPatch) -> Non
     """LLVM's loader says under a low limit on address space that its file is not found."""
     failure = OSError("Could not find/load shared object file 'libllvmlite.so'")
     for size, expected in ((200 * MIB, MemoryError), (1 << 40, OSError)):
-        monkeypatch.setattr("ptmcad.memory.caller_limits", lambda size=size: (Limit(size, True, "a limit"),))
+        monkeypatch.setattr("ptmcad.process.memory.caller_limits", lambda size=size: (Limit(size, True, "a limit"),))
         with pytest.raises(expected), loading("a library"):
             raise failure
         with pytest.raises(ModuleNotFoundError), loading("a library"):
@@ -166,7 +166,7 @@ def test_a_library_that_sleeps_for_ever() -> None:
 def test_what_waits_for_memory_is_ended(tmp_path: Path, phase: str) -> None:
     """As OpenBLAS does."""
     work = (
-        "import mmap\nfrom ptmcad.memory import loading\nfrom contextlib import nullcontext\n"
+        "import mmap\nfrom ptmcad.process.memory import loading\nfrom contextlib import nullcontext\n"
         "def engine(progress, partial):\n"
         "    kept = bytearray(100 << 20)\n"
         f"    with {'loading(chr(97))' if phase == 'loading' else 'nullcontext()'}:\n"
@@ -385,12 +385,12 @@ def test_pictures_whatever_the_environment_says(tmp_path: Path, environment: dic
 def test_a_picture_that_fails_leaves_the_result(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], error: Exception
 ) -> None:
-    import ptmcad.render.regionmap
+    import ptmcad.show.render.regionmap
 
     def fail(*_: Any, **__: Any) -> None:
         raise error
 
-    monkeypatch.setattr(ptmcad.render.regionmap, "draw", fail)
+    monkeypatch.setattr(ptmcad.show.render.regionmap, "draw", fail)
     arguments = ["classify", str(FIG2), "--out", str(tmp_path), "--format", "json,svg"]
     assert run(arguments) == 2
     errors = capfd.readouterr().err

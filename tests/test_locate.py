@@ -14,9 +14,9 @@ from shipped_records import EXACT
 from ptmcad import RegionMap, load
 from ptmcad.algebra.polynomials import from_fraction, from_plane, to_fraction
 from ptmcad.algebra.real_roots import isolate, refine
-from ptmcad.cad.curves import curve
+from ptmcad.answer.regionmap import Status
 from ptmcad.errors import ConfigError
-from ptmcad.regionmap import Status
+from ptmcad.exact.cad.curves import curve
 
 TINY = Fraction(1, 10**40)
 SHIPPED = [path.stem for path in EXACT]

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli import run
-from ptmcad.regionmap import RegionMap
 
 
 @pytest.fixture(name="fig2")

@@ -15,11 +15,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.exact.models.geometry import geometry_of, squared_lengths, system_from
 from ptmcad.mechanism import Kind, Mechanism, described, mechanism_of, ptm
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.ptm import RECORD
-from ptmcad.models.geometry import geometry_of, squared_lengths, system_from
-from ptmcad.syntax import Tree, parse, to_text
+from ptmcad.text.syntax import Tree, parse, to_text
 
 PAPER = """
 name: ptm

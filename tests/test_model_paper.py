@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import pytest
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.models import system_of
+from ptmcad.exact.models import system_of
 
 NAMES = ("L1", "L2", "rho", "k", "F3", "F4", "F3x", "F4x", "c1", "s1", "c2", "s2", "t1", "t2")
 RING = fmpq_mpoly_ctx.get(NAMES, Ordering.degrevlex)

@@ -18,16 +18,16 @@ pytest.importorskip("numba")
 from dense_search import dense_search
 
 import ptmcad
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.certified.cones import cones
+from ptmcad.certified.curves import curves
+from ptmcad.certified.engine import certified_map
+from ptmcad.certified.formula import Graph
+from ptmcad.certified.mechanism import NAMES
+from ptmcad.certified.parameters import positive_base, slice_mechanism
+from ptmcad.certified.points import PointCount, point_counter
 from ptmcad.errors import ConfigError, DegenerateSliceError, LimitReached
-from ptmcad.interval.cones import cones
-from ptmcad.interval.curves import curves
-from ptmcad.interval.engine import certified_map
-from ptmcad.interval.formula import Graph
-from ptmcad.interval.mechanism import NAMES
-from ptmcad.interval.parameters import positive_base, slice_mechanism
-from ptmcad.interval.points import PointCount, point_counter
-from ptmcad.regionmap import RegionMap, Status
-from ptmcad.slice import Count, Slice
+from ptmcad.question.slice import Count, Slice
 
 UNIT = {"L1": 1, "k": 1, "F3": "-1/10", "F4": "-1/10", "l0": "1/5"}
 

@@ -9,10 +9,10 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly, nmod
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from ptmcad import statics
 from ptmcad.algebra import number_field
 from ptmcad.algebra.number_field import Element, Modulus, RealField, polynomial_at
 from ptmcad.algebra.real_roots import isolate
+from ptmcad.exact import statics
 
 NUMBERS = st.fractions(-4, 4, max_denominator=12).map(lambda q: fmpq(q.numerator, q.denominator))
 PRIMES = (2, 3, 5, 7, 11, 2**61 - 1)

@@ -8,7 +8,7 @@ from fractions import Fraction
 import pytest
 from conftest import shipped
 
-from ptmcad.numerals import (
+from ptmcad.text.numerals import (
     MAX_DIGITS,
     MAX_EXPONENT,
     approximate_text,

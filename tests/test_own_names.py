@@ -38,17 +38,17 @@ def own_names(path: Path) -> Iterator[tuple[int, str]]:
                 yield getattr(node, "lineno", 0), name
 
 
-STUDIES = ("paper/", "stress/", "bench/")
+STUDIES = "studies/"
 """They study this mechanism: constructions, published equations and rival methods are its own."""
 KERNELS = {
-    "interval/cones.py",
-    "interval/curves.py",
-    "interval/engine.py",
-    "interval/equilibria.py",
-    "interval/mechanism.py",
-    "interval/parameters.py",
-    "interval/points.py",
-    "interval/poses.py",
+    "certified/cones.py",
+    "certified/curves.py",
+    "certified/engine.py",
+    "certified/equilibria.py",
+    "certified/mechanism.py",
+    "certified/parameters.py",
+    "certified/points.py",
+    "certified/poses.py",
 }
 """The certified engine's formulas, made by hand for this mechanism."""
 CHECKER = {
@@ -64,22 +64,22 @@ ELIMINATION = {
     "algebra/signed_equations.py",
     "algebra/simple_roots.py",
     "algebra/squared.py",
-    "ranges/free_lengths.py",
+    "exact/ranges/free_lengths.py",
 }
 """The paper's elimination of free lengths, signs and simple roots."""
 MESSAGES = {
     "cli/locate.py",
     "cli/range.py",
     "cli/solve.py",
-    "config/__init__.py",
-    "config/options.py",
-    "config/record.py",
-    "config/resolution.py",
-    "polynomial_text.py",
-    "render/axes.py",
-    "savings.py",
-    "syntax.py",
-    "yamltree.py",
+    "question/config/__init__.py",
+    "question/config/options.py",
+    "question/config/record.py",
+    "question/config/resolution.py",
+    "show/polynomial_text.py",
+    "show/render/axes.py",
+    "question/savings.py",
+    "text/syntax.py",
+    "text/yamltree.py",
 }
 """Examples in messages, and Greek letters as names."""
 STILL_HOLDING = KERNELS | CHECKER | ELIMINATION | MESSAGES

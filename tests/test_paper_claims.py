@@ -23,9 +23,10 @@ import sympy as sp
 from test_model_paper import free_length_equilibria
 
 from ptmcad.algebra.squared import real_root_number, squared_equations
-from ptmcad.paper import printed
-from ptmcad.paper.claim import Outcome, Verdict, judge
-from ptmcad.paper.claims import (
+from ptmcad.answer.regionmap import Merge, Status
+from ptmcad.studies.paper import printed
+from ptmcad.studies.paper.claim import Outcome, Verdict, judge
+from ptmcad.studies.paper.claims import (
     SECTIONS,
     all_claims,
     basics,
@@ -38,9 +39,8 @@ from ptmcad.paper.claims import (
     unloaded,
     unloaded_map,
 )
-from ptmcad.paper.free_lengths import FreeLengthDesign, proved_equilibrium
-from ptmcad.paper.slices import FIGURES, region_map, slice_of
-from ptmcad.regionmap import Merge, Status
+from ptmcad.studies.paper.free_lengths import FreeLengthDesign, proved_equilibrium
+from ptmcad.studies.paper.slices import FIGURES, region_map, slice_of
 
 CLAIMS = {claim.name: claim for claim in all_claims()}
 OUTCOMES: dict[str, Outcome] = {}
@@ -461,7 +461,7 @@ def elastic_energy(design: tuple[str, ...], angles: tuple[float, float]) -> tupl
 
 def test_engine_gradient_by_difference_quotients() -> None:
     """5.2-eq17: the translated formulas of the certified engine are the slope of (17)."""
-    from ptmcad.paper.free_potential import LENGTHS, engine_gradient, l0
+    from ptmcad.studies.paper.free_potential import LENGTHS, engine_gradient, l0
 
     design, (a, b), h = extensions.TWELVE, (0.7, -2.1), 1e-6
     rho, length1, length2, free, f3, f4 = map(float, design)
@@ -504,8 +504,8 @@ def test_real_roots_by_complex_roots() -> None:
 
 def test_maps_with_free_lengths_at_points() -> None:
     """5.2-difficult: as many stable equilibria as Krawczyk's test proves from a grid of starting points."""
-    from ptmcad.locate import locate
-    from ptmcad.paper.free_lengths import proved_equilibria
+    from ptmcad.ask.location import locate
+    from ptmcad.studies.paper.free_lengths import proved_equilibria
 
     half, draw = Fraction(3, 2), Random(7)
     seen: list[int] = []
@@ -632,7 +632,7 @@ def test_an_unfinished_map_decides_nothing(monkeypatch: pytest.MonkeyPatch, chan
 def test_without_numba_the_forecast_is_not_checked(monkeypatch: pytest.MonkeyPatch) -> None:
     """5.2-difficult needs an optional package, and says so where it is missing."""
     monkeypatch.setitem(sys.modules, "numba", None)
-    monkeypatch.delitem(sys.modules, "ptmcad.interval.compiled", raising=False)
+    monkeypatch.delitem(sys.modules, "ptmcad.certified.compiled", raising=False)
     found = free_springs.difficult()
     assert found.verdict is Verdict.NOT_CHECKED
     assert "numba" in found.reason
@@ -705,7 +705,7 @@ def test_errata_page_lists_what_is_not_as_printed() -> None:
 
 def test_widest_range_by_another_proof() -> None:
     """4.3-widest: `ptmcad range --over` proves it by chords and derivatives of the ends, on pieces of the axis."""
-    from ptmcad.ranges.width import operation_widths
+    from ptmcad.exact.ranges.width import operation_widths
 
     (maximum,) = operation_widths(slice_of("fig4"), "rho", rows=1).maxima
     low, high = general.widest().widths[Fraction(1)]
@@ -719,8 +719,9 @@ def test_widest_range_by_another_proof() -> None:
 ], ids=FIGURES)  # fmt: skip
 def test_ranges_by_another_way(figure: str, at: dict[str, Any]) -> None:
     """The operation range by `ptmcad range`, which computes the variety of the line and not of the plane."""
-    from ptmcad.paper.slices import operation_range
-    from ptmcad.ranges.line import intervals, lower, upper
+    from ptmcad.answer.intervals import lower, upper
+    from ptmcad.exact.ranges.line import intervals
+    from ptmcad.studies.paper.slices import operation_range
 
     ((_, fixed),) = at.items()
     (found,) = intervals(slice_of(figure), "rho", at).operation

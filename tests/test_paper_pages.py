@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from ptmcad.paper import equations, printed
-from ptmcad.paper.claim import Claim, Outcome, Verdict, unchecked
-from ptmcad.paper.pages import Illustration, claims_html, claims_markdown, index_html
-from ptmcad.paper.reproduce import FILES, Reproduction, claims_json, judge_all
+from ptmcad.studies.paper import equations, printed
+from ptmcad.studies.paper.claim import Claim, Outcome, Verdict, unchecked
+from ptmcad.studies.paper.pages import Illustration, claims_html, claims_markdown, index_html
+from ptmcad.studies.paper.reproduce import FILES, Reproduction, claims_json, judge_all
 
 NASTY = 'a <b>&"quoted"</b> | * _x_'
 

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from programs import monomials
 from sympy.parsing.mathematica import parse_mathematica
 
-from ptmcad.numerals import integer_of
-from ptmcad.plane import PlanePolynomial
-from ptmcad.polynomial_text import Style, polynomial_lines, polynomial_text, symbols
+from ptmcad.show.polynomial_text import Style, polynomial_lines, polynomial_text, symbols
+from ptmcad.text.numerals import integer_of
+from ptmcad.text.plane import PlanePolynomial
 
 NAMES = ("rho", "L2")
 HARD = st.sampled_from((1, -1, 2, -3, 10**30, -(10**40) - 7))

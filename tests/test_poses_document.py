@@ -15,11 +15,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad import AlgebraicNumber, Enclosure, Poses, solve
-from ptmcad.document.poses import FORMAT
-from ptmcad.enclosure import exact_text
 from ptmcad.mechanism import ptm
-from ptmcad.numerals import fraction_of
-from ptmcad.posetable import WIDTH
+from ptmcad.show.document.poses import FORMAT
+from ptmcad.show.posetable import WIDTH
+from ptmcad.text.enclosure import exact_text
+from ptmcad.text.numerals import fraction_of
 
 SCHEMA = json.loads((Path(__file__).parent.parent / "docs" / "poses.schema.json").read_text(encoding="utf-8"))
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)

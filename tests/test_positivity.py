@@ -12,8 +12,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from ptmcad.algebra import definite
-from ptmcad.expressions import Expression, axis, constant, parse
-from ptmcad.positivity import (
+from ptmcad.question.positivity import (
     PROVED,
     Need,
     Proved,
@@ -26,7 +25,8 @@ from ptmcad.positivity import (
     place,
     polynomial_value,
 )
-from ptmcad.slice import Axis
+from ptmcad.question.slice import Axis
+from ptmcad.text.expressions import Expression, axis, constant, parse
 
 Q = Fraction
 AXES = (Axis("rho", Q(0), Q(2)), Axis("F", Q(-3), Q(1)))

@@ -20,11 +20,11 @@ from structure import check_structure
 from ptmcad import RegionMap, classify, slice_from_mapping, verify
 from ptmcad.algebra.polynomials import from_fraction, from_plane, to_fraction
 from ptmcad.algebra.real_roots import isolate, refine, squarefree_part
-from ptmcad.cad.curves import curve
-from ptmcad.counting import DegeneratePoint, count_by_signature
+from ptmcad.answer.regionmap import Status
 from ptmcad.errors import ConfigError, HypothesisError
-from ptmcad.models import system_of
-from ptmcad.regionmap import Status
+from ptmcad.exact.cad.curves import curve
+from ptmcad.exact.counting import DegeneratePoint, count_by_signature
+from ptmcad.exact.models import system_of
 
 POINTS = 100
 TINY = Fraction(1, 10**40)

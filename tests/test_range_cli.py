@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.cli import run
-from ptmcad.render.ranges import spread
+from ptmcad.show.render.ranges import spread
 
 ROOT = Path(__file__).resolve().parents[1]
 FIG4 = str(ROOT / "configs" / "fig4.yaml")

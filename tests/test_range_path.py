@@ -14,14 +14,14 @@ from conftest import CONFIGS
 from flint import arb, ctx
 
 import ptmcad
+from ptmcad.ask.ranges import Fate, PosePath, pose_paths
 from ptmcad.errors import ConfigError
-from ptmcad.models import system_of
-from ptmcad.ranges import Fate, PosePath, pose_paths
-from ptmcad.ranges.document import document, path_data
-from ptmcad.ranges.line import line_of
-from ptmcad.ranges.table import path_table, sine_sign
-from ptmcad.ranges.tracking import BITS, Family, Reached, at_value, bridge, enclose, follow
-from ptmcad.slice import Slice
+from ptmcad.exact.models import system_of
+from ptmcad.exact.ranges.tracking import BITS, Family, Reached, at_value, bridge, enclose, follow
+from ptmcad.question.line import line_of
+from ptmcad.question.slice import Slice
+from ptmcad.show.ranges.document import document, path_data
+from ptmcad.show.ranges.table import path_table, sine_sign
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -75,7 +75,7 @@ def test_an_upright_pose_snaps_to_the_reverse_one(name: str, along: str, at: dic
     """Section 4.2 of the paper; ends agree with the ranges, poses with a descent in floating point."""
     slice, numbers = record(name), Numbers(record(name), along, at)
     found = pose_paths(slice, along, at, Fraction(start))
-    (operation,) = ptmcad.ranges.intervals(slice, along, at).operation
+    (operation,) = ptmcad.ask.ranges.intervals(slice, along, at).operation
     upright = [p for p in found.paths if p.upright]
     reverse = [p for p in found.paths if p.reverse]
     assert len(upright) == len(reverse) == 1
@@ -189,7 +189,7 @@ def test_text_and_document() -> None:
 
 def test_a_path_towards_infinitely_many_equilibria_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     """Unloaded equal rods: near rho = 0 the steps shrink like rho^2, so they are counted, and the rest is undecided."""
-    monkeypatch.setattr("ptmcad.ranges.tracking._MOST_STEPS", 40)
+    monkeypatch.setattr("ptmcad.exact.ranges.tracking._MOST_STEPS", 40)
     slice = ptmcad.load(CONFIGS / "fig3.yaml")
     paths = pose_paths(slice, "rho", {"F": Fraction(0)}, Fraction(1, 2), 1)
     assert paths.paths[0].low.fate is Fate.UNDECIDED

@@ -14,14 +14,15 @@ import ptmcad
 from ptmcad.algebra.chords import side_of_chord, slope_over
 from ptmcad.algebra.polynomials import PLANE
 from ptmcad.algebra.real_roots import RealRoot, isolate
-from ptmcad.cad.curves import curve
-from ptmcad.cad.stacks import BaseEnd
-from ptmcad.config import slice_from_options
-from ptmcad.ranges import Place, intervals, operation_widths
-from ptmcad.ranges.document import document, over_data
-from ptmcad.ranges.strips import Branch, Strip, strips
-from ptmcad.ranges.table import width_table
-from ptmcad.ranges.width import Maximum, largest
+from ptmcad.answer.widths import Maximum
+from ptmcad.ask.ranges import Place, intervals, operation_widths
+from ptmcad.exact.cad.curves import curve
+from ptmcad.exact.cad.stacks import BaseEnd
+from ptmcad.exact.ranges.strips import Branch, Strip, strips
+from ptmcad.exact.ranges.width import largest
+from ptmcad.question.config import slice_from_options
+from ptmcad.show.ranges.document import document, over_data
+from ptmcad.show.ranges.table import width_table
 
 ROOT = Path(__file__).resolve().parents[1]
 X, Y = PLANE.gens()

@@ -18,14 +18,14 @@ from random_slices import drawn
 
 import ptmcad
 from ptmcad.algebra.numbers import compare, refined
-from ptmcad.enclosure import AlgebraicNumber
+from ptmcad.answer.intervals import lower, upper
+from ptmcad.ask.ranges import CountIntervals, Event, intervals
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError
-from ptmcad.ranges import CountIntervals, Event, intervals
-from ptmcad.ranges.document import document, line_data
-from ptmcad.ranges.line import lower, upper
-from ptmcad.ranges.numbers import end_text, width_text
-from ptmcad.ranges.table import table
-from ptmcad.slice import Count, Slice
+from ptmcad.question.slice import Count, Slice
+from ptmcad.show.ranges.document import document, line_data
+from ptmcad.show.ranges.numbers import end_text, width_text
+from ptmcad.show.ranges.table import table
+from ptmcad.text.enclosure import AlgebraicNumber
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIGS = sorted((ROOT / "configs").glob("*.yaml"))

@@ -106,7 +106,7 @@ def test_python_block(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_yaml_block(tmp_path: Path) -> None:
     """The record is read, and is the shipped one with its reference left out."""
-    from ptmcad import config
+    from ptmcad.question import config
 
     (block,) = blocks("yaml")
     record = tmp_path / "record.yaml"

@@ -21,17 +21,17 @@ from matplotlib.image import imread
 from matplotlib.text import Annotation
 
 import ptmcad
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import Cell, Component, Kind, Region, RegionMap, Stack, Status, System, Wall
-from ptmcad.render import draw
-from ptmcad.render.axes import scale_of, symbol, unit
-from ptmcad.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of
-from ptmcad.render.labels import place
-from ptmcad.render.outline import outline
-from ptmcad.render.regionmap import figure_of
-from ptmcad.render.slivers import thin_regions, zooms
-from ptmcad.render.view import View
-from ptmcad.slice import Axis, Count, Point, Slice
+from ptmcad.answer.regionmap import Cell, Component, Kind, Region, RegionMap, Stack, Status, System, Wall
+from ptmcad.question.slice import Axis, Count, Point, Slice
+from ptmcad.show.render import draw
+from ptmcad.show.render.axes import scale_of, symbol, unit
+from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of
+from ptmcad.show.render.labels import place
+from ptmcad.show.render.outline import outline
+from ptmcad.show.render.regionmap import figure_of
+from ptmcad.show.render.slivers import thin_regions, zooms
+from ptmcad.show.render.view import View
+from ptmcad.text.plane import PlanePolynomial
 
 ROOT = Path(__file__).resolve().parents[1]
 MAPS = [("fig2", "stable"), ("fig3", "stable"), ("fig3", "index"), ("fig4", "index"), ("forces", "total")]
@@ -318,7 +318,9 @@ def test_the_same_bytes_in_other_processes_without_pyplot(tmp_path: Path) -> Non
     """Nor does a user's matplotlibrc change them."""
     (tmp_path / "map.json").write_text(classified("fig3", "index").to_json(), encoding="utf-8")
     code = (
-        "import sys; from pathlib import Path; from ptmcad.regionmap import RegionMap; from ptmcad.render import draw\n"
+        "import sys; from pathlib import Path\n"
+        "from ptmcad.answer.regionmap import RegionMap\n"
+        "from ptmcad.show.render import draw\n"
         "draw(RegionMap.from_json(Path('map.json').read_text()), Path(sys.argv[1]))\n"
         "assert 'matplotlib.pyplot' not in sys.modules\n"
     )

@@ -19,18 +19,19 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 from matplotlib.path import Path as Curve
 
+from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli import run
-from ptmcad.cover import Cover
+from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
-from ptmcad.regionmap import RegionMap, Status
-from ptmcad.render import draw
-from ptmcad.render.colours import ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED, fill_of
-from ptmcad.render.coveroutline import TOLERANCE, simplified
-from ptmcad.render.legend import RIM
-from ptmcad.render.regionmap import LEFT, MARGIN, SIDE, TITLE_LINE, figure_of
-from ptmcad.render.view import View, shapes
-from ptmcad.report import page
-from ptmcad.slice import Count, Point
+from ptmcad.question.slice import Count, Point
+from ptmcad.show.render import draw
+from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED, fill_of
+from ptmcad.show.render.coveroutline import TOLERANCE, simplified
+from ptmcad.show.render.legend import RIM
+from ptmcad.show.render.regionmap import LEFT, MARGIN, SIDE, TITLE_LINE, figure_of
+from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.view import View
+from ptmcad.show.report import page
 
 STEPS = 2**20
 

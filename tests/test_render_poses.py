@@ -21,16 +21,17 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import ptmcad
-from ptmcad.enclosure import Enclosure
-from ptmcad.poses import Poses, solve
-from ptmcad.regionmap import Status
-from ptmcad.render import printing
-from ptmcad.render.clearance import Label, Stroke, crosses, overlap, place, polyline
-from ptmcad.render.figure import draw_figure, point_of
-from ptmcad.render.landscape import contour_levels, copies, draw_landscape, energy_of
-from ptmcad.render.mechanism import PALE, STRONG
-from ptmcad.render.poses import draw_poses, in_order, printed_number, value_text
-from ptmcad.render.sketch import BAR_WIDTHS, PIN, TURNS, arrow_lengths, frame_of, sketch
+from ptmcad.answer.poses import Poses
+from ptmcad.answer.regionmap import Status
+from ptmcad.ask.solving import solve
+from ptmcad.show.render import printing
+from ptmcad.show.render.clearance import Label, Stroke, crosses, overlap, place, polyline
+from ptmcad.show.render.figure import draw_figure, point_of
+from ptmcad.show.render.landscape import contour_levels, copies, draw_landscape, energy_of
+from ptmcad.show.render.mechanism import PALE, STRONG
+from ptmcad.show.render.poses import draw_poses, in_order, printed_number, value_text
+from ptmcad.show.render.sketch import BAR_WIDTHS, PIN, TURNS, arrow_lengths, frame_of, sketch
+from ptmcad.text.enclosure import Enclosure
 
 ROOT = Path(__file__).resolve().parents[1]
 POINTS = {

@@ -20,20 +20,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ptmcad
+from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli import run
-from ptmcad.config import load, slice_from_options
 from ptmcad.errors import ConfigError
-from ptmcad.numerals import text_of
-from ptmcad.regionmap import RegionMap, Status
-from ptmcad.render.axes import scale_of
-from ptmcad.report import page
-from ptmcad.report.bounds import decimal_text, degrees, exactly, power, square_root, times
-from ptmcad.report.error_curve import read_error_curve
-from ptmcad.report.frame import ticks
-from ptmcad.report.page import harmless
-from ptmcad.report.potential import potential_at
-from ptmcad.report.reproduction import reproduction
-from ptmcad.slice import Point
+from ptmcad.question.config import load, slice_from_options
+from ptmcad.question.slice import Point
+from ptmcad.show.render.axes import scale_of
+from ptmcad.show.report import page
+from ptmcad.show.report.bounds import decimal_text, degrees, exactly, power, square_root, times
+from ptmcad.show.report.error_curve import read_error_curve
+from ptmcad.show.report.frame import ticks
+from ptmcad.show.report.page import harmless
+from ptmcad.show.report.potential import potential_at
+from ptmcad.show.report.reproduction import reproduction
+from ptmcad.text.numerals import text_of
 
 CONFIGS = Path(__file__).resolve().parents[1] / "configs"
 PAPER = ("fig2", "fig3", "fig4", "fig5-text", "fig5-caption")
@@ -325,7 +325,7 @@ def test_the_sympy_form_on_the_page_runs(shipped: Shipped) -> None:
 
 def test_partial_results_say_that_they_are(shipped: Shipped) -> None:
     stages: list[RegionMap] = []
-    from ptmcad.pipeline import classify
+    from ptmcad.ask.classification import classify
 
     classify(load(CONFIGS / "fig4.yaml"), partial=stages.append)
     assert [m.status for m in stages[:-1]] == [Status.PARTIAL] * (len(stages) - 1)

@@ -17,8 +17,8 @@ from conftest import CONFIGS
 from conftest import shipped as computed
 
 import ptmcad
-from ptmcad.regionmap import RegionMap, Status
-from ptmcad.report import page
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.show.report import page
 
 pytestmark = pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
 

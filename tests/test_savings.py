@@ -39,17 +39,17 @@ from ptmcad.algebra.quotient import (
     power_trace_denominators,
     quotient_algebra,
 )
-from ptmcad.bench import ablation
-from ptmcad.bench.sameness import difference
-from ptmcad.cad.stacks import heights_between
+from ptmcad.answer.regionmap import HARMLESS, Kind, RegionMap
 from ptmcad.cli import run
-from ptmcad.config import slice_from_mapping
 from ptmcad.errors import ConfigError, HypothesisError
-from ptmcad.models import system_of
-from ptmcad.models.system import on_slice
-from ptmcad.regionmap import HARMLESS, Kind, RegionMap
-from ptmcad.savings import ALL, SAVINGS, Engine, kept
-from ptmcad.slice import Slice
+from ptmcad.exact.cad.stacks import heights_between
+from ptmcad.exact.models import system_of
+from ptmcad.exact.models.system import on_slice
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.savings import ALL, SAVINGS, Engine, kept
+from ptmcad.question.slice import Slice
+from ptmcad.studies.bench import ablation
+from ptmcad.studies.bench.sameness import difference
 
 ROOT = Path(__file__).parent.parent
 NAMES = tuple(s.name for s in SAVINGS if s.engine is Engine.EXACT)
@@ -311,7 +311,7 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
 def test_curves_of_the_certified_engine() -> None:
     pytest.importorskip("numba")
-    from ptmcad.interval.curves import curves
+    from ptmcad.certified.curves import curves
 
     def found(slice: Slice, *keep: str) -> dict[str, tuple[int, ...]]:
         """Names of the curves, with the number of formulas beside the equations that vanish."""

@@ -21,16 +21,16 @@ from structure import check_structure
 
 import ptmcad
 from ptmcad.algebra import resultants
-from ptmcad.bench.scaling import __main__ as command
-from ptmcad.bench.scaling import families, folds, measurement, run, slices
-from ptmcad.bench.scaling.fit import Verdict, fit, medians
-from ptmcad.bench.scaling.measurement import Run, Stages, Unmeasured, in_child
-from ptmcad.bench.scaling.table import to_markdown
-from ptmcad.expressions import axis
-from ptmcad.regionmap import RegionMap
-from ptmcad.render.printing import save
-from ptmcad.render.scaling import draw_scaling
-from ptmcad.slice import Slice
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.question.slice import Slice
+from ptmcad.show.render.printing import save
+from ptmcad.studies.bench.scaling import __main__ as command
+from ptmcad.studies.bench.scaling import families, folds, measurement, run, slices
+from ptmcad.studies.bench.scaling.fit import Verdict, fit, medians
+from ptmcad.studies.bench.scaling.measurement import Run, Stages, Unmeasured, in_child
+from ptmcad.studies.bench.scaling.picture import draw_scaling
+from ptmcad.studies.bench.scaling.table import to_markdown
+from ptmcad.text.expressions import axis
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -202,7 +202,7 @@ def test_algebra_has_four_or_six_equilibria(monkeypatch: pytest.MonkeyPatch) -> 
 def test_certified_maps_within_a_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
     """The boxes are those that the search treated; a smaller tolerance takes more of them."""
     pytest.importorskip("numba")
-    from ptmcad.interval import refinement
+    from ptmcad.certified import refinement
 
     used: list[int] = []
     search_curve = refinement.search_curve

@@ -14,10 +14,10 @@ import yaml
 from shipped_records import EXACT
 
 from ptmcad import RegionMap, classify, load
-from ptmcad.config import PARAMETERS, RECORD_KEYS
-from ptmcad.document import FORMAT
 from ptmcad.errors import LimitReached
-from ptmcad.slice import Count
+from ptmcad.question.config import PARAMETERS, RECORD_KEYS
+from ptmcad.question.slice import Count
+from ptmcad.show.document import FORMAT
 
 SCHEMA = json.loads(files("ptmcad").joinpath("record.schema.json").read_text(encoding="utf-8"))
 CONFIGS = sorted((Path(__file__).parent.parent / "configs").glob("*.yaml"))

@@ -20,7 +20,7 @@ from test_model_paper import free_length_equilibria
 
 from ptmcad.algebra import simple_roots
 from ptmcad.algebra.signed import SignedSolutions, SpecialDesignError, signed_solutions
-from ptmcad.paper.free_lengths import FreeLengthDesign, proved_equilibrium
+from ptmcad.studies.paper.free_lengths import FreeLengthDesign, proved_equilibrium
 
 Numbers = tuple[str, str, str, str, str, str]
 """rho, L1, L2, l0, f3, f4."""

@@ -10,9 +10,9 @@ from flint import fmpq
 from ptmcad.algebra.polynomials import from_plane
 from ptmcad.algebra.real_roots import isolate
 from ptmcad.algebra.slopes import Direction, may_be_tangent, tangent_resultant
-from ptmcad.paper.operation_range import FOLD, HALF, MIDDLE, ONE, STRIP, UPRIGHT, Tangents
-from ptmcad.paper.slices import curves
-from ptmcad.plane import PlanePolynomial
+from ptmcad.studies.paper.operation_range import FOLD, HALF, MIDDLE, ONE, STRIP, UPRIGHT, Tangents
+from ptmcad.studies.paper.slices import curves
+from ptmcad.text.plane import PlanePolynomial
 
 CIRCLE = from_plane(PlanePolynomial.parse("x^2 + y^2 - 25"))
 PARABOLA = from_plane(PlanePolynomial.parse("x^2 - y"))

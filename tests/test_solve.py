@@ -19,9 +19,9 @@ from oracle import count
 from ptmcad import Enclosure, Pose, Poses, solve
 from ptmcad.algebra.fibre import fibre
 from ptmcad.algebra.points import points
-from ptmcad.config import point_from_mapping
+from ptmcad.answer.regionmap import Status
 from ptmcad.errors import ConfigError
-from ptmcad.regionmap import Status
+from ptmcad.question.config import point_from_mapping
 
 few = settings(max_examples=15)
 

@@ -12,22 +12,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ptmcad
+from ptmcad.answer.regionmap import Status
 from ptmcad.cli import run
-from ptmcad.regionmap import Status
-from ptmcad.render.stress import draw_stress, exponent
-from ptmcad.stress import campaign as campaign_module
-from ptmcad.stress.campaign import campaign
-from ptmcad.stress.case import Case, MapQuestion, PointAnswer, PointQuestion
-from ptmcad.stress.constructions import Degenerate, beside_cusp, beside_fold
-from ptmcad.stress.doubles import angle_error, double_poses
-from ptmcad.stress.judgement import judge
-from ptmcad.stress.measure import Verdict, answer, work_of
-from ptmcad.stress.named import chosen, named_cases
-from ptmcad.stress.points import CUSP, FOLD, MAXIMUM_CUSP, MAXIMUM_FOLD, OTHER_FOLD, TAME, point
-from ptmcad.stress.random_cases import KINDS, mirrored, random_case, stiffened, stretched, swapped
-from ptmcad.stress.reference import Degenerate as DegeneratePoint
-from ptmcad.stress.reference import newton_pose, sextic_poses
-from ptmcad.stress.report import markdown, to_csv, to_json
+from ptmcad.studies.stress import campaign as campaign_module
+from ptmcad.studies.stress.campaign import campaign
+from ptmcad.studies.stress.case import Case, MapQuestion, PointAnswer, PointQuestion
+from ptmcad.studies.stress.constructions import Degenerate, beside_cusp, beside_fold
+from ptmcad.studies.stress.doubles import angle_error, double_poses
+from ptmcad.studies.stress.judgement import judge
+from ptmcad.studies.stress.measure import Verdict, answer, work_of
+from ptmcad.studies.stress.named import chosen, named_cases
+from ptmcad.studies.stress.picture import draw_stress, exponent
+from ptmcad.studies.stress.points import CUSP, FOLD, MAXIMUM_CUSP, MAXIMUM_FOLD, OTHER_FOLD, TAME, point
+from ptmcad.studies.stress.random_cases import KINDS, mirrored, random_case, stiffened, stretched, swapped
+from ptmcad.studies.stress.reference import Degenerate as DegeneratePoint
+from ptmcad.studies.stress.reference import newton_pose, sextic_poses
+from ptmcad.studies.stress.report import markdown, to_csv, to_json
 
 CASES = named_cases()
 MARKED = [pytest.param(c, id=c.name, marks=[pytest.mark.slow] if c.slow else []) for c in CASES]
@@ -148,8 +148,8 @@ def test_the_reference_agrees_with_signatures_of_hermite_forms(seed: int) -> Non
     """Counts by the sextic's roots and by Tarski queries on the quotient algebra."""
     from flint import fmpq
 
-    from ptmcad.counting import count_by_signature
-    from ptmcad.models import system_of
+    from ptmcad.exact.counting import count_by_signature
+    from ptmcad.exact.models import system_of
 
     p = dict(random_case(seed, 0).sibling.parameters)  # type: ignore[union-attr]
     counts = count_by_signature(system_of("ptm"), {n: fmpq(v.numerator, v.denominator) for n, v in p.items()})

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.errors import ExpressionError
-from ptmcad.syntax import (
+from ptmcad.text.syntax import (
     MAX_DEPTH,
     Call,
     Chain,

@@ -1,4 +1,5 @@
-"""The decomposition of plane curves with known topology, over both axes, through the functions of `ptmcad.cad` alone.
+"""The decomposition of plane curves with known topology, over both axes, through the functions of `ptmcad.exact.cad`
+alone.
 
 The number of pieces into which the curves cut the window is known by hand, or for lines by counting their crossings.
 """
@@ -18,12 +19,12 @@ from hypothesis import strategies as st
 
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
-from ptmcad.cad.adjacency import Passage, cross
-from ptmcad.cad.area import region_areas
-from ptmcad.cad.curves import Curve, curve
-from ptmcad.cad.projection import project
-from ptmcad.cad.stacks import StackData, lift
-from ptmcad.regions import Link, merge
+from ptmcad.exact.cad.adjacency import Passage, cross
+from ptmcad.exact.cad.area import region_areas
+from ptmcad.exact.cad.curves import Curve, curve
+from ptmcad.exact.cad.projection import project
+from ptmcad.exact.cad.stacks import StackData, lift
+from ptmcad.exact.regions import Link, merge
 
 X, Y = PLANE.gens()
 Window = tuple[str, str, str, str]

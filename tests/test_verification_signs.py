@@ -1,4 +1,4 @@
-"""Signs proved by `ptmcad.verification.signs` against `ptmcad.positivity`, which shares no code with it."""
+"""Signs proved by `ptmcad.verification.signs` against `ptmcad.question.positivity`, which shares no code with it."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from certified_maps import certified
 from flint import fmpq
 from test_positivity import AXES, DIPS, NAMES, random_square, thin_dip
 
-from ptmcad.cover import Cover
-from ptmcad.expressions import Expression, axis, constant, parse
-from ptmcad.positivity import Need, Proved, Undecided, decide
-from ptmcad.regionmap import RegionMap
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.cover.rectangles import Cover
+from ptmcad.question.positivity import Need, Proved, Undecided, decide
+from ptmcad.text.expressions import Expression, axis, constant, parse
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Unchecked, Violation

@@ -11,12 +11,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from ptmcad.config import slice_from_mapping
+from ptmcad.answer.regionmap import RegionMap, Status, System
 from ptmcad.errors import ConfigError
-from ptmcad.expressions import axis, constant
-from ptmcad.regionmap import RegionMap, Status, System
-from ptmcad.report.reproduction import reproduction
-from ptmcad.slice import FREE_LENGTHS, Axis, Slice
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.slice import FREE_LENGTHS, Axis, Slice
+from ptmcad.show.report.reproduction import reproduction
+from ptmcad.text.expressions import axis, constant
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.system import check_potential
 from ptmcad.verification.parameters import check_text
@@ -195,7 +195,7 @@ def test_an_undecided_sign_of_what_is_only_named_is_refused() -> None:
 @pytest.fixture(scope="module")
 def energy() -> str:
     pytest.importorskip("numba")
-    from ptmcad.interval.statement import system_text
+    from ptmcad.certified.statement import system_text
     from ptmcad.mechanism import ptm
 
     return system_text(ptm()).potential

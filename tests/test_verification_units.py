@@ -13,9 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ptmcad
+from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import LimitReached
-from ptmcad.numerals import decimal, fraction_of, integer_of, integer_text, shortest_text, text_of
-from ptmcad.regionmap import RegionMap, Status
+from ptmcad.text.numerals import decimal, fraction_of, integer_of, integer_text, shortest_text, text_of
 from ptmcad.verification.elimination import discriminant, resultant
 
 PLANE = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)

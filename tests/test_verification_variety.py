@@ -13,8 +13,8 @@ from flint import fmpq, fmpz_mpoly
 from shipped_records import EXACT
 
 import ptmcad
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import HARMLESS, Component, Kind, RegionMap
+from ptmcad.answer.regionmap import HARMLESS, Component, Kind, RegionMap
+from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification import variety
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.report import Violation

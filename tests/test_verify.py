@@ -15,8 +15,8 @@ from mutations import put
 from shipped_records import EXACT
 
 import ptmcad
-from ptmcad.regionmap import RegionMap
-from ptmcad.slice import Point
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.question.slice import Point
 
 CONFIGS = [path.stem for path in EXACT]
 

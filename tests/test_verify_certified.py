@@ -16,11 +16,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ptmcad
+from ptmcad.answer.regionmap import Cell, RegionMap, Solution, Status, System
 from ptmcad.cli.verify import command
-from ptmcad.config import slice_from_mapping
-from ptmcad.cover import Cover, Rectangle, components
-from ptmcad.regionmap import Cell, RegionMap, Solution, Status, System
-from ptmcad.slice import Count, Point
+from ptmcad.cover import components
+from ptmcad.cover.rectangles import Cover, Rectangle
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.slice import Count, Point
 from ptmcad.verification.certified.energy import NAMES, Energy
 from ptmcad.verification.certified.equilibria import TORUS, Unproved, equilibria
 from ptmcad.verification.certified.parameters import energy_at, energy_over, exact
@@ -42,7 +43,7 @@ def made(count: str) -> RegionMap:
         "parameters": {"L1": "1", "k": "100", "F3": "-10", "F4": "-10", "l0": "1/5"},
         "axes": {"rho": ["1", "3/2"], "L2": ["3/4", "5/4"]}, "count": count,
     })  # fmt: skip
-    from ptmcad.interval.engine import certified_map
+    from ptmcad.certified.engine import certified_map
 
     return certified_map(slice, tolerance=Fraction(1, 50), jobs=1)
 
@@ -273,7 +274,7 @@ def test_random_places_beside_rectangles_find_a_shifted_cover(stable: RegionMap)
 
 
 def certified(count: str, axes: dict[str, list[str]], tolerance: Fraction, **parameters: str) -> RegionMap:
-    from ptmcad.interval.engine import certified_map
+    from ptmcad.certified.engine import certified_map
 
     record = {"name": "small", "mechanism": "ptm", "parameters": parameters, "axes": axes, "count": count}
     return certified_map(slice_from_mapping(record), tolerance=tolerance, jobs=1)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import ptmcad
-from ptmcad.render import draw
+from ptmcad.show.render import draw
 
 _START = """# Gallery
 

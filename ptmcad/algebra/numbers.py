@@ -12,8 +12,8 @@ from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_fraction, from_plane, to_fraction
 from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine, sign_at
-from ptmcad.enclosure import AlgebraicNumber
-from ptmcad.plane import PlanePolynomial
+from ptmcad.text.enclosure import AlgebraicNumber
+from ptmcad.text.plane import PlanePolynomial
 
 
 def algebraic_number(root: RealRoot) -> AlgebraicNumber:

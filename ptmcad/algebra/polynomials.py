@@ -12,8 +12,8 @@ from functools import reduce
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
-from ptmcad.expressions import Expression
-from ptmcad.plane import PlanePolynomial
+from ptmcad.text.expressions import Expression
+from ptmcad.text.plane import PlanePolynomial
 
 PLANE: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(("x", "y"), Ordering.degrevlex)
 ZERO: fmpz_mpoly = PLANE.constant(0)

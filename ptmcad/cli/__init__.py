@@ -21,7 +21,7 @@ from typing import NoReturn
 import click
 
 from ptmcad.errors import LimitReached, PtmcadError, shown
-from ptmcad.handover import Topic, tell, watched
+from ptmcad.process.handover import Topic, tell, watched
 from ptmcad.version import __version__
 
 COMMANDS = {

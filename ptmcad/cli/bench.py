@@ -8,9 +8,9 @@ from pathlib import Path
 
 import click
 
-from ptmcad.config import load
 from ptmcad.errors import ConfigError, shown_path
-from ptmcad.output import check_writable
+from ptmcad.process.output import check_writable
+from ptmcad.question.config import load
 
 METHODS = ("exact", "certified", "companion", "multistart", "qepcad", "gcad")
 DEFAULT = Path("configs") / "fig4.yaml"
@@ -78,10 +78,10 @@ def command(
         raise ConfigError(f"two records have the name {next(n for n in names if names.count(n) > 1)}", key="CONFIG")
     if find_spec("scipy") is None:
         raise ConfigError("measuring distances needs scipy: pip install 'ptmcad[bench]'", key="bench")
-    from ptmcad.bench.files import PAGE, SUFFIXES, save, save_page
-    from ptmcad.bench.measuring import measure
-    from ptmcad.bench.methods import Method
-    from ptmcad.bench.words import terminal
+    from ptmcad.studies.bench.files import PAGE, SUFFIXES, save, save_page
+    from ptmcad.studies.bench.measuring import measure
+    from ptmcad.studies.bench.methods import Method
+    from ptmcad.studies.bench.words import terminal
     from ptmcad.verification import verify
 
     check_writable(out, (*(f"{name}.{suffix}" for name in names for suffix in SUFFIXES), PAGE))
@@ -107,8 +107,8 @@ def command(
 
 
 def _compare(old: Path, new: Path) -> int:
-    from ptmcad.bench.compare import BAD, compare, comparison_table
-    from ptmcad.bench.document import read_study
+    from ptmcad.studies.bench.compare import BAD, compare, comparison_table
+    from ptmcad.studies.bench.document import read_study
 
     changes = compare(read_study(old), read_study(new))
     click.echo(comparison_table(changes))

@@ -17,12 +17,10 @@ from ptmcad.cli.limits import clock_stopped, limit_options, limits
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import slice_options
-from ptmcad.config import slice_from_options
 from ptmcad.errors import ConfigError, ExpressionError, LimitReached
-from ptmcad.expressions import rational
-from ptmcad.handover import Topic, tell, watched
-from ptmcad.memory import Bound
-from ptmcad.output import (
+from ptmcad.process.handover import Topic, tell, watched
+from ptmcad.process.memory import Bound
+from ptmcad.process.output import (
     Writer,
     check_writable,
     how_to_go_on,
@@ -31,8 +29,10 @@ from ptmcad.output import (
     where_saved,
     write_files,
 )
-from ptmcad.savings import check_names, kept
-from ptmcad.slice import Count, Slice
+from ptmcad.question.config import slice_from_options
+from ptmcad.question.savings import check_names, kept
+from ptmcad.question.slice import Count, Slice
+from ptmcad.text.expressions import rational
 
 FORMATS = ("json", "png", "svg", "pdf")
 SHORTEST = 0.01
@@ -86,7 +86,7 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
     left = None if request.timeout is None else max(request.timeout - request.spent, SHORTEST)
     with ProgressBar() as progress:
         with clock_stopped(request.timeout, request.spent):  # the time that the import takes is not the computation's
-            from ptmcad.pipeline import classify, prepare
+            from ptmcad.ask.classification import classify, prepare
 
             _tell_why_none(slice, request, "the engine was still being loaded or compiled")
             prepare(slice, request.engine, progress)
@@ -124,7 +124,7 @@ def _text(result: Any, request: Request) -> str:
 
 def _tell_why_none(slice: Slice, request: Request, reason: str) -> None:
     """Say why there is no map yet to the process that watches, when maps of this engine can be gone on from."""
-    from ptmcad.plan import is_certified
+    from ptmcad.ask.engines import is_certified
 
     if "json" in request.formats and is_certified(slice, request.engine):
         kept = "; the map to go on from is as it was" if request.resume is not None else ""
@@ -151,7 +151,7 @@ def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) ->
     text = _hand_over(request, result) if "json" in formats else ""  # first: drawing may take longer than there is time
 
     def draw(path: Path) -> None:
-        from ptmcad.render import draw as drawn  # brings matplotlib
+        from ptmcad.show.render import draw as drawn  # brings matplotlib
 
         drawn(result, path, samples=request.samples)
 
@@ -177,12 +177,13 @@ def announced(slice: Slice, request: Request) -> tuple[Any, ...]:
     ConfigError
         For a name that no saving of the engine has.
     """
-    from ptmcad import plan
+    from ptmcad.ask.engines import is_certified
+    from ptmcad.exact import plan
 
-    certified = plan.is_certified(slice, request.engine)
+    certified = is_certified(slice, request.engine)
     off = kept(request.keep, certified)
     if certified:
-        from ptmcad.interval.plan import beforehand
+        from ptmcad.certified.plan import beforehand
 
         steps = beforehand(slice, off)
     else:
@@ -218,8 +219,8 @@ def _kept(_context: click.Context, parameter: click.Parameter, names: tuple[str,
 
 def _resumed(slice: Slice, path: Path) -> Any:
     """The stored map from which to go on."""
+    from ptmcad.ask.classification import check_resumable
     from ptmcad.cli.stored import read_result
-    from ptmcad.pipeline import check_resumable
 
     earlier = read_result(path)
     try:
@@ -227,7 +228,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
     except ConfigError as error:
         raise ConfigError(error.message, key="--resume", file=str(path)) from error
     # what lies outside its cover is taken as decided: a file that contradicts itself must not be
-    from ptmcad.verification.certified.verify import contradiction
+    from ptmcad.verification.certified.checks import contradiction
 
     found = contradiction(earlier)
     if found:

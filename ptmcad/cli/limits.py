@@ -1,7 +1,7 @@
 """The limits that every command has: ``--timeout`` and ``--max-memory``.
 
-Guarantee: in a watched process (`ptmcad.supervisor`) they hold whatever code runs; elsewhere the memory limit holds,
-and the time limit where the command itself looks at the clock.
+Guarantee: in a watched process (`ptmcad.process.supervisor`) they hold whatever code runs; elsewhere the memory limit
+holds, and the time limit where the command itself looks at the clock.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from typing import Any, TypeVar
 
 import click
 
-from ptmcad.handover import Topic, tell, watched
-from ptmcad.memory import Bound, bound_of, bounded, default_bound
+from ptmcad.process.handover import Topic, tell, watched
+from ptmcad.process.memory import Bound, bound_of, bounded, default_bound
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import click
 
+from ptmcad.answer.regionmap import Location, RegionMap
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.stored import read_result
 from ptmcad.errors import ConfigError, shown
-from ptmcad.memory import Bound
-from ptmcad.regionmap import Location, RegionMap
-from ptmcad.streams import reader_left
-from ptmcad.textfile import lines_of
+from ptmcad.process.memory import Bound
+from ptmcad.process.streams import reader_left
+from ptmcad.text.textfile import lines_of
 
 LONGEST_ROW = 100_000
 """Characters of a row of points, which may go over several lines."""

@@ -9,8 +9,8 @@ import click
 from ptmcad.cli.limits import limit_options, limits, tell_deadline
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import shown_path
-from ptmcad.memory import Bound
-from ptmcad.output import check_writable
+from ptmcad.process.memory import Bound
+from ptmcad.process.output import check_writable
 
 
 @click.command("paper")
@@ -30,8 +30,8 @@ def command(*, out: Path, timeout: float | None, max_memory: Bound | None) -> in
     """
     with limits(timeout, max_memory):
         check_writable(out)  # before the libraries are loaded, which takes a second
-        from ptmcad.paper.claim import Verdict
-        from ptmcad.paper.reproduce import reproduce
+        from ptmcad.studies.paper.claim import Verdict
+        from ptmcad.studies.paper.reproduce import reproduce
 
         tell_deadline(timeout)  # anew: the time that the import took is not the computation's
         with ProgressBar() as progress:

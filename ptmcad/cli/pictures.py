@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from ptmcad.errors import PictureError
-from ptmcad.output import Writer, save_stopped, where_saved, write_files
+from ptmcad.process.output import Writer, save_stopped, where_saved, write_files
 
 
 def picture(name: str, draw: Callable[[Path], None]) -> Writer:

@@ -11,10 +11,10 @@ from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.stored import read_result
-from ptmcad.config import portable_file
 from ptmcad.errors import ConfigError, PictureError, shown_path
-from ptmcad.memory import Bound
-from ptmcad.output import check_writable, write_files
+from ptmcad.process.memory import Bound
+from ptmcad.process.output import check_writable, write_files
+from ptmcad.question.config import portable_file
 
 FORMATS = ("png", "svg", "pdf")
 
@@ -52,7 +52,7 @@ def command(
         check_writable(folder, tuple(f"{result.stem}.{suffix}" for suffix in formats))
 
         def draw(path: Path) -> None:
-            from ptmcad.render import draw as drawn  # brings matplotlib
+            from ptmcad.show.render import draw as drawn  # brings matplotlib
 
             drawn(stored, path, samples=samples, dpi=dpi)
 

@@ -10,7 +10,7 @@ import sys
 import time
 from types import TracebackType
 
-from ptmcad.handover import Topic, tell
+from ptmcad.process.handover import Topic, tell
 
 PATIENCE = 1.0
 _INTERVAL = 0.1

@@ -16,12 +16,12 @@ from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import clock_stopped, limit_options, limits
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
-from ptmcad.config import PARAMETERS, file_name, load, slice_from_options
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.expressions import rational
-from ptmcad.memory import Bound
-from ptmcad.output import Writer, check_writable, text_writer, write_files
-from ptmcad.slice import Slice
+from ptmcad.process.memory import Bound
+from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.question.config import PARAMETERS, file_name, load, slice_from_options
+from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import rational
 
 FORMATS = ("json", "png", "svg", "pdf")
 
@@ -117,12 +117,13 @@ def answer(slice: Slice, request: Request) -> Answer:
     PtmcadError
         Of any kind.
     """
-    from ptmcad import ranges
-    from ptmcad.ranges import certified, document, table
-    from ptmcad.ranges.strips import refuse_free_lengths
+    from ptmcad.ask import ranges
+    from ptmcad.exact.ranges.strips import refuse_free_lengths
+    from ptmcad.question.line import has_free_lengths
+    from ptmcad.show.ranges import document, table
 
     only_line = not request.over and request.start is None
-    if only_line and certified.has_free_lengths(slice, request.along, request.at):
+    if only_line and has_free_lengths(slice, request.along, request.at):
         return _enclosed(slice, request)
     if request.critical:
         raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
@@ -150,26 +151,30 @@ def answer(slice: Slice, request: Request) -> Answer:
 
 def _enclosed(slice: Slice, request: Request) -> Answer:
     """The answer where springs have free lengths."""
-    from ptmcad.ranges import certified, document, free_lengths
+    from ptmcad.show.ranges import certified, document, table
 
     texts, parts = [slice.heading], dict[str, Any]()
     if request.critical:
-        critical = free_lengths.critical_on_line(slice, request.along, request.at)
-        texts.append(free_lengths.critical_table(critical, request.digits))
+        from ptmcad.exact.ranges.free_lengths import critical_on_line
+
+        critical = critical_on_line(slice, request.along, request.at)
+        texts.append(table.critical_table(critical, request.digits))
         parts["critical"] = document.critical_data(critical, request.digits)
     else:
-        line = certified.certified_intervals(slice, request.along, request.at, request.digits)
+        from ptmcad.certified.intervals import certified_intervals
+
+        line = certified_intervals(slice, request.along, request.at, request.digits)
         texts.append(certified.table(line, request.digits))
         parts["enclosed"] = document.enclosed_data(line, request.digits)
     return Answer("\n\n".join(texts), parts, {})
 
 
 def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
-    from ptmcad.render.backend import load_matplotlib
+    from ptmcad.show.render.backend import load_matplotlib
 
     load_matplotlib()
-    from ptmcad.render import ranges as pictures
-    from ptmcad.render.printing import save
+    from ptmcad.show.render import ranges as pictures
+    from ptmcad.show.render.printing import save
 
     if kind == "line":
         figure = pictures.draw_range(slice, found)
@@ -243,7 +248,7 @@ def command(
     stem = f"{slice.name}-range" if name is None else file_name(name, "--name")
     with limits(timeout, max_memory):
         if formats and slice.has_free_lengths:
-            from ptmcad.ranges.certified import has_free_lengths
+            from ptmcad.question.line import has_free_lengths
 
             if has_free_lengths(slice, along, other) and set(formats) != {"json"}:
                 raise ConfigError("with a free length there is the table and JSON, no picture", key="--format")
@@ -253,8 +258,8 @@ def command(
         if names:
             check_writable(out, tuple(names))
         if slice.has_free_lengths and over is None and start is None and not critical:
-            from ptmcad.pipeline import load_certified
-            from ptmcad.ranges.certified import has_free_lengths
+            from ptmcad.ask.classification import load_certified
+            from ptmcad.question.line import has_free_lengths
 
             if has_free_lengths(slice, along, other):
                 with clock_stopped(timeout):  # the time that compiling takes is not the computation's
@@ -268,7 +273,7 @@ def command(
                 for name in (f"{stem}{part}.{suffix}" for suffix in pictures)
             }
             if "json" in formats:
-                from ptmcad.ranges.document import document
+                from ptmcad.show.ranges.document import document
 
                 text = document(slice.name, slice.mechanism, dict(found.parts))
                 writers[f"{stem}.json"] = text_writer(text)

@@ -8,10 +8,10 @@ import click
 
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.stored import read_result
-from ptmcad.config import file_name, portable_file
 from ptmcad.errors import ConfigError, shown_path
-from ptmcad.memory import Bound
-from ptmcad.output import check_writable, text_writer, write_files
+from ptmcad.process.memory import Bound
+from ptmcad.process.output import check_writable, text_writer, write_files
+from ptmcad.question.config import file_name, portable_file
 
 
 def _file_name(_context: click.Context, _parameter: click.Parameter, value: str | None) -> str | None:
@@ -52,8 +52,8 @@ def command(
         folder = result.parent if out is None else out
         file = portable_file(f"{name or result.stem}.html", "--name")
         check_writable(folder, (file,))
-        from ptmcad.report import page
-        from ptmcad.report.error_curve import read_error_curve
+        from ptmcad.show.report import page
+        from ptmcad.show.report.error_curve import read_error_curve
 
         beside = result.with_name(f"{stored.slice.name}.error-time.json")
         curve = bench if bench is not None else beside if beside.is_file() else None

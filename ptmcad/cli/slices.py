@@ -15,7 +15,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def slice_options(command: F) -> F:
-    """Add ``config``, ``axes``, ``sets`` and ``ranges``, as `ptmcad.config.slice_from_options` takes them."""
+    """Add ``config``, ``axes``, ``sets`` and ``ranges``, as `ptmcad.question.config.slice_from_options` takes them."""
     for add in (
         click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", help="The range of an axis."),
         click.option("--set", "sets", multiple=True, metavar="NAME=VALUE",

@@ -7,16 +7,16 @@ from pathlib import Path
 
 import click
 
+from ptmcad.answer.poses import MOST_DIGITS, Poses
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import clock_stopped, limit_options, limits
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
-from ptmcad.config import file_name, point_from_options
 from ptmcad.errors import ConfigError
-from ptmcad.memory import Bound
-from ptmcad.output import Writer, check_writable, text_writer, write_files
-from ptmcad.poses import MOST_DIGITS, Poses
-from ptmcad.slice import FREE_LENGTHS
+from ptmcad.process.memory import Bound
+from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.question.config import file_name, point_from_options
+from ptmcad.question.slice import FREE_LENGTHS
 
 FORMATS = ("table", "json", "png", "svg", "pdf")
 DIGITS = 10
@@ -53,12 +53,12 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
 
 
 def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
-    from ptmcad.render.backend import load_matplotlib
+    from ptmcad.show.render.backend import load_matplotlib
 
     load_matplotlib()
-    from ptmcad.render.landscape import draw_landscape
-    from ptmcad.render.poses import draw_poses
-    from ptmcad.render.printing import save as save_figure
+    from ptmcad.show.render.landscape import draw_landscape
+    from ptmcad.show.render.poses import draw_poses
+    from ptmcad.show.render.printing import save as save_figure
 
     save_figure((draw_landscape if landscape else draw_poses)(poses), path)
 
@@ -108,8 +108,8 @@ def command(
         parameters = point_from_options(config, {} if at is None else point_of(at), sets)
         if names:
             check_writable(out, names)
-        from ptmcad.pipeline import load_certified
-        from ptmcad.solving import poses_at
+        from ptmcad.ask.classification import load_certified
+        from ptmcad.ask.solving import poses_at
 
         with clock_stopped(timeout):  # the time that imports and compiling take is not the computation's
             if any(parameters.get(length) for length in FREE_LENGTHS):

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ptmcad.commit import recover
-from ptmcad.document import FORMAT
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, PtmcadError, shown
-from ptmcad.regionmap import RegionMap
-from ptmcad.textfile import read_text
+from ptmcad.process.commit import recover
+from ptmcad.show.document import FORMAT
+from ptmcad.text.textfile import read_text
 
 MAX_BYTES = 60_000_000
 """Twice what a certified map with a million rectangles takes."""

@@ -14,12 +14,12 @@ from ptmcad.cli.limits import clock_stopped, limit_options, limits
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.memory import Bound
-from ptmcad.output import Writer, check_writable, text_writer, write_files
+from ptmcad.process.memory import Bound
+from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 
 if TYPE_CHECKING:
-    from ptmcad.stress.campaign import Campaign
-    from ptmcad.stress.case import Case
+    from ptmcad.studies.stress.campaign import Campaign
+    from ptmcad.studies.stress.case import Case
 
 FORMATS = ("table", "json", "csv", "md", "png", "svg")
 NAME = "stress"
@@ -35,7 +35,7 @@ def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> None:
     OutputError
         When a file can not be written.
     """
-    from ptmcad.stress.report import markdown, to_csv, to_json
+    from ptmcad.studies.stress.report import markdown, to_csv, to_json
 
     name = NAME if found.complete else f"{NAME}.partial"
     writers: dict[str, Writer] = {}
@@ -55,11 +55,11 @@ def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> None:
 
 
 def _draw(found: Campaign, path: Path) -> None:
-    from ptmcad.render.backend import load_matplotlib
+    from ptmcad.show.render.backend import load_matplotlib
 
     load_matplotlib()
-    from ptmcad.render.printing import save as save_figure
-    from ptmcad.render.stress import draw_stress
+    from ptmcad.show.render.printing import save as save_figure
+    from ptmcad.studies.stress.picture import draw_stress
 
     save_figure(draw_stress(found.outcomes), path)
 
@@ -103,24 +103,24 @@ def command(
         ptmcad stress --random 100 --seed 7 --format table
         ptmcad stress all --random 100
     """
-    from ptmcad.stress.named import chosen  # the cases' numbers need no library
+    from ptmcad.studies.stress.named import chosen  # the cases' numbers need no library
 
     limit = None if timeout is None else timeout + GRACE
     with limits(limit, max_memory):
         cases = _cases(names, number, seed, everything=only_list)
         if only_list:
-            from ptmcad.stress.report import listing
+            from ptmcad.studies.stress.report import listing
 
             click.echo(listing(cases if names or number else chosen(())))
             return 0
         files = [kind for kind in formats if kind != "table"]
         if files:
             check_writable(out, tuple(f"{NAME}.{kind}" for kind in files))
-        from ptmcad.stress.campaign import campaign
-        from ptmcad.stress.report import summary, table
+        from ptmcad.studies.stress.campaign import campaign
+        from ptmcad.studies.stress.report import summary, table
 
         if any(case.has_free_lengths for case in cases):
-            from ptmcad.pipeline import load_certified
+            from ptmcad.ask.classification import load_certified
 
             with clock_stopped(limit):  # the time that compiling takes is not the cases'
                 load_certified()
@@ -136,11 +136,11 @@ def command(
 
 def _cases(names: tuple[str, ...], number: int, seed: int, *, everything: bool) -> tuple[Case, ...]:
     """The named cases, unless only random ones are asked for, and the random ones."""
-    from ptmcad.stress.named import chosen
+    from ptmcad.studies.stress.named import chosen
 
     found = chosen(names) if names or not number or everything else ()
     if number:
-        from ptmcad.stress.random_cases import random_case
+        from ptmcad.studies.stress.random_cases import random_case
 
         found = (*found, *(random_case(seed, k) for k in range(number)))
     if not found:

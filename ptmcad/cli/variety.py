@@ -8,11 +8,11 @@ import click
 
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.slices import slice_options
-from ptmcad.config import portable_file, slice_from_options
 from ptmcad.errors import shown_path
-from ptmcad.export import FORMATS
-from ptmcad.memory import Bound
-from ptmcad.output import check_writable, text_writer, write_files
+from ptmcad.process.memory import Bound
+from ptmcad.process.output import check_writable, text_writer, write_files
+from ptmcad.question.config import portable_file, slice_from_options
+from ptmcad.show.export import FORMATS
 
 
 @click.command("variety")
@@ -53,7 +53,7 @@ def command(
         portable_file(out.name, "--out")
         check_writable(out.parent, (out.name,))
     with limits(timeout, max_memory):
-        from ptmcad.exactmap import slice_variety
+        from ptmcad.exact.engine import slice_variety
 
         text = slice_variety(slice).text(format)
     if out is None:

@@ -8,7 +8,7 @@ import click
 
 from ptmcad.cli.limits import limit_options, limits
 from ptmcad.cli.stored import read_result
-from ptmcad.memory import Bound
+from ptmcad.process.memory import Bound
 
 
 @click.command("verify")

@@ -9,31 +9,12 @@ that a map without a cover is read and written without.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
+
+from ptmcad.cover.rectangles import Cover, Window
 
 if TYPE_CHECKING:
     from ptmcad.cover.complement import Components, Tiling
-
-Rectangle = tuple[int, int, int, int]
-"""left, right, bottom, top in lattice steps from the window's lower left corner; closed; 0 <= left < right <= steps."""
-Window = tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
-"""Low and high end of both axes."""
-MOST_STEPS = 2**40
-
-
-@dataclass(frozen=True, slots=True)
-class Cover:
-    """The rectangles, sorted and distinct; they may overlap.
-
-    Attributes
-    ----------
-    steps : number of equal lattice steps along each axis of the window, a power of two, at most `MOST_STEPS`.
-    """
-
-    steps: int
-    rectangles: tuple[Rectangle, ...]
 
 
 def components(cover: Cover, tiling: Tiling | None = None) -> Components:

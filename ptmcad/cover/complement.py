@@ -17,8 +17,8 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.cover import MOST_STEPS, Cover, Rectangle
 from ptmcad.cover.graph import Touching, connected, touching
+from ptmcad.cover.rectangles import MOST_STEPS, Cover, Rectangle
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
 
 Integers = NDArray[np.int64]

@@ -10,8 +10,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ptmcad.cover import Cover
 from ptmcad.cover.complement import PLAIN, Components, Tiling
+from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.rounding import cover_of
 from ptmcad.cover.subdivision import FREE, Integers, rectangle_array
 

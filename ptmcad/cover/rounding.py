@@ -12,7 +12,7 @@ from math import isinf
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.cover import MOST_STEPS, Cover, Window
+from ptmcad.cover.rectangles import MOST_STEPS, Cover, Window
 
 Integers = NDArray[np.int64]
 Floats = NDArray[np.float64]

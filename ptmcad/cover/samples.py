@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
-from ptmcad.cover import Window
 from ptmcad.cover.complement import Components
+from ptmcad.cover.rectangles import Window
 
 _PLACES = ((Fraction(1, 2), Fraction(1, 2)), (Fraction(1, 3), Fraction(3, 7)), (Fraction(3, 5), Fraction(2, 7)))
 """Where the points are, as parts of the sides of the component's rectangle ..."""

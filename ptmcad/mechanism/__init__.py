@@ -18,7 +18,7 @@ def mechanism_of(name: str) -> Mechanism:
     Raises
     ------
     KeyError
-        When there is none; `ptmcad.config` refuses such names before.
+        When there is none; `ptmcad.question.config` refuses such names before.
     """
     return _BUILT_IN[name]()
 

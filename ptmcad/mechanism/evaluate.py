@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any, Generic, Protocol, TypeVar
 
 from ptmcad.errors import ExpressionError
-from ptmcad.syntax import Call, Name, Number, Power, Step, Tree, interpret
+from ptmcad.text.syntax import Call, Name, Number, Power, Step, Tree, interpret
 
 MAX_EXPONENT = 64
 MAX_BITS = 13_000
@@ -64,7 +64,7 @@ def evaluate(tree: Tree, ring: Ring[E]) -> E:
 def value_at(tree: Tree, parameters: Mapping[str, Fraction]) -> Fraction:
     """The value of a tree without unknowns, such as a stiffness, at values of the parameters.
 
-    >>> from ptmcad.syntax import parse
+    >>> from ptmcad.text.syntax import parse
     >>> value_at(parse("2*k/3"), {"k": Fraction(1, 2)})
     Fraction(1, 3)
 

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism.description import Kind, Load, Mechanism, Parameter, Spring, Support, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.syntax import (
+from ptmcad.text.syntax import (
     FUNCTIONS,
     NAME,
     NOT_NUMBERS,

@@ -28,7 +28,7 @@ from itertools import pairwise
 
 from flint import fmpq, fmpz_poly
 
-from ptmcad.regionmap import Adjacency, Cell, CriticalValue, NonAdjacency, Reason, Segment
+from ptmcad.answer.regionmap import Adjacency, Cell, CriticalValue, NonAdjacency, Reason, Segment
 from ptmcad.verification.claims import Claims, is_root, short, side
 from ptmcad.verification.derivation import rational
 from ptmcad.verification.report import Violation

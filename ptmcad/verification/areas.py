@@ -15,8 +15,8 @@ from fractions import Fraction
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.numerals import approximate_text
-from ptmcad.regionmap import Region
+from ptmcad.answer.regionmap import Region
+from ptmcad.text.numerals import approximate_text
 from ptmcad.verification.branches import Branch, Effort, PrecisionTooLow, integral_over
 from ptmcad.verification.claims import Claims, bracket, fraction
 from ptmcad.verification.derivation import rational

@@ -19,7 +19,7 @@ from math import gcd, isqrt, prod
 
 from flint import fmpq
 
-from ptmcad.regionmap import Kind
+from ptmcad.answer.regionmap import Kind
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.fibre import Fibre, Monomial, standard_monomials
 from ptmcad.verification.plan import kept

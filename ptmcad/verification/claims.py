@@ -12,10 +12,10 @@ from math import gcd, lcm
 
 from flint import Ordering, arb, fmpq, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
+from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.errors import PoleError
-from ptmcad.numerals import approximate_text, text_of
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import CriticalValue, RegionMap
+from ptmcad.text.numerals import approximate_text, text_of
+from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.derivation import rational
 from ptmcad.verification.fibre import Fibre, NotFinite, fibre
 from ptmcad.verification.report import Violation

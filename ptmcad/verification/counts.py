@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.numerals import text_of
+from ptmcad.text.numerals import text_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import NOT_NEGATIVE, POSITIVE
 from ptmcad.verification.report import Violation

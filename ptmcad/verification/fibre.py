@@ -1,11 +1,11 @@
 """The equilibria over one rational point, by a route of its own: geometry, Groebner basis at the point, trace forms.
 
 Guarantee: exact. The potential is formed from the coordinates of the nodes, in rational numbers, by `derivation`, and
-differentiated here; nothing is taken from `ptmcad.models`, so a mistake there or here shows as a contradiction.
+differentiated here; nothing is taken from `ptmcad.exact.models`, so a mistake there or here shows as a contradiction.
 
 The order is graded reverse lexicographic with s2 > c2 > s1 > c1, FLINT's own Buchberger algorithm runs at the point
 itself, and counts come from signatures of trace forms: another elimination than the one over Q(x, y) in
-`ptmcad.variety` and another count than the root isolation in `ptmcad.counting`.
+`ptmcad.exact.variety` and another count than the root isolation in `ptmcad.exact.counting`.
 """
 
 from __future__ import annotations

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections import defaultdict, deque
 from itertools import pairwise
 
-from ptmcad.numerals import approximate_text
-from ptmcad.regionmap import Cell, Merge, Status
-from ptmcad.slice import Count
+from ptmcad.answer.regionmap import Cell, Merge, Status
+from ptmcad.question.slice import Count
+from ptmcad.text.numerals import approximate_text
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, PARAMETERS, SHORTHANDS
 from ptmcad.verification.report import Violation

@@ -11,8 +11,8 @@ from functools import cache
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
 
-from ptmcad.numerals import fraction_of
-from ptmcad.regionmap import System
+from ptmcad.answer.regionmap import System
+from ptmcad.text.numerals import fraction_of
 from ptmcad.verification.claims import PLANE, Claims
 from ptmcad.verification.derivation import ANGLES, PARAMETERS, UNKNOWNS, Place, potential
 from ptmcad.verification.report import Violation

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import lcm
 
+from ptmcad.answer.regionmap import Kind
 from ptmcad.errors import ExpressionError
-from ptmcad.expressions import Expression, axis, names_in, parse
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import Kind
-from ptmcad.slice import Slice
+from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import Expression, axis, names_in, parse
+from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import PLANE, Claims
 from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, PARAMETERS, POSITIVE
 from ptmcad.verification.model import equation_factors

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from math import gcd
 
-from ptmcad.regionmap import HARMLESS, NO_POINT, Component, PlanStep, RegionMap
+from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, PlanStep, RegionMap
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.report import Violation
 from ptmcad.verification.window import plainly_outside

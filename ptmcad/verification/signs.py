@@ -3,10 +3,10 @@
 Guarantee: `Sign.PROVED` and `Sign.WRONG` are theorems. `Sign.UNCHECKED` is answered where a function of both axes has
 a degree over `MAX_DEGREE`, or may be zero at an isolated point.
 
-It shares nothing with what the engines ask (`ptmcad.positivity`): no Bernstein coefficients, no halving of boxes, no
-isolation by Descartes' rule, another elimination. A polynomial changes sign in the open window where one of its
-irreducible factors of odd multiplicity does; and between the roots of such a factor's discriminant and of its values on
-two edges, the number of its roots in a fibre, all of them simple, is that over one sample.
+It shares nothing with what the engines ask (`ptmcad.question.positivity`): no Bernstein coefficients, no halving of
+boxes, no isolation by Descartes' rule, another elimination. A polynomial changes sign in the open window where one of
+its irreducible factors of odd multiplicity does; and between the roots of such a factor's discriminant and of its
+values on two edges, the number of its roots in a fibre, all of them simple, is that over one sample.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from math import lcm
 
 from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpz_mpoly, fmpz_poly
 
-from ptmcad.expressions import Expression
+from ptmcad.text.expressions import Expression
 from ptmcad.verification.claims import PLANE, PlaneCurve
 from ptmcad.verification.elimination import discriminant
 from ptmcad.verification.sturm import points_apart, roots_between, squarefree

@@ -16,7 +16,7 @@ from itertools import combinations
 
 from flint import arb, arb_mat, ctx
 
-from ptmcad.regionmap import Cell, Solution
+from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import ANGLES, PARAMETERS, Place, potential, rational
 from ptmcad.verification.jets import circle

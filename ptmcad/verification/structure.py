@@ -14,8 +14,8 @@ from math import gcd
 
 from flint import fmpq, fmpz_poly
 
-from ptmcad.numerals import text_of
-from ptmcad.regionmap import CriticalValue
+from ptmcad.answer.regionmap import CriticalValue
+from ptmcad.text.numerals import text_of
 from ptmcad.verification.claims import Claims, PlaneCurve, polynomial, short, side
 from ptmcad.verification.derivation import rational
 from ptmcad.verification.elimination import discriminant, resultant
@@ -26,7 +26,7 @@ from ptmcad.verification.sturm import isolating_intervals, roots_between, roots_
 def projection_of_one(curve: PlaneCurve, height: tuple[fmpq, fmpq]) -> list[tuple[fmpz_poly, str]]:
     """Irreducible polynomials outside whose roots the curve's roots in the open interval are constant in number.
 
-    Each with its origin, in the words of `ptmcad.regionmap.CriticalValue`.
+    Each with its origin, in the words of `ptmcad.answer.regionmap.CriticalValue`.
     """
     k, m = curve.exponent_gcd(0), curve.exponent_gcd(1)
     name = f"component {curve.number}"

@@ -31,9 +31,9 @@ from math import gcd, lcm, prod
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_poly
 
-from ptmcad.numerals import text_of
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import HARMLESS, Kind
+from ptmcad.answer.regionmap import HARMLESS, Kind
+from ptmcad.text.numerals import text_of
+from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.fibre import Fibre
 from ptmcad.verification.report import Violation

@@ -20,7 +20,7 @@ from forger.consistency import (
     with_plan,
     with_regions,
 )
-from ptmcad.regionmap import Adjacency, Merge, NonAdjacency, Reason, RegionMap, Solution
+from ptmcad.answer.regionmap import Adjacency, Merge, NonAdjacency, Reason, RegionMap, Solution
 
 FAKE = tuple(
     (Fraction(a, c), Fraction(b, c), Fraction(d, f), Fraction(e, f))

@@ -17,10 +17,10 @@ from itertools import combinations
 from typing import Any
 
 from forger.consistency import Alteration, drop, put, swapped, window_area
-from ptmcad.cover import Cover, Rectangle
-from ptmcad.expressions import constant
-from ptmcad.regionmap import Cell, RegionMap, Status
-from ptmcad.slice import Point
+from ptmcad.answer.regionmap import Cell, RegionMap, Status
+from ptmcad.cover.rectangles import Cover, Rectangle
+from ptmcad.question.slice import Point
+from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.structure import CertifiedClaims
 
 

@@ -13,9 +13,9 @@ from fractions import Fraction
 from itertools import count, pairwise
 from typing import Any
 
-from ptmcad.plan import plan_of
-from ptmcad.regionmap import Adjacency, Cell, Merge, NonAdjacency, PlanStep, Reason, Region, RegionMap, Stack
-from ptmcad.slice import Count
+from ptmcad.answer.regionmap import Adjacency, Cell, Merge, NonAdjacency, PlanStep, Reason, Region, RegionMap, Stack
+from ptmcad.exact.plan import plan_of
+from ptmcad.question.slice import Count
 
 Alteration = Callable[[], RegionMap]
 Kind = Callable[[RegionMap], Iterator[Alteration]]

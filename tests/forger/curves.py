@@ -21,8 +21,7 @@ from forger.consistency import (
     with_plan,
 )
 from forger.decompose import decomposed
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import (
+from ptmcad.answer.regionmap import (
     HARMLESS,
     NO_POINT,
     Cell,
@@ -33,7 +32,8 @@ from ptmcad.regionmap import (
     Stack,
     Wall,
 )
-from ptmcad.slice import Point
+from ptmcad.question.slice import Point
+from ptmcad.text.plane import PlanePolynomial
 
 AUXILIARY = {"sign-curve", "hermite-matrix"}
 

@@ -15,15 +15,15 @@ from flint import fmpq
 
 from forger.consistency import NO_AREAS, kept, settled, with_plan
 from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction
-from ptmcad.assembly import assemble
-from ptmcad.cad.adjacency import cross
-from ptmcad.cad.projection import project
-from ptmcad.cad.stacks import lift
-from ptmcad.counting import Equilibria
+from ptmcad.answer.regionmap import Component, RegionMap
 from ptmcad.errors import HypothesisError
-from ptmcad.exactmap import _seen_from, avoided_by_samples, count_at
-from ptmcad.models import ParametricSystem, system_of
-from ptmcad.regionmap import Component, RegionMap
+from ptmcad.exact.assembly import assemble
+from ptmcad.exact.cad.adjacency import cross
+from ptmcad.exact.cad.projection import project
+from ptmcad.exact.cad.stacks import lift
+from ptmcad.exact.counting import Equilibria
+from ptmcad.exact.engine import _seen_from, avoided_by_samples, count_at
+from ptmcad.exact.models import ParametricSystem, system_of
 
 
 def decomposed(r: RegionMap, components: Sequence[Component], keep: frozenset[str] | None = None) -> RegionMap:

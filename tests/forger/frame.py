@@ -20,9 +20,9 @@ from forger.consistency import (
     with_merges,
     with_plan,
 )
-from ptmcad.expressions import Expression, constant
-from ptmcad.regionmap import PlanStep, RegionMap, Status
-from ptmcad.slice import Count
+from ptmcad.answer.regionmap import PlanStep, RegionMap, Status
+from ptmcad.question.slice import Count
+from ptmcad.text.expressions import Expression, constant
 
 
 def area_shifted(r: RegionMap) -> Iterator[Alteration]:

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 
 import ptmcad
 from forger.consistency import Alteration, Kind
-from ptmcad.regionmap import RegionMap
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.verification.checks import checks_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
-from ptmcad.verification.verify import checks_of
 
 
 @dataclass(slots=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 from random_slices import REFUSED, drawn
 
 import ptmcad
-from ptmcad.regionmap import RegionMap
+from ptmcad.answer.regionmap import RegionMap
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
 

@@ -13,9 +13,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from forger.consistency import drop, kept, put, swapped, with_plan
 from forger.maps import named
-from ptmcad.expressions import axis, constant, parse
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import (
+from ptmcad.answer.regionmap import (
     HARMLESS,
     NO_POINT,
     Adjacency,
@@ -31,7 +29,9 @@ from ptmcad.regionmap import (
     Status,
     Wall,
 )
-from ptmcad.slice import Axis, Count, Point
+from ptmcad.question.slice import Axis, Count, Point
+from ptmcad.text.expressions import axis, constant, parse
+from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.auxiliary import check_auxiliary

@@ -17,10 +17,7 @@ from flint import ctx
 
 import ptmcad
 from forger.consistency import put
-from ptmcad.cover import Cover, Rectangle
-from ptmcad.expressions import axis, parse
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import (
+from ptmcad.answer.regionmap import (
     Adjacency,
     Cell,
     Component,
@@ -36,7 +33,10 @@ from ptmcad.regionmap import (
     Status,
     System,
 )
-from ptmcad.slice import Count, Point
+from ptmcad.cover.rectangles import Cover, Rectangle
+from ptmcad.question.slice import Count, Point
+from ptmcad.text.expressions import axis, parse
+from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.certified import points
 from ptmcad.verification.certified.energy import NAMES
 from ptmcad.verification.certified.equilibria import Square, Unproved, equilibria

@@ -21,9 +21,9 @@ from forger.consistency import drop, put, settled, with_plan
 from forger.decompose import decomposed
 from forger.judge import Tally, judge, places_of, violation
 from forger.maps import named
-from ptmcad.plane import PlanePolynomial
-from ptmcad.regionmap import NO_POINT, Component, Kind, RegionMap
-from ptmcad.slice import Count
+from ptmcad.answer.regionmap import NO_POINT, Component, Kind, RegionMap
+from ptmcad.question.slice import Count
+from ptmcad.text.plane import PlanePolynomial
 
 FALSE = (*cells.KINDS, *curves.KINDS, *frame.KINDS)
 PLACES, RANDOM_PLACES = 12, 2
@@ -141,7 +141,7 @@ def certified_map_of(count: str) -> RegionMap:
     pytest.importorskip("numba")
     from fractions import Fraction
 
-    from ptmcad.interval.engine import certified_map
+    from ptmcad.certified.engine import certified_map
 
     record = {
         "name": "small", "mechanism": "ptm", "count": count,

@@ -17,9 +17,9 @@ import atheris
 
 # everything of ptmcad that a case reaches must be imported here, or coverage does not see it
 with atheris.instrument_imports(include=["ptmcad"]):
-    import ptmcad.exactmap
-    import ptmcad.locate
-    import ptmcad.table
+    import ptmcad.ask.location
+    import ptmcad.exact.engine
+    import ptmcad.show.table
     import ptmcad.verification  # noqa: F401
     from fuzz import targets
     from fuzz.damage import damaged_bytes, damaged_tokens, damaged_tree

@@ -6,8 +6,8 @@ from functools import cache
 from pathlib import Path
 
 import ptmcad
-from ptmcad.config import slice_from_options
-from ptmcad.slice import Slice
+from ptmcad.question.config import slice_from_options
+from ptmcad.question.slice import Slice
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 

@@ -23,10 +23,10 @@ from fuzz.records import expression
 from fuzz.seeds import CONFIGS, records, results
 from ptmcad.cli.locate import rows_of
 from ptmcad.cli.stored import read_result
-from ptmcad.config import MAX_DEGREE, slice_from_options
 from ptmcad.errors import PtmcadError
-from ptmcad.report import page
-from ptmcad.slice import Slice
+from ptmcad.question.config import MAX_DEGREE, slice_from_options
+from ptmcad.question.slice import Slice
+from ptmcad.show.report import page
 
 LONGEST_MESSAGE = 1200
 

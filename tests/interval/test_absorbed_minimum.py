@@ -14,10 +14,10 @@ import pytest
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.interval.curves import curves
-from ptmcad.interval.points import point_counter
-from ptmcad.interval.search import search_curve
-from ptmcad.slice import Count, Slice
+from ptmcad.certified.curves import curves
+from ptmcad.certified.points import point_counter
+from ptmcad.certified.search import search_curve
+from ptmcad.question.slice import Count, Slice
 
 FLAT_CONE = {
     "parameters": {"rho": 2, "L1": 1, "L2": 1, "k": 100, "F3": "100*f", "F4": "-100*f"},

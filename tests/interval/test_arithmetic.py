@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 pytest.importorskip("numba")
 
-from ptmcad.interval import arithmetic
-from ptmcad.interval import compiled as compilation
-from ptmcad.interval.compiled import compiled
+from ptmcad.certified import arithmetic
+from ptmcad.certified import compiled as compilation
+from ptmcad.certified.compiled import compiled
 
 Floats = NDArray[np.float64]
 LARGEST, SMALLEST, SUBNORMAL = 1.7976931348623157e308, 2.0**-1022, 5e-324

@@ -13,17 +13,17 @@ from numpy.typing import NDArray
 
 pytest.importorskip("numba")
 
-from ptmcad.config import slice_from_mapping
-from ptmcad.interval.arb_evaluation import run_arb
-from ptmcad.interval.contraction import contract, workspace
-from ptmcad.interval.curves import Curve, curves
-from ptmcad.interval.evaluation import program, run
-from ptmcad.interval.formula import Formula, Graph
-from ptmcad.interval.mechanism import Mechanism
-from ptmcad.interval.parameters import slice_mechanism
-from ptmcad.interval.search import search_curve
-from ptmcad.interval.tape import Tape, record
-from ptmcad.slice import Count, Slice
+from ptmcad.certified.arb_evaluation import run_arb
+from ptmcad.certified.contraction import contract, workspace
+from ptmcad.certified.curves import Curve, curves
+from ptmcad.certified.evaluation import program, run
+from ptmcad.certified.formula import Formula, Graph
+from ptmcad.certified.mechanism import Mechanism
+from ptmcad.certified.parameters import slice_mechanism
+from ptmcad.certified.search import search_curve
+from ptmcad.certified.tape import Tape, record
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.slice import Count, Slice
 from ptmcad.verification.certified.energy import NAMES, Energy
 from ptmcad.verification.certified.parameters import energy_at, exact
 

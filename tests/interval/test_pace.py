@@ -11,10 +11,10 @@ from fractions import Fraction
 from typing import Any
 
 import ptmcad
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.certified import assembly, engine, loading, refinement
+from ptmcad.certified.pace import ALLOWANCE, SAFETY, SHARE, SHORTEST, Pace
 from ptmcad.errors import LimitReached
-from ptmcad.interval import assembly, engine, loading, refinement
-from ptmcad.interval.pace import ALLOWANCE, SAFETY, SHARE, SHORTEST, Pace
-from ptmcad.regionmap import RegionMap, Status
 
 
 class Clock:
@@ -154,7 +154,7 @@ def test_the_time_limit_is_kept_in_every_phase(monkeypatch: pytest.MonkeyPatch, 
 
 def test_counts_are_left_out_before_the_limit_is_missed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each count at a point takes ten seconds: what is not counted is undetermined, and the map is there in time."""
-    from ptmcad.interval.points import PointCounter
+    from ptmcad.certified.points import PointCounter
 
     clock = Clock()
     monkeypatch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
@@ -185,12 +185,12 @@ def test_nothing_is_compiled_after_loading() -> None:
         return {
             f"{name}.{key}": len(value.signatures)
             for name, module in sys.modules.items()
-            if name.startswith("ptmcad.interval.")
+            if name.startswith("ptmcad.certified.")
             for key, value in vars(module).items()
             if isinstance(value, Dispatcher)
         }
 
     before = signatures()
-    assert before["ptmcad.interval.strips.strips"] == 1
+    assert before["ptmcad.certified.strips.strips"] == 1
     ptmcad.classify(window(), count="total", tolerance="1/5", jobs=1)
     assert signatures() == before

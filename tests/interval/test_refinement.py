@@ -14,11 +14,11 @@ import pytest
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.interval import refinement
-from ptmcad.interval.curves import Curve
-from ptmcad.interval.formula import Graph
-from ptmcad.interval.refinement import Enclosure, begin, refine
-from ptmcad.interval.system import system
+from ptmcad.certified import refinement
+from ptmcad.certified.curves import Curve
+from ptmcad.certified.formula import Graph
+from ptmcad.certified.refinement import Enclosure, begin, refine
+from ptmcad.certified.system import system
 
 ANGLES = np.linspace(0.1, 3.1, 97)
 ON_THE_CIRCLE = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 pytest.importorskip("numba")
 
-from ptmcad.interval.covering import Lattice, Thinning
-from ptmcad.interval.formula import Graph
-from ptmcad.interval.strips import NONE, areas_of_pieces, numbers_of_pieces, pieces, strips
-from ptmcad.interval.system import System, system
+from ptmcad.certified.covering import Lattice, Thinning
+from ptmcad.certified.formula import Graph
+from ptmcad.certified.strips import NONE, areas_of_pieces, numbers_of_pieces, pieces, strips
+from ptmcad.certified.system import System, system
 
 COEFFICIENTS = st.fractions(-3, 3, max_denominator=8)
 

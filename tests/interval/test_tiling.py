@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 
 pytest.importorskip("numba")
 
-from ptmcad.cover import MOST_STEPS, Cover, components, union_area
+from ptmcad.certified.tiling import COMPILED
+from ptmcad.cover import components, union_area
 from ptmcad.cover.complement import PLAIN, Tiling
 from ptmcad.cover.graph import Touching
+from ptmcad.cover.rectangles import MOST_STEPS, Cover
 from ptmcad.cover.subdivision import CUT, Subdivision, rectangle_array
-from ptmcad.interval.tiling import COMPILED
 
 
 @st.composite

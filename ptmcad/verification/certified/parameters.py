@@ -10,9 +10,9 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
-from ptmcad.expressions import Expression, axis
 from ptmcad.mechanism import Kind
-from ptmcad.slice import Slice
+from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import Expression, axis
 from ptmcad.verification.certified.energy import NAMES, Energy
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.claims import Claims

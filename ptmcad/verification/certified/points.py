@@ -13,9 +13,9 @@ from fractions import Fraction
 
 from flint import arb, ctx
 
-from ptmcad.numerals import text_of
-from ptmcad.regionmap import Cell, MorseIndex, Solution
-from ptmcad.slice import Count
+from ptmcad.answer.regionmap import Cell, MorseIndex, Solution
+from ptmcad.question.slice import Count
+from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import SMALLEST, TORUS, Equilibrium, Square, Unproved, equilibria
 from ptmcad.verification.certified.parameters import Values, energy_at, exact, values_at

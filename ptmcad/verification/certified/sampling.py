@@ -22,9 +22,9 @@ from fractions import Fraction
 from itertools import accumulate
 from math import ceil, isqrt
 
-from ptmcad.cover import Rectangle
-from ptmcad.numerals import text_of
-from ptmcad.slice import Count
+from ptmcad.cover.rectangles import Rectangle
+from ptmcad.question.slice import Count
+from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.equilibria import Equilibrium, Unproved, equilibria
 from ptmcad.verification.certified.parameters import energy_over, exact, values_at
 from ptmcad.verification.certified.points import MINIMA, Counts, admissible, all_equilibria, counts_of, differs, stored

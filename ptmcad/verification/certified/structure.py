@@ -10,9 +10,9 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
-from ptmcad.numerals import text_of
-from ptmcad.regionmap import Status
-from ptmcad.slice import Count
+from ptmcad.answer.regionmap import Status
+from ptmcad.question.slice import Count
+from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.energy import NAMES
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims

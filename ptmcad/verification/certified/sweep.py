@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-from ptmcad.cover import Cover, Rectangle
+from ptmcad.cover.rectangles import Cover, Rectangle
 
 Interval = tuple[int, int]
 

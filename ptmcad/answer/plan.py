@@ -1,0 +1,36 @@
+"""Steps of a plan that both engines have.
+
+Guarantee: each saving that is named is made in the computation that the plan accompanies, or said to be switched off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ptmcad.answer.regionmap import PlanStep
+from ptmcad.question.savings import BY_NAME
+from ptmcad.question.slice import Slice
+
+KEPT = "kept, as asked for"
+"""The reason for a step that a saving would have left out."""
+
+
+def saving_step(name: str, keep: frozenset[str], what: str = "", why: str = "") -> PlanStep:
+    """The step of a saving that is made, unless it is switched off.
+
+    Parameters
+    ----------
+    what, why : in place of the saving's general words.
+    """
+    saving = BY_NAME[name]
+    return PlanStep(what or saving.what, name in keep, KEPT if name in keep else why or saving.why, name)
+
+
+def zero_parameters(slice: Slice) -> list[str]:
+    """The parameters that are zero on the whole slice."""
+    return [n for n, e in slice.parameters.items() if e.is_constant and e.constant() == 0]
+
+
+def zero_terms(names: Sequence[str]) -> list[PlanStep]:
+    """The step that says so where parameters are zero: nothing is left of them once numbers are put in."""
+    return [PlanStep("terms of " + ", ".join(names), False, "they are zero on this slice")] if names else []

@@ -1,0 +1,88 @@
+"""The discriminant variety of a slice as a result of its own, without a decomposition of the window.
+
+Guarantee: the components are those that the region map of the slice has; the elimination system has integer
+coefficients and, over every point that is not on a BOUNDARY component, its solutions are the singular equilibria.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ptmcad.answer import with_methods
+from ptmcad.answer.regionmap import Component, Kind
+from ptmcad.question.slice import Slice
+from ptmcad.text.numerals import integer_text
+
+Term = tuple[tuple[int, ...], int]
+"""Exponents of the unknowns, then of the two axes; and the coefficient."""
+
+
+@dataclass(frozen=True, slots=True)
+class EliminationSystem:
+    """The polynomials from which the unknowns have to be eliminated.
+
+    Attributes
+    ----------
+    unknowns : cosine and sine of each angle, such as ``"cos_th1"``.
+    axes : the two axes' names.
+    polynomials : the equilibrium equations, cos^2 + sin^2 - 1 for each angle, and last the determinant of the Hessian;
+        each a tuple of terms.
+    """
+
+    unknowns: tuple[str, ...]
+    axes: tuple[str, str]
+    polynomials: tuple[tuple[Term, ...], ...]
+
+    def texts(self, names: tuple[str, ...] | None = None) -> tuple[str, ...]:
+        """Each polynomial as text such as ``2*cos_th1*rho - 1``.
+
+        Parameters
+        ----------
+        names : other names for the unknowns and axes, in this order.
+        """
+        return tuple(_text(p, names or (*self.unknowns, *self.axes)) for p in self.polynomials)
+
+
+@with_methods
+@dataclass(frozen=True, slots=True)
+class SliceVariety:
+    """The curves off which the number of equilibria of each kind is locally constant.
+
+    Attributes
+    ----------
+    components : irreducible curves, each with its kind; those that have no point in the window say so in ``left_out``.
+    complex_solutions : number of complex solutions at a generic point.
+    system : what Q(x, y) elimination started from.
+    versions : of the programs that computed it.
+    """
+
+    slice: Slice
+    components: tuple[Component, ...]
+    complex_solutions: int
+    system: EliminationSystem
+    versions: Mapping[str, str]
+
+    @property
+    def critical(self) -> tuple[Component, ...]:
+        """The components over which an equilibrium is singular."""
+        return tuple(c for c in self.components if c.kind is Kind.CRITICAL)
+
+    if TYPE_CHECKING:  # `ptmcad.methods` has it
+
+        def text(self, format: str = "text") -> str: ...
+
+    def __str__(self) -> str:
+        return self.text()
+
+
+def _text(polynomial: tuple[Term, ...], names: tuple[str, ...]) -> str:
+    text = ""
+    for exponents, c in polynomial:
+        factors = [f"{n}^{e}" if e > 1 else n for n, e in zip(names, exponents, strict=True) if e]
+        if abs(c) != 1 or not factors:
+            factors.insert(0, integer_text(abs(c)))
+        sign = ("-" if c < 0 else "") if not text else (" - " if c < 0 else " + ")
+        text += sign + "*".join(factors)
+    return text or "0"

@@ -1,0 +1,237 @@
+"""From a slice to its region map by one of two engines: the exact one by algebra, the certified one by intervals.
+
+Guarantee: bad options are refused before anything is computed. No engine gives a wrong count: the exact one leaves
+nothing open, the certified one says what it leaves open.
+
+Only the engine that is used is loaded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from fractions import Fraction
+from importlib import import_module
+from time import perf_counter
+
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.ask.engines import is_certified
+from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.process.memory import check_room, loading
+from ptmcad.question.savings import kept, load_all
+from ptmcad.question.slice import Count, Slice, without_free_lengths
+from ptmcad.text.syntax import did_you_mean
+
+ENGINES = ("auto", "exact", "certified")
+
+Progress = Callable[[str, int, int], None]
+"""Called as progress(stage, done, total); a stage that ends with "%" says itself how far the work is."""
+
+
+def classify(
+    slice: Slice,
+    engine: str = "auto",
+    count: Count | str | None = None,
+    timeout: float | None = None,
+    tolerance: Fraction | float | str | None = None,
+    area_tolerance: Fraction | float | str | None = None,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+    keep: Iterable[str] = (),
+    partial: Callable[[RegionMap], None] | None = None,
+    resume: RegionMap | None = None,
+    areas: bool = True,
+) -> RegionMap:
+    """The region map of a slice.
+
+    Parameters
+    ----------
+    engine : ``"exact"``, ``"certified"``, or ``"auto"``: certified where springs have a free length, else exact.
+    count : which count tells regions apart; the slice's own when None.
+    timeout : seconds after which `LimitReached` is raised; loading the certified engine, and compiling it in the first
+        run on a machine, is no part of them.
+    tolerance : the certified engine stops when at most this share of the window's area is undetermined; the exact
+        engine leaves none.
+    area_tolerance : largest relative width of each region's area bounds, 1e-4 when None; for the exact engine.
+    jobs : number of threads of the certified engine, all processors when None; the exact engine uses one.
+    progress : called as progress(stage, done, total).
+    keep : names of savings to switch off, of `ptmcad.question.savings`; ``"all"`` stands for all that the engine has.
+    partial : called with the map after each stage that improves it.
+    resume : a certified map of the same slice and count, stopped or not, from which to go on. Its cover is taken as
+        it stands: what `ptmcad.verify` says of the result rests on it.
+    areas : False leaves the regions' areas out (exact engine): of each is then known that it is at most the window's.
+
+    Raises
+    ------
+    ConfigError
+        For an unknown engine, count or saving, a tolerance out of range, an option that the engine does not have, a
+        slice that the engine does not take, or a map to go on from that is not of this slice.
+    HypothesisError
+        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
+    LimitReached
+        After ``timeout`` seconds, with what there is of the map as ``partial``.
+    """
+    if engine not in ENGINES:
+        raise ConfigError(f"{engine!r} is none of {', '.join(ENGINES)}{did_you_mean(engine, ENGINES)}", key="engine")
+    try:
+        slice = slice if count is None else replace(slice, count=Count(count))
+    except ValueError as error:
+        raise ConfigError(str(error), key="count") from error
+    undetermined, relative = _share(tolerance, "tolerance"), _share(area_tolerance, "area_tolerance")
+    _check_count(slice)
+    certified = is_certified(slice, engine)
+    if not areas:
+        _check_no_areas(certified, relative)
+    off = kept(keep, certified)
+    if certified:
+        _check_certified(slice, relative, resume)
+        prepare(slice, engine, progress, off)
+    started = perf_counter()
+    deadline = None if timeout is None else started + timeout
+    if certified:
+        result = _certified(slice, undetermined, deadline, jobs, progress, off, partial, resume)
+        return replace(result, timings={**result.timings, "total": perf_counter() - started})
+    try:
+        without_free_lengths(slice.parameters, "an exact map is")
+    except ConfigError as error:
+        raise ConfigError(f"{error.message}: choose certified or auto", key="engine") from error
+    if resume is not None:
+        raise ConfigError("only the certified engine can go on from an earlier map", key="resume")
+    if "imports" in off:
+        load_all()
+    from ptmcad.exact.engine import AREA_TOLERANCE, exact_map
+
+    return exact_map(slice, AREA_TOLERANCE if relative is None else relative, deadline, progress, off, partial, areas)
+
+
+def _check_no_areas(certified: bool, area_tolerance: Fraction | None) -> None:
+    if certified:
+        raise ConfigError("the certified engine has areas for nothing: it can not leave them out", key="areas")
+    if area_tolerance is not None:
+        raise ConfigError("areas are not asked for, but a tolerance for them is given: leave one out", key="areas")
+
+
+def prepare(
+    slice: Slice, engine: str = "auto", progress: Progress | None = None, keep: frozenset[str] = frozenset()
+) -> None:
+    """Load what an engine needs, and compile it where this machine has not done so: no part of any time limit.
+
+    Raises
+    ------
+    ConfigError
+        Where the certified engine is wanted and numba is missing, or the memory limit leaves it no room.
+    """
+    if is_certified(slice, engine):
+        if "imports" in keep:
+            with loading("all that there is"):
+                load_all()
+        load_certified(progress)
+
+
+def load_certified(progress: Progress | None = None) -> None:
+    """Load the certified engine, and compile it where this machine has not done so.
+
+    Raises
+    ------
+    ConfigError
+        Where numba is missing, or the memory limit leaves no room.
+    """
+    with loading("the certified engine"):
+        import_module("ptmcad.certified.compiled")  # first: where numba is missing, it says so
+        from ptmcad.certified.loading import load
+    check_room("the certified engine")
+    load(progress)
+
+
+def _check_certified(slice: Slice, area_tolerance: Fraction | None, resume: RegionMap | None) -> None:
+    if area_tolerance is not None:
+        raise ConfigError(
+            "the certified engine bounds areas by what it leaves undetermined: give tolerance instead",
+            key="area_tolerance",
+        )
+    if resume is not None:
+        check_resumable(slice, resume)
+
+
+def _certified(
+    slice: Slice,
+    tolerance: Fraction | None,
+    deadline: float | None,
+    jobs: int | None,
+    progress: Progress | None,
+    keep: frozenset[str],
+    partial: Callable[[RegionMap], None] | None,
+    earlier: RegionMap | None,
+) -> RegionMap:
+    from ptmcad.certified.engine import certified_map
+
+    def improved(found: RegionMap) -> None:
+        """What is handed on is never less than the map from which the computation went on."""
+        if partial is not None and (earlier is None or found.undetermined < earlier.undetermined):
+            partial(found)
+
+    try:
+        return certified_map(
+            slice,
+            tolerance=tolerance,
+            deadline=deadline,
+            jobs=jobs,
+            progress=progress,
+            partial=None if partial is None else improved,
+            resume=None if earlier is None else earlier.cover,
+            keep=keep,
+        )
+    except LimitReached as stop:
+        found = stop.partial
+        if earlier is None or (isinstance(found, RegionMap) and found.undetermined < earlier.undetermined):
+            raise
+        kept_map = replace(earlier, status=Status.PARTIAL)
+        raise LimitReached(f"{stop}; the map to go on from has no more, and is kept", partial=kept_map) from stop
+
+
+def check_resumable(slice: Slice, earlier: RegionMap) -> None:
+    """Refuse to go on from a map that is not certified, or is of another slice or count.
+
+    Raises
+    ------
+    ConfigError
+        That says what differs.
+    """
+    if earlier.cover is None:
+        raise ConfigError("this is no certified map: only one that the certified engine made can be gone on from",
+                          key="resume")  # fmt: skip
+    other = earlier.slice
+    different = [
+        *(["mechanism"] if other.mechanism != slice.mechanism else []),
+        *(["axes"] if other.axes != slice.axes else []),
+        *(["count"] if other.count is not slice.count else []),
+        *(n for n in dict.fromkeys((*slice.parameters, *other.parameters))
+          if slice.parameters.get(n) != other.parameters.get(n)),
+    ]  # fmt: skip
+    if different:
+        raise ConfigError(
+            f"this map is of another slice: {', '.join(different)} {'differs' if len(different) == 1 else 'differ'}",
+            key="resume",
+        )
+
+
+def _check_count(slice: Slice) -> None:
+    """Without free lengths every spring that is not of length zero is longer than its own: stable says it all."""
+    if slice.count is Count.ADMISSIBLE and not slice.has_free_lengths:
+        raise ConfigError(
+            "admissible asks that every spring is longer than its free length, and none has a free length here: "
+            "choose stable",
+            key="count",
+        )
+
+
+def _share(value: Fraction | float | str | None, key: str) -> Fraction | None:
+    if value is None:
+        return None
+    try:
+        share = Fraction(value)
+    except (ValueError, TypeError, ZeroDivisionError, OverflowError) as error:
+        raise ConfigError(f"{value!r} is not a number", key=key) from error
+    if not 0 < share < 1:
+        raise ConfigError(f"{value} is not between 0 and 1", key=key)
+    return share

@@ -1,0 +1,10 @@
+"""Which engine a slice needs."""
+
+from __future__ import annotations
+
+from ptmcad.question.slice import Slice
+
+
+def is_certified(slice: Slice, engine: str) -> bool:
+    """Whether the choice ``"exact"``, ``"certified"`` or ``"auto"`` means the certified engine for a slice."""
+    return engine == "certified" or (engine == "auto" and slice.has_free_lengths)

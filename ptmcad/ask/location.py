@@ -1,0 +1,157 @@
+"""Where a rational point lies in a region map.
+
+Guarantee: exact, however near the point is to a wall. The answer comes from the map's stored walls: signs of the stored
+polynomials at the point and numbers of their real roots below it; in a certified map from its cover, in integers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from flint import fmpq
+
+from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction, from_plane
+from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at
+from ptmcad.answer.regionmap import CriticalValue, Location, RegionMap, Status
+from ptmcad.cover import components
+from ptmcad.cover.rectangles import Cover
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.exact.cad.curves import Curve, curve
+from ptmcad.text.expressions import rational
+
+if TYPE_CHECKING:
+    from ptmcad.cover.complement import Components
+
+
+def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
+    """The cell, region and counts of a point of the window.
+
+    Raises
+    ------
+    ConfigError
+        When the names are not the two axes, a value is not an exact number, or the map contradicts itself.
+    """
+    point = _point(result, at)
+    inside = all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, point, strict=True))
+    if not inside:
+        return Location(Status.OUTSIDE)
+    if result.cover is not None:
+        return _locate_outside_cover(result, result.cover, point)
+    if not result.cells:
+        return Location(Status.UNDECIDED)
+    used = [(n, c) for n, c in enumerate(result.components) if not c.left_out]
+    if any(c.polynomial(*point) == 0 for _, c in used):
+        return Location(Status.ON_VARIETY)
+    base = result.base
+    u, v = from_fraction(point[base]), from_fraction(point[1 - base])
+    curves = [curve(n, from_plane(c.polynomial), base) for n, c in used if c.polynomial.degrees[1 - base] > 0]
+    stack, on_critical = _stack(result, u)
+    if stack >= len(result.stacks):
+        raise ConfigError(f"the map contradicts itself: there is no stack {stack}; check it with ptmcad verify")
+    if on_critical:
+        # the point lies on an artefact of the decomposition: step to the stack at its left along a free segment
+        u = _step_left(result, curves, u, v, stack)
+    low = from_fraction(result.slice.axes[1 - base].low)
+    below = sum(_roots_below(c.fibre(u), low, v) for c in curves)
+    try:
+        number = result.stacks[stack].cells[below]
+        cell = result.cells[number]
+    except IndexError as error:
+        raise ConfigError(
+            f"the map contradicts itself: stack {stack} has no cell above {below} walls; check it with ptmcad verify"
+        ) from error
+    # in a map that was stopped before its areas were known, the counts are exact all the same
+    status = Status.EXACT if result.status is Status.PARTIAL else result.status
+    return Location(status, cell.region, number, cell.total, cell.stable, cell.index)
+
+
+def _locate_outside_cover(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> Location:
+    complement, cells = _complement(result, cover)
+    number = cells.get(complement.locate(*_in_steps(result, cover, point)))
+    if number is None:
+        return Location(Status.UNDECIDED)
+    cell = result.cells[number]
+    return Location(Status.CERTIFIED, cell.region, number, cell.total, cell.stable, cell.index, cell.admissible)
+
+
+def _in_steps(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
+    """Lattice coordinates."""
+    u, v = ((x - a.low) / (a.high - a.low) * cover.steps for a, x in zip(result.slice.axes, point, strict=True))
+    return u, v
+
+
+def _complement(result: RegionMap, cover: Cover) -> tuple[Components, dict[int | None, int]]:
+    """The components outside the cover, and which cell each of them is; kept for the next point of the same map."""
+    if not _latest or _latest[0][0] is not result:
+        complement = components(cover)
+        cells: dict[int | None, int] = {}
+        for number, cell in enumerate(result.cells):
+            try:
+                place = complement.locate(*_in_steps(result, cover, (cell.sample[0], cell.sample[1])))
+            except ValueError as error:
+                raise _contradiction(f"the sample of cell {number} is not in the window") from error
+            if place is None or place in cells:
+                raise _contradiction(f"the sample of cell {number} is in the cover or in the component of another cell")
+            cells[place] = number
+        _latest[:] = [(result, complement, cells)]
+    return _latest[0][1:]
+
+
+_latest: list[tuple[RegionMap, Components, dict[int | None, int]]] = []
+
+
+def _contradiction(what: str) -> ConfigError:
+    return ConfigError(f"the map contradicts itself: {what}; check it with ptmcad verify")
+
+
+def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
+    names = result.slice.axis_names
+    if set(at) != set(names):
+        raise ConfigError(
+            f"a point of this map needs {names[0]} and {names[1]}, not {', '.join(map(str, at)) or 'nothing'}"
+        )
+    values = []
+    for name in names:
+        try:
+            value = at[name]
+            values.append(rational(repr(value) if isinstance(value, float) else value))
+        except ExpressionError as error:
+            raise ConfigError(str(error), key=name) from error
+    return values[0], values[1]
+
+
+def _stack(result: RegionMap, u: fmpq) -> tuple[int, bool]:
+    """The stack over u; or, when u is a critical value, the stack at its left and True."""
+    for number, critical in enumerate(result.critical_values):
+        order = _compare(u, critical)
+        if order <= 0:
+            return number, order == 0
+    return len(result.critical_values), False
+
+
+def _compare(u: fmpq, critical: CriticalValue) -> int:
+    """The sign of u minus the critical value."""
+    low, high = from_fraction(critical.low), from_fraction(critical.high)
+    if u < low or u > high:
+        return -1 if u < low else 1
+    if low == high:
+        return 0
+    p = UnivariatePolynomial(list(critical.polynomial))
+    at = sign_at(p, u)
+    if at == 0:
+        return 0
+    return -1 if at == sign_at(p, low) else 1
+
+
+def _step_left(result: RegionMap, curves: list[Curve], u: fmpq, v: fmpq, stack: int) -> fmpq:
+    """An abscissa in the stack at the left of u from which the horizontal segment to (u, v) meets no curve."""
+    width = u - from_fraction(result.stacks[stack].sample)
+    while any(has_root_between(c.trace(v), u - width, u) for c in curves):
+        width = width / 2
+    return u - width
+
+
+def _roots_below(p: UnivariatePolynomial, low: fmpq, v: fmpq) -> int:
+    return len(isolate(p, low, v))

@@ -1,0 +1,54 @@
+"""All equilibria of the mechanism at one rational point, by the engine that the point needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from ptmcad.answer.poses import DIGITS, MOST_DIGITS, Poses
+from ptmcad.errors import ConfigError, shown
+from ptmcad.process.memory import check_room, loading
+from ptmcad.question.config import point_from_mapping
+from ptmcad.question.slice import FREE_LENGTHS
+
+
+def solve(digits: int = DIGITS, **parameters: object) -> Poses:
+    """All equilibria of the paper's mechanism at a rational point.
+
+    >>> poses = solve(rho="1", L2="3/2")
+    >>> [pose.angles[0].text(6) for pose in poses.equilibria if pose.stable]
+    ['0.812756', '-0.812756']
+
+    Parameters
+    ----------
+    digits : significant digits that every number settles, 1 to `MOST_DIGITS`; more digits cost more time.
+    parameters : by the names of a problem record (L1, L2, rho, k or k1, k2, k3, F3, F4, F3x, F4x, l0 or l0_1, l0_2,
+        l0_3), with its defaults: lengths 1, stiffness 100, no load, free lengths 0. Text, int, Fraction or Decimal; no
+        float.
+
+    Raises
+    ------
+    ConfigError
+        For a name or a value that is wrong, with the name.
+    """
+    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
+        raise ConfigError(f"{shown(repr(digits), 60)} is not a number of digits from 1 to {MOST_DIGITS}", key="digits")
+    return poses_at(point_from_mapping(parameters), digits)
+
+
+def poses_at(parameters: Mapping[str, Fraction], digits: int) -> Poses:
+    """All equilibria of the paper's mechanism; only the engine that is used is loaded.
+
+    Parameters
+    ----------
+    parameters : all of the mechanism's, with the free lengths if some is not zero.
+    digits : significant digits that every enclosure settles.
+    """
+    if any(parameters.get(name) for name in FREE_LENGTHS):
+        with loading("the certified engine"):
+            from ptmcad.certified.poses import certified_poses
+        check_room("the certified engine")
+        return certified_poses(parameters, digits)
+    from ptmcad.exact.poses import exact_poses
+
+    return exact_poses(parameters, digits)

@@ -1,9 +1,0 @@
-"""Benchmarks: whole processes, timed as a user meets them, and the error of what they answer.
-
-Guarantee: times and memory are those of whole processes, start-up included; competitors take turns within a round, so
-that a slow minute of the machine hits all of them alike; errors are bounded and not sampled (`ptmcad.bench.error`); and
-what could not be measured is reported with its reason.
-
-``ptmcad bench`` measures error against run time. ``python -m ptmcad.bench`` measures time and memory of all records,
-``python -m ptmcad.bench.undetermined`` the certified engine's levels. ``make bench`` runs the first two.
-"""

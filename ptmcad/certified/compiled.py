@@ -1,0 +1,66 @@
+"""How the inner loops are compiled: by numba, kept on disk, without any licence to change floating-point arithmetic.
+
+Guarantee: each operation is rounded once, to nearest, as IEEE 754 says; no fused or reordered operations, and division
+by zero gives an infinity. Nothing that depends on a slice is compiled in, so a new slice compiles nothing. What is kept
+on disk belongs to the present text of all modules of this package: numba looks only at the file of a function, and not
+at those of the functions that it calls, so that after a correction of the arithmetic old code would have gone on.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+from ptmcad.errors import ConfigError
+from ptmcad.process.extras import NUMBA_MISSING
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+try:
+    from numba import config, njit
+    from numba.np import arraymath as _linear_algebra  # noqa: F401 - loads scipy's if there is one, now and not later
+except ImportError as missing:
+    if not isinstance(missing, ModuleNotFoundError):  # it is installed, and does not work
+        raise
+    raise ConfigError(NUMBA_MISSING) from missing
+
+
+_CONFIG: Any = config
+
+
+def _folder() -> Path:
+    """Where compiled code is kept: a folder for the present sources.
+
+    It is where NUMBA_CACHE_DIR says, else beside the sources, else in the user's cache.
+    """
+    here = Path(__file__).parent
+    digest = sha256()
+    for source in sorted(here.glob("*.py")):
+        digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
+    beside = here / "__pycache__"
+    if not os.access(beside if beside.exists() else here, os.W_OK):
+        beside = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ptmcad"
+    return Path(_CONFIG.CACHE_DIR or beside) / f"compiled-{digest.hexdigest()[:16]}"
+
+
+_FOLDER = _folder()
+
+
+def compiled(function: F) -> F:
+    """Compile for the machine; the global interpreter lock is released while the function runs."""
+    usual = _CONFIG.CACHE_DIR
+    # numba asks for the folder when it decorates
+    _CONFIG.CACHE_DIR = str(_FOLDER)
+    try:
+        decorated = njit(cache=True, nogil=True, error_model="numpy", fastmath=False)(function)
+    finally:
+        _CONFIG.CACHE_DIR = usual
+    return cast("F", decorated)
+
+
+def inlined(function: F) -> F:
+    """The same for a function of a few operations, which is written out where it is used."""
+    return cast("F", njit(nogil=True, error_model="numpy", fastmath=False, inline="always")(function))

@@ -1,0 +1,60 @@
+"""The configurations in which spring 3 has length zero: whether the energy has a peak there, decided exactly.
+
+Guarantee: rational arithmetic in Q(sqrt(W)) only, so that no sign is rounded.
+
+With |L1 - L2| < rho < L1 + L2 there are two, mirror images: A3 and A4 meet at the corner of the triangle with sides
+rho, L1, L2, at height H = +-sqrt(W). Springs 1 and 2 are as long as the bars there. Near such a point U is -k3 l0_3 l3
+plus a smooth function whose slope along d3 is g: a peak where |g| < k3 l0_3, and a regular point where |g| is larger.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Cones:
+    """``count`` peaks; ``regular`` is False where one is about to appear or vanish, or where springs degenerate.
+
+    When ``regular`` holds, minima - saddles + maxima + count = 0 (if there are finitely many, none degenerate).
+    """
+
+    count: int
+    regular: bool
+
+
+def cones(values: Mapping[str, Fraction]) -> Cones:
+    """The cones of a mechanism with all parameters of `ptmcad.certified.mechanism.NAMES`, in any unit of stiffness."""
+    rho, p1, p2 = values["rho"], values["L1"], values["L2"]
+    pull1, pull2, pull3 = (values[f"k{i}"] * values[f"l0_{i}"] for i in (1, 2, 3))
+    regular = not (pull1 and rho == p2) and not (pull2 and rho == p1)
+    if pull3 == 0:
+        return Cones(0, regular)
+    if rho == 0:
+        return Cones(0, regular and p1 != p2)
+    c1, c2 = (rho**2 + p1**2 - p2**2) / (2 * rho * p1), (rho**2 + p2**2 - p1**2) / (2 * rho * p2)
+    square = p1**2 * (1 - c1**2)
+    if square <= 0:
+        return Cones(0, regular and square < 0)
+    c12 = (rho**2 - p1**2 - p2**2) / (2 * p1 * p2)
+    # r1 = a1 H + b1 and r2 = a2 H + b2 are E1 and E2 without spring 3, whose quadratic part vanishes
+    a1 = (values["k2"] * rho - pull2 * rho / p2 + values["F3x"]) / p1
+    a2 = (values["k1"] * rho - pull1 * rho / p1 - values["F4x"]) / p2
+    b1, b2 = -values["F3"] * c1, -values["F4"] * c2
+    # |g|^2 s12^2 - pull3^2 s12^2 = even + odd H, with s12 = rho H/(L1 L2)
+    even = (a1**2 + a2**2 + 2 * a1 * a2 * c12 - (pull3 * rho / (p1 * p2)) ** 2) * square
+    even += b1**2 + b2**2 + 2 * b1 * b2 * c12
+    odd = 2 * (a1 * b1 + a2 * b2 + (a1 * b2 + a2 * b1) * c12)
+    signs = [_sign(even, side * odd, square) for side in (1, -1)]
+    return Cones(signs.count(-1), regular and 0 not in signs)
+
+
+def _sign(a: Fraction, b: Fraction, square: Fraction) -> int:
+    """The sign of a + b sqrt(square)."""
+    first, second = (a > 0) - (a < 0), (b > 0) - (b < 0)
+    if first * second >= 0:
+        return first or second
+    difference = a**2 - b**2 * square
+    return first * ((difference > 0) - (difference < 0))

@@ -1,0 +1,212 @@
+"""Contraction of a box around the solutions of a system: natural tests, mean-value test, and the linearised equations.
+
+Guarantee: a box that is discarded holds no solution, and a contracted box holds every solution of the box that it was
+made of. (Lemmas 4 to 8 of docs/soundness.md.)
+
+References
+----------
+Neumaier, Interval Methods for Systems of Equations (1990), chapter 5; Hansen & Sengupta, BIT 21 (1981).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.certified.arithmetic import down, magnitude, multiply, reciprocal, up
+from ptmcad.certified.compiled import compiled
+from ptmcad.certified.evaluation import run
+from ptmcad.certified.system import Arguments
+
+Floats = NDArray[np.float64]
+Workspace = tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats, Floats, Floats, Floats, Floats]
+SWEEPS = 10
+WORTHWHILE = 0.8
+"""Another sweep follows as long as some width shrinks below this part of itself."""
+
+
+@compiled
+def workspace(length: int, variables: int, m: int, n: int) -> Workspace:
+    """Arrays that a search uses again for every box."""
+    return (
+        np.empty(length), np.empty(length), np.empty(length), np.empty(length),
+        np.empty(variables), np.empty(variables), np.empty(n),
+        np.empty((m, n)), np.empty((m, n)), np.empty((m, n)), np.empty((m, m)),
+    )  # fmt: skip
+
+
+@compiled
+def discarded(low: Floats, high: Floats, vanishing: NDArray[np.int64]) -> bool:
+    """Whether one of the formulas that vanish at solutions has no zero."""
+    for place in vanishing:
+        if low[place] > 0 or high[place] < 0:
+            return True
+    return False
+
+
+@compiled
+def precondition(middle: Floats, inverse: Floats, widths: Floats, pivots: NDArray[np.int64], tolerance: float) -> None:
+    """Gauss-Jordan elimination of ``middle`` (m, n) with full pivoting, columns weighted by ``widths``.
+
+    ``inverse`` becomes the product of the row operations; ``pivots[i]`` the column that row i solves for, or -1.
+    Rounding needs no care here: any matrix is a valid preconditioner.
+    """
+    m, n = middle.shape
+    for i in range(m):
+        pivots[i] = -1
+        for j in range(m):
+            inverse[i, j] = 1.0 if i == j else 0.0
+    for _ in range(m):
+        best, row, column = tolerance, -1, -1
+        for i in range(m):
+            if pivots[i] >= 0:
+                continue
+            for j in range(n):
+                taken = False
+                for k in range(m):
+                    if pivots[k] == j:
+                        taken = True
+                size = abs(middle[i, j]) * widths[j]
+                if not taken and size > best:
+                    best, row, column = size, i, j
+        if row < 0:
+            return
+        pivots[row] = column
+        factor = 1 / middle[row, column]
+        for j in range(n):
+            middle[row, j] *= factor
+        for j in range(m):
+            inverse[row, j] *= factor
+        for i in range(m):
+            other = middle[i, column]
+            if i != row and other != 0.0:
+                for j in range(n):
+                    middle[i, j] -= other * middle[row, j]
+                for j in range(m):
+                    inverse[i, j] -= other * inverse[row, j]
+
+
+@compiled
+def contract(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> bool:
+    """Shrink the box in place around the solutions in it; False when there are none."""
+    pivots = np.empty(system[4].shape[0], np.int64)
+    radius, matrix, inverse = work[6], work[9], work[10]
+    for _ in range(SWEEPS):
+        usable = linearise(system, box_low, box_high, work)
+        if usable < 0:
+            return False
+        if usable == 0:
+            return True
+        precondition(matrix, inverse, radius, pivots, 1e-200)
+        shrunk = False
+        for i in range(len(pivots)):
+            if pivots[i] < 0:
+                continue
+            step = solve_row(system, i, pivots[i], box_low, box_high, work)
+            if step < 0:
+                return False
+            shrunk = shrunk or step > 0
+        if not shrunk:
+            return True
+    return True
+
+
+@compiled
+def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> int:
+    """Test a box and enclose its equations' derivatives: -1 no solution, 0 a derivative may be unbounded, 1 done.
+
+    Afterwards ``work`` has the middle and the radii of the box, the equations there, their derivatives over the box,
+    and the middles of these.
+    """
+    program, stages, unknowns, equations, jacobian, cheap, rest, costly, nonnegative = system
+    low, high, low_at, high_at, middle_low, middle_high, radius, j_low, j_high, matrix, _ = work
+    m, n = jacobian.shape
+    if not run(program, box_low, box_high, low, high, 0, stages[0]) or discarded(low, high, cheap):
+        return -1
+    if not run(program, box_low, box_high, low, high, stages[0], stages[1]) or discarded(low, high, rest):
+        return -1
+    if not run(program, box_low, box_high, low, high, stages[1], stages[2]) or discarded(low, high, costly):
+        return -1
+    for place in nonnegative:
+        if high[place] < 0:
+            return -1
+    if not run(program, box_low, box_high, low, high, stages[2], stages[3]):
+        return -1
+    for k in range(box_low.shape[0]):
+        middle_low[k], middle_high[k] = box_low[k], box_high[k]
+    for j in range(n):
+        k = unknowns[j]
+        middle = 0.5 * (box_low[k] + box_high[k])
+        middle_low[k] = middle_high[k] = middle
+        radius[j] = up(max(box_high[k] - middle, middle - box_low[k]))
+    # only the equations: at a middle that is no solution, the two formulas of a `meet` may differ
+    run(program, middle_low, middle_high, low_at, high_at, 0, stages[1])
+    usable = True
+    for i in range(m):
+        u, v = low_at[equations[i]], high_at[equations[i]]
+        for j in range(n):
+            place = jacobian[i, j]
+            j_low[i, j], j_high[i, j] = low[place], high[place]
+            matrix[i, j] = 0.5 * (low[place] + high[place])
+            usable = usable and abs(matrix[i, j]) < 1e150
+            change = up(magnitude(low[place], high[place]) * radius[j])
+            u, v = down(u - change), up(v + change)
+        if u > 0 or v < 0:
+            return -1
+    return 1 if usable else 0
+
+
+@compiled
+def row_constant(i: int, equations: NDArray[np.int64], work: Workspace) -> tuple[float, float]:
+    """Row i of the preconditioned equations at the middle."""
+    low_at, high_at, inverse = work[2], work[3], work[10]
+    c_low = c_high = 0.0
+    for k in range(inverse.shape[0]):
+        u, v = multiply(inverse[i, k], inverse[i, k], low_at[equations[k]], high_at[equations[k]])
+        c_low, c_high = down(c_low + u), up(c_high + v)
+    return c_low, c_high
+
+
+@compiled
+def row_coefficient(i: int, j: int, work: Workspace) -> tuple[float, float]:
+    """Entry j of row i of the preconditioned derivatives."""
+    j_low, j_high, inverse = work[7], work[8], work[10]
+    u = v = 0.0
+    for k in range(inverse.shape[0]):
+        factor = inverse[i, k]
+        if factor >= 0:
+            u, v = down(u + down(factor * j_low[k, j])), up(v + up(factor * j_high[k, j]))
+        else:
+            u, v = down(u + down(factor * j_high[k, j])), up(v + up(factor * j_low[k, j]))
+    return u, v
+
+
+@compiled
+def solve_row(system: Arguments, i: int, pivot: int, box_low: Floats, box_high: Floats, work: Workspace) -> int:
+    """Row i of the preconditioned linear equations, solved for its pivot: -1 no solution, 1 much narrower, 0 else."""
+    unknowns, equations = system[2], system[3]
+    middle_low, radius = work[4], work[6]
+    c_low, c_high = row_constant(i, equations, work)
+    p_low = p_high = 1.0
+    for j in range(len(unknowns)):
+        u, v = row_coefficient(i, j, work)
+        if j == pivot:
+            p_low, p_high = u, v
+            continue
+        x = unknowns[j]
+        u, v = multiply(u, v, down(box_low[x] - middle_low[x]), up(box_high[x] - middle_low[x]))
+        c_low, c_high = down(c_low + u), up(c_high + v)
+    # c + p (x - middle) = 0 for the pivot's unknown x
+    if not (p_low > 0 or p_high < 0):
+        reach = up(magnitude(p_low, p_high) * radius[pivot])
+        return -1 if down(c_low - reach) > 0 or up(c_high + reach) < 0 else 0
+    u, v = reciprocal(p_low, p_high)
+    u, v = multiply(-c_high, -c_low, u, v)
+    x = unknowns[pivot]
+    u, v = down(middle_low[x] + u), up(middle_low[x] + v)
+    before = box_high[x] - box_low[x]
+    box_low[x] = max(box_low[x], u)
+    box_high[x] = min(box_high[x], v)
+    if box_low[x] > box_high[x]:
+        return -1
+    return 1 if box_high[x] - box_low[x] < WORTHWHILE * before else 0

@@ -1,0 +1,112 @@
+"""Covers of enclosed curves: the rectangles of their boxes, or pieces of strips that are as thin as is asked.
+
+Guarantee: each point of the window that lies on the projection of a curve lies in a rectangle. (Lemmas 12 and 16 of
+docs/soundness.md.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from ptmcad.certified.refinement import Enclosure
+from ptmcad.certified.search import Boxes
+from ptmcad.certified.strips import NONE, Strips, areas_of_pieces, numbers_of_pieces, pieces, strips
+from ptmcad.certified.tiling import COMPILED
+from ptmcad.cover import from_boxes, union_area
+from ptmcad.cover.filling import combined
+from ptmcad.cover.rectangles import Cover, Window
+
+BATCH = 4096
+SLACK = 0.9
+"""Pieces are made so thin that their areas sum up to this part of what may be left undetermined."""
+WORTHWHILE = 0.5
+"""A strip is cut if its finest pieces cover less than this part of its rectangle."""
+HALVINGS = 200
+"""Of the area by which a piece may be larger than its strip, at most; below, floats are exhausted."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lattice:
+    """Where covers lie: the window, and the number of lattice steps along each axis."""
+
+    window: Window
+    steps: int
+
+    def cover(self, rectangles: Boxes) -> Cover:
+        """The cover of rectangles (left, bottom, right, top)."""
+        return from_boxes(self.window, rectangles[:, :2], rectangles[:, 2:], self.steps)
+
+
+def box_rectangles(enclosures: Sequence[Enclosure]) -> Boxes:
+    """The projections of all boxes, shape (k, 4)."""
+    boxes = [enclosure.boxes() for enclosure in enclosures]
+    return np.concatenate([np.concatenate([b[:, :2], b[:, b.shape[1] // 2 :][:, :2]], axis=1) for b in boxes])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Thinning:
+    """Strips of all boxes, and how much of the window they leave undetermined.
+
+    Attributes
+    ----------
+    thin : strips that are worth cutting into pieces.
+    whole : the other ones, and boxes without; around a cusp or a crossing they overlap many times.
+    whole_area : of the union of ``whole`` in the window.
+    """
+
+    thin: Strips
+    whole: Strips
+    whole_area: float
+    lattice: Lattice
+
+    def least(self) -> float:
+        """About the area that the finest pieces leave."""
+        return self.whole_area + float(areas_of_pieces(self.thin, 0.0).sum())
+
+    def cover(self, area: float, most: int | None = None) -> Cover:
+        """A cover whose area is about the given one, or the least; the more it may be the fewer the pieces are.
+
+        Parameters
+        ----------
+        most : number of pieces that is not exceeded by more than a factor.
+        """
+        step = self._step(area, most)
+        return self.lattice.cover(np.concatenate([pieces(self.whole, inf), pieces(self.thin, step)]))
+
+    def number(self, area: float) -> int:
+        """About how many rectangles `cover` has."""
+        return len(self.whole) + int(numbers_of_pieces(self.thin, self._step(area, None)).sum())
+
+    def _step(self, area: float, most: int | None) -> float:
+        wanted = max(SLACK * area, 1.1 * self.least()) - self.whole_area
+        (left, right), (bottom, top) = self.lattice.window
+        step = float((right - left) * (top - bottom))
+        for _ in range(HALVINGS):
+            enough = areas_of_pieces(self.thin, step).sum() <= wanted
+            if enough or (most is not None and numbers_of_pieces(self.thin, step).sum() > most):
+                break
+            step /= 2
+        return step
+
+
+def thinning(enclosures: Sequence[Enclosure], lattice: Lattice, jobs: int) -> Thinning:
+    """The strips of all boxes of the curves."""
+    with ThreadPoolExecutor(jobs) as pool:
+        found = [
+            pool.submit(strips, enclosure.curve.system.arguments(), boxes[start : start + BATCH])
+            for enclosure in enclosures
+            for boxes in [enclosure.boxes()]
+            for start in range(0, len(boxes), BATCH)
+        ]
+        together = np.concatenate([NONE, *(future.result() for future in found)])
+    worthwhile = areas_of_pieces(together, 0.0) < WORTHWHILE * areas_of_pieces(together, inf)
+    whole = together[~worthwhile]
+    (left, right), (bottom, top) = lattice.window
+    squares = union_area(combined(lattice.cover(pieces(whole, inf))), COMPILED)
+    area = float((right - left) * (top - bottom) * squares / lattice.steps**2)
+    return Thinning(together[worthwhile], whole, area, lattice)

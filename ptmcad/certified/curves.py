@@ -1,0 +1,201 @@
+"""The curves of a slice at which counts change, as systems whose solutions project to them.
+
+Guarantee: each point of the window at which the chosen count changes lies on the projection of one of the curves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.certified.formula import Formula, Graph, length
+from ptmcad.certified.mechanism import Mechanism
+from ptmcad.certified.parameters import PHI_UNIT, parameter_formulas, slice_mechanism
+from ptmcad.certified.scales import axis_weights
+from ptmcad.certified.search import Boxes
+from ptmcad.certified.system import System, system
+from ptmcad.errors import DegenerateSliceError
+from ptmcad.question.slice import Count, Slice
+
+TORUS = (-3.0, -3.0 + 6.2832)
+"""A little more than a full turn, cut where no symmetric solution lies."""
+PHI = (TORUS[0] / PHI_UNIT, TORUS[1] / PHI_UNIT)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """One curve: its name, why counts change there, and the system that defines it.
+
+    The variables of its boxes are x, y and those that ``ranges`` gives.
+    """
+
+    name: str
+    reason: str
+    system: System
+    ranges: tuple[tuple[float, float], ...]
+    weights: NDArray[np.float64] | None = None
+    """Of the variables' widths in the choice which one to bisect; equal ones when None."""
+
+    def importance(self) -> NDArray[np.float64]:
+        """The weights of all variables."""
+        return np.ones(2 + len(self.ranges)) if self.weights is None else self.weights
+
+    def start(self, window: Boxes) -> Boxes:
+        """Boxes over rectangles (low x, low y, high x, high y) of the window that hold the whole curve over them."""
+        count = len(window)
+        low = np.tile(np.array([r[0] for r in self.ranges]), (count, 1))
+        high = np.tile(np.array([r[1] for r in self.ranges]), (count, 1))
+        return np.concatenate([window[:, :2], low, window[:, 2:], high], axis=1)
+
+
+def curves(slice: Slice, count: Count, keep: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
+    """The curves at which ``count`` may change; docs/free-lengths-curves.md proves that no other is needed.
+
+    Parameters
+    ----------
+    keep : names of savings to switch off, of `ptmcad.question.savings`.
+    """
+    scale = np.array(axis_weights(slice))
+    return tuple(
+        replace(curve, weights=np.concatenate([scale, np.ones(len(curve.ranges))]))
+        for curve in _CURVES[count](slice, keep)
+    )
+
+
+def _stable(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
+    yield from _folds(slice, keep, stable="folds-of-saddles" not in keep)
+    if "cones-and-creases" in keep:
+        yield from _cone(slice, keep)
+        yield from _creases(slice)
+
+
+def _all(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
+    yield from _folds(slice, keep, stable=False)
+    yield from _cone(slice, keep)
+    yield from _creases(slice)
+
+
+def _folds(slice: Slice, keep: frozenset[str], *, stable: bool) -> Iterator[Curve]:
+    """Where D = 0; with spring 3 short and long apart, since D and the derivatives of E1, E2 have a pole at l3 = 0."""
+    name = "fold of a stable equilibrium" if stable else "fold"
+    reason = "a minimum meets a saddle: det H = 0 with nonnegative diagonal" if stable else "equilibria meet: det H = 0"
+    factored = "unloaded-factor" not in keep
+    graph = Graph()
+    m = slice_mechanism(graph, slice, factored=factored)
+    there = m.at_equilibrium
+    short = SHORT * parameter_formulas(graph, slice)["L1"]
+    # unloaded, a stable configuration with spring 3 short is told from the multiples without phi
+    apart = m.unit is not None and not (stable and m.unloaded)
+    e1, e2 = m.equilibrium
+    balance, singular = m.unloaded or (e2, m.hessian.determinant)
+    yield Curve(
+        name,
+        reason,
+        system(
+            [e1, balance, singular],
+            (0, 1, 2, 3),
+            _dependent(
+                keep,
+                [e2, *m.dependent, *_present(m.unit)],
+                [there.determinant, m.turned, *([] if stable else [there.levelled])],
+            ),
+            [*([m.lengths[2] - short] if apart else []), *(_semidefinite(m) if stable else [])],
+        ),
+        (TORUS, TORUS),
+    )
+    if not apart:
+        return
+    graph = Graph()
+    m = slice_mechanism(graph, slice, phi=True, factored=factored)
+    there = m.at_equilibrium
+    short = SHORT * parameter_formulas(graph, slice)["L1"]
+    yield Curve(
+        f"{name}, spring 3 short",
+        f"{reason}; l3 is at most {SHORT} L1",
+        system(
+            [*_present(m.aligned), *m.equilibrium, m.hessian.blown_up],
+            (0, 1, 2, 3, 4),
+            _dependent(
+                keep,
+                [*m.dependent, *_present(m.unit)],
+                [there.blown_up, *([m.turned] if stable else [there.levelled])],
+            ),
+            [m.lengths[2], short - length(*m.vectors[2]), *(_semidefinite(m) if stable else [])],
+        ),
+        (TORUS, TORUS, PHI),
+    )
+
+
+def _semidefinite(m: Mechanism) -> list[Formula]:
+    """What is at least zero where the Hessian is positive semidefinite, besides D."""
+    return [m.at_equilibrium.p11, m.at_equilibrium.p22, m.turn]
+
+
+def _dependent(
+    keep: frozenset[str], cheap: list[Formula], costly: list[Formula]
+) -> tuple[list[Formula], list[Formula]]:
+    """Formulas that vanish where the equations do, unless they are not to be used."""
+    return ([], []) if "dependent-equations" in keep else (cheap, costly)
+
+
+def _cone(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
+    m = slice_mechanism(Graph(), slice, phi=True)
+    if m.unit is not None:
+        yield Curve(
+            "cone",
+            "an equilibrium is swallowed by the cone l3 = 0",
+            system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), _dependent(keep, [*m.dependent, m.unit], [])),
+            (TORUS, TORUS, PHI),
+        )
+
+
+def _creases(slice: Slice) -> Iterator[Curve]:
+    graph = Graph()
+    values = parameter_formulas(graph, slice)
+    for spring, bar in ((1, "L2"), (2, "L1")):
+        if values[f"l0_{spring}"].value != 0 and values[f"k{spring}"].value != 0:
+            line = values["rho"].squared() - values[bar].squared()
+            if line.value == 0:
+                raise DegenerateSliceError(
+                    f"rho = {bar} everywhere on this slice: spring {spring} has no length in a configuration at each "
+                    "point, so that total counts need not be constant in regions; --count stable has an answer"
+                )
+            yield Curve(
+                f"crease l{spring} = 0", f"spring {spring} has no length on a circle", system([line], (0, 1)), ()
+            )
+
+
+def _admissible(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
+    yield from _stable(slice, keep)
+    m = slice_mechanism(Graph(), slice)
+    for spring, (extent, free, vector) in enumerate(zip(m.lengths, m.free, m.vectors, strict=True), start=1):
+        third, dependent = (vector[0], [vector[1]]) if free.value == 0 else (extent - free, [])
+        yield Curve(
+            f"l{spring} = l0_{spring}",
+            f"spring {spring} of a stable equilibrium has its free length",
+            system(
+                [*m.equilibrium, third],
+                (0, 1, 2, 3),
+                _dependent(keep, [*m.dependent, *dependent], []),
+                [*_semidefinite(m), m.at_equilibrium.determinant, m.turned],
+            ),
+            (TORUS, TORUS),
+        )
+
+
+def _present(formula: Formula | None) -> list[Formula]:
+    return [] if formula is None else [formula]
+
+
+SHORT = Fraction(1, 8)
+"""Below this length of spring 3, as a part of L1, its direction is a variable of its own."""
+_CURVES: dict[Count, Callable[[Slice, frozenset[str]], Iterator[Curve]]] = {
+    Count.STABLE: _stable,
+    Count.TOTAL: _all,
+    Count.INDEX: _all,
+    Count.ADMISSIBLE: _admissible,
+}

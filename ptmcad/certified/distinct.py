@@ -1,0 +1,68 @@
+"""Which of the proved boxes hold the same zero on the torus.
+
+Guarantee: two zeros are called one only when a box that holds exactly one holds both (moved by full turns), and
+different only when narrow boxes around them are disjoint. (Lemma 10 of docs/soundness.md.)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.certified.compiled import compiled
+from ptmcad.certified.search import Boxes
+
+_TURN = 6.283185307179586
+_TURN_ERROR = 1e-14
+"""More than the error of _TURN, and of adding it to an angle under 60."""
+
+
+def distinct(unique: Boxes, narrow: Boxes, first: int) -> NDArray[np.int64] | None:
+    """Rows of zeros that are all different; every zero is one of them. None when some pair can not be told.
+
+    Parameters
+    ----------
+    unique, narrow : (k, 2v): boxes with exactly one zero each, and narrower ones around the same zero.
+    first : number of the first angle; all variables from it on are angles.
+    """
+    kept = np.empty(len(unique), np.int64)
+    count = int(_distinct(unique, narrow, first, kept))
+    return None if count < 0 else kept[:count]
+
+
+@compiled
+def _distinct(unique: Boxes, narrow: Boxes, first: int, kept: NDArray[np.int64]) -> int:
+    count = 0
+    for i in range(unique.shape[0]):
+        known = False
+        for k in range(count):
+            j = kept[k]
+            relation = _relation(unique, narrow, first, i, j)
+            if relation < 0:
+                relation = _relation(unique, narrow, first, j, i)
+            if relation < 0:
+                return -1
+            if relation > 0:
+                known = True
+                break
+        if not known:
+            kept[count] = i
+            count += 1
+    return count
+
+
+@compiled
+def _relation(unique: Boxes, narrow: Boxes, first: int, i: int, j: int) -> int:
+    """1 when zero i, moved by full turns, lies in the box in which zero j is the only one; 0 different; -1 unknown."""
+    variables = unique.shape[1] // 2
+    inside, apart = True, False
+    for k in range(first, variables):
+        low, high = narrow[i, k], narrow[i, variables + k]
+        if not high - low < 0.5 or not narrow[j, variables + k] - narrow[j, k] < 0.5:
+            return -1
+        turns = np.rint((0.5 * (narrow[j, k] + narrow[j, variables + k]) - 0.5 * (low + high)) / _TURN)
+        error = 0.0 if turns == 0 else _TURN_ERROR
+        low, high = low + turns * _TURN - error, high + turns * _TURN + error
+        inside = inside and unique[j, k] <= low and high <= unique[j, variables + k]
+        apart = apart or high < narrow[j, k] or low > narrow[j, variables + k]
+    return 1 if inside else (0 if apart else -1)

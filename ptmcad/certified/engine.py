@@ -1,0 +1,377 @@
+"""The certified engine: from a slice to a region map of which the undecided part is known and small.
+
+Guarantee: the counts of each cell hold at every one of its points. What is not decided is in the map's cover, or in a
+component of the cover's complement that has no cell; `RegionMap.undetermined` is its exact share of the window.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import inf
+
+import flint
+import numba
+import numpy as np
+
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.certified.assembly import Assembler
+from ptmcad.certified.covering import Lattice, Thinning, box_rectangles, thinning
+from ptmcad.certified.curves import curves
+from ptmcad.certified.loading import load
+from ptmcad.certified.pace import SAFETY, Pace
+from ptmcad.certified.points import point_counter
+from ptmcad.certified.refinement import Enclosure, begin, refine
+from ptmcad.certified.search import Boxes
+from ptmcad.certified.statement import plan_of
+from ptmcad.certified.tape import enclosing_floats
+from ptmcad.certified.tiling import COMPILED
+from ptmcad.cover import union_area
+from ptmcad.cover.filling import combined, gathered, simplified
+from ptmcad.cover.rectangles import MOST_STEPS, Cover, Rectangle
+from ptmcad.cover.subdivision import rectangle_array
+from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.question.domain import prove_slice
+from ptmcad.question.slice import Slice
+from ptmcad.version import __version__
+
+TOLERANCE = Fraction(1, 1000)
+"""Of the window's area, left undetermined unless another number is asked for."""
+TILES = 8
+"""Rectangles along each axis that the search begins with."""
+MOST_TILES = 1000
+"""... or with at most, when it goes on from a cover that is small: every one of them costs a search of all angles."""
+FIRST_LEVEL, LAST_LEVEL = 4, 40
+"""At level n, boxes are bisected until their projection has at most 4^-n of the window's area."""
+LARGEST = Fraction(10**100)
+"""Ends of axes; areas and squares of such numbers are floats still."""
+MOST_BOXES = 6_000_000
+MOST_RECTANGLES = 3_000_000
+"""In a cover made of strips: its JSON has some 40 bytes for each, and Python some 200."""
+OVERLAPPING = 3
+"""Where rectangles have this times the area of their union it pays to look for fewer that cover the same."""
+WITHIN = 100
+"""Strips are tried as soon as the boxes leave at most so many times the tolerance undetermined."""
+ENOUGH = 0.5
+"""... and used as soon as the finest ones would leave less than this part of it."""
+FIRST = Fraction(97, 100)
+"""... and the first one when they have left this part; at the end of the first level there is one in any case."""
+COARSE = Fraction(1, 4)
+"""While the boxes have more of the window, maps on the way do without strips, which would gain little."""
+SECONDS = 3e-5
+"""That a map takes for each rectangle, with its JSON: less, on most machines."""
+FALL = Fraction(9, 10)
+"""A map on the way is worth making when the boxes' share is at most this part of what it was at the last one."""
+STEPS = 2**24
+"""Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
+
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What is asked of `certified_map` beside the slice; see there."""
+
+    tolerance: Fraction = TOLERANCE
+    deadline: float | None = None
+    jobs: int = 1
+    progress: Progress | None = None
+    partial: Callable[[RegionMap], None] | None = None
+    keep: frozenset[str] = frozenset()
+
+
+def certified_map(
+    slice: Slice,
+    *,
+    tolerance: Fraction | None = None,
+    deadline: float | None = None,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+    partial: Callable[[RegionMap], None] | None = None,
+    resume: Cover | None = None,
+    keep: frozenset[str] = frozenset(),
+) -> RegionMap:
+    """The region map of a slice by interval methods.
+
+    Parameters
+    ----------
+    tolerance : largest undetermined share of the window's area at which to stop; `TOLERANCE` when None.
+    deadline : reading of `time.perf_counter` at which to stop; `ptmcad.certified.loading.load` comes before, so that
+        compilation is no part of it.
+    jobs : number of threads, all processors when None. The map does not depend on it.
+    progress : called as progress(what, done, total).
+    partial : called with maps on the way, each complete but for a larger undetermined area.
+    resume : cover of an earlier map of the same slice and count: what was outside it stays decided.
+    keep : names of savings to switch off, of `ptmcad.question.savings`.
+
+    Raises
+    ------
+    GeometryError
+        When a parameter is not in the whole window what the proofs ask for, or that could not be proved.
+    LimitReached
+        At the deadline, or when doubles are exhausted, with the map so far as ``partial``.
+    """
+    if any(max(abs(axis.low), abs(axis.high)) > LARGEST for axis in slice.axes):
+        raise ConfigError(f"the certified engine computes in floats: an axis may reach {float(LARGEST):g}, no more")
+    prove_slice(slice)
+    options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial, keep)
+    return _Run(slice, options, resume).run()
+
+
+class _Run:
+    """One computation of a map: the enclosures, which shrink, and the time each part took."""
+
+    def __init__(self, slice: Slice, options: Options, resume: Cover | None):
+        load(options.progress)
+        self.pace = Pace(options.deadline)
+        self.clock = self.pace.clock
+        self.slice, self.options = slice, options
+        self.seconds = {"plan": 0.0, "curves": 0.0, "regions": 0.0}
+        self.area = float((slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low))
+        steps = STEPS
+        while steps * options.tolerance < 64 and steps < MOST_STEPS:
+            steps *= 2
+        horizontal, vertical = slice.axes
+        self.lattice = Lattice(((horizontal.low, horizontal.high), (vertical.low, vertical.high)), steps)
+        self.resumed = resume
+        wanted = curves(slice, slice.count, options.keep)
+        self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, resume))
+        self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted, options.keep), _versions())
+        self.best: RegionMap | None = None
+        """The map with the least undetermined area of those that were handed over."""
+        self._thinned: Thinning | None = None
+        """The strips of the boxes as they are, when they are known."""
+        self.enclosed = Fraction(1)
+        """The share that the boxes had when it was made."""
+        self.seconds["plan"] = self.clock() - self.pace.started
+
+    def run(self) -> RegionMap:
+        undetermined = Fraction(1)
+        tolerance = self.options.tolerance
+        if self.resumed is not None and _share(self.resumed) <= tolerance:
+            result = self.map(self.resumed, Status.CERTIFIED)
+            if result.undetermined <= tolerance:
+                return result
+        for level in range(FIRST_LEVEL, LAST_LEVEL):
+            start, regions = self.clock(), self.seconds["regions"]
+            report = self._report(level, undetermined)
+            self._thinned = None
+            in_time = refine(self.enclosures, self.area * 4.0**-level, self.options.jobs, report, self._late)
+            self.seconds["curves"] += self.clock() - start - (self.seconds["regions"] - regions)
+            if not in_time:
+                return self._stopped("the time limit was reached")
+            cover = self._box_cover()
+            undetermined = _share(cover)
+            thin = None if undetermined <= tolerance else self.thin_cover(undetermined)
+            if thin is not None:
+                cover = thin
+            if (thin is not None or undetermined <= tolerance) and self._affordable(cover):
+                result = self.map(cover, Status.CERTIFIED)
+                undetermined = result.undetermined
+                if undetermined <= tolerance:
+                    return result
+            strips_wanted = self._thinned is None and undetermined <= COARSE
+            if self.options.partial is not None and (
+                self.best is None or self.pace.due(self.boxes(), thinned=strips_wanted)
+            ):
+                self._hand_over(undetermined)
+            if self.boxes() > MOST_BOXES:
+                break
+        return self._stopped(f"the search ended at {self.boxes():,} boxes")
+
+    def boxes(self) -> int:
+        """The number of boxes there are by now."""
+        return sum(enclosure.number() for enclosure in self.enclosures)
+
+    def thin_cover(self, undetermined: Fraction) -> Cover | None:
+        """A cover of strips that are thin enough for the tolerance, if they can be, in the time that there is."""
+        allowed = self.options.tolerance
+        if undetermined > WITHIN * allowed or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes()):
+            return None
+        start = self.clock()
+        strips = self._strips()
+        target = float(allowed) * self.area
+        enough = strips.least() <= ENOUGH * target and strips.number(target) <= MOST_RECTANGLES
+        cover = strips.cover(target) if enough else None
+        self.seconds["curves"] += self.clock() - start
+        return cover
+
+    def partial(self) -> RegionMap:
+        """The map so far, with strips as thin as they can be for not many more rectangles than boxes.
+
+        Where there is no time for it, or another one has a smaller undetermined area, it is the best that was made.
+        """
+        boxes = self.boxes()
+        if self.best is not None and self.pace.cost(boxes) > self.pace.left():
+            return self.best
+        strips = self._strips()
+        most = min(4 * len(strips.thin), MOST_RECTANGLES)
+        if self.pace.deadline is not None:
+            most = min(most, max(0, int(self.pace.left() / (SAFETY * SECONDS))))
+        cover, known = strips.cover(1.5 * strips.least(), most), self.resumed
+        if known is not None and _share(known) < _share(cover):
+            cover = known
+        found = self.map(cover, Status.PARTIAL)
+        return found if self.best is None or found.undetermined < self.best.undetermined else self.best
+
+    def map(self, cover: Cover, status: Status) -> RegionMap:
+        """The map of a cover; what is not counted when the time is over is undetermined."""
+        start, boxes = self.clock(), self.boxes()
+        if _overlap(cover) > OVERLAPPING:
+            cover = simplified(cover, COMPILED)
+        times = self.seconds | {"total": start - self.pace.started}
+        result = self.assembler.map(cover, status, times, self._hurry)
+        self.seconds["regions"] += self.clock() - start
+        self.pace.map.record(boxes, self.clock() - start)
+        return result
+
+    def _hurry(self) -> bool:
+        """Whether there is only time left to put a map into other hands."""
+        return self.pace.left() < SAFETY * self.pace.text.of(self.boxes())
+
+    def _box_cover(self) -> Cover:
+        return combined(self.lattice.cover(box_rectangles(self.enclosures)))
+
+    def _strips(self) -> Thinning:
+        if self._thinned is None:
+            start, boxes = self.clock(), self.boxes()
+            self._thinned = thinning(self.enclosures, self.lattice, self.options.jobs)
+            self.pace.thin.record(boxes, self.clock() - start)
+        return self._thinned
+
+    def _affordable(self, cover: Cover) -> bool:
+        """Whether there is the time to make a map of the cover, as far as one can foresee."""
+        pieces = max(self.boxes(), len(cover.rectangles))
+        return SAFETY * (self.pace.map.of(pieces) + self.pace.text.of(pieces)) < self.pace.left()
+
+    def _late(self) -> bool:
+        """Whether the search has to end for the last map; between its tasks maps are handed over."""
+        boxes = self.boxes()
+        if self.pace.late(boxes):
+            self._thinned = None
+            return True
+        if self.options.partial is not None and self.pace.due(boxes):
+            start = self.clock()
+            self._thinned = None
+            enclosed = _share(self._box_cover())
+            self.pace.looked(self.clock() - start)
+            if enclosed <= (FIRST if self.best is None else FALL * self.enclosed):
+                self._hand_over(enclosed)
+            self.pace.resumed()
+        return False
+
+    def _hand_over(self, enclosed: Fraction) -> None:
+        """Give the map so far to whoever asked for it.
+
+        Parameters
+        ----------
+        enclosed : the boxes' share of the window.
+        """
+        start = self.clock()
+        found = self.partial() if enclosed <= COARSE else self.map(self._box_cover(), Status.PARTIAL)
+        self.enclosed = min(enclosed, self.enclosed)
+        least = Fraction(1) if self.best is None else self.best.undetermined
+        if found.undetermined < least and self.options.partial is not None:
+            self.best = found
+            made = self.clock()
+            self.options.partial(found)
+            self.pace.text.record(self.boxes(), self.clock() - made)
+        self.pace.spent += self.clock() - start
+
+    def _stopped(self, why: str) -> RegionMap:
+        """The map so far if it will do after all.
+
+        Raises
+        ------
+        LimitReached
+            Otherwise, with that map; without one where nothing is decided yet.
+        """
+        tolerance = self.options.tolerance
+        if self.best is None and self.options.partial is not None:
+            self._hand_over(Fraction(1))  # a cheap one first: what strips take is not known yet
+        so_far = self.partial()
+        if so_far.undetermined <= tolerance:  # strips of what the level had reached were enough
+            return replace(so_far, status=Status.CERTIFIED)
+        if so_far.undetermined == 1:
+            raise LimitReached(f"{why} before anything was decided: there is no map to save yet")
+        raise LimitReached(
+            f"{why} with {_percent(so_far.undetermined)} undetermined, more than the tolerance of "
+            f"{_percent(tolerance)}",
+            partial=so_far,
+        )
+
+    def _report(self, level: int, undetermined: Fraction) -> Callable[[int, int], None] | None:
+        progress = self.options.progress
+        if progress is None:
+            return None
+        what = f"undetermined {_percent(undetermined)}"
+        return lambda treated, waiting: progress(what, treated, treated + 8 * waiting)
+
+
+def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
+    """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards."""
+    if resume is None:
+        steps, rectangles = TILES, tuple(sorted(_tiles(), key=lambda tile: _ease(slice, tile), reverse=True))
+    else:
+        most = min(Fraction(MOST_TILES), TILES**2 / max(_share(resume), Fraction(1, MOST_TILES)))
+        steps, rectangles = resume.steps, gathered(resume, int(most)).rectangles
+    horizontal, vertical = slice.axes
+
+    def value(axis_low: Fraction, axis_high: Fraction, step: int, towards: float) -> float:
+        low, high = enclosing_floats(axis_low + (axis_high - axis_low) * Fraction(step, steps))
+        return low if towards < 0 else high
+
+    result = np.empty((len(rectangles), 4))
+    for k, (left, right, bottom, top) in enumerate(rectangles):
+        result[k] = (
+            value(horizontal.low, horizontal.high, left, -inf),
+            value(vertical.low, vertical.high, bottom, -inf),
+            value(horizontal.low, horizontal.high, right, inf),
+            value(vertical.low, vertical.high, top, inf),
+        )
+    return result
+
+
+def _tiles() -> Iterator[Rectangle]:
+    return ((i, i + 1, j, j + 1) for i in range(TILES) for j in range(TILES))
+
+
+def _ease(slice: Slice, tile: Rectangle) -> Fraction:
+    """Small where the search takes long, which is best begun first: for small rho and bars of equal length."""
+    left, _, bottom, _ = tile
+    x, y = (
+        axis.low + (axis.high - axis.low) * Fraction(2 * step + 1, 2 * TILES)
+        for axis, step in zip(slice.axes, (left, bottom), strict=True)
+    )
+    rho, bar1, bar2 = (slice.parameters[name].evaluate(x, y) for name in ("rho", "L1", "L2"))
+    return rho + abs(bar1 - bar2)
+
+
+def _share(cover: Cover) -> Fraction:
+    """The part of the window that the cover has."""
+    return Fraction(union_area(cover, COMPILED), cover.steps**2)
+
+
+def _overlap(cover: Cover) -> float:
+    """How many times the rectangles cover their union, on average."""
+    left, right, bottom, top = rectangle_array(cover).T.astype(np.float64)
+    return float(((right - left) * (top - bottom)).sum()) / max(union_area(cover, COMPILED), 1)
+
+
+def _percent(share: Fraction) -> str:
+    percent = 100 * float(share)
+    return f"{percent:.0f} %" if percent >= 10 else f"{percent:.2g} %"
+
+
+def _versions() -> dict[str, str]:
+    return {
+        "ptmcad": __version__,
+        "python": sys.version.split()[0],
+        "python-flint": flint.__version__,
+        "FLINT": flint.__FLINT_VERSION__,
+        "numba": numba.__version__,
+        "numpy": np.__version__,
+    }

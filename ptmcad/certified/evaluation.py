@@ -1,0 +1,84 @@
+"""A tape run on a box: enclosures of all its nodes, in compiled code.
+
+Guarantee: after a run that returns True, entry k of ``low`` and ``high`` encloses the k-th node's values at every point
+of the box; where a node is a `meet`, at every point at which its two operands are equal. A run that returns False has
+proved that they are equal at no point of the box.
+"""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.certified.arithmetic import direction, down, length, magnitude, mignitude, multiply, reciprocal, sine, up
+from ptmcad.certified.compiled import compiled
+from ptmcad.certified.formula import Operation
+from ptmcad.certified.tape import Tape
+
+Program = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]
+
+_CONSTANT, _VARIABLE, _ADD, _SUBTRACT = (int(x) for x in list(Operation)[:4])
+_MULTIPLY, _SQUARE, _NEGATE, _SINE, _COSINE = (int(x) for x in list(Operation)[4:9])
+_INVERSE_LENGTH, _DIRECTION, _LENGTH, _MEET, _DIVIDE = (int(x) for x in list(Operation)[9:])
+
+
+def program(tape: Tape) -> Program:
+    """The tape as the compiled code takes it."""
+    return tape.operations, tape.first, tape.second, tape.low, tape.high
+
+
+@compiled
+def run(
+    program: Program,
+    box_low: NDArray[np.float64],
+    box_high: NDArray[np.float64],
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    start: int,
+    end: int,
+) -> bool:
+    """Run the nodes from ``start`` to before ``end``; those before them have been run on this box."""
+    operations, first, second, constant_low, constant_high = program
+    for i in range(start, end):
+        operation, a, b = operations[i], first[i], second[i]
+        if operation == _MULTIPLY:
+            u, v = multiply(low[a], high[a], low[b], high[b])
+        elif operation == _ADD:
+            u, v = down(low[a] + low[b]), up(high[a] + high[b])
+        elif operation == _SUBTRACT:
+            u, v = down(low[a] - high[b]), up(high[a] - low[b])
+        elif operation == _NEGATE:
+            u, v = -high[a], -low[a]
+        elif operation == _SQUARE:
+            near, far = mignitude(low[a], high[a]), magnitude(low[a], high[a])
+            u, v = max(down(near * near), 0.0), up(far * far)
+            if not far < inf:
+                u, v = 0.0, inf
+        elif operation == _CONSTANT:
+            u, v = constant_low[i], constant_high[i]
+        elif operation == _VARIABLE:
+            u, v = box_low[a], box_high[a]
+        elif operation == _DIRECTION:
+            u, v = direction(low[a], high[a], low[b], high[b])
+        elif operation == _SINE:
+            u, v = sine(low[a], high[a], 0)
+        elif operation == _COSINE:
+            u, v = sine(low[a], high[a], 1)
+        elif operation == _MEET:
+            u, v = low[a], high[a]
+            u = max(u, low[b])
+            v = min(v, high[b])
+            if u > v:
+                return False
+        elif operation == _LENGTH:
+            u, v = length(low[a], high[a], low[b], high[b])
+        elif operation == _INVERSE_LENGTH:
+            u, v = length(low[a], high[a], low[b], high[b])
+            u, v = (down(1 / v) if v > 0 else 0.0), (up(1 / u) if u > 0 else inf)
+        else:
+            u, v = reciprocal(low[b], high[b])
+            u, v = multiply(low[a], high[a], u, v)
+        low[i], high[i] = u, v
+    return True

@@ -1,0 +1,60 @@
+"""The intervals of constant count along a line for springs with free lengths: the certified engine's answer as a table.
+
+Guarantee: every digit is right; what was not decided is called undecided and has no counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+from ptmcad.answer.intervals import CertifiedChange, CertifiedInterval, CertifiedIntervals
+from ptmcad.process.memory import check_room, loading
+from ptmcad.question.domain import prove
+from ptmcad.question.line import restricted, varying_axis
+from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.enclosure import Enclosure
+
+
+def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits: int) -> CertifiedIntervals:
+    """The intervals of constant count on a line of a slice whose springs have free lengths.
+
+    Parameters
+    ----------
+    along : the axis that varies, over its window.
+    at : the other axis with its value: text, int or Fraction.
+    digits : significant digits to which critical values are enclosed.
+
+    Raises
+    ------
+    ConfigError
+        When ``along`` is no axis, or ``at`` does not name exactly the other one with an exact number.
+    GeometryError
+        When a parameter is not on the whole line what the proofs ask for, or that could not be proved. The line need
+        not lie in the slice's window, so nothing that is known of the window is used.
+    """
+    with loading("the certified engine"):
+        from ptmcad.certified.line import line_counts
+    check_room("the certified engine")
+    varying, other, value = varying_axis(slice, along, at)
+    on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
+    prove(on_line, (slice.axes[varying], Axis(other, value, value)))
+    line = replace(slice, axes=(slice.axes[varying], Axis(other, value, value)), parameters=on_line)
+    found = line_counts(line, 0, value, 64 + 4 * digits)
+    ends = {gap.low: Enclosure(gap.low, gap.high) for gap in found.gaps}
+    ends |= {gap.high: Enclosure(gap.low, gap.high) for gap in found.gaps}
+
+    def end(place: Fraction) -> Enclosure:
+        return ends.get(place, Enclosure(place, place))
+
+    return CertifiedIntervals(
+        slice.axes[varying],
+        {other: value},
+        tuple(
+            CertifiedInterval(end(s.low), end(s.high), s.counts.index, s.counts.cones, s.sample)
+            for s in found.stretches
+        ),
+        tuple(CertifiedChange(Enclosure(g.low, g.high), g.names, g.proved) for g in found.gaps),
+    )

@@ -1,0 +1,155 @@
+"""The values along a line of a slice at which counts change, enclosed, and the counts between them, proved.
+
+Guarantee: on each interval of the result the numbers of minima, saddles, maxima and cones are constant. What was not
+decided lies in one of the gaps between them; a gap that is `proved` holds nothing but critical values that were told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+from flint import ctx
+
+from ptmcad.certified.arb_evaluation import ball, lower, upper
+from ptmcad.certified.arb_isolation import Box, refined
+from ptmcad.certified.curves import Curve, curves
+from ptmcad.certified.isolation import isolate
+from ptmcad.certified.points import PointCount, point_counter
+from ptmcad.certified.search import Boxes
+from ptmcad.certified.system import System
+from ptmcad.certified.tape import enclosing_floats
+from ptmcad.question.slice import Count, Slice
+
+FINEST = 1e-8
+BUDGET, OPEN = 20_000, 400
+"""Boxes to treat, and boxes to leave open, before a part of the line is halved."""
+MOST = 600_000
+"""Boxes for one curve after which nothing is halved any more."""
+PARTS = 16
+SMALLEST = Fraction(1, 2**16)
+"""Parts of the line of this share are not halved."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Values among which counts may change: [low, high], and the names of the curves of which it holds points.
+
+    ``proved``: each of these points was proved to be the only one near it. Otherwise the gap may hold none.
+    """
+
+    low: Fraction
+    high: Fraction
+    names: tuple[str, ...]
+    proved: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """An open interval on which ``counts``, found at ``sample``, hold; undecided counts are not known."""
+
+    low: Fraction
+    high: Fraction
+    sample: Fraction
+    counts: PointCount
+
+
+@dataclass(frozen=True, slots=True)
+class LineCounts:
+    """Stretches and the gaps between them, both in increasing order."""
+
+    stretches: tuple[Stretch, ...]
+    gaps: tuple[Gap, ...]
+
+
+def line_counts(slice: Slice, varying: int, value: Fraction, bits: int) -> LineCounts:
+    """The counts on the line on which axis ``varying`` runs over its window and the other one has a value.
+
+    Parameters
+    ----------
+    bits : precision to which critical values are enclosed.
+    """
+    axis = slice.axes[varying]
+    found = [gap for curve in curves(slice, Count.INDEX) for gap in _gaps(slice, curve, varying, value, bits)]
+    gaps = _joined([g for g in found if g.high > axis.low and g.low < axis.high])
+    counter = point_counter(slice)
+    stretches = []
+    for low, high in pairwise([axis.low, *(end for gap in gaps for end in (gap.low, gap.high)), axis.high]):
+        if not any((gap.low, gap.high) == (low, high) for gap in gaps) and low < high:
+            sample = _simple(low, high)
+            x, y = (sample, value) if varying == 0 else (value, sample)
+            stretches.append(Stretch(low, high, sample, counter.at(x, y, Count.INDEX)))
+    return LineCounts(tuple(stretches), tuple(gaps))
+
+
+def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) -> Iterator[Gap]:
+    """Where the line meets a curve; parts of it that are too hard as a whole are halved while the budget lasts."""
+    system = _on_line(curve.system, varying)
+    equations = replace(system, vanishing=(_NONE, _NONE, _NONE), nonnegative=_NONE)
+    axis = slice.axes[varying]
+    step = (axis.high - axis.low) / PARTS
+    waiting = [(axis.low + k * step, axis.low + (k + 1) * step) for k in range(PARTS)]
+    smallest = (axis.high - axis.low) * SMALLEST
+    total = 0
+    while waiting:
+        low, high = waiting.pop()
+        along, fixed = (enclosing_floats(low)[0], enclosing_floats(high)[1]), enclosing_floats(value)
+        ranges = (along, fixed) if varying == 0 else (fixed, along)
+        start = curve.start(np.array([[ranges[0][0], ranges[1][0], ranges[0][1], ranges[1][1]]]))
+        arguments = system.arguments(), equations.arguments(), start
+        unique, narrow, left, used = isolate(*arguments, FINEST, BUDGET, OPEN, curve.importance())
+        variables = start.shape[1] // 2
+        total += used
+        if (used >= BUDGET or len(left) > OPEN) and high - low > smallest and total < MOST:
+            middle = (low + high) / 2
+            waiting += [(low, middle), (middle, high)]
+            continue
+        for box in left:
+            yield Gap(Fraction(float(box[varying])), Fraction(float(box[variables + varying])), (curve.name,), False)
+        # ``narrow`` was contracted with the equations alone; its number can be told to any precision
+        for row in narrow if len(unique) else ():
+            with ctx.workprec(bits):
+                box = _balls(row, varying, value)
+            exact = refined(equations, box, bits)[varying]
+            yield Gap(lower(exact), upper(exact), (curve.name,), True)
+
+
+_NONE = np.empty(0, np.int64)
+
+
+def _balls(row: Boxes, varying: int, value: Fraction) -> Box:
+    variables = len(row) // 2
+    box = [ball(Fraction(float(row[k])), Fraction(float(row[variables + k]))) for k in range(variables)]
+    box[1 - varying] = ball(value, value)
+    return tuple(box)
+
+
+def _on_line(system: System, varying: int) -> System:
+    """The square system that is left when the other axis has a value."""
+    kept = np.array([k for k, unknown in enumerate(system.unknowns) if unknown != 1 - varying], np.int64)
+    return replace(system, unknowns=system.unknowns[kept], jacobian=np.ascontiguousarray(system.jacobian[:, kept]))
+
+
+def _joined(gaps: list[Gap]) -> list[Gap]:
+    """Gaps that touch become one."""
+    joined: list[Gap] = []
+    for gap in sorted(gaps, key=lambda g: (g.low, g.high)):
+        if not joined or gap.low > joined[-1].high:
+            joined.append(gap)
+            continue
+        last = joined.pop()
+        names = tuple(dict.fromkeys((*last.names, *gap.names)))
+        joined.append(Gap(last.low, max(last.high, gap.high), names, last.proved and gap.proved))
+    return joined
+
+
+def _simple(low: Fraction, high: Fraction) -> Fraction:
+    """A rational number of few digits in the middle third."""
+    width = (high - low) / 3
+    places = 0
+    while Fraction(1, 10**places) > width:
+        places += 1
+    return Fraction(round((low + high) / 2 * 10**places), 10**places)

@@ -1,0 +1,31 @@
+"""The plan of the certified engine, as far as it is known before anything is computed.
+
+Guarantee: each saving that is named here is made, or is said to have been switched off. Loads neither numpy nor numba.
+"""
+
+from __future__ import annotations
+
+from ptmcad.answer.plan import saving_step, zero_parameters, zero_terms
+from ptmcad.answer.regionmap import PlanStep
+from ptmcad.certified.parameters import positive_base
+from ptmcad.question.slice import FREE_LENGTHS, Count, Slice
+
+
+def beforehand(slice: Slice, keep: frozenset[str]) -> tuple[PlanStep, ...]:
+    """What is known of the plan before anything is computed."""
+    absent = [name for name in FREE_LENGTHS if name not in slice.parameters or not slice.parameters[name].numerator]
+    zero = [name for name in zero_parameters(slice) if name not in FREE_LENGTHS]
+    steps = [saving_step("imports", keep, "imports of matplotlib and sympy")]
+    steps += zero_terms([*zero, *absent])
+    steps.append(PlanStep("discriminant variety", False, "its degree is out of reach when springs have free lengths"))
+    if slice.count in (Count.STABLE, Count.ADMISSIBLE):
+        steps += [saving_step("folds-of-saddles", keep), saving_step("cones-and-creases", keep)]
+    steps.append(saving_step("dependent-equations", keep))
+    if unloaded(slice):
+        steps.append(saving_step("unloaded-factor", keep))
+    return tuple(steps)
+
+
+def unloaded(slice: Slice) -> bool:
+    """Whether no load acts, on a base that is certainly positive in the open window."""
+    return positive_base(slice) and not any(slice.parameters[name].numerator for name in slice.description.forces)

@@ -1,0 +1,111 @@
+"""Refinement of the curves' enclosure, level by level: each level quarters the area at which boxes are left alone.
+
+Guarantee: at every moment the boxes that are left contain all curves over the rectangles at the start: also where an
+exception (a signal's, a lack of memory or of threads) breaks into any statement here. Such a break may leave boxes
+twice, which costs time, but never leaves one out. The boxes of a finished level depend on nothing but the system and
+the start: not on the number of threads, nor on the time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ptmcad.certified.curves import Curve
+from ptmcad.certified.search import Boxes, search_curve
+
+BUDGET = 20_000
+"""Boxes that a task treats before it returns: about a tenth of a second."""
+BATCH = 64
+"""Boxes that a task starts with."""
+
+
+@dataclass(slots=True)
+class Enclosure:
+    """The boxes of one curve: those that the present level has not reached, and those that it has left alone."""
+
+    curve: Curve
+    waiting: list[Boxes]
+    small: list[Boxes] = field(default_factory=list)
+
+    def number(self) -> int:
+        """How many boxes there are."""
+        return sum(map(len, self.waiting)) + sum(map(len, self.small))
+
+    def boxes(self) -> Boxes:
+        """All of them; none where the curve does not enter the window."""
+        none = self.curve.start(np.empty((0, 4)))
+        return np.concatenate([none, *self.waiting, *self.small])
+
+
+def begin(curves: Sequence[Curve], rectangles: Boxes) -> list[Enclosure]:
+    """Everything over the rectangles (k, 4: low x, low y, high x, high y) is open."""
+    return [Enclosure(curve, [curve.start(rectangles)]) for curve in curves]
+
+
+def refine(
+    enclosures: Sequence[Enclosure],
+    area: float,
+    jobs: int,
+    report: Callable[[int, int], None] | None = None,
+    late: Callable[[], bool] | None = None,
+) -> bool:
+    """One level: bisect until every box's projection has at most the given area. False when it was to end before.
+
+    Parameters
+    ----------
+    report : called with the numbers of boxes treated and waiting.
+    late : called before the first task and after each, when the enclosures have what the tasks have found; it may
+        take its time, in which the running tasks end. No task is begun after it has said True.
+    """
+    for enclosure in enclosures:
+        enclosure.waiting = [*enclosure.waiting, *enclosure.small]
+        enclosure.small = []
+    with ThreadPoolExecutor(jobs) as pool:
+        for enclosure in enclosures:
+            if not _refine_one(enclosure, area, pool, jobs, report, late):
+                return False
+    return True
+
+
+def _refine_one(
+    enclosure: Enclosure,
+    area: float,
+    pool: ThreadPoolExecutor,
+    jobs: int,
+    report: Callable[[int, int], None] | None,
+    late: Callable[[], bool] | None,
+) -> bool:
+    arguments, weights = enclosure.curve.system.arguments(), enclosure.curve.importance()
+    queue = list(_batches(enclosure.waiting))
+    running: dict[Future[tuple[Boxes, Boxes, int]], Boxes] = {}
+    treated = 0
+    ending = late is not None and late()
+    while running or (queue and not ending):
+        while queue and len(running) < jobs and not ending:
+            batch = queue[-1]
+            running[pool.submit(search_curve, arguments, batch, area, BUDGET, weights)] = batch
+            queue.pop()
+        for future in wait(running, return_when=FIRST_COMPLETED).done:
+            small, waiting, used = future.result()
+            treated += used
+            if len(small):
+                enclosure.small.append(small)
+            queue.extend(_batches([waiting]))
+            del running[future]
+        # The only statement that takes boxes away. Until it is done the batches of before are still there: of those
+        # that an interruption cuts short nothing is lost, and what they have left is there twice at worst.
+        enclosure.waiting = [*queue, *running.values()]
+        if report is not None:
+            report(treated, sum(len(batch) for batch in queue))
+        ending = ending or (late is not None and late())
+    return not queue
+
+
+def _batches(boxes: Sequence[Boxes]) -> Iterator[Boxes]:
+    together = np.concatenate(boxes) if boxes else np.empty((0, 0))
+    for start in range(0, len(together), BATCH):
+        yield together[start : start + BATCH]

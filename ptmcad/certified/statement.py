@@ -1,0 +1,59 @@
+"""What a certified map says of its problem: the equations as text, and the plan.
+
+Guarantee: the potential is written from the mechanism's description, in the names of problem records.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ptmcad.answer.regionmap import PlanStep, System
+from ptmcad.certified.curves import Curve
+from ptmcad.certified.plan import beforehand
+from ptmcad.mechanism import Mechanism
+from ptmcad.question.slice import Slice
+from ptmcad.text.syntax import Chain, Negative, Number, Step, Tree, to_text
+
+
+def system_text(mechanism: Mechanism) -> System:
+    """The mechanism's potential with square roots; gradient and Hessian are its derivatives by the unknowns."""
+    energy = []
+    for spring in mechanism.springs:
+        (x0, y0), (x1, y1) = mechanism.points[spring.start], mechanism.points[spring.end]
+        length = f"sqrt(({_difference(x1, x0)})^2 + ({_difference(y1, y0)})^2)"
+        energy.append(f"1/2*{_factor(spring.stiffness)}*({length} - {_factor(spring.free)})^2")
+    work = [
+        f" - {_factor(force)}*{_factor(coordinate)}"
+        for load in mechanism.loads
+        for force, coordinate in zip((load.x, load.y), mechanism.points[load.point], strict=True)
+    ]
+    return System(tuple(mechanism.unknowns), (), " + ".join(energy) + "".join(work), (), ())
+
+
+def _difference(tree: Tree, less: Tree) -> str:
+    match tree, less:
+        case _, Number(value) if value == 0:
+            return to_text(tree)
+        case Chain(first, steps), _ if tree.is_sum:
+            return to_text(Chain(first, (*steps, Step("-", less))))
+    return to_text(Chain(tree, (Step("-", less),)))
+
+
+def _factor(tree: Tree) -> str:
+    return f"({to_text(tree)})" if isinstance(tree, Chain | Negative) else to_text(tree)
+
+
+def plan_of(slice: Slice, curves: Sequence[Curve], keep: frozenset[str] = frozenset()) -> tuple[PlanStep, ...]:
+    """What the certified engine does for a slice and what it leaves out.
+
+    Parameters
+    ----------
+    keep : savings that were switched off.
+    """
+    return (
+        *beforehand(slice, keep),
+        *(
+            PlanStep(curve.name, True, f"enclosed by branch and prune in {len(curve.system.unknowns)} unknowns")
+            for curve in curves
+        ),
+    )

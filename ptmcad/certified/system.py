@@ -1,0 +1,87 @@
+"""Systems of equations in a box: what a search looks for, as a tape with named outputs.
+
+Guarantee: a `System` says which points are solutions: those at which the equations vanish and the nonnegative formulas
+are at least zero. Everything else in it holds at each solution and serves to discard boxes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.certified.evaluation import Program, program
+from ptmcad.certified.formula import Formula
+from ptmcad.certified.tape import Tape, record
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class System:
+    """Equations f = 0 (m of them) in n unknowns, n = m (points) or m + 1 (curves).
+
+    Attributes
+    ----------
+    tape : stage 0 has the first two equations and cheap formulas that vanish with them, stage 1 the other equations,
+        stage 2 the formulas that discard boxes, stage 3 the Jacobian, row by row.
+    unknowns : int64 (n,): the numbers of the variables that are searched; others are fixed (narrow) intervals.
+    equations : int64 (m,): places on the tape.
+    jacobian : int64 (m, n): places of df_i/dx_j.
+    """
+
+    tape: Tape
+    unknowns: NDArray[np.int64]
+    equations: NDArray[np.int64]
+    jacobian: NDArray[np.int64]
+    vanishing: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
+    nonnegative: NDArray[np.int64]
+
+    def arguments(self) -> Arguments:
+        """The system as the compiled code takes it."""
+        return (
+            program(self.tape), self.tape.stages, self.unknowns, self.equations, self.jacobian,
+            *self.vanishing, self.nonnegative,
+        )  # fmt: skip
+
+
+Indices = NDArray[np.int64]
+Arguments = tuple[Program, Indices, Indices, Indices, Indices, Indices, Indices, Indices, Indices]
+
+
+def system(
+    equations: Sequence[Formula],
+    unknowns: Sequence[int],
+    vanishing: tuple[Sequence[Formula], Sequence[Formula]] = ((), ()),
+    nonnegative: Sequence[Formula] = (),
+    jacobian: Sequence[Sequence[Formula]] | None = None,
+) -> System:
+    """Write a system out.
+
+    Parameters
+    ----------
+    equations : differentiable formulas, without a `meet` that may be empty; the two cheapest first.
+    unknowns : numbers of the variables to search; for a curve the two axes come first.
+    vanishing : formulas that vanish at every solution, beside the equations: cheap ones without a `meet`, then others.
+    nonnegative : formulas that are at least zero at every solution looked for.
+    jacobian : the equations' derivatives by the unknowns, where there are better formulas than those of the graph.
+    """
+    graph = equations[0].graph
+    if jacobian is None:
+        jacobian = [[graph.derivative(f, x) for x in unknowns] for f in equations]
+    cheap, costly = vanishing
+    first, rest = list(equations[:2]), list(equations[2:])
+    tape = record([
+        [*first, *cheap],
+        rest,
+        [*costly, *nonnegative],
+        [entry for row in jacobian for entry in row],
+    ])  # fmt: skip
+    return System(
+        tape,
+        np.array(unknowns, np.int64),
+        np.concatenate([tape.outputs[0][: len(first)], tape.outputs[1]]),
+        tape.outputs[3].reshape(len(equations), len(unknowns)),
+        (tape.outputs[0], tape.outputs[1], tape.outputs[2][: len(costly)]),
+        tape.outputs[2][len(costly) :],
+    )

@@ -1,0 +1,28 @@
+"""The data of a cover: closed rectangles on a lattice of the window.
+
+Guarantee: all its numbers are integers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+Rectangle = tuple[int, int, int, int]
+"""left, right, bottom, top in lattice steps from the window's lower left corner; closed; 0 <= left < right <= steps."""
+Window = tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
+"""Low and high end of both axes."""
+MOST_STEPS = 2**40
+
+
+@dataclass(frozen=True, slots=True)
+class Cover:
+    """The rectangles, sorted and distinct; they may overlap.
+
+    Attributes
+    ----------
+    steps : number of equal lattice steps along each axis of the window, a power of two, at most `MOST_STEPS`.
+    """
+
+    steps: int
+    rectangles: tuple[Rectangle, ...]

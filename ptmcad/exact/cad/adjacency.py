@@ -1,0 +1,258 @@
+"""Adjacency of cells of neighbouring stacks, with the open segment that proves each pair.
+
+Guarantee: the pairs found are adjacent, and no pair is missing. Two cells on both sides of a critical abscissa a are
+adjacent exactly when an open segment of the line u = a, free of the curves, belongs to the closure of both.
+
+A *barrier* is a rational height e such that no curve meets the horizontal segment [l, r] x {e}, where l < a < r lie in
+the two stacks; it proves that the cells at (l, e) and (r, e) are adjacent. Between consecutive barriers lies a *slot*
+that some branches enter from the left and some from the right. All pairs are found once every slot contains at most one
+point of the line u = a that branches run into, because then barriers stand on both sides of each such point.
+
+* A slot with at most two branches is such a slot: through every point of a real algebraic curve (no vertical line among
+  them) runs an even number of half-branches, so two branches in a slot end at the same point. Only the point on the
+  window's edge, if a curve passes there, may take an odd number: so an edge slot with one branch is such a slot.
+* A slot with more branches is split, if it can be, by bracketing a more closely; if that fails, all real roots of
+  res_u(q, p) in the slot are isolated, q being a's polynomial: they include every point of the curves over a, so
+  heights between them are barriers once the bracket is narrow enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from itertools import pairwise
+
+from flint import fmpq
+
+from ptmcad.algebra.polynomials import UnivariatePolynomial
+from ptmcad.algebra.real_roots import (
+    RealRoot,
+    disjoint,
+    has_root_between,
+    inside,
+    isolate,
+    refine,
+    sign_at,
+    simplest_between,
+    squarefree_part,
+)
+from ptmcad.algebra.resultants import Check, nothing, resultant
+from ptmcad.algebra.window import Interval
+from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.stacks import BaseEnd, StackData, Wall, roots_over
+
+ROUNDS = 4
+"""Bracketings that are tried before the exact separation; each has twice as many bits as the one before."""
+_LONG = 64
+"""Long coefficients may bring branches very near to each other: one bracketing more is tried for each doubling of their
+bits beyond ``_LONG`` 2^ROUNDS, as the cost of the exact separation grows with them far faster."""
+
+
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """Cells ``left`` and ``right`` (levels in their stacks) joined by the open segment [low, high] x {height}."""
+
+    left: int
+    right: int
+    low: fmpq
+    high: fmpq
+    height: fmpq
+
+
+class Closing(Enum):
+    """Why a slot has no room for further pairs; see the module's text."""
+
+    PAIR = "two half-branches meet"
+    EDGE = "a half-branch ends on the window's edge"
+    POINT = "one point of the curves"
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """Heights between two barriers (None at the window's edge) which branches enter, and why no other barrier fits.
+
+    Attributes
+    ----------
+    left, right : the lowest and the highest level, in either stack, of the cells that reach into the slot.
+    """
+
+    left: tuple[int, int]
+    right: tuple[int, int]
+    below: Passage | None
+    above: Passage | None
+    closing: Closing
+
+
+@dataclass(frozen=True, slots=True)
+class Crossing:
+    """What happens between two neighbouring stacks: one passage for each adjacent pair, and the slots between them."""
+
+    passages: tuple[Passage, ...]
+    slots: tuple[Slot, ...]
+
+
+def cross(
+    curves: Sequence[Curve], left: StackData, right: StackData, fibre: Interval, check: Check = nothing
+) -> Crossing:
+    """All adjacent pairs of cells across the abscissa between two neighbouring stacks, with proof."""
+    end = left.right
+    assert end.root is not None
+    reach, extent = min(end.value - left.sample, right.sample - end.value), fibre[1] - fibre[0]
+    width, resolution, step = reach, extent, 8
+    extra: tuple[fmpq, ...] = ()
+    points: UnivariatePolynomial | None = None  # costly, computed once if the rounds do not suffice
+    attempt, height = 0, max((int(q.height_bits()) for c in curves for q in c.in_v), default=0)
+    rounds = max(ROUNDS, (height // _LONG).bit_length())
+    while True:
+        check()
+        width, resolution = width / 2**step, resolution / 2 ** (step - 2)
+        low, high = _bracket(end, width, left.sample, right.sample)
+        over_low, over_high = (
+            tuple((w, refine(r, resolution)) for w, r in roots_over(curves, u, fibre)) for u in (low, high)
+        )
+        found = _barriers(curves, low, high, over_low, over_high, fibre, extra)
+        gaps = _gaps(found, len(over_low), len(over_high), fibre)
+        # without any barrier nothing is proved, even if no branch runs up to the line
+        unresolved = [g for g in gaps if not found or _closing(g, curves, end, points) is None]
+        if not unresolved:
+            unique = {(p.left, p.right): p for p in reversed(found)}
+            slots = (_slot(g, curves, end, points) for g in gaps if g.branches)
+            return Crossing(tuple(sorted(unique.values(), key=lambda p: (p.left, p.right))), tuple(slots))
+        attempt += 1
+        step = 2 * step
+        if attempt >= rounds:
+            if points is None:
+                points = _points_polynomial(curves, end)
+                width, resolution, step = reach, extent, 8  # with the heights now known, wide brackets may do
+            separating = (h for gap in unresolved for h in _between_points(points, gap))
+            extra = tuple(sorted({*extra, *separating}))
+
+
+def _bracket(end: BaseEnd, width: fmpq, low: fmpq, high: fmpq) -> tuple[fmpq, fmpq]:
+    """Rational points on both sides of the critical abscissa, inside the neighbouring stacks."""
+    assert end.root is not None
+    root = refine(end.root, width)
+    if root.is_rational:
+        return max(root.low - width, low), min(root.low + width, high)
+    return root.low, root.high
+
+
+def _barriers(
+    curves: Sequence[Curve],
+    low: fmpq,
+    high: fmpq,
+    over_low: Sequence[tuple[Wall, RealRoot]],
+    over_high: Sequence[tuple[Wall, RealRoot]],
+    fibre: Interval,
+    extra: Sequence[fmpq],
+) -> list[Passage]:
+    """The barriers among the gaps between the branches and among the extra heights, from below."""
+    occupied = sorted((r.low, r.high) for _, r in (*over_low, *over_high))
+    heights = list(extra)
+    top = fibre[0]
+    for start, stop in [*occupied, (fibre[1], fibre[1])]:
+        if start > top:
+            quarter = (start - top) / 4
+            heights.append(simplest_between(top + quarter, start - quarter))
+        top = max(top, stop)
+    result = []
+    for height in sorted(set(heights)):
+        if any(r.low <= height <= r.high for _, r in (*over_low, *over_high)):
+            continue
+        if any(has_root_between(c.trace(height), low, high) for c in curves):
+            continue
+        below_low = sum(r.high < height for _, r in over_low)
+        below_high = sum(r.high < height for _, r in over_high)
+        result.append(Passage(below_low, below_high, low, high, height))
+    return result
+
+
+@dataclass(frozen=True, slots=True)
+class _Gap:
+    """Heights between two barriers, or a barrier and the window's edge, or both edges."""
+
+    bottom: fmpq
+    top: fmpq
+    below: Passage | None
+    above: Passage | None
+    left: tuple[int, int]
+    right: tuple[int, int]
+
+    @property
+    def branches(self) -> int:
+        """The number of half-branches that enter."""
+        return self.left[1] - self.left[0] + self.right[1] - self.right[0]
+
+    @property
+    def edges(self) -> list[fmpq]:
+        """The window's edges among the ends."""
+        return [height for height, end in ((self.bottom, self.below), (self.top, self.above)) if end is None]
+
+
+def _gaps(found: Sequence[Passage], count_left: int, count_right: int, fibre: Interval) -> list[_Gap]:
+    """The gaps between consecutive barriers, from below, the window's edges included."""
+    ends: list[tuple[fmpq, int, int, Passage | None]] = [(fibre[0], 0, 0, None)]
+    ends += [(p.height, p.left, p.right, p) for p in found]
+    ends.append((fibre[1], count_left, count_right, None))
+    return [_Gap(a[0], b[0], a[3], b[3], (a[1], b[1]), (a[2], b[2])) for a, b in pairwise(ends)]
+
+
+def _closing(gap: _Gap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Closing | None:
+    """Why branches run into at most one point of the gap; None when that is not known.
+
+    ``points`` is the polynomial of `_points_polynomial`, or None while it is not known. A gap without branches may
+    be closed in any way.
+    """
+    branches, edges = gap.branches, gap.edges
+    if branches == 0:
+        return Closing.POINT
+    if len(edges) == 2 or (not edges and branches % 2 == 1) or (edges and not _meets(curves, end, edges[0])):
+        return None
+    if branches <= 2 - len(edges):
+        return Closing.EDGE if edges else Closing.PAIR
+    if points is None or len(isolate(points, gap.bottom, gap.top)) > 1 - len(edges):
+        return None
+    return Closing.POINT
+
+
+def _slot(gap: _Gap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Slot:
+    closing = _closing(gap, curves, end, points)
+    assert closing is not None
+    return Slot(gap.left, gap.right, gap.below, gap.above, closing)
+
+
+def _meets(curves: Sequence[Curve], end: BaseEnd, edge: fmpq) -> bool:
+    """Whether a curve passes through the point of the window's edge over the critical abscissa."""
+    assert end.root is not None
+    for c in curves:
+        common = c.trace(edge).gcd(end.root.polynomial)
+        if common.degree() > 0 and (
+            sign_at(common, end.root.low) == 0
+            if end.root.is_rational
+            else sign_at(common, end.root.low) != sign_at(common, end.root.high)
+        ):
+            return True
+    return False
+
+
+def _points_polynomial(curves: Sequence[Curve], end: BaseEnd) -> UnivariatePolynomial:
+    """A squarefree polynomial in v among whose roots are all points of the curves over the critical abscissa."""
+    assert end.root is not None
+    q = end.root.polynomial
+    if end.root.is_rational:
+        value = end.root.low
+        q = UnivariatePolynomial([-int(value.p), int(value.q)])
+    constant = [UnivariatePolynomial([c]) for c in q.coeffs()]
+    product = UnivariatePolynomial([1])
+    for c in curves:
+        points = squarefree_part(resultant(c.in_u, constant))
+        product = product * (points // points.gcd(product))
+    return product
+
+
+def _between_points(points: UnivariatePolynomial, gap: _Gap) -> list[fmpq]:
+    """Heights between all possible points in the gap."""
+    roots = inside(disjoint(isolate(points, gap.bottom, gap.top)), (gap.bottom, gap.top))
+    levels = [gap.bottom, *(x for r in roots for x in (r.low, r.high)), gap.top]
+    return [simplest_between(levels[2 * k], levels[2 * k + 1]) for k in range(len(roots) + 1)]

@@ -1,0 +1,140 @@
+"""Projection of the window's curves to the base axis: the abscissae over which their order can change.
+
+Guarantee: over each interval between consecutive critical abscissae the number of real roots of every curve in the
+window, and the order of all these roots, are constant.
+
+Why these polynomials: within a bounded window the roots of p(u, .) change in number only at a multiple root (a zero of
+the discriminant) or through the window's edge (a zero of p(u, edge)); roots of two curves meet at zeros of the
+resultant. Leading coefficients are left out: where one vanishes a root leaves through infinity, not through the window.
+Powers are deflated: for p(u, v^k) the discriminant's zeros are those of disc_V p(u, V) and, if the window contains
+v = 0, of p(u, 0). References: McCallum, J. Symb. Comp. 5 (1988); Strzebonski, J. Symb. Comp. 29 (2000) for open cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import gcd
+
+from ptmcad.algebra.polynomials import UnivariatePolynomial
+from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine
+from ptmcad.algebra.resultants import Check, balanced, discriminant, nothing, resultant
+from ptmcad.algebra.window import Interval
+from ptmcad.exact.cad.curves import Curve, base_deflation, deflation
+
+
+@dataclass(frozen=True, slots=True)
+class Projection:
+    """Irreducible polynomials in Z[u], each with its origin, and their roots in the base interval."""
+
+    polynomials: tuple[tuple[UnivariatePolynomial, str], ...]
+    abscissae: tuple[RealRoot, ...]
+
+    def origin(self, polynomial: UnivariatePolynomial) -> str:
+        """Why a polynomial belongs to the projection."""
+        return next(origin for p, origin in self.polynomials if p == polynomial)
+
+
+def predicted_cost(curves: Sequence[Curve]) -> int:
+    """A figure for the cost of the projection: evaluation points times the cost of one evaluation, summed."""
+    sizes = []
+    for c in curves:
+        n = (len(c.in_v) - 1) // deflation(c.in_v)
+        d = max(q.degree() for q in c.in_v) // base_deflation(c.in_v)
+        sizes.append((n, d))
+    cost = sum(max(d, 1) * 2 * n * n**3 for n, d in sizes)
+    for i, (n, d) in enumerate(sizes):
+        for m, e in sizes[i + 1 :]:
+            cost += (n * e + m * d + 1) * (n + m) ** 3
+    return cost
+
+
+def project(
+    curves: Sequence[Curve],
+    verticals: Sequence[UnivariatePolynomial],
+    base: Interval,
+    fibre: Interval,
+    check: Check = nothing,
+    keep: frozenset[str] = frozenset(),
+) -> Projection:
+    """The projection of the curves (and of vertical lines, given by their polynomials in u) and its real roots.
+
+    Parameters
+    ----------
+    check : called now and then; may raise to stop.
+    keep : names of savings to switch off: ``"even-powers"``.
+    """
+    deflate = "even-powers" not in keep
+    found: dict[tuple[int, ...], tuple[UnivariatePolynomial, str]] = {}
+
+    def adopt(factors: list[UnivariatePolynomial], origin: str) -> None:
+        for factor in factors:
+            found.setdefault(tuple(int(c) for c in factor.coeffs()), (factor, origin))
+
+    for line in verticals:
+        adopt(_factors(line), "vertical line")
+    for c in curves:
+        for factors, origin in _of_one(c, fibre, check, deflate):
+            adopt(factors, origin)
+    for i, c in enumerate(curves):
+        for d in curves[i + 1 :]:
+            adopt(_of_two(c, d, check, deflate), f"components {c.component} and {d.component} meet")
+    roots = [r for p, _ in found.values() for r in isolate(p, *base)]
+    # intervals that are short against the window leave room for simple samples between them
+    width = (base[1] - base[0]) / 2**16
+    short = [refine(r, width) for r in roots]
+    return Projection(tuple(found.values()), inside(disjoint(short), base))
+
+
+def _factors(p: UnivariatePolynomial, unit: int = 1, inflation: int = 1) -> list[UnivariatePolynomial]:
+    """The irreducible factors of p(unit u^inflation) that are not constant."""
+    if p.degree() < 1:
+        return []
+    if unit == 1:
+        return [factor for factor, _ in p.inflate(inflation).factor()[1]]
+    result = []
+    for factor, _ in p.factor()[1]:
+        stretched = UnivariatePolynomial([c * unit**j for j, c in enumerate(factor.coeffs())])
+        result += _factors(stretched // stretched.content(), 1, inflation)
+    return result
+
+
+def _of_one(c: Curve, fibre: Interval, check: Check, deflate: bool) -> list[tuple[list[UnivariatePolynomial], str]]:
+    k = deflation(c.in_v) if deflate else 1
+    (deflated,), unit, inflation = _shortened([c.in_v[::k]], deflate)
+    name = f"component {c.component}"
+    result = [(_factors(discriminant(deflated, check), unit, inflation), f"{name}: turning or singular point")]
+    if k > 1 and fibre[0] < 0 < fibre[1]:
+        result.append((_factors(c.in_v[0]), f"{name}: turning point on the axis"))
+    for edge in fibre:
+        result.append((_factors(c.trace(edge)), f"{name}: crosses the window's edge"))
+    return result
+
+
+def _of_two(c: Curve, d: Curve, check: Check, deflate: bool) -> list[UnivariatePolynomial]:
+    k = gcd(deflation(c.in_v), deflation(d.in_v)) if deflate else 1
+    (first, second), unit, inflation = _shortened([c.in_v[::k], d.in_v[::k]], deflate)
+    return _factors(resultant(first, second, check), unit, inflation)
+
+
+Coefficients = tuple[UnivariatePolynomial, ...]
+_LONG = 1000
+"""Bits of coefficients from which on other units for u and v are looked for."""
+
+
+def _shortened(polynomials: list[Coefficients], deflate: bool) -> tuple[list[Coefficients], int, int]:
+    """The polynomials with u in place of unit u^inflation, unit, and inflation."""
+    deflated, inflation = _deflated(polynomials, deflate)
+    if max(c.height_bits() for p in deflated for c in p) < _LONG:
+        return deflated, 1, inflation
+    shorter, unit = balanced(deflated)
+    return shorter, unit, inflation
+
+
+def _deflated(polynomials: list[Coefficients], deflate: bool) -> tuple[list[Coefficients], int]:
+    """The polynomials with u in place of u^k, and the largest k for which that can be done in all of them; or k = 1."""
+    if not deflate:
+        return polynomials, 1
+    varying = [base_deflation(p) for p in polynomials if any(q.degree() > 0 for q in p)]
+    k = gcd(*varying) if varying else 1
+    return [tuple(q.deflate(k) if q else q for q in p) for p in polynomials], k

@@ -1,0 +1,118 @@
+"""Stacks of the open decomposition: over each open interval of the base, the curves' branches in order.
+
+Guarantee: over the whole interval of a stack the walls are disjoint graphs of continuous (indeed analytic) functions,
+in the order given, and every part of a curve in the window over it is one of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from flint import fmpq
+
+from ptmcad.algebra.polynomials import UnivariatePolynomial
+from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, sign_at, simplest_between
+from ptmcad.algebra.window import Interval
+from ptmcad.exact.cad.curves import Curve
+
+
+@dataclass(frozen=True, slots=True)
+class Wall:
+    """The ``root``-th real root (from 0, within the window) of a component over a stack."""
+
+    component: int
+    root: int
+
+
+@dataclass(frozen=True, slots=True)
+class BaseEnd:
+    """An end of a stack: the window's edge (``root`` None, at ``value``) or a critical abscissa."""
+
+    value: fmpq
+    root: RealRoot | None
+    critical: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class StackData:
+    """A stack with its rational sample abscissa and the rational sample heights of its cells, from below."""
+
+    left: BaseEnd
+    right: BaseEnd
+    sample: fmpq
+    walls: tuple[Wall, ...]
+    heights: tuple[fmpq, ...]
+
+
+def roots_over(curves: Sequence[Curve], u: fmpq, fibre: Interval) -> tuple[tuple[Wall, RealRoot], ...]:
+    """All roots of the curves in the open fibre interval over a rational abscissa that is not critical, in order.
+
+    The isolating intervals are pairwise disjoint, ends included.
+    """
+    found: list[tuple[Wall, RealRoot]] = []
+    for c in curves:
+        found += [(Wall(c.component, k), r) for k, r in enumerate(isolate(c.fibre(u), *fibre))]
+    if len(found) < 2:
+        return tuple(found)
+    separate = disjoint([r for _, r in found])
+    # the refined intervals keep their polynomial; match them to their walls by component and order
+    result = []
+    counters: dict[int, int] = {}
+    labels = {id(r.polynomial): w.component for w, r in found}
+    for r in separate:
+        component = labels[id(r.polynomial)]
+        result.append((Wall(component, counters.get(component, 0)), r))
+        counters[component] = counters.get(component, 0) + 1
+    return tuple(result)
+
+
+@dataclass(frozen=True, slots=True)
+class Avoided:
+    """Curves, and lines by their polynomials in u, that are no walls but on which no sample may lie."""
+
+    curves: Sequence[Curve] = ()
+    lines: Sequence[UnivariatePolynomial] = ()
+
+
+def lift(
+    curves: Sequence[Curve],
+    abscissae: Sequence[RealRoot],
+    base: Interval,
+    fibre: Interval,
+    avoided: Avoided = Avoided(),
+) -> tuple[StackData, ...]:
+    """The stacks over the open intervals between consecutive critical abscissae."""
+    ends = [BaseEnd(base[0], None, None)]
+    ends += [BaseEnd(r.middle, r, k) for k, r in enumerate(abscissae)]
+    ends.append(BaseEnd(base[1], None, None))
+    stacks = []
+    for left, right in pairwise(ends):
+        low = left.root.high if left.root else left.value
+        high = right.root.low if right.root else right.value
+        sample = _simplest_off(low, high, avoided.lines)
+        roots = roots_over(curves, sample, fibre)
+        heights = heights_between(roots, fibre, [c.fibre(sample) for c in avoided.curves])
+        stacks.append(StackData(left, right, sample, tuple(w for w, _ in roots), heights))
+    return tuple(stacks)
+
+
+def heights_between(
+    roots: Sequence[tuple[Wall, RealRoot]], fibre: Interval, avoided: Sequence[UnivariatePolynomial] = ()
+) -> tuple[fmpq, ...]:
+    """Simple rational heights below, between and above the given roots, within the fibre interval.
+
+    None is a root of the polynomials to be avoided.
+    """
+    separated = inside([r for _, r in roots], fibre)
+    levels = [fibre[0], *(x for r in separated for x in (r.low, r.high)), fibre[1]]
+    return tuple(_simplest_off(levels[2 * k], levels[2 * k + 1], avoided) for k in range(len(separated) + 1))
+
+
+def _simplest_off(low: fmpq, high: fmpq, avoided: Sequence[UnivariatePolynomial]) -> fmpq:
+    """A simple rational strictly between low and high at which none of the polynomials vanishes."""
+    value = simplest_between(low, high)
+    while any(sign_at(p, value) == 0 for p in avoided):  # as often as they have roots at most
+        value = simplest_between(value, high)
+    return value

@@ -1,0 +1,20 @@
+"""Mechanisms as polynomial systems: a description turned into a `ParametricSystem`."""
+
+from __future__ import annotations
+
+from ptmcad.exact.models.geometry import system_from
+from ptmcad.exact.models.system import ParametricSystem
+from ptmcad.mechanism import mechanism_of
+
+__all__ = ["ParametricSystem", "system_of"]
+
+
+def system_of(mechanism: str) -> ParametricSystem:
+    """The parametric system of a built-in mechanism by its name.
+
+    Raises
+    ------
+    KeyError
+        When there is none of that name; `config` refuses such names before.
+    """
+    return system_from(mechanism_of(mechanism))

@@ -1,0 +1,103 @@
+"""The polynomial system of a mechanism, derived from its description.
+
+Guarantee: potential, equations and Hessian follow from the points, springs and loads that the description lists; no
+equation is typed in. Springs are of free length zero: their energy is a polynomial.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+
+from flint import fmpq
+
+from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
+from ptmcad.exact.models.system import ParametricSystem, from_potential
+from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism.evaluate import evaluate
+
+Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
+
+
+@dataclass(frozen=True, slots=True)
+class Geometry:
+    """What has a place in a mechanism, as elements of its system's ring.
+
+    Attributes
+    ----------
+    nodes : coordinates of each point, in the length unit of the parameters.
+    stiffnesses : of each spring, in the description's order.
+    """
+
+    ring: TrigonometricRing
+    nodes: Mapping[str, Vector]
+    stiffnesses: tuple[TrigonometricPolynomial, ...]
+    loads: tuple[tuple[str, Vector], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Evaluation:
+    """A trigonometric ring as one in which trees have values."""
+
+    ring: TrigonometricRing
+
+    def constant(self, value: Fraction) -> TrigonometricPolynomial:
+        return self.ring.context.constant(fmpq(value.numerator, value.denominator))
+
+    def parameter(self, name: str) -> TrigonometricPolynomial:
+        return self.ring.parameter(name)
+
+    def cos(self, angle: str) -> TrigonometricPolynomial:
+        return self.ring.cos(angle)
+
+    def sin(self, angle: str) -> TrigonometricPolynomial:
+        return self.ring.sin(angle)
+
+
+@lru_cache(maxsize=8)
+def geometry_of(mechanism: Mechanism) -> Geometry:
+    """The points, stiffnesses and loads of a mechanism, with all parameters symbolic."""
+    ring = TrigonometricRing(mechanism.without_free_lengths, mechanism.angles)
+    within = _Evaluation(ring)
+    return Geometry(
+        ring,
+        {name: (evaluate(x, within), evaluate(y, within)) for name, (x, y) in mechanism.points.items()},
+        tuple(evaluate(spring.stiffness, within) for spring in mechanism.springs),
+        tuple((load.point, (evaluate(load.x, within), evaluate(load.y, within))) for load in mechanism.loads),
+    )
+
+
+def squared_lengths(mechanism: Mechanism) -> tuple[TrigonometricPolynomial, ...]:
+    """The square of each spring's length, reduced."""
+    geometry = geometry_of(mechanism)
+    return tuple(geometry.ring.reduce(_squared(geometry, s.start, s.end)) for s in mechanism.springs)
+
+
+def potential(mechanism: Mechanism) -> TrigonometricPolynomial:
+    """Elastic energy of the springs minus the work of the loads; for ``ptm`` this is (1) of Wenger & Chablat."""
+    geometry = geometry_of(mechanism)
+    energy = geometry.ring.context.constant(0)
+    for spring, stiffness in zip(mechanism.springs, geometry.stiffnesses, strict=True):
+        energy += stiffness * _squared(geometry, spring.start, spring.end) * fmpq(1, 2)
+    for node, (horizontal, vertical) in geometry.loads:
+        energy -= horizontal * geometry.nodes[node][0] + vertical * geometry.nodes[node][1]
+    return geometry.ring.reduce(energy)
+
+
+@lru_cache(maxsize=8)
+def system_from(mechanism: Mechanism) -> ParametricSystem:
+    """The mechanism's equilibrium equations and Hessian with all parameters symbolic."""
+    kept = set(mechanism.without_free_lengths)
+    return from_potential(
+        geometry_of(mechanism).ring,
+        potential(mechanism),
+        positive=tuple(name for name in mechanism.positive if name in kept),
+        nonnegative=tuple(name for name in mechanism.nonnegative if name in kept),
+    )
+
+
+def _squared(geometry: Geometry, start: str, end: str) -> TrigonometricPolynomial:
+    (x0, y0), (x1, y1) = geometry.nodes[start], geometry.nodes[end]
+    return (x1 - x0) ** 2 + (y1 - y0) ** 2

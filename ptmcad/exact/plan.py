@@ -1,0 +1,96 @@
+"""The plan of the exact engine: what a slice needs, what is left out, and the reason for each.
+
+Guarantee: each saving that is named here was really made in the computation that it accompanies, or is said to have
+been switched off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import gcd
+
+from ptmcad.answer.plan import saving_step, zero_parameters, zero_terms
+from ptmcad.answer.regionmap import HARMLESS, Component, PlanStep
+from ptmcad.question.slice import Slice
+
+LATER = ("infinity", "no-real-points", "axis-order", "even-powers")
+"""Savings of which nothing can be said before the curves are known."""
+
+
+def beforehand(slice: Slice, keep: frozenset[str], areas: bool = True) -> tuple[PlanStep, ...]:
+    """What is known of the plan before anything is computed.
+
+    Parameters
+    ----------
+    areas : whether they are asked for.
+    """
+    return (
+        saving_step("imports", keep),
+        *zero_terms(zero_parameters(slice)),
+        saving_step("sign-curve", keep),
+        saving_step("hermite-matrix", keep),
+        saving_step("equal-counts", keep) if areas else PlanStep("areas of the regions", False, "not asked for"),
+    )
+
+
+def plan_of(
+    slice: Slice,
+    components: Sequence[Component],
+    base: int,
+    costs: tuple[int, int],
+    keep: frozenset[str],
+    areas: bool = True,
+) -> tuple[PlanStep, ...]:
+    """The steps of the exact engine for a slice.
+
+    Parameters
+    ----------
+    base : number of the base axis.
+    costs : predicted costs of the two axis orders.
+    keep : savings that were switched off.
+    areas : whether they are asked for.
+    """
+    steps = list(beforehand(slice, keep, areas))
+    steps.append(saving_step("infinity", keep))
+    if "no-real-points" in keep:
+        steps.append(saving_step("no-real-points", keep))
+    for c in components:
+        what = f"{c.kind.value} component {_short(c, slice.axis_names)}"
+        steps.append(PlanStep(what, not c.left_out, c.left_out or f"degrees {c.polynomial.degrees}", _saving_of(c)))
+    steps += _axis_order(slice.axis_names, base, costs, keep)
+    powers = ", ".join(_even_powers(components, slice.axis_names))
+    if powers:
+        steps.append(saving_step("even-powers", keep, why=f"computed in the power, where only such occur: {powers}"))
+    return tuple(steps)
+
+
+def _saving_of(c: Component) -> str:
+    if not c.left_out:
+        return ""
+    return "infinity" if c.left_out == HARMLESS else "no-real-points"
+
+
+def _axis_order(names: tuple[str, str], base: int, costs: tuple[int, int], keep: frozenset[str]) -> Iterator[PlanStep]:
+    if "axis-order" in keep:
+        yield PlanStep(f"decomposition over {names[base]}", True, "the first axis, as asked for", "axis-order")
+        return
+    if costs[0] == costs[1]:
+        reason = "both orders are predicted to cost the same"
+    else:
+        reason = f"predicted cost {min(costs):.3g} against {max(costs):.3g}"
+    yield PlanStep(f"decomposition over {names[base]}", True, reason)
+    yield saving_step("axis-order", keep, f"decomposition over {names[1 - base]}")
+
+
+def _even_powers(components: Sequence[Component], names: tuple[str, str]) -> Iterator[str]:
+    """Such as ``rho^2 in component 0``, for the components that are used."""
+    for n, c in enumerate(components):
+        for axis in (0, 1):
+            power = gcd(*(t[axis] for t in c.polynomial.terms))
+            if power > 1 and not c.left_out and min(c.polynomial.degrees) > 0:
+                yield f"{names[axis]}^{power} in component {n}"
+
+
+def _short(component: Component, names: tuple[str, str]) -> str:
+    text = component.polynomial.text(names)
+    return text if len(text) <= 40 else f"with {len(component.polynomial.terms)} terms"

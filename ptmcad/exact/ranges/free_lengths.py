@@ -1,0 +1,90 @@
+"""The free lengths at which equilibria are degenerate, all other parameters fixed, by algebra: where folds are.
+
+Guarantee, as far as msolve's answer is right: every real l0 != 0 at which some solution with lengths of some signs is
+degenerate is enclosed, with the signs; poses with a length of zero are not among them, they are no folds.
+
+The number of equilibria also changes where one is swallowed by the cone l3 = 0, which is no fold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+from ptmcad.algebra.critical_lengths import NAMES, critical_system
+from ptmcad.algebra.msolve import MsolveError, real_solutions
+from ptmcad.answer.intervals import CriticalFreeLength
+from ptmcad.errors import ConfigError
+from ptmcad.question.line import restricted, varying_axis
+from ptmcad.question.slice import FREE_LENGTHS, Slice
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.expressions import axis
+
+
+def critical_free_lengths(
+    rho: Fraction,
+    rods: tuple[Fraction, Fraction],
+    loads: tuple[Fraction, Fraction],
+    timeout: float | None = None,
+) -> tuple[CriticalFreeLength, ...]:
+    """All critical free lengths, ascending; lengths in one unit, loads divided by k.
+
+    They come in pairs: l0 with signs s, and -l0 with signs -s, are one solution of the squared equations.
+
+    Raises
+    ------
+    ConfigError
+        When a length is not positive.
+    MsolveError
+        When msolve is not there, takes longer than ``timeout`` seconds, or finds infinitely many solutions, as it does
+        without loads where two poses are degenerate along a whole interval.
+    """
+    if min(rho, *rods) <= 0:
+        raise ConfigError("rho and the rods must be positive")
+    found = []
+    for box in real_solutions(NAMES, critical_system(rho, rods, loads), timeout):
+        low, high = box[-1]
+        first, second, third = (_sign(*interval) for interval in box[:3])
+        _sign(low, high)  # at l0 = 0 the signs have no meaning
+        found.append(CriticalFreeLength(Enclosure(low, high), (first, second, third)))
+    return tuple(sorted(found, key=lambda c: c.free.center))
+
+
+def critical_on_line(
+    slice: Slice, along: str, at: Mapping[str, Any], timeout: float | None = None
+) -> tuple[CriticalFreeLength, ...]:
+    """The critical free lengths in the window of a line along the common free length of all springs, ascending.
+
+    Raises
+    ------
+    ConfigError
+        When the line is of another kind: the springs need one stiffness, ``along`` has to be the free length of each
+        of them, and all else has to be constant, without horizontal loads.
+    MsolveError
+        See `critical_free_lengths`.
+    """
+    varying, _, value = varying_axis(slice, along, at)
+    on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
+    if any(on_line.get(name) != axis(0) for name in FREE_LENGTHS):
+        raise ConfigError(f"elimination needs {along} to be the free length of all three springs", key="along")
+    constants = {name: e.constant() for name, e in on_line.items() if e.is_constant}
+    missing = [name for name in on_line if name not in constants and name not in FREE_LENGTHS]
+    if missing:
+        raise ConfigError(f"elimination needs {', '.join(missing)} to be constant along {along}", key="along")
+    if not constants["k1"] == constants["k2"] == constants["k3"] != 0:
+        raise ConfigError("elimination needs three springs of one stiffness", key="k")
+    if any(constants.get(name, 0) != 0 for name in ("F3x", "F4x")):
+        raise ConfigError("elimination needs loads without horizontal parts", key="F3x")
+    k = constants["k1"]
+    found = critical_free_lengths(
+        constants["rho"], (constants["L1"], constants["L2"]), (constants["F3"] / k, constants["F4"] / k), timeout
+    )
+    window = slice.axes[varying]
+    return tuple(c for c in found if c.free.high > window.low and c.free.low < window.high)
+
+
+def _sign(low: Fraction, high: Fraction) -> int:
+    if low <= 0 <= high:
+        raise MsolveError("msolve's boxes do not settle a sign")
+    return 1 if low > 0 else -1

@@ -1,0 +1,144 @@
+"""The intervals of constant count along a line of a slice, with exact ends.
+
+Guarantee: exact. The window's part of the line, less the critical values, is cut into open intervals; in each the
+equilibria are nondegenerate, their number and indices are constant, and they were counted at a rational sample. Ends
+are real algebraic numbers. Neighbours with equal counts are joined, and the critical value between them is kept among
+the changes.
+
+The line's own discriminant variety is computed, in one parameter: its components are the irreducible factors of the
+norm of det H over Q(x). So nothing depends on how a basis over the plane specialises, and that the ends are those of
+the map's walls is a test of both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from typing import Any
+
+from flint import fmpq
+
+from ptmcad.algebra.numbers import in_order, roots_in
+from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction
+from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
+from ptmcad.answer.regionmap import Kind, MorseIndex
+from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
+from ptmcad.exact.engine import count_at, domain_limits
+from ptmcad.exact.models import ParametricSystem, system_of
+from ptmcad.exact.variety import discriminant_variety
+from ptmcad.question.line import Line, line_of
+from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.enclosure import AlgebraicNumber
+from ptmcad.text.numerals import shortest_text
+
+FINE = Fraction(1, 2**100)
+"""Width of the ends' isolating intervals, against the window's."""
+
+
+def intervals(slice: Slice, along: str, at: Mapping[str, Any]) -> CountIntervals:
+    """The intervals of constant count on a line of a slice.
+
+    Parameters
+    ----------
+    along : the axis that varies, over its window.
+    at : the other axis with its value: text, int or Fraction.
+
+    Raises
+    ------
+    ConfigError
+        See `line_of`.
+    DegenerateSliceError
+        When the line lies inside the discriminant variety: every point of it has a singular equilibrium.
+    InfiniteSolutionsError
+        When every point of it has infinitely many equilibria.
+    GeometryError
+        When a length or a stiffness is not positive on it.
+    """
+    line = line_of(slice, along, at)
+    found = critical_values(line)
+    numbers = tuple(number for number, _ in found)
+    kinds = dict(found)
+    samples = samples_between(line.along, numbers)
+    counts = [index_at(line, sample) for sample in samples]
+    changes = tuple(Change(n, kinds[n], counts[k], counts[k + 1]) for k, n in enumerate(numbers))
+    return CountIntervals(
+        slice.name,
+        slice.mechanism,
+        line.along,
+        line.at,
+        line.parameters,
+        tuple(_joined(line.along, numbers, samples, counts)),
+        changes,
+    )
+
+
+def system_on(line: Line, mechanism: str = "ptm") -> tuple[ParametricSystem, dict[str, Ratio]]:
+    """The mechanism's system and its parameters on the line, for the engine."""
+    system = system_of(mechanism)
+    return system, {name: from_expression(line.parameters[name]) for name in system.ring.parameters}
+
+
+def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Kind], ...]:
+    """The line's discriminant variety in the window, in increasing order.
+
+    The isolating intervals are disjoint.
+
+    Raises
+    ------
+    DegenerateSliceError, InfiniteSolutionsError
+        See `intervals`.
+    """
+    system, parameters = system_on(line)
+    low, high = line.along.low, line.along.high
+    window = (from_fraction(low), from_fraction(high))
+    where = ", ".join(f"{name} = {shortest_text(value)}" for name, value in line.at.items())
+    try:
+        # the second axis does not occur, so any range serves for it
+        variety = discriminant_variety(
+            system, parameters, (window, (fmpq(0), fmpq(1))), domain_limits(system, parameters), frozenset({"infinity"})
+        )
+    except DegenerateSliceError as error:
+        raise DegenerateSliceError(
+            f"the line {where} lies inside the discriminant variety: at every {line.along.name} some equilibrium has a "
+            "singular Hessian; fix another value"
+        ) from error
+    except InfiniteSolutionsError as error:
+        raise InfiniteSolutionsError(
+            f"on the line {where} the equations have infinitely many solutions at every {line.along.name} (complex "
+            "ones included); fix another value"
+        ) from error
+    numbers, kinds = [], {}
+    for component in variety.components:
+        if not component.left_out:
+            for number in roots_in(component.polynomial, low, high):
+                numbers.append(number)
+                kinds[number.polynomial] = component.kind
+    ordered = in_order(numbers, low, high, (high - low) * FINE)
+    return tuple((number, kinds[number.polynomial]) for number in ordered)
+
+
+def samples_between(along: Axis, numbers: tuple[AlgebraicNumber, ...]) -> tuple[Fraction, ...]:
+    """Simple rationals below, between and above the given numbers, in the window."""
+    lows = [along.low, *(n.high for n in numbers)]
+    highs = [*(n.low for n in numbers), along.high]
+    samples = (simplest_between(from_fraction(a), from_fraction(b)) for a, b in zip(lows, highs, strict=True))
+    return tuple(Fraction(int(s.p), int(s.q)) for s in samples)
+
+
+def index_at(line: Line, value: Fraction) -> MorseIndex:
+    """Numbers of minima, saddles and maxima at a rational value that is not critical."""
+    system, parameters = system_on(line)
+    return count_at(line.place(value), system, parameters, (from_fraction(value), fmpq(0))).counts.index
+
+
+def _joined(
+    along: Axis, numbers: tuple[AlgebraicNumber, ...], samples: tuple[Fraction, ...], counts: list[MorseIndex]
+) -> Iterator[CountInterval]:
+    """The intervals, those with equal counts joined."""
+    ends: list[End] = [along.low, *numbers, along.high]
+    start = 0
+    for k, index in enumerate(counts):
+        if k + 1 == len(counts) or counts[k + 1] != index:
+            yield CountInterval(ends[start], ends[k + 1], index, samples[start])
+            start = k + 1

@@ -1,0 +1,196 @@
+"""Strips: where, over an open interval of the other axis, one operation range lies between two branches.
+
+Guarantee: over the strip's whole base interval the two ends are the branches (or the window's edges) that are named,
+and there are two stable equilibria between them but for points of the variety where no count changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from flint import fmpq
+
+from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_expression, from_fraction, from_plane
+from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine
+from ptmcad.answer.regionmap import MorseIndex
+from ptmcad.exact.cad.curves import Curve, curve
+from ptmcad.exact.cad.projection import project
+from ptmcad.exact.cad.stacks import BaseEnd, StackData, Wall, lift
+from ptmcad.exact.engine import avoided_by_samples, count_at, domain_limits
+from ptmcad.exact.models import system_of
+from ptmcad.exact.variety import discriminant_variety
+from ptmcad.question.slice import Slice, without_free_lengths
+
+Interval = tuple[fmpq, fmpq]
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """The ``root``-th real root of a curve over a strip, or an edge of the window when ``curve`` is None."""
+
+    curve: Curve | None
+    root: int
+    edge: fmpq
+
+
+@dataclass(frozen=True, slots=True)
+class Strip:
+    """An operation range over an open interval of the base axis.
+
+    Attributes
+    ----------
+    left, right : ends of the base interval.
+    sample : a rational abscissa in it.
+    low, high : the branches that bound the range; fibre is the window of the axis along which it lies.
+    """
+
+    left: BaseEnd
+    right: BaseEnd
+    sample: fmpq
+    low: Branch
+    high: Branch
+    fibre: Interval
+
+
+def refuse_free_lengths(slice: Slice) -> None:
+    """Refuse what strips can not answer.
+
+    Raises
+    ------
+    ConfigError
+        When springs have a free length.
+    """
+    without_free_lengths(
+        slice.parameters,
+        "widths over a second axis (--over) are",
+        "the range along one axis is enclosed where the other has a value (--at)",
+    )
+
+
+def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
+    """The strips of a slice over the axis that is not ``along``, from the left.
+
+    Raises
+    ------
+    ConfigError
+        When springs have a free length.
+    HypothesisError
+        When the slice is degenerate or leaves the domain of the geometry.
+    """
+    base = 1 - slice.axis_names.index(along)
+    refuse_free_lengths(slice)
+    system = system_of(slice.mechanism)
+    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
+    x, y = ((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
+    window = (x, y)
+    variety = discriminant_variety(system, parameters, window, domain_limits(system, parameters))
+    curves, verticals = [], []
+    for n, component in enumerate(variety.components):
+        if component.left_out:
+            continue
+        p = from_plane(component.polynomial)
+        if component.polynomial.degrees[1 - base] > 0:
+            curves.append(curve(n, p, base))
+        else:
+            verticals.append(coefficients_in(p, 1 - base)[0])
+    projection = project(curves, verticals, window[base], window[1 - base])
+    stacks = lift(
+        curves, projection.abscissae, window[base], window[1 - base], avoided_by_samples(variety.components, base)
+    )
+    by_number = {c.component: c for c in curves}
+
+    def counted(stack: StackData, height: fmpq) -> MorseIndex:
+        at = (stack.sample, height) if base == 0 else (height, stack.sample)
+        where = ", ".join(f"{name} = {value}" for name, value in zip(slice.axis_names, at, strict=True))
+        return count_at(where, system, parameters, at).counts.index
+
+    return tuple(
+        strip
+        for stack in stacks
+        for strip in _over(stack, [counted(stack, h)[0] for h in stack.heights], by_number, window[1 - base])
+    )
+
+
+def _over(stack: StackData, stable: Sequence[int], curves: dict[int, Curve], fibre: Interval) -> list[Strip]:
+    found = []
+    first = None
+    for k, number in enumerate([*stable, 0]):
+        if number == 2 and first is None:
+            first = k
+        elif number != 2 and first is not None:
+            low = _branch(stack.walls[first - 1], curves, fibre[0]) if first else Branch(None, 0, fibre[0])
+            high = _branch(stack.walls[k - 1], curves, fibre[1]) if k <= len(stack.walls) else Branch(None, 0, fibre[1])
+            found.append(Strip(stack.left, stack.right, stack.sample, low, high, fibre))
+            first = None
+    return found
+
+
+def _branch(wall: Wall, curves: dict[int, Curve], edge: fmpq) -> Branch:
+    return Branch(curves[wall.component], wall.root, edge)
+
+
+def at_abscissa(branch: Branch, u: fmpq, fibre: Interval, width: fmpq) -> RealRoot:
+    """The branch's value at a rational abscissa of the strip, isolated within ``width``."""
+    if branch.curve is None:
+        return _edge(branch.edge)
+    p = branch.curve.fibre(u)
+    return refine(isolate(p, *fibre)[branch.root], width)
+
+
+def _edge(value: fmpq) -> RealRoot:
+    return RealRoot(UnivariatePolynomial([-int(value.p), int(value.q)]), value, value)
+
+
+def bound_over(branch: Branch, start: fmpq, side: int, over: Interval, fibre: Interval) -> fmpq | None:
+    """A level above (side 1) or below (side -1) the branch on a closed interval of abscissae.
+
+    Guarantee: the curve has no point on the horizontal segment at this level over the interval; so the branch, which is
+    at the start's other side somewhere in it, stays there.
+
+    Parameters
+    ----------
+    start : a bound for the branch at one abscissa of the interval, from that side.
+
+    Returns
+    -------
+    None when no level inside ``fibre`` was found to be free.
+    """
+    if branch.curve is None:
+        return branch.edge
+    step = (over[1] - over[0]) / 8
+    while True:
+        level = start + side * step
+        if not fibre[0] < level < fibre[1]:
+            return None
+        if not has_root_between(branch.curve.trace(level), *over):
+            return level
+        step = 2 * step
+
+
+def base_interval(strip: Strip, width: fmpq) -> tuple[Interval, Interval]:
+    """Intervals that hold the two ends of the strip's base: of length zero at rational ends, else within ``width``."""
+    return _end(strip.left, width), _end(strip.right, width)
+
+
+def _end(end: BaseEnd, width: fmpq) -> Interval:
+    if end.root is None:
+        return end.value, end.value
+    if end.root.polynomial.degree() == 1:
+        value = fmpq(-end.root.polynomial[0], end.root.polynomial[1])
+        return value, value
+    root = refine(end.root, width)
+    return root.low, root.high
+
+
+def constant_width(strip: Strip) -> bool:
+    """Whether the range is of one width over the whole strip because its ends are edges or parallel lines."""
+    slopes = []
+    for branch in (strip.low, strip.high):
+        if branch.curve is None:
+            slopes.append(fmpq(0))
+        elif len(branch.curve.in_v) == 2 and len(branch.curve.in_u) <= 2 and branch.curve.in_v[1].degree() == 0:
+            slopes.append(-fmpq(branch.curve.in_v[0][1], branch.curve.in_v[1][0]))
+        else:
+            return False
+    return bool(slopes[0] == slopes[1])

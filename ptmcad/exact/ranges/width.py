@@ -1,0 +1,374 @@
+"""The operation range's width against the other axis of a slice, and the proof of where it is largest.
+
+Guarantee: `Maximum.width` encloses the supremum of the width over all values of the other axis in the window that are
+not critical, and `Maximum.at` where it is approached: at all values outside of it the width is smaller. What is proved
+beyond that `Maximum.place` says.
+
+Each strip (see `strips`) is cut into closed pieces, and each piece is settled in one of these ways.
+
+* Below: levels that no curve crosses bound the range from both sides, and lie closer than a width that occurs.
+* Monotone: the derivative of the width, enclosed over the piece, has one sign; the largest width is at an end of it.
+* Concave: the second derivative is negative, the first one changes its sign: one maximum, enclosed by bisection.
+* Chord: at a rational end y0 of the strip the limits a, b of the range are algebraic numbers. If for some s the lower
+  end stays above a + s (y - y0), and the upper one below b + s (y - y0), the width stays under b - a. This also
+  settles cusps, where derivatives are infinite.
+
+A piece that becomes too small remains, with the bounds that it has: then the place is only enclosed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from heapq import heappop, heappush
+
+from flint import arb, fmpq
+
+from ptmcad.algebra.chords import side_of_chord, slope_over
+from ptmcad.algebra.numbers import algebraic_number, as_interval, fibre_roots, refined, root_of
+from ptmcad.algebra.polynomials import from_fraction, to_fraction
+from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.answer.intervals import End
+from ptmcad.answer.widths import Maximum, OperationWidths, Place, WidthRow
+from ptmcad.errors import HypothesisError
+from ptmcad.exact.ranges.line import intervals
+from ptmcad.exact.ranges.strips import (
+    Branch,
+    Interval,
+    Strip,
+    at_abscissa,
+    base_interval,
+    bound_over,
+    constant_width,
+    strips,
+)
+from ptmcad.question.slice import Slice
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+
+ROWS = 41
+"""Rows of the table."""
+_FINE = fmpq(1, 2**120)
+_SMALLEST = fmpq(1, 2**50)
+"""Length of a piece, against the strip's, that is not cut any more."""
+_MOST_PIECES = 20_000
+
+
+@dataclass(frozen=True, slots=True)
+class _Candidate:
+    place: Place
+    at: Interval
+    width: Interval
+    critical: AlgebraicNumber | None = None
+    ends: tuple[End, End] | None = None
+
+
+def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWidths:
+    """Tabulate the operation range's width over the other axis and find where it is largest.
+
+    Raises
+    ------
+    HypothesisError
+        When the slice is degenerate or leaves the domain of the geometry.
+    """
+    names = slice.axis_names
+    over = slice.axes[1 - names.index(along)]
+    found = strips(slice, along)
+    table = []
+    for k in range(1, rows + 1):
+        value = over.low + (over.high - over.low) * Fraction(k, rows + 1)
+        table.append(_row(slice, along, over.name, value))
+    return OperationWidths(slice.name, slice.axes[names.index(along)], over, tuple(table), largest(found))
+
+
+def _row(slice: Slice, along: str, over: str, value: Fraction) -> WidthRow:
+    try:
+        return WidthRow(value, intervals(slice, along, {over: value}).operation)
+    except HypothesisError as error:
+        return WidthRow(value, (), str(error))
+
+
+def largest(found: Sequence[Strip]) -> tuple[Maximum, ...]:
+    """The largest width over all strips; see the module."""
+    search = _Search()
+    for strip in found:
+        search.sample(strip)
+    for strip in found:
+        if constant_width(strip):
+            search.plateau(strip)
+        else:
+            search.ends(strip)
+    search.settle()
+    return search.answer()
+
+
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """A part [low, high] of a strip's base; ``open_left`` and ``open_right`` when it reaches an irrational end."""
+
+    strip: Strip
+    low: fmpq
+    high: fmpq
+    open_left: bool
+    open_right: bool
+    smallest: fmpq
+
+
+class _Search:
+    """Branch and bound over the strips."""
+
+    def __init__(self) -> None:
+        self.known = fmpq(0)  # a width that occurs, or is approached
+        self.candidates: list[_Candidate] = []
+        self.heap: list[tuple[fmpq, int, _Piece]] = []
+        self.number = 0
+
+    # ------------------------------------------------------------------------------------------------ lower bounds
+
+    def sample(self, strip: Strip) -> None:
+        (_, left), (right, _) = base_interval(strip, _FINE)
+        for k in range(1, 8):
+            self.width_at(strip, left + (right - left) * fmpq(k, 8))
+
+    def width_at(self, strip: Strip, u: fmpq) -> Interval:
+        low, high = (at_abscissa(b, u, strip.fibre, _FINE) for b in (strip.low, strip.high))
+        width = (high.low - low.high, high.high - low.low)
+        self.known = max(self.known, width[0])
+        return width
+
+    # -------------------------------------------------------------------------------------------------- strips' ends
+
+    def plateau(self, strip: Strip) -> None:
+        (left, _), (_, right) = base_interval(strip, _FINE)
+        self.candidates.append(_Candidate(Place.PLATEAU, (left, right), self.width_at(strip, strip.sample)))
+
+    def ends(self, strip: Strip) -> None:
+        """Settle neighbourhoods of rational ends with the largest limits, and list the rest as one piece."""
+        left, right = base_interval(strip, _FINE)
+        low, high = left[0], right[1]
+        for side, (at, end) in enumerate(((left, strip.left), (right, strip.right))):
+            if at[0] != at[1]:
+                continue
+            lowest, highest = (limit(b, strip, at[0], _FINE) for b in (strip.low, strip.high))
+            if lowest is None or highest is None:
+                continue
+            (a_low, a_high), (b_low, b_high) = _bounds(lowest), _bounds(highest)
+            self.known = max(self.known, b_low - a_high)
+            if b_high - a_low < self.known:
+                continue
+            direction = 1 if side == 0 else -1
+            length = chord_length(strip, at[0], direction, (lowest, highest))
+            if length is None:
+                continue
+            place = Place.EDGE if end.root is None else Place.CRITICAL
+            width = (b_low - a_high, b_high - a_low)
+            critical = None if end.root is None else algebraic_number(end.root)
+            self.candidates.append(_Candidate(place, at, width, critical, (lowest, highest)))
+            if side == 0:
+                low = at[0] + length
+            else:
+                high = at[0] - length
+        self.add(_Piece(strip, low, high, low == left[0], high == right[1], (right[1] - left[0]) * _SMALLEST))
+
+    # -------------------------------------------------------------------------------------------------------- pieces
+
+    def add(self, piece: _Piece) -> None:
+        if piece.low >= piece.high:
+            return
+        bound = self.bound(piece)
+        if bound >= self.known:
+            self.number += 1
+            heappush(self.heap, (-bound, self.number, piece))
+
+    def bound(self, piece: _Piece) -> fmpq:
+        """An upper bound for the width over the piece."""
+        strip = piece.strip
+        u = (piece.low + piece.high) / 2
+        low, high = (at_abscissa(b, u, strip.fibre, (piece.high - piece.low) / 2**10) for b in (strip.low, strip.high))
+        top = bound_over(strip.high, high.high, 1, (piece.low, piece.high), strip.fibre)
+        bottom = bound_over(strip.low, low.low, -1, (piece.low, piece.high), strip.fibre)
+        return (strip.fibre[1] if top is None else top) - (strip.fibre[0] if bottom is None else bottom)
+
+    def settle(self) -> None:
+        count = 0
+        while self.heap:
+            negative, _, piece = heappop(self.heap)
+            if -negative < self.known:
+                return  # and so are all others
+            count += 1
+            if count > _MOST_PIECES or piece.high - piece.low < piece.smallest:
+                end = piece.strip.left if piece.open_left else piece.strip.right if piece.open_right else None
+                critical = None if end is None or end.root is None else algebraic_number(end.root)
+                self.candidates.append(
+                    _Candidate(Place.ENCLOSED, (piece.low, piece.high), (self.known, -negative), critical)
+                )
+                continue
+            middle = _cut(piece.low, piece.high)
+            self.width_at(piece.strip, middle)
+            if not piece.open_left and not piece.open_right and self.smooth(piece):
+                continue
+            self.add(_Piece(piece.strip, piece.low, middle, piece.open_left, False, piece.smallest))
+            self.add(_Piece(piece.strip, middle, piece.high, False, piece.open_right, piece.smallest))
+
+    def smooth(self, piece: _Piece) -> bool:
+        """Whether derivatives settle the piece: monotone, or concave with one maximum, which is then a candidate."""
+        slopes = width_slopes(piece.strip, piece.low, piece.high)
+        if slopes is None:
+            return False
+        first, second = slopes
+        if first > 0 or first < 0:
+            return True
+        if not second < 0:
+            return False
+        low, high = piece.low, piece.high
+        left, right = (_sign_at(piece.strip, u, piece.smallest) for u in (low, high))
+        if left is None or right is None:
+            return False
+        if left == right:
+            return True  # the derivative falls, so it has this sign all along
+        if left < 0:
+            return False
+        steepest = first.abs_upper()
+        while high - low > piece.smallest / 2**20:
+            cuts = (_cut(low, high), low + (high - low) / 3)  # one of them is not the zero itself
+            found = ((u, _sign_at(piece.strip, u, (high - low) / 2**20)) for u in cuts)
+            middle, at = next(((u, sign) for u, sign in found if sign is not None), (low, None))
+            if at is None:
+                break
+            low, high = (middle, high) if at > 0 else (low, middle)
+        width = self.width_at(piece.strip, (low + high) / 2)
+        slack = _rational_above(steepest * arb(high - low))
+        self.candidates.append(_Candidate(Place.SMOOTH, (low, high), (width[0], width[1] + slack)))
+        return True
+
+    def answer(self) -> tuple[Maximum, ...]:
+        """The candidates that may be the largest; those at the same place are one, a plateau takes in its ends."""
+        kept = [c for c in self.candidates if c.width[1] >= self.known]
+        plateaus = [c for c in kept if c.place is Place.PLATEAU]
+        rest = [c for c in kept if c.place is not Place.PLATEAU]
+        rest = [c for c in rest if not any(_touches(c, p) and c.width[1] <= p.width[1] for p in plateaus)]
+        merged: list[_Candidate] = []
+        for c in sorted([*plateaus, *rest], key=lambda c: c.at):
+            if merged and merged[-1].place is c.place and _touches(merged[-1], c):
+                last = merged.pop()
+                hull = (last.at[0], max(last.at[1], c.at[1]))
+                width = (min(last.width[0], c.width[0]), max(last.width[1], c.width[1]))
+                merged.append(_Candidate(c.place, hull, width, last.critical or c.critical, c.ends))
+            else:
+                merged.append(c)
+        return tuple(
+            Maximum(
+                c.place,
+                Enclosure(to_fraction(c.at[0]), to_fraction(c.at[1])),
+                Enclosure(to_fraction(c.width[0]), to_fraction(c.width[1])),
+                c.critical,
+                c.ends,
+            )
+            for c in merged
+        )
+
+
+def _touches(first: _Candidate, second: _Candidate) -> bool:
+    return bool(first.at[0] <= second.at[1] and second.at[0] <= first.at[1])
+
+
+def _cut(low: fmpq, high: fmpq) -> fmpq:
+    """A point near the middle: a short number, and yet not one at which a maximum is likely to be."""
+    width = high - low
+    unit = fmpq(2) ** (int(width.p).bit_length() - int(width.q).bit_length() - 7)
+    return unit * (int(((low + width * fmpq(61, 128)) / unit).floor()) | 1)
+
+
+def _bounds(end: End) -> Interval:
+    if isinstance(end, Fraction):
+        return from_fraction(end), from_fraction(end)
+    return as_interval(end)
+
+
+def _rational_above(value: arb) -> fmpq:
+    mantissa, exponent = (int(n) for n in value.upper().man_exp())
+    return fmpq(mantissa) * fmpq(2) ** exponent
+
+
+def limit(branch: Branch, strip: Strip, end: fmpq, width: fmpq) -> End | None:
+    """The limit of a branch at a rational end of its strip; None when it could not be told from other points."""
+    if branch.curve is None:
+        return to_fraction(branch.edge)
+    margin = strip.fibre[1] - strip.fibre[0]
+    wide = (strip.fibre[0] - margin, strip.fibre[1] + margin)
+    distance = strip.sample - end
+    fibre = branch.curve.fibre(end)
+    for _ in range(60):
+        u = end + distance
+        over = (min(u, end), max(u, end))
+        at = at_abscissa(branch, u, strip.fibre, abs(distance) / 2**10)
+        top = bound_over(branch, at.high, 1, over, wide)
+        bottom = bound_over(branch, at.low, -1, over, wide)
+        if top is not None and bottom is not None:
+            found = fibre_roots(fibre, bottom, top)
+            if len(found) == 1:
+                return refined(found[0], to_fraction(width))
+        distance = distance / 4
+    return None
+
+
+def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End]) -> fmpq | None:
+    """A length within which the range keeps between parallel chords from its limits at an end; None if not proved."""
+    length = abs(strip.sample - end)
+    for _ in range(40):
+        u = end + direction * length
+        tips = [at_abscissa(b, u, strip.fibre, length / 2**40) for b in (strip.low, strip.high)]
+        starts = [_bounds(e) for e in limits]
+        rises = [
+            ((tip.low + tip.high) / 2 - (start[0] + start[1]) / 2) / (direction * length)
+            for tip, start in zip(tips, starts, strict=True)
+        ]
+        # the lower end rises more than the upper one where the range gets narrower
+        if (rises[0] - rises[1]) * direction > 0:
+            third = (rises[0] - rises[1]) / 3
+            slope = simplest_between(*sorted((rises[1] + third, rises[0] - third)))
+            if all(
+                _keeps_off(branch, strip, end, limit, slope, direction * length, side)
+                for branch, limit, side in zip((strip.low, strip.high), limits, (1, -1), strict=True)
+            ):
+                return length
+        length = length / 4
+    return None
+
+
+def _keeps_off(branch: Branch, strip: Strip, end: fmpq, limit: End, slope: fmpq, length: fmpq, side: int) -> bool:
+    """Whether a branch is proved to stay on one side of the chord from its limit."""
+    start = _bounds(limit)
+    tip = at_abscissa(branch, end + length, strip.fibre, abs(length) / 2**60)
+    chord = (start[0] + slope * length, start[1] + slope * length)
+    if not (tip.low > chord[1] if side > 0 else tip.high < chord[0]):
+        return False
+    if branch.curve is None:
+        return True  # the edge is level and, as the tip shows, the chord leaves it to the right side
+    if isinstance(limit, Fraction):
+        return False
+    return side_of_chord(branch.curve.in_v, end, root_of(limit), slope, length)
+
+
+def width_slopes(strip: Strip, low: fmpq, high: fmpq) -> tuple[arb, arb] | None:
+    """Enclosures of the width's first and second derivative over a piece."""
+    middle, radius = (low + high) / 2, (high - low) / 2
+    total = (arb(0), arb(0))
+    for branch, sign in ((strip.low, -1), (strip.high, 1)):
+        if branch.curve is None:
+            continue
+        at = at_abscissa(branch, middle, strip.fibre, radius / 2**40)
+        slope = slope_over(branch.curve.in_v, at, middle, radius)
+        if slope is None:
+            return None
+        total = (total[0] + sign * slope.first, total[1] + sign * slope.second)
+    return total
+
+
+def _sign_at(strip: Strip, u: fmpq, width: fmpq) -> int | None:
+    """The sign of the width's derivative at an abscissa; None when it is too near to zero."""
+    for bits in (10, 40, 80):
+        slopes = width_slopes(strip, u - width / 2**bits, u + width / 2**bits)
+        if slopes is not None and (slopes[0] > 0 or slopes[0] < 0):
+            return 1 if slopes[0] > 0 else -1
+    return None

@@ -1,0 +1,175 @@
+"""The discriminant variety of a slice: the curves off which the number of equilibria of each kind is locally constant.
+
+Guarantee: on every connected component of the window minus these curves, and minus a nowhere dense set that no count
+feels, the equilibria are nondegenerate and their number and indices are constant.
+
+Why. Over Q(x, y) the equations have finitely many solutions; let N be the norm of the Hessian's determinant J, that is
+the product of J over them, and let P collect the poles of the characteristic polynomials of the unknowns. At a point
+with P != 0 the solutions at nearby generic points stay bounded, and with N != 0 none of them has J -> 0, so they are
+smooth functions there: real ones stay real and apart. The components are tagged CRITICAL (factors of N), INFINITY
+(factors of P, where a complex solution leaves every bounded set) and BOUNDARY (there the slice's equations lose their
+meaning).
+
+Reference: Lazard & Rouillier, J. Symb. Comp. 42 (2007). N is used in place of the Hermite matrix's determinant because
+the latter also vanishes where the monomial basis degenerates; `hermite_determinant` computes it for comparison.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
+from ptmcad.algebra.polynomials import Coefficient, Ratio, irreducible_factors, ratio, to_plane
+from ptmcad.algebra.quotient import (
+    QuotientAlgebra,
+    Vector,
+    bounded_away_from_zero,
+    determinant,
+    multiples,
+    multiplication_denominator,
+    norm,
+    poles_at_points,
+    power_trace_denominators,
+    quotient_algebra,
+    trace_form,
+)
+from ptmcad.algebra.window import Interval, nowhere_zero
+from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind
+from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
+from ptmcad.exact.models.system import ParametricSystem, SliceSystem, first_minor, on_slice
+from ptmcad.text.plane import PlanePolynomial
+
+
+@dataclass(frozen=True, slots=True)
+class DiscriminantVariety:
+    """The variety's components and the number of complex solutions at a generic point."""
+
+    components: tuple[Component, ...]
+    complex_solutions: int
+
+
+def discriminant_variety(
+    system: ParametricSystem,
+    parameters: Mapping[str, Ratio],
+    window: tuple[Interval, Interval],
+    limits: Sequence[Coefficient] = (),
+    keep: frozenset[str] = frozenset(),
+) -> DiscriminantVariety:
+    """The discriminant variety of a slice over a window.
+
+    Parameters
+    ----------
+    parameters : each parameter as a ratio of polynomials in Z[x, y].
+    window : the ranges of x and y.
+    limits : further polynomials whose zeros bound the slice's domain (lengths and stiffnesses that vanish).
+    keep : names of savings to switch off, of `ptmcad.question.savings`.
+
+    Raises
+    ------
+    InfiniteSolutionsError, DegenerateSliceError
+        When every point of the slice is exceptional.
+    DimensionError
+        When the saving "sign-curve" is switched off and the system does not have two angles.
+    """
+    equations = on_slice(system, parameters)
+    algebra = _algebra(equations)
+    rows = multiples(algebra, equations.jacobian)
+    jacobian_norm = determinant([[ratio(c, below) for c in row] for row, below in rows])
+    if jacobian_norm[0].is_zero():
+        raise DegenerateSliceError(
+            "the slice lies inside the discriminant variety: at every point of it some equilibrium has a singular "
+            "Hessian, so no count is stable under a small change; fix or free another parameter"
+        )
+    found: dict[PlanePolynomial, Component] = {}
+
+    def adopt(factors: Iterable[Coefficient], kind: Kind, left_out: str = "") -> None:
+        for factor in factors:
+            polynomial = to_plane(factor)
+            if polynomial not in found:
+                found[polynomial] = Component(polynomial, kind, left_out or outside(factor))
+
+    def outside(factor: Coefficient) -> str:
+        return NO_POINT if "no-real-points" not in keep and nowhere_zero(factor, *window) else ""
+
+    for polynomial in (*equations.boundary, *limits):
+        adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
+    adopt(irreducible_factors(jacobian_norm[0]), Kind.CRITICAL)
+    suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in found]
+    if "infinity" in keep:
+        adopt(_with_poles(algebra, suspects, equations.unknowns), Kind.INFINITY)
+    else:
+        hidden = [f for f in suspects if outside(f)]
+        visible = [f for f in suspects if f not in hidden]
+        harmless = _harmless(equations, rows, jacobian_norm, visible)
+        adopt(poles_at_points(algebra, hidden, equations.unknowns), Kind.INFINITY, NO_POINT)
+        adopt(poles_at_points(algebra, harmless, equations.unknowns), Kind.INFINITY, HARMLESS)
+        doubtful = [f for f in visible if f not in harmless]
+        seen = poles_at_points(algebra, doubtful, equations.unknowns)
+        adopt(seen, Kind.INFINITY)
+        adopt(_with_poles(algebra, [f for f in doubtful if f not in seen], equations.unknowns), Kind.INFINITY)
+    if "sign-curve" in keep:
+        adopt(irreducible_factors(norm(algebra, first_minor(system, parameters))[0]), Kind.AUXILIARY)
+    if "hermite-matrix" in keep:
+        for part in determinant(trace_form(algebra)):
+            adopt(irreducible_factors(part), Kind.AUXILIARY)
+    order = {Kind.CRITICAL: 0, Kind.INFINITY: 1, Kind.BOUNDARY: 2, Kind.AUXILIARY: 3}
+    components = sorted(
+        found.values(), key=lambda c: (bool(c.left_out), order[c.kind], len(c.polynomial.terms), c.polynomial.terms)
+    )
+    return DiscriminantVariety(tuple(components), algebra.dimension)
+
+
+def _with_poles(algebra: QuotientAlgebra, suspects: Sequence[Coefficient], unknowns: int) -> list[Coefficient]:
+    """Those of the polynomials on which some unknown has a pole; none is missed."""
+    if not suspects:
+        return []
+    poles = [power_trace_denominators(algebra, k) for k in range(0, unknowns, 2)]
+    return [f for f in suspects if any(pole.gcd(f).total_degree() > 0 for pole in poles)]
+
+
+def _harmless(
+    equations: SliceSystem, rows: Sequence[Vector], jacobian_norm: Ratio, suspects: Sequence[Coefficient]
+) -> list[Coefficient]:
+    """Those of the curves across which no real count can change: near them det H stays away from 0 at all solutions.
+
+    Real solutions stay bounded, as cosines and sines do; being regular as well, they continue across the curve one by
+    one. A second monomial order is tried where the first one's basis degenerates.
+    """
+    proved = [f for f in suspects if bounded_away_from_zero(rows, jacobian_norm, f)]
+    for permutation in _OTHER_ORDERS:
+        if len(proved) < len(suspects) and len(permutation) == equations.unknowns:
+            other = quotient_algebra(groebner_basis(equations.equations, MonomialOrder(permutation)))
+            assert other is not None  # the ideal is zero-dimensional in any order
+            rows = multiples(other, equations.jacobian)
+            proved += [f for f in suspects if f not in proved and bounded_away_from_zero(rows, jacobian_norm, f)]
+    return proved
+
+
+_OTHER_ORDERS = ((2, 0, 3, 1),)
+"""Orders of (cos th1, sin th1, cos th2, sin th2); there are none for other numbers of angles, where less is proved.
+
+Where the first order's basis degenerates, these have not, so far."""
+
+
+def _algebra(equations: SliceSystem) -> QuotientAlgebra:
+    infinitely_many = InfiniteSolutionsError(
+        "at every point of the slice the equations have infinitely many solutions (complex ones included): the loads "
+        "and springs leave a motion free; fix or free another parameter"
+    )
+    if any(not equation for equation in equations.equations):
+        raise infinitely_many
+    order = MonomialOrder(tuple(range(equations.unknowns)))
+    algebra = quotient_algebra(groebner_basis(equations.equations, order))
+    if algebra is None:
+        raise infinitely_many
+    return algebra
+
+
+def hermite_determinant(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Ratio:
+    """The determinant of the Hermite (trace-form) matrix on the grevlex monomial basis.
+
+    Its numerator has every CRITICAL component as a factor; further factors are places where the monomial basis, not
+    the set of solutions, degenerates.
+    """
+    return determinant(trace_form(_algebra(on_slice(system, parameters))))

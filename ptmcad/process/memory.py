@@ -1,0 +1,199 @@
+"""A bound on the memory of this process.
+
+Guarantee: on Linux the process's private memory stays below the bound: an allocation beyond it fails, in Python as a
+MemoryError, in C libraries in their way, which may be to abort. Libraries are loaded without the bound, because many
+neither load nor fail in an orderly way when memory runs out; a bound that they alone exceed is refused right after.
+
+Not guaranteed: the bound on systems that do not count mapped memory as data (macOS); there is none on Windows.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from ptmcad.errors import ConfigError
+from ptmcad.process.handover import Topic, tell
+from ptmcad.process.shortage import SMALL, caller_limits, in_units, speaks_of_memory, usage_of
+
+SHARE = Fraction(9, 10)
+"""The part of the machine's memory that is the bound where none is asked for."""
+
+LEAST = 64 << 20
+"""The exact engine's libraries alone need about half of this."""
+
+ROOM = 32 << 20
+"""What there must be beside the libraries once they are loaded, for anything to be computed or drawn."""
+
+_SIZE = re.compile(r"([0-9]{1,12}(?:\.[0-9]{1,12})?)\s*([KMGT])(?:I?B)?", re.IGNORECASE)
+_UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
+_GROUPS = Path("/sys/fs/cgroup")
+_CONTAINER_LIMITS = ("memory.max", "memory/memory.limit_in_bytes")
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """A number of bytes, and how to name it to the user."""
+
+    size: int
+    text: str
+
+
+def bound_of(text: str) -> Bound:
+    """A bound as it is written: a number and a unit K, M, G or T (powers of 1024).
+
+    Raises
+    ------
+    ConfigError
+        When it is not of that form, or no sensible size.
+
+    Examples
+    --------
+    >>> bound_of("500M").size, bound_of("1.5 GiB").size
+    (524288000, 1610612736)
+    """
+    match = _SIZE.fullmatch(text.strip())
+    shown = text if len(text) <= 30 else f"{text[:30]}..."
+    if match is None:
+        raise ConfigError(f"'{shown}' is not a size: write a number and a unit, such as 500M or 2G", key="--max-memory")
+    size = int(Fraction(match[1]) * _UNITS[match[2].upper()])
+    if size < LEAST:
+        raise ConfigError(f"{shown} is too little to start with: at least {LEAST >> 20}M", key="--max-memory")
+    if size >= 1 << 60:
+        raise ConfigError(f"{shown} is more than any machine has", key="--max-memory")
+    return Bound(size, text.strip())
+
+
+def default_bound() -> Bound | None:
+    """Nine tenths of the memory of the machine, or of the container if that is less; None where it is not known."""
+    sizes = []
+    if hasattr(os, "sysconf") and "SC_PHYS_PAGES" in os.sysconf_names:
+        sizes.append((os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"), "machine"))
+    for path in _container_limits():
+        try:
+            sizes.append((int(path.read_text(encoding="ascii")), "container"))
+        except (OSError, ValueError):  # no such kind of container, or "max"
+            continue
+    if not sizes or min(sizes)[0] <= 0:
+        return None
+    least, whose = min(sizes)
+    size = int(least * SHARE)
+    return Bound(size, f"{size / (1 << 30):.3g}G, nine tenths of this {whose}'s (--max-memory sets another),")
+
+
+def _container_limits() -> Iterator[Path]:
+    """Files that may hold a limit for this process: of its container, of its own group and of those above it."""
+    for name in _CONTAINER_LIMITS:
+        yield _GROUPS / name
+    try:
+        groups = Path("/proc/self/cgroup").read_text(encoding="utf-8", errors="surrogateescape").splitlines()
+    except OSError:
+        return
+    for line in groups:
+        _, _, group = line.partition("::")  # of the second version of groups; the first names controllers between
+        while group.strip("/"):
+            yield _GROUPS / group.strip("/") / "memory.max"
+            group = group.rpartition("/")[0]
+
+
+class _InForce:
+    """The bound that this process keeps at present, and the soft and hard limits that its caller had set."""
+
+    bound: Bound | None = None
+    before: tuple[int, int] = (-1, -1)
+
+
+@contextmanager
+def bounded(bound: Bound) -> Iterator[None]:
+    """Keep this process below the bound, or below the one that its caller has set already if that is lower.
+
+    Raises
+    ------
+    ConfigError
+        Where the system has no such limits.
+    """
+    try:
+        import resource
+    except ImportError as error:
+        raise ConfigError("this system can not bound a process's memory", key="--max-memory") from error
+    soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    sizes = [bound.size, *(limit for limit in (soft, hard) if limit != resource.RLIM_INFINITY)]
+    resource.setrlimit(resource.RLIMIT_DATA, (min(sizes), hard))
+    outer = _InForce.bound, _InForce.before
+    _InForce.bound, _InForce.before = bound, (soft, hard)
+    try:
+        yield
+    finally:
+        _InForce.bound, _InForce.before = outer
+        resource.setrlimit(resource.RLIMIT_DATA, (soft, hard))
+
+
+@contextmanager
+def loading(what: str) -> Iterator[None]:
+    """Load libraries inside, without the bound, which holds again afterwards.
+
+    The watching process is told, so that it knows that a failure here under a low limit of the caller's, which can not
+    be put off, is that limit's.
+
+    Raises
+    ------
+    MemoryError
+        When a library says that it can not be loaded for lack of memory, whatever it raises, or just that it can not be
+        loaded, under a small limit of the caller's.
+    """
+    tell(Topic.LOADING, what)
+    try:
+        with _without_bound():
+            yield
+    except (ImportError, OSError) as error:
+        missing = isinstance(error, ModuleNotFoundError)
+        small = any(limit.size < SMALL for limit in caller_limits())  # of which many loaders say nothing, as LLVM's
+        if speaks_of_memory(str(error)) or (small and not missing):
+            raise MemoryError(str(error)) from error
+        raise
+    tell(Topic.LOADING, "")
+
+
+@contextmanager
+def _without_bound() -> Iterator[None]:
+    if _InForce.bound is None:
+        yield
+        return
+    import resource
+
+    kept = resource.getrlimit(resource.RLIMIT_DATA)
+    resource.setrlimit(resource.RLIMIT_DATA, _InForce.before)
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_DATA, kept)
+
+
+def missing_room(room: int = ROOM) -> int | None:
+    """The least bound that would do, in bytes, if the libraries that are loaded by now leave less room; else None."""
+    bound, usage = _InForce.bound, usage_of(os.getpid())
+    if bound is None or usage is None or usage.data + room <= bound.size:
+        return None
+    return usage.data + room
+
+
+def check_room(what: str) -> None:
+    """Refuse a bound below what is needed beside the libraries that are loaded by now.
+
+    Raises
+    ------
+    ConfigError
+        That names the least bound that would do.
+    """
+    least = missing_room()
+    if least is not None and _InForce.bound is not None:
+        raise ConfigError(
+            f"{_InForce.bound.text} is too little for {what}, which has {in_units(least - ROOM)} when its libraries "
+            f"are loaded: at least {-(-least // (1 << 20))}M",
+            key="--max-memory",
+        )

@@ -1,0 +1,189 @@
+"""From a problem record (YAML), a mapping or command-line options to a `Slice`.
+
+Guarantee: a `Slice` that leaves here is complete and exact: every parameter of the mechanism is a rational function
+of the two axes, its window is a nonempty rectangle, and no length or stiffness is known to be out of the range that the
+geometry needs. Whatever is wrong with the input is a `ConfigError` that names file, line and key, and the remedy;
+nothing unknown is ignored.
+
+Not guaranteed: that a length given by an expression is positive in the whole window, where `ptmcad.question.positivity`
+answers that it is undecided. The certified engine refuses such a slice, the exact one decides it with its cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Kind, Parameter
+from ptmcad.question.config.options import ranges_of, settings_of, with_axes
+from ptmcad.question.config.parameters import PARAMETERS, unknown_parameter
+from ptmcad.question.config.record import (
+    RECORD_KEYS,
+    Record,
+    count_of,
+    file_name,
+    number_text,
+    portable_file,
+    record_of,
+)
+from ptmcad.question.config.resolution import MAX_DEGREE, number_of, point_of, slice_of
+from ptmcad.question.slice import Count, Slice
+from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.syntax import did_you_mean
+from ptmcad.text.yamltree import Place, Scalar, Tree, from_python, read_file
+
+__all__ = [
+    "MAX_DEGREE",
+    "PARAMETERS",
+    "RECORD_KEYS",
+    "Kind",
+    "Parameter",
+    "file_name",
+    "load",
+    "point_from_mapping",
+    "point_from_options",
+    "portable_file",
+    "slice_from_mapping",
+    "slice_from_options",
+]
+
+
+def load(path: str | Path) -> Slice:
+    """Read a problem record.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong in it, with file, line and key.
+    """
+    return slice_from_options(path)
+
+
+def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
+    """The slice of a record given as Python data: numbers as text, int or Fraction, never float.
+
+    >>> slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["0", "2"]}, "parameters": {"F3": "-0.1"}}).axis_names
+    ('rho', 'L2')
+    """
+    node = from_python(mapping, Place())
+    if not isinstance(node, Tree):
+        raise ConfigError("a record is a mapping")
+    return slice_of(record_of(node))
+
+
+def slice_from_options(
+    config: str | Path | None = None,
+    slice: str | None = None,
+    sets: Iterable[str] = (),
+    ranges: Iterable[str] = (),
+    count: str | Count | None = None,
+) -> Slice:
+    """The slice of the command line's options, with or without a record under them.
+
+    Options override the record. `slice` replaces the record's axes: a parameter the record fixed becomes free when it
+    is named there, and keeps the record's range when it was an axis there. Answers and title of a record are dropped
+    when another slice than the recorded one is asked for.
+
+    Parameters
+    ----------
+    config : a YAML file.
+    slice : ``"X,Y"``, the two axes, the horizontal one first.
+    sets : texts ``NAME=VALUE``.
+    ranges : texts ``NAME=LO:HI``, for axes.
+    count : which count tells two regions apart.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong, with file, line and key, or the option.
+    """
+    record = record_of(read_file(config)) if config is not None else Record()
+    given_sets, given_ranges = settings_of(sets), ranges_of(ranges)
+    if slice is not None:
+        record = with_axes(record, slice, given_sets, given_ranges)
+    elif config is None:
+        raise ConfigError("give a problem record (a YAML file), or two axes such as --slice L2,rho")
+    for name, value in given_sets.items():
+        if name in record.axes:
+            raise value.place.error(f"{name} is an axis and can not be fixed too: choose other axes with --slice")
+        record = replace(record, values={**record.values, name: value})
+    for name, window in given_ranges.items():
+        if name not in record.axes:
+            axes = " and ".join(record.axes)
+            raise window.place.error(f"{name} is not an axis; the axes are {axes}{did_you_mean(name, record.axes)}")
+        record = replace(record, axes={**record.axes, name: window})
+    if slice is not None or given_sets or given_ranges:
+        record = replace(record, title="", reference={})
+    if count is not None:
+        text = count.value if isinstance(count, Count) else count
+        record = replace(record, count=count_of(Scalar(text, Place("--count"))))
+    return slice_of(record)
+
+
+def point_from_mapping(values: Mapping[str, object]) -> dict[str, Fraction]:
+    """Every parameter of the mechanism at a point: the given ones, and the defaults of `PARAMETERS`.
+
+    >>> point = point_from_mapping({"rho": "0.7", "L2": "3/2", "F3": -10})
+    >>> point["rho"], point["k3"], point["F4"]
+    (Fraction(7, 10), Fraction(100, 1), Fraction(0, 1))
+
+    Parameters
+    ----------
+    values : text (a number, or arithmetic with other parameters), int, Fraction or Decimal; no float, which is not the
+        decimal that was written.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong, with the parameter's name.
+    """
+    given = {}
+    for name, value in values.items():
+        place = Place(name)
+        if name not in PARAMETERS:
+            raise ConfigError(unknown_parameter(name))
+        node = from_python(str(value) if isinstance(value, Decimal) else value, place)
+        given[name] = number_text(node)
+    return point_of(Record(values=given), {})
+
+
+def point_from_options(
+    config: str | Path | None = None, at: Mapping[str, str] | None = None, sets: Iterable[str] = ()
+) -> dict[str, Fraction]:
+    """Every parameter of the mechanism at the point of the command line's options, with or without a record under them.
+
+    Parameters
+    ----------
+    config : a YAML file, whose axes all need a value in ``at`` or ``sets``.
+    at : names of parameters, or of the record's axes, to numbers or expressions.
+    sets : texts ``NAME=VALUE``.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong, with file, line and key, or the option.
+    """
+    record = record_of(read_file(config)) if config is not None else Record()
+    given = settings_of(sets)
+    axes: dict[str, Expression] = {}
+    for name, text in (at or {}).items():
+        scalar = Scalar(text, Place(f"--at {name[:40]}"))
+        if name in given:
+            raise scalar.place.error("is given with --set too: leave one out")
+        if name in PARAMETERS:
+            given[name] = scalar
+        elif name in record.axes:
+            axes[name] = constant(number_of(scalar, "the value of this axis"))
+        else:
+            raise scalar.place.error(unknown_parameter(name))
+    for name in record.axes:
+        if name not in given and name not in axes:
+            raise ConfigError(
+                f"{name} is an axis of {record.place.file} and has no value: add {name}=VALUE", key="--at"
+            )
+    return point_of(replace(record, values={**record.values, **given}), axes)

@@ -1,0 +1,76 @@
+"""The command line's options on slices: ``--set``, ``--range`` and ``--slice``.
+
+Guarantee: whatever is wrong is a `ConfigError` that names the option.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from ptmcad.errors import ConfigError
+from ptmcad.question.config.parameters import PARAMETERS, unknown_parameter
+from ptmcad.question.config.record import Record, Window, check_axis_name
+from ptmcad.text.syntax import did_you_mean
+from ptmcad.text.yamltree import Place, Scalar
+
+
+def settings_of(sets: Iterable[str]) -> dict[str, Scalar]:
+    """``NAME=VALUE`` texts."""
+    settings: dict[str, Scalar] = {}
+    for text in sets:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or not name or not value:
+            raise ConfigError(f"{text[:80]!r} is not NAME=VALUE, such as F3=-10", key="--set")
+        place = Place(f"--set {name[:40]}")
+        if name not in PARAMETERS:
+            raise place.error(unknown_parameter(name))
+        if name in settings:
+            raise place.error("is given twice: leave one out")
+        settings[name] = Scalar(value, place)
+    return settings
+
+
+def ranges_of(ranges: Iterable[str]) -> dict[str, Window]:
+    """``NAME=LO:HI`` texts."""
+    windows: dict[str, Window] = {}
+    for text in ranges:
+        name, equals, window = (part.strip() for part in text.partition("="))
+        low, colon, high = (part.strip() for part in window.partition(":"))
+        if not (equals and name and colon and low and high):
+            raise ConfigError(f"{text[:80]!r} is not NAME=LO:HI, such as rho=0:2", key="--range")
+        place = Place(f"--range {name[:40]}")
+        if name in windows:
+            raise place.error("is given twice: leave one out")
+        windows[name] = Window(Scalar(low, place), Scalar(high, place), place)
+    return windows
+
+
+def with_axes(record: Record, slice: str, sets: Mapping[str, Scalar], ranges: Mapping[str, Window]) -> Record:
+    """The record with the axes of ``--slice X,Y``."""
+    place = Place("--slice")
+    names = [name.strip() for name in slice.split(",")]
+    if len(names) != 2 or not all(names):
+        raise place.error(f"{slice[:80]!r} is not X,Y: name two axes, such as L2,rho")
+    if names[0] == names[1]:
+        raise place.error(f"the two axes are both {names[0][:40]}: name two different ones")
+    axes = {}
+    for name in names:
+        check_axis_name(name, place)
+        if name in ranges:
+            axes[name] = ranges[name]
+        elif name in record.axes:
+            axes[name] = record.axes[name]
+        elif name in PARAMETERS:
+            window = PARAMETERS[name].window
+            if window is None:
+                raise place.error(f"{name} has no usual range: add --range {name}=LO:HI")
+            low, high = window
+            axes[name] = Window(Scalar(low, place), Scalar(high, place), place)
+        else:
+            hint = did_you_mean(name, PARAMETERS)
+            raise place.error(f"'{name}' is no parameter{hint}; any new name needs --range {name}=LO:HI")
+    for name in record.axes:
+        if name in PARAMETERS and name not in axes and name not in sets and name not in record.values:
+            raise place.error(f"{name} was an axis of {record.place.file} and has no value now: add --set {name}=VALUE")
+    return replace(record, axes=axes, values={name: v for name, v in record.values.items() if name not in axes})

@@ -1,0 +1,209 @@
+"""A problem record whose keys are known and whose values are still text.
+
+Guarantee: what is wrong with keys and shapes is a `ConfigError` with file, line and key; nothing unknown is ignored.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ptmcad.mechanism import ptm
+from ptmcad.question.config.parameters import PARAMETERS, unknown_parameter
+from ptmcad.question.slice import Count, unstorable
+from ptmcad.text.syntax import NAME, did_you_mean
+from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
+
+RECORD_KEYS = ("name", "title", "notes", "mechanism", "parameters", "axes", "count", "reference")
+BUILT_IN = ptm().name
+_MAX_NAME = 100
+_MAX_TITLE = 300
+_PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
+_DEVICES = frozenset(("CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$", *_PORTS))
+"""Windows takes a file of such a name, in any case and with any suffix, for a device."""
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """The range of an axis as written."""
+
+    low: Scalar
+    high: Scalar
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """A record whose keys are known and whose values are still text."""
+
+    name: str = ""
+    title: str = ""
+    mechanism: str = BUILT_IN
+    values: Mapping[str, Scalar] = field(default_factory=dict)
+    axes: Mapping[str, Window] = field(default_factory=dict)
+    count: Count = Count.STABLE
+    reference: Mapping[str, Any] = field(default_factory=dict)
+    place: Place = field(default_factory=Place)
+
+
+def record_of(tree: Tree) -> Record:
+    """Check the keys and shapes of a record."""
+    for key, node in tree.entries.items():
+        if key not in RECORD_KEYS:
+            hint = did_you_mean(key, RECORD_KEYS) or f"; the keys are {', '.join(RECORD_KEYS)}"
+            raise _node_place(node, key, tree).error(f"unknown key{hint}")
+    entries = tree.entries
+    mechanism = entries.get("mechanism")
+    if mechanism is not None and (not isinstance(mechanism, Scalar) or mechanism.text != BUILT_IN):
+        raise mechanism.place.error(f"unknown mechanism: the one that is built is '{BUILT_IN}', the paper's")
+    return Record(
+        name=_file_name(entries["name"]) if "name" in entries else _name_of_file(tree.place.file),
+        title=_title(entries["title"]) if "title" in entries else "",
+        values=_values(entries["parameters"]) if "parameters" in entries else {},
+        axes=_axes(entries["axes"]) if "axes" in entries else {},
+        count=count_of(entries["count"]) if "count" in entries else Count.STABLE,
+        reference=_reference(entries["reference"]) if "reference" in entries else {},
+        place=tree.place,
+    )
+
+
+def _node_place(node: Node, key: str, tree: Tree) -> Place:
+    """The place of an entry: its own, which already has the key."""
+    return node.place if node.place.key else tree.place.below(key)
+
+
+def _text(node: Node, limit: int) -> str:
+    if not isinstance(node, Scalar) or node.is_null:
+        raise node.place.error("expected a text")
+    if len(node.text) > limit:
+        raise node.place.error(f"the text is longer than {limit} characters")
+    return node.text
+
+
+def _title(node: Node) -> str:
+    """A title as one line: YAML's folded and literal texts end with a line break."""
+    title = " ".join(_text(node, _MAX_TITLE).split())
+    if not title.isprintable():
+        hidden = next(c for c in title if not c.isprintable())
+        raise node.place.error(f"the title has a character that can not be printed, U+{ord(hidden):04X}: remove it")
+    return title
+
+
+def file_name(name: str, option: str) -> str:
+    """A name for files that an option gives.
+
+    Raises
+    ------
+    ConfigError
+        When it is not safe as the start of a file's name.
+    """
+    return _file_name(Scalar(name, Place(option)))
+
+
+def _file_name(node: Node) -> str:
+    """A name that is safe as the start of a file's name."""
+    name = _text(node, _MAX_NAME)
+    if not name or not name[0].isalnum() or not all(c.isalnum() or c in "._-" for c in name) or name.endswith("."):
+        raise node.place.error(
+            f"{name!r} can not name a file: use letters, digits, '.', '_' and '-', starting with a letter or digit"
+        )
+    return _portable(name, node.place)
+
+
+def portable_file(file: str, option: str) -> str:
+    """The name of a file that an option gives, with its suffix: any that no system gives another meaning.
+
+    Raises
+    ------
+    ConfigError
+        When Windows keeps the name for a device, or would drop its end.
+    """
+    if file.endswith((".", " ")):
+        raise Place(option).error(f"{file!r} can not name a file: Windows drops dots and spaces at the end")
+    return _portable(file, Place(option))
+
+
+def _portable(name: str, place: Place) -> str:
+    device = name.partition(".")[0].rstrip(" ").upper()
+    if device in _DEVICES:
+        raise place.error(f"{name!r} can not name a file: Windows keeps {device} for a device, whatever the suffix")
+    return name
+
+
+def _name_of_file(file: str | None) -> str:
+    """The file's stem, with characters that `_file_name` refuses replaced; empty when there is no file.
+
+    Raises
+    ------
+    ConfigError
+        When Windows keeps the name for a device.
+    """
+    stem = Path(file).stem if file else ""
+    name = "".join(c if c.isalnum() or c in "._-" else "-" for c in stem).strip(".-_")[:_MAX_NAME]
+    return _portable(name, Place("name", file))
+
+
+def _values(node: Node) -> dict[str, Scalar]:
+    if isinstance(node, Scalar) and node.is_null:
+        return {}
+    if not isinstance(node, Tree):
+        raise node.place.error("expected a mapping such as {L1: 1, F3: -10}")
+    values = {}
+    for name, value in node.entries.items():
+        if name not in PARAMETERS:
+            raise value.place.error(unknown_parameter(name))
+        values[name] = number_text(value)
+    return values
+
+
+def number_text(node: Node) -> Scalar:
+    """A scalar that may hold a number or an expression."""
+    if not isinstance(node, Scalar):
+        raise node.place.error("expected a number or an expression, not a list or a mapping")
+    if node.is_null:
+        raise node.place.error("has no value: write a number or an expression, or leave the key out")
+    if node.is_boolean:
+        raise node.place.error(f"'{node.text}' is a yes-or-no value: write a number or an expression")
+    return node
+
+
+def _axes(node: Node) -> dict[str, Window]:
+    if not isinstance(node, Tree):
+        raise node.place.error("expected two axes with their ranges, such as {rho: [0, 2], L2: [0, 2]}")
+    if len(node.entries) != 2:
+        raise node.place.error(f"{len(node.entries)} axes are given: a slice has two, the horizontal one first")
+    return {name: _window(name, entry) for name, entry in node.entries.items()}
+
+
+def _window(name: str, node: Node) -> Window:
+    check_axis_name(name, node.place)
+    if not isinstance(node, Sequence) or len(node.items) != 2:
+        raise node.place.error("expected a range such as [0, 2]")
+    low, high = (number_text(item) for item in node.items)
+    return Window(low, high, node.place)
+
+
+def check_axis_name(name: str, place: Place) -> None:
+    if not NAME.fullmatch(name) or len(name) > 40 or name.lower() in ("nan", "inf", "infinity"):
+        raise place.error(f"{name[:40]!r} can not name an axis: use letters, digits and '_', starting with a letter")
+
+
+def count_of(node: Node) -> Count:
+    words = [member.value for member in Count]
+    if not isinstance(node, Scalar) or node.text not in words:
+        found = f"'{node.text[:40]}'" if isinstance(node, Scalar) else "a list or a mapping"
+        raise node.place.error(f"{found} is not a count: write {', '.join(words[:-1])} or {words[-1]}")
+    return Count(node.text)
+
+
+def _reference(node: Node) -> dict[str, Any]:
+    data = plain_data(node)
+    if data is None:
+        return {}
+    if not isinstance(data, dict):
+        raise node.place.error("expected a mapping of published answers")
+    if (found := unstorable(data)) is not None:
+        raise node.place.error(f"it has the character U+{ord(found):04X}, which a result cannot store: remove it")
+    return data

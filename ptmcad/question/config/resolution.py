@@ -1,0 +1,235 @@
+"""From a record's texts to exact expressions and numbers.
+
+Guarantee: what leaves here is complete and exact; no length or stiffness is known to be out of the range that the
+geometry needs. Where its sign could not be decided at once (see `ptmcad.question.positivity`) it is left to the
+engines, which decide or refuse: `ptmcad.question.domain.prove`. A slice's texts name only its axes and each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.mechanism import Kind, Mechanism, mechanism_of
+from ptmcad.question.config.parameters import PARAMETERS
+from ptmcad.question.config.record import Record, Window
+from ptmcad.question.domain import fault, unproved
+from ptmcad.question.positivity import READING
+from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.expressions import Expression, axis, names_in, parse
+from ptmcad.text.syntax import did_you_mean
+from ptmcad.text.yamltree import Place, Scalar
+
+MAX_DEGREE = 32
+"""Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far more."""
+
+
+def slice_of(record: Record) -> Slice:
+    """Resolve a record to a slice."""
+    if not record.axes:
+        raise record.place.below("axes").error("is missing: a slice needs two axes, such as {rho: [0, 2], L2: [0, 2]}")
+    for name in record.axes:
+        if name in record.values:
+            place = record.values[name].place
+            raise place.error(f"{name} is an axis and can not be fixed too: remove it here or from the axes")
+    axes = tuple(_axis(name, window) for name, window in record.axes.items())
+    resolved = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)}).run()
+    for name, expression in resolved.items():
+        if name not in record.axes:
+            _check_value(name, expression, record, (axes[0], axes[1]))
+    mechanism = mechanism_of(record.mechanism)
+    given = {*record.values, *record.axes}
+    without_free_lengths = not any(resolved[name].numerator for name in mechanism.free_lengths)
+    left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)}
+    if without_free_lengths:
+        left_out.update(mechanism.free_lengths)
+    effective = {name: expression for name, expression in resolved.items() if name not in left_out}
+    _check_shorthands_are_used(record, mechanism, given)
+    for index, name in enumerate(record.axes):
+        if not any(expression.uses(index) for expression in effective.values()):
+            hint = did_you_mean(name, PARAMETERS) if name not in PARAMETERS else ""
+            remedy = f"no parameter depends on it{hint or ';'} use it in an expression, such as F3: {name}"
+            if name in mechanism.shorthands:
+                own = _listed(mechanism.shorthands[name])
+                remedy = f"{own} are all given and none depends on it; use it in one of them"
+            raise record.axes[name].place.error(f"the axis {name} is not used: {remedy}")
+    return Slice(
+        name=record.name or "slice-" + "-".join(record.axes),
+        mechanism=record.mechanism,
+        axes=(axes[0], axes[1]),
+        parameters=effective,
+        count=record.count,
+        title=record.title,
+        reference=record.reference,
+        text=_texts(effective, resolved, record, (axes[0], axes[1])),
+    )
+
+
+def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fraction]:
+    """Resolve a record to a point; ``axes`` holds the values of its axes that are no parameters."""
+    mechanism = mechanism_of(record.mechanism)
+    resolved = _Resolution(record, axes).run()
+    values = {}
+    for name, expression in resolved.items():
+        place = _place_of(name, record)
+        value = expression.constant()
+        _check_number(name, value, place)
+        values[name] = value
+    _check_shorthands_are_used(record, mechanism, set(record.values))
+    left_out = {*mechanism.shorthands}  # the parameters that they stand for are there
+    if not any(values[name] for name in mechanism.free_lengths):
+        left_out.update(mechanism.free_lengths)
+    return {name: value for name, value in values.items() if name not in left_out}
+
+
+def _is_left_out(name: str, mechanism: Mechanism, given: set[str]) -> bool:
+    """Whether a slice does not name a shorthand: one of free lengths, or one whose parameters are all given."""
+    return mechanism.kind(name) is Kind.FREE_LENGTH or given.issuperset(mechanism.shorthands[name])
+
+
+def _texts(
+    effective: Iterable[str], resolved: Mapping[str, Expression], record: Record, axes: tuple[Axis, Axis]
+) -> dict[str, str]:
+    """What the parameters were written as, and every name in those texts, but for the axes.
+
+    A k that the springs do not have by default, say, is no parameter of the mechanism, but "k/10" says nothing without
+    it. No engine looks at the sign of such a name, so it has to be proved here.
+    """
+    texts = {name: _written(name, record) for name in effective}
+    waiting = list(texts.values())
+    while waiting:
+        for name in names_in(waiting.pop()):
+            if name in texts or name in record.axes:
+                continue
+            problem = "" if resolved[name].is_constant else unproved(name, resolved[name], axes, READING)
+            if problem:
+                raise _place_of(name, record).error(problem)
+            texts[name] = _written(name, record)
+            waiting.append(texts[name])
+    return {name: texts[name] for name in PARAMETERS if name in texts}
+
+
+def _written(name: str, record: Record) -> str:
+    if name in record.axes:
+        return name
+    if name in record.values:
+        return record.values[name].text
+    parameter = PARAMETERS[name]
+    if parameter.alias_of and parameter.kind is Kind.FREE_LENGTH:
+        return _written(parameter.alias_of, record)  # which the slice need not name
+    return parameter.default
+
+
+def _axis(name: str, window: Window) -> Axis:
+    low, high = number_of(window.low), number_of(window.high)
+    if low == high:
+        raise window.place.error(f"the range of {name} is empty: {low} to {high}")
+    if low > high:
+        raise window.place.error(f"the range of {name} is reversed: write [{high}, {low}]")
+    kind = PARAMETERS[name].kind if name in PARAMETERS else Kind.NUMBER
+    if low < 0 and (kind.is_positive or kind.may_vanish):
+        least = "not negative" if kind.may_vanish else "positive"
+        raise window.place.error(
+            f"the range of {name} goes below zero, but a {kind.noun} is {least}: start it at 0 or above"
+        )
+    return Axis(name, low, high)
+
+
+def number_of(scalar: Scalar, what: str = "the end of a range") -> Fraction:
+    names = _names_in_scalar(scalar)
+    if names and names[0].lower() not in ("nan", "inf", "infinity"):
+        raise scalar.place.error(f"{what} is a number, not an expression in {names[0][:40]}")
+    return _parsed(scalar, {}).constant()
+
+
+def _names_in_scalar(scalar: Scalar) -> tuple[str, ...]:
+    """The names in a scalar's text; raises `ConfigError` at its place."""
+    try:
+        return names_in(scalar.text)
+    except ExpressionError as error:
+        raise _located(scalar, error) from error
+
+
+def _parsed(scalar: Scalar, names: Mapping[str, Expression]) -> Expression:
+    try:
+        return parse(scalar.text, names)
+    except ExpressionError as error:
+        raise _located(scalar, error) from error
+
+
+def _located(scalar: Scalar, error: ExpressionError) -> ConfigError:
+    shown = scalar.text if len(scalar.text) <= 60 else f"{scalar.text[:57]}..."
+    where = f" (character {error.position + 1} of {shown!r})" if error.position is not None and len(shown) > 1 else ""
+    return scalar.place.error(f"{error.message}{where}")
+
+
+class _Resolution:
+    """Replaces names by what they stand for, depth first, refusing cycles."""
+
+    def __init__(self, record: Record, free: Mapping[str, Expression]):
+        self.record = record
+        self.done = dict(free)
+        self.known = tuple(dict.fromkeys((*free, *PARAMETERS)))
+
+    def run(self) -> dict[str, Expression]:
+        for name in PARAMETERS:
+            self.resolve(name, ())
+        return {name: self.done[name] for name in PARAMETERS}
+
+    def resolve(self, name: str, chain: tuple[str, ...]) -> Expression:
+        if name in self.done:
+            return self.done[name]
+        scalar = self.record.values.get(name) or Scalar(PARAMETERS[name].default, self.record.place.below(name))
+        if name in chain:
+            cycle = " -> ".join((*chain[chain.index(name) :], name))
+            raise scalar.place.error(f"the definition goes round in a circle: {cycle}")
+        names = {}
+        for other in _names_in_scalar(scalar):
+            if other in self.known:
+                names[other] = self.resolve(other, (*chain, name))
+            elif other.lower() not in ("nan", "inf", "infinity"):
+                hint = did_you_mean(other, self.known) or f"; the names are {', '.join(self.known)}"
+                raise scalar.place.error(f"unknown name '{other[:40]}'{hint}")
+        self.done[name] = _parsed(scalar, names)
+        return self.done[name]
+
+
+def _check_value(name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis]) -> None:
+    """Refuse what the geometry excludes, and a denominator that vanishes in the window."""
+    place = _place_of(name, record)
+    if expression.degree > MAX_DEGREE:
+        raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
+    if expression.is_constant:
+        _check_number(name, expression.constant(), place)
+        return
+    problem = fault(name, expression, axes, READING)
+    if problem:
+        raise place.error(problem)
+
+
+def _place_of(name: str, record: Record) -> Place:
+    return record.values[name].place if name in record.values else record.place.below(name)
+
+
+def _check_number(name: str, value: Fraction, place: Place) -> None:
+    """Refuse a number that the geometry excludes."""
+    kind = PARAMETERS[name].kind
+    if (kind.is_positive and value <= 0) or (kind.may_vanish and value < 0):
+        least = "not negative" if kind.may_vanish else "positive"
+        raise place.error(f"{name} is {value}, but a {kind.noun} must be {least}")
+
+
+def _check_shorthands_are_used(record: Record, mechanism: Mechanism, given: set[str]) -> None:
+    """Refuse a value for all springs, such as k or l0, that none of them takes."""
+    for shorthand, names in mechanism.shorthands.items():
+        if shorthand not in record.values or not given.issuperset(names):
+            continue
+        if not any(shorthand in _names_in_scalar(s) for name, s in record.values.items() if name != shorthand):
+            raise record.values[shorthand].place.error(
+                f"has no effect, since {_listed(names)} are all given: leave it out"
+            )
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]

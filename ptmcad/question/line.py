@@ -1,0 +1,106 @@
+"""A line of a slice: one axis varies over its window, the other has a value.
+
+Guarantee: exact; on the line every parameter is a rational function of the first axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.question.slice import FREE_LENGTHS, Axis, Slice, without_free_lengths
+from ptmcad.text.expressions import Expression, axis, constant, rational
+from ptmcad.text.numerals import shortest_text
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """The part of a slice that lies on a line: parameters as expressions in ``along``, the first axis."""
+
+    along: Axis
+    at: Mapping[str, Fraction]
+    parameters: Mapping[str, Expression]
+
+    def place(self, value: Fraction) -> str:
+        """A point of the line in words."""
+        fixed = (f"{name} = {shortest_text(v)}" for name, v in self.at.items())
+        return ", ".join([f"{self.along.name} = {value}", *fixed])
+
+
+def varying_axis(slice: Slice, along: str, at: Mapping[str, Any]) -> tuple[int, str, Fraction]:
+    """The number of the axis that varies on a line, and the other axis with its value.
+
+    Raises
+    ------
+    ConfigError
+        When ``along`` is no axis, or ``at`` does not name exactly the other one with an exact number.
+    """
+    names = slice.axis_names
+    if along not in names:
+        raise ConfigError(f"{along} is not an axis of the slice: choose {names[0]} or {names[1]}", key="along")
+    varying = names.index(along)
+    other = names[1 - varying]
+    if set(at) != {other}:
+        given = ", ".join(map(str, at)) or "nothing"
+        raise ConfigError(
+            f"a line along {along} needs a value of {other} and of nothing else, not of {given}", key="at"
+        )
+    try:
+        return varying, other, rational(at[other])
+    except ExpressionError as error:
+        raise ConfigError(str(error), key=f"at {other}") from error
+
+
+def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
+    """The line of a slice on which one axis varies and the other is fixed.
+
+    Raises
+    ------
+    ConfigError
+        When ``along`` is no axis, ``at`` does not name exactly the other one, its value is not an exact number, a
+        parameter is not defined on the line, or springs have a free length on it.
+    """
+    varying, other, value = varying_axis(slice, along, at)
+    try:
+        parameters = {n: restricted(e, varying, value) for n, e in slice.parameters.items()}
+    except ExpressionError as error:
+        raise ConfigError(str(error), key=f"at {other}") from error
+    parameters = without_free_lengths(
+        parameters, "exact ends and paths of poses are", "ptmcad range with --at alone encloses the ends"
+    )
+    return Line(slice.axes[varying], {other: value}, parameters)
+
+
+def restricted(expression: Expression, varying: int, value: Fraction) -> Expression:
+    """A rational function of the slice on the line where the other axis has a value, in the first axis."""
+
+    def on_line(terms: tuple[tuple[int, int, Fraction], ...]) -> Expression:
+        total = constant(0)
+        for term in terms:
+            powers, c = term[:2], term[2]
+            total = total + axis(0) ** powers[varying] * (c * value ** powers[1 - varying])
+        return total
+
+    return on_line(expression.numerator) / on_line(expression.denominator)
+
+
+def has_free_lengths(slice: Slice, along: str, at: Mapping[str, Any]) -> bool:
+    """Whether a spring has a free length on the line; where none has, algebra answers, or refuses the line."""
+    if along not in slice.axis_names:
+        return False
+    varying = slice.axis_names.index(along)
+    other = slice.axis_names[1 - varying]
+    if other not in at:
+        return False
+    try:
+        value = rational(at[other])
+        return any(
+            restricted(slice.parameters[name], varying, value).numerator
+            for name in FREE_LENGTHS
+            if name in slice.parameters
+        )
+    except ExpressionError:
+        return False

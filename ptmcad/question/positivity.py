@@ -1,0 +1,348 @@
+"""The sign of a rational function in the open window: proved, refuted by a point, or undecided with the place.
+
+Guarantee: `Proved` is a theorem, and a `Witness` is exact: the function has the stated value at the stated point, or is
+zero within the stated distance of it. What is neither is `Undecided`, a value of its own and never taken for a proof.
+
+Two methods, the cheap one first. Bernstein coefficients on boxes: those on a box bound the polynomial there, and those
+at its corners are its values; the box with the lowest bound is halved next, so that the work gathers where a dip may
+be. What `MAX_SPLITS` and `MAX_WORK` leave open (zeros that only touch, thin dips, valleys) is decided by algebra,
+`ptmcad.algebra.definite`, which is loaded for this only: FLINT takes longer to load than a record to read.
+
+References: Farouki, "The Bernstein polynomial basis: a centennial retrospective", CAGD 29 (2012), section 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from fractions import Fraction
+from functools import lru_cache
+from heapq import heappop, heappush
+from itertools import count, pairwise
+from math import comb, lcm
+
+from ptmcad.question.slice import Axis
+from ptmcad.text.expressions import Expression, Term
+from ptmcad.text.numerals import approximate_text
+
+MAX_SPLITS = 400
+MAX_WORK = 2_000_000
+"""Additions of Bernstein coefficients; less than a second."""
+READING = 10**8
+"""Work of algebra, in the unit of `ptmcad.algebra.definite.MAX_WORK`, while a record is read: some tenth of a second.
+
+A reader answers at once and knows no time limit; an engine, which does, asks again without this bound.
+"""
+MAX_SHOWN = 10**40
+"""Numerators and denominators from here on are shown rounded."""
+
+Point = tuple[Fraction, Fraction]
+Interval = tuple[Fraction, Fraction]
+Box = tuple[Interval, Interval]
+Axes = tuple[Axis, Axis]
+
+
+class Need(Enum):
+    """What is asked of a function in the whole open window."""
+
+    POSITIVE = "positive"
+    NOT_NEGATIVE = "not negative"
+    NO_POLE = "without a pole"
+    """its denominator, as it is written, is not zero"""
+
+
+@dataclass(frozen=True, slots=True)
+class Proved:
+    """The function is what was asked for at every point of the open window."""
+
+
+@dataclass(frozen=True, slots=True)
+class Witness:
+    """A point of the open window at which the function is not what was asked for.
+
+    Attributes
+    ----------
+    value : of the function there, or of its denominator when a pole is the matter.
+    distance : 0, or, when the value is a zero at a point with irrational coordinates, how far in each coordinate the
+        zero may be from ``point``.
+    other : for a pole, a point at which the denominator has the other sign, if one was found.
+    """
+
+    point: Point
+    value: Fraction
+    distance: Fraction = Fraction(0)
+    other: Point | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Undecided:
+    """Neither: a dip to zero or below may be hidden in these boxes, and nowhere else."""
+
+    boxes: tuple[Box, ...]
+
+
+Verdict = Proved | Witness | Undecided
+PROVED = Proved()
+
+
+@lru_cache(maxsize=256)
+def decide(expression: Expression, axes: Axes, need: Need, max_work: int | None = None) -> Verdict:
+    """Whether a rational function is in the whole open window what it needs to be.
+
+    Parameters
+    ----------
+    max_work : of algebra, `ptmcad.algebra.definite.MAX_WORK` when None.
+
+    Guarantee
+    ---------
+    For `Need.POSITIVE` and `Need.NOT_NEGATIVE` the verdict holds where the denominator, as it is written, is not zero;
+    ask for `Need.NO_POLE` too.
+    """
+    window = _window(axes)
+    middle = _middle(window)
+    below = polynomial_value(expression.denominator, *middle)
+    if below == 0:
+        return Witness(middle, below) if need is Need.NO_POLE else Undecided((window,))
+    side = 1 if below > 0 else -1
+    if need is Need.NO_POLE:
+        verdict = _decided(_times(expression.denominator, side), window, True, max_work)
+        if isinstance(verdict, Witness):
+            other = middle if verdict.value < 0 else None
+            return Witness(verdict.point, side * verdict.value, verdict.distance, other)
+        return verdict
+    verdict = _decided(_times(expression.numerator, side), window, need is Need.POSITIVE, max_work)
+    if isinstance(verdict, Witness) and verdict.value:
+        below = polynomial_value(expression.denominator, *verdict.point)
+        if below == 0:
+            return Undecided(((_around(verdict.point[0]), _around(verdict.point[1])),))
+        return Witness(verdict.point, side * verdict.value / below)
+    return verdict
+
+
+def place(verdict: Witness | Undecided, axes: Axes) -> str:
+    """Where it is, in words: ``at rho = 1, m = 2``, or ``near``."""
+    if isinstance(verdict, Witness):
+        return f"{'near' if verdict.distance else 'at'} {named(verdict.point, axes)}"
+    return f"near {named(_middle(verdict.boxes[0]), axes)}"
+
+
+def named(point: Point, axes: Axes) -> str:
+    """A point in words, numbers of many digits rounded."""
+    return ", ".join(f"{axis.name} = {number(value)}" for axis, value in zip(axes, point, strict=True))
+
+
+def number(value: Fraction) -> str:
+    """A number for a message."""
+    if abs(value.numerator) < MAX_SHOWN and value.denominator < MAX_SHOWN:
+        return str(value)
+    # a value of a high power at a point of many digits may be longer than Python writes out
+    return f"about {approximate_text(value)}"
+
+
+def polynomial_value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fraction:
+    """The exact value of a polynomial."""
+    return sum((c * x**i * y**j for i, j, c in terms), Fraction(0))
+
+
+def _decided(terms: tuple[Term, ...], window: Box, strict: bool, max_work: int | None) -> Verdict:
+    """Whether a polynomial is positive, or not negative, in the open window."""
+    if not terms:
+        return Witness(_middle(window), Fraction(0)) if strict else PROVED
+    found = _by_halving(terms, window, strict)
+    return _by_algebra(terms, window, strict, found, max_work) if isinstance(found, Undecided) else found
+
+
+# --------------------------------------------------------------------------------------------------- by halving
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A box with the Bernstein coefficients of the polynomial on it, times 2^shift and a constant: row i is for x^i."""
+
+    box: Box
+    rows: tuple[tuple[int, ...], ...]
+    shift: int
+
+    def lowest(self) -> Fraction:
+        """A bound for the polynomial on the box, in a unit that all parts share."""
+        return Fraction(min(map(min, self.rows)), 1 << self.shift)
+
+
+def _by_halving(terms: tuple[Term, ...], window: Box, strict: bool) -> Verdict:
+    rows, scale = _integer_rows(terms, window)
+    cost = max(1, len(rows) * len(rows[0]) * max(len(rows), len(rows[0])) // 2)
+    whole = _Part(window, rows, 0)
+    order = count()
+    waiting: list[tuple[Fraction, int, _Part]] = []
+
+    def look(part: _Part) -> Witness | None:
+        for point, value in _inner_corners(part, window):
+            if value < 0 or (strict and value == 0):
+                return Witness(point, value * scale)
+        if not _is_proved(part, window, strict):
+            heappush(waiting, (part.lowest(), next(order), part))
+        return None
+
+    if (witness := look(whole)) is not None:
+        return witness
+    for _ in range(min(MAX_SPLITS, MAX_WORK // cost)):
+        if not waiting:
+            return PROVED
+        for half in _halves(heappop(waiting)[2]):
+            if (witness := look(half)) is not None:
+                return witness
+    return Undecided(tuple(part.box for _, _, part in sorted(waiting, key=lambda w: w[:2]))) if waiting else PROVED
+
+
+def _is_proved(part: _Part, window: Box, strict: bool) -> bool:
+    """Whether the polynomial is not negative on the box; and positive but on the window's edge, if that is asked for.
+
+    Coefficients that are not negative and not all zero are a positive polynomial inside of the box; those along a side
+    are its coefficients there, and that in a corner is its value. Sides on the window's edge do not count.
+    """
+    rows = part.rows
+    if min(map(min, rows)) < 0:
+        return False
+    if not strict:
+        return True
+    degrees = len(rows) - 1, len(rows[0]) - 1
+    # for each axis: the indices of coefficients inside, and those of the ends that are inside of the window
+    faces = [[slice(None), *_inner_ends(part.box[k], window[k], degrees[k])] for k in (0, 1)]
+    return all(any(any(row[across]) for row in rows[along]) for along in faces[0] for across in faces[1])
+
+
+def _inner_ends(interval: Interval, window: Interval, degree: int) -> list[slice]:
+    """The first and the last coefficient, as slices, where they belong to points inside of the window."""
+    if degree == 0:
+        return []
+    ends = [slice(0, 1)] if interval[0] > window[0] else []
+    return ends + ([slice(degree, None)] if interval[1] < window[1] else [])
+
+
+def _inner_corners(part: _Part, window: Box) -> Iterator[tuple[Point, Fraction]]:
+    """Corners of the box inside of the window, with the polynomial's values; an axis that does not occur is halved."""
+    places = []
+    for k in (0, 1):
+        degree = (len(part.rows), len(part.rows[0]))[k] - 1
+        low, high = part.box[k]
+        if degree == 0:
+            places.append([(0, (low + high) / 2)])
+        else:
+            places.append([(i, end) for i, end in ((0, low), (-1, high)) if window[k][0] < end < window[k][1]])
+    for i, x in places[0]:
+        for j, y in places[1]:
+            yield (x, y), Fraction(part.rows[i][j], 1 << part.shift)
+
+
+def _halves(part: _Part) -> tuple[_Part, _Part]:
+    """The two halves of a box, cut across the direction in which the coefficients differ more."""
+    rows, (x, y) = part.rows, part.box
+    columns = tuple(zip(*rows, strict=True))
+    across = _variation(rows) > _variation(columns)  # along y
+    first, second = zip(*map(_halved, rows if across else columns), strict=True)
+    if not across:
+        first, second = (tuple(zip(*half, strict=True)) for half in (first, second))
+    shift = part.shift + len((rows if across else columns)[0]) - 1
+    low, high = y if across else x
+    middle = (low + high) / 2
+    boxes = [(x, half) if across else (half, y) for half in ((low, middle), (middle, high))]
+    return _Part(boxes[0], first, shift), _Part(boxes[1], second, shift)
+
+
+def _variation(rows: Sequence[Sequence[int]]) -> int:
+    """The largest difference of two coefficients in a row."""
+    return max(max(row) - min(row) for row in rows)
+
+
+def _halved(row: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """De Casteljau's subdivision at the middle, times 2^degree."""
+    degree = len(row) - 1
+    left, right, sums = [row[0] << degree], [row[-1] << degree], list(row)
+    for step in range(1, degree + 1):
+        sums = [a + b for a, b in pairwise(sums)]
+        left.append(sums[0] << (degree - step))
+        right.append(sums[-1] << (degree - step))
+    return tuple(left), tuple(reversed(right))
+
+
+def _integer_rows(terms: tuple[Term, ...], window: Box) -> tuple[tuple[tuple[int, ...], ...], Fraction]:
+    """Integers and a positive unit: the Bernstein coefficients on the window are the integers times the unit."""
+    rows = bernstein(terms, window)
+    denominator = lcm(*(c.denominator for row in rows for c in row))
+    return tuple(tuple(int(c * denominator) for c in row) for row in rows), Fraction(1, denominator)
+
+
+def bernstein(terms: tuple[Term, ...], box: Box) -> list[list[Fraction]]:
+    """The Bernstein coefficients of a polynomial on a box; row p belongs to the p-th basis function of the first axis.
+
+    >>> one = Fraction(1)
+    >>> form = bernstein(((0, 0, -one), (1, 0, one)), ((Fraction(0), Fraction(4)), (Fraction(0), one)))
+    >>> [[str(c) for c in row] for row in form]
+    [['-1'], ['3']]
+    """
+    m = max((i for i, _, _ in terms), default=0)
+    n = max((j for _, j, _ in terms), default=0)
+    left = [_power_in_bernstein(i, m, box[0]) for i in range(m + 1)]
+    right = [_power_in_bernstein(j, n, box[1]) for j in range(n + 1)]
+    by_power = [[Fraction(0)] * (n + 1) for _ in range(m + 1)]  # of x^i, in the Bernstein basis of the second axis
+    for i, j, c in terms:
+        by_power[i] = [total + c * r for total, r in zip(by_power[i], right[j], strict=True)]
+    return [
+        [sum((left[i][p] * by_power[i][q] for i in range(m + 1)), Fraction(0)) for q in range(n + 1)]
+        for p in range(m + 1)
+    ]
+
+
+def _power_in_bernstein(power: int, degree: int, interval: Interval) -> list[Fraction]:
+    """x^power on the interval in the Bernstein basis of the degree: its blossom with p upper ends."""
+    low, high = interval
+    return [
+        sum(
+            (
+                Fraction(comb(p, r) * comb(degree - p, power - r), comb(degree, power)) * high**r * low ** (power - r)
+                for r in range(max(0, power - degree + p), min(p, power) + 1)
+            ),
+            Fraction(0),
+        )
+        for p in range(degree + 1)
+    ]
+
+
+# --------------------------------------------------------------------------------------------------- by algebra
+
+
+def _by_algebra(terms: tuple[Term, ...], window: Box, strict: bool, left: Undecided, max_work: int | None) -> Verdict:
+    """The same, for what halving has left."""
+    from ptmcad.algebra import definite  # only here: few records need it, and FLINT takes long to load
+    from ptmcad.algebra.polynomials import from_fraction, from_terms, to_fraction
+
+    x, y = ((from_fraction(low), from_fraction(high)) for low, high in window)
+    bound = definite.MAX_WORK if max_work is None else max_work
+    answer = definite.negative_or_zero(from_terms(terms)[0], x, y, strict, bound)
+    if answer is definite.Answer.PROVED:
+        return PROVED
+    if answer is definite.Answer.OPEN:
+        return left
+    point = to_fraction(answer.point[0]), to_fraction(answer.point[1])
+    if isinstance(answer, definite.Near):
+        return Undecided(((_around(point[0]), _around(point[1])),))
+    value = polynomial_value(terms, *point) if answer.exact else Fraction(0)
+    return Witness(point, value, to_fraction(answer.distance))
+
+
+def _around(value: Fraction) -> Interval:
+    return (value, value)
+
+
+def _times(terms: tuple[Term, ...], side: int) -> tuple[Term, ...]:
+    return tuple((i, j, side * c) for i, j, c in terms)
+
+
+def _window(axes: Axes) -> Box:
+    return (axes[0].low, axes[0].high), (axes[1].low, axes[1].high)
+
+
+def _middle(box: Box) -> Point:
+    (x0, x1), (y0, y1) = box
+    return (x0 + x1) / 2, (y0 + y1) / 2

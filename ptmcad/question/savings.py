@@ -1,0 +1,128 @@
+"""The savings: what a computation leaves out because a slice does not need it, each with the reason, by name.
+
+Guarantee: with any of them switched off the regions, their counts and their neighbours are the same, and the bounds of
+areas overlap. Names are stable; a result's plan says which savings were made and which were kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import Enum
+from importlib import import_module
+from importlib.util import find_spec
+
+from ptmcad.errors import ConfigError
+from ptmcad.text.syntax import did_you_mean
+
+ALL = "all"
+"""Stands for every saving."""
+IMPORTED = ("numpy", "matplotlib.figure", "sympy", "numba")
+"""What the saving "imports" leaves out where nothing needs it."""
+
+
+class Engine(Enum):
+    """What makes a saving."""
+
+    EXACT = "exact engine"
+    CERTIFIED = "certified engine"
+    ANY = "both engines"
+
+
+@dataclass(frozen=True, slots=True)
+class Saving:
+    """One saving.
+
+    Attributes
+    ----------
+    what : that is left out.
+    why : the reason for which the answer is the same.
+    """
+
+    name: str
+    engine: Engine
+    what: str
+    why: str
+
+
+_EXACT = (
+    Saving("sign-curve", Engine.EXACT, "projection of H11 = 0",
+           "where it vanishes off the critical curves, det H < 0"),
+    Saving("hermite-matrix", Engine.EXACT, "determinant of the Hermite matrix",
+           "the norm of det H has the same critical factors and no others"),
+    Saving("infinity", Engine.EXACT, "curves over which solutions leave every bounded set",
+           "near them det H stays away from 0 at every solution, and real ones are bounded"),
+    Saving("no-real-points", Engine.EXACT, "components without a point in the window", "no cell touches them"),
+    Saving("axis-order", Engine.EXACT, "decomposition over the other axis", "regions do not depend on it"),
+    Saving("even-powers", Engine.EXACT, "discriminants and resultants of full degree",
+           "where only powers of u^k occur they are computed in u^k"),
+    Saving("equal-counts", Engine.EXACT, "areas beside walls that separate no regions",
+           "what one cell has too much there its neighbour in the region has too little"),
+)  # fmt: skip
+_CERTIFIED = (
+    Saving("folds-of-saddles", Engine.CERTIFIED, "folds of saddles and maxima",
+           "the number of stable equilibria does not change"),
+    Saving("cones-and-creases", Engine.CERTIFIED, "cones and creases",
+           "no minimum appears or vanishes there without a fold"),
+    Saving("dependent-equations", Engine.CERTIFIED, "boxes on which dependent equations do not vanish",
+           "they vanish at every equilibrium"),
+    Saving("unloaded-factor", Engine.CERTIFIED, "the factor rho of the unloaded moment",
+           "rho is zero nowhere in the window"),
+)  # fmt: skip
+_ANY = (
+    Saving("imports", Engine.ANY, "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),
+)
+SAVINGS = (*_EXACT, *_CERTIFIED, *_ANY)
+"""Every saving, in the order in which the engines make them."""
+BY_NAME = {saving.name: saving for saving in SAVINGS}
+
+
+def kept(names: Iterable[str], certified: bool) -> frozenset[str]:
+    """The savings to switch off, from the names that a caller gave.
+
+    Parameters
+    ----------
+    names : of savings, or `ALL`, which stands for all those that the engine has.
+    certified : whether the certified engine is going to compute, else the exact one.
+
+    Raises
+    ------
+    ConfigError
+        For a name that no saving has, or one of the other engine's.
+    """
+    given = (names,) if isinstance(names, str) else tuple(names)
+    check_names(given)
+    engine = Engine.CERTIFIED if certified else Engine.EXACT
+    own = frozenset(s.name for s in SAVINGS if s.engine in (engine, Engine.ANY))
+    for name in given:
+        if name != ALL and name not in own:
+            raise ConfigError(
+                f"{name!r} is a saving of the {BY_NAME[name].engine.value}, and this slice is the {engine.value}'s, "
+                f"which has {', '.join(s.name for s in SAVINGS if s.name in own)}",
+                key="keep",
+            )
+    return own if ALL in given else frozenset(given)
+
+
+def check_names(names: Iterable[str]) -> None:
+    """Refuse what is no saving's name.
+
+    Raises
+    ------
+    ConfigError
+        That lists the names.
+    """
+    for name in names:
+        if name != ALL and name not in BY_NAME:
+            raise ConfigError(
+                f"{name[:60]!r} is no saving{did_you_mean(name, (*BY_NAME, ALL))}; "
+                f"there are {', '.join(BY_NAME)} and {ALL}",
+                key="keep",
+            )
+
+
+def load_all() -> None:
+    """Import what is left out otherwise, as far as it is installed."""
+    for module in IMPORTED:
+        if find_spec(module.partition(".")[0]) is not None:
+            import_module(module)

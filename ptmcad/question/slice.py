@@ -1,0 +1,186 @@
+"""A slice: a two-parameter family of mechanisms over a rectangular window, with exact rational data.
+
+Guarantee: a `Slice` that `config` has built is complete (every parameter of the mechanism has a value as a
+rational function of the two axes), its window is a nonempty rectangle, and no number in it was rounded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from fractions import Fraction
+from typing import Any, TypeVar
+from unicodedata import category
+
+from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Mechanism, known_of, ptm
+from ptmcad.text.expressions import Expression
+
+
+def unstorable(data: Any) -> str | None:
+    """A character that a result has no place for, in the texts and keys of a reference; None when there is none.
+
+    Those are control characters, but for line breaks and tabs, and halves of surrogate pairs, which are not in UTF-8.
+    """
+    if isinstance(data, str):
+        return next((c for c in data if category(c) in ("Cc", "Cs") and c not in "\n\r\t"), None)
+    if isinstance(data, Mapping):
+        parts: Iterable[Any] = (part for entry in data.items() for part in entry)
+    else:
+        parts = data if isinstance(data, list | tuple) else ()
+    return next((found for part in parts if (found := unstorable(part)) is not None), None)
+
+
+class Count(Enum):
+    """Which count tells two regions apart."""
+
+    STABLE = "stable"
+    TOTAL = "total"
+    INDEX = "index"
+    ADMISSIBLE = "admissible"
+    """stable equilibria at which every spring is longer than its free length"""
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One axis of the window: the open interval ``low < name < high`` (its ends belong to the picture's edge)."""
+
+    name: str
+    low: Fraction
+    high: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Slice:
+    """The question that is put to `ptmcad.classify`.
+
+    Attributes
+    ----------
+    name : used for the names of the files that are written.
+    mechanism : the model's name, ``"ptm"`` for the paper's mechanism.
+    axes : the two axes, first the horizontal one.
+    parameters : every parameter of the mechanism as an `Expression` (a rational function in the two axes, exponent
+        pairs in the order of ``axes``). An axis that is itself a parameter maps to itself. The free lengths are among
+        them unless all of them are zero everywhere.
+    count : which count tells two regions apart.
+    title : the picture's title, the name when empty.
+    reference : published answers, as read from the record; never used by the computation.
+    text : each parameter as the user wrote it, for reports; and any of k, l0, l0_1, l0_2 and l0_3 that such a text
+        names, even where it is not among the parameters. An axis has only the text of the parameter that it is.
+    """
+
+    name: str
+    mechanism: str
+    axes: tuple[Axis, Axis]
+    parameters: Mapping[str, Expression]
+    count: Count = Count.STABLE
+    title: str = ""
+    reference: Mapping[str, Any] = field(default_factory=dict)
+    text: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def axis_names(self) -> tuple[str, str]:
+        return (self.axes[0].name, self.axes[1].name)
+
+    @property
+    def has_free_lengths(self) -> bool:
+        """Whether some spring has a free length that is not zero everywhere; algebra can not answer then."""
+        own = self.description.free_lengths
+        return any(bool(self.parameters[name].numerator) for name in own if name in self.parameters)
+
+    @property
+    def description(self) -> Mechanism:
+        """The mechanism that the slice is of; in a stored result it may be one of which nothing is known."""
+        return known_of(self.mechanism)
+
+    @property
+    def heading(self) -> str:
+        """The title; without one, what is fixed and how parameters depend on the axes, such as "L1 = 1, k = 100"."""
+        return self.title or ", ".join(self._fixed()) or self.name
+
+    def _fixed(self) -> Iterator[str]:
+        values = {name: expression.to_text(self.axis_names) for name, expression in self.parameters.items()}
+        description = self.description
+        values = merged(values, description)
+        loads = [name for name in values if name in description.forces]
+        for name, value in values.items():
+            if value not in (name, "0"):
+                shown = value if len(value) <= LONGEST else self.text.get(name, value)
+                yield f"{name} = {shown if len(shown) <= LONGEST else shown[: LONGEST - 1] + '…'}"
+        if loads and all(values[name] == "0" for name in loads):
+            yield "no load"
+
+
+_Value = TypeVar("_Value", bound=Hashable)
+
+
+def merged(values: Mapping[str, _Value], mechanism: Mechanism) -> dict[str, _Value]:
+    """Values as shown: a shorthand in place of its parameters where these agree, and not beside them where not."""
+    shown = dict(values)
+    for shorthand, names in mechanism.shorthands.items():
+        own = {shown[name] for name in names if name in shown}
+        if len(own) == 1:
+            shown = {name: value for name, value in shown.items() if name not in names} | {shorthand: own.pop()}
+        else:
+            shown.pop(shorthand, None)
+    return shown
+
+
+def without_free_lengths(
+    parameters: Mapping[str, Expression], what: str, instead: str = "ptmcad classify encloses them"
+) -> dict[str, Expression]:
+    """The parameters for algebra, which would leave free lengths out: they have to be zero.
+
+    Parameters
+    ----------
+    what : that is not computed otherwise, as the start of a sentence.
+    instead : what is computed, for the same sentence.
+
+    Raises
+    ------
+    ConfigError
+        When a spring has a free length.
+    """
+    if any(parameters[name].numerator for name in FREE_LENGTHS if name in parameters):
+        raise ConfigError(
+            f"{what} not computed for springs with a free length, which bring in square roots and curves of degree "
+            f"over 1000; {instead}"
+        )
+    return {name: value for name, value in parameters.items() if name not in FREE_LENGTHS}
+
+
+FREE_LENGTHS = ptm().free_lengths
+"""A slice without free lengths need not have them."""
+LONGEST = 24
+"""Longer values are cut in a heading."""
+
+
+class Point(tuple[Fraction, Fraction]):
+    """A point of the window: a pair of exact rationals, indexed by position or by the axis's name.
+
+    >>> p = Point(("rho", "L2"), Fraction(7, 10), Fraction(3, 2))
+    >>> p[0], p["L2"], dict(p)
+    (Fraction(7, 10), Fraction(3, 2), {'rho': Fraction(7, 10), 'L2': Fraction(3, 2)})
+    """
+
+    names: tuple[str, str]
+
+    def __new__(cls, names: tuple[str, str], x: Fraction, y: Fraction) -> Point:
+        point = super().__new__(cls, (x, y))
+        point.names = names
+        return point
+
+    def __getnewargs__(self) -> tuple[tuple[str, str], Fraction, Fraction]:
+        return (self.names, tuple.__getitem__(self, 0), tuple.__getitem__(self, 1))
+
+    def keys(self) -> Iterator[str]:
+        """The axes' names, so that ``dict(point)`` and ``locate(**point)`` work."""
+        return iter(self.names)
+
+    def __getitem__(self, key: Any) -> Any:
+        if isinstance(key, str):
+            if key not in self.names:
+                raise KeyError(key)
+            return tuple.__getitem__(self, self.names.index(key))
+        return tuple.__getitem__(self, key)

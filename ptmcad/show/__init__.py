@@ -1,0 +1,1 @@
+"""What is done with an answer: documents, tables, exports, pictures and pages."""

@@ -1,0 +1,176 @@
+"""A polynomial in the two axes as the code of a computer algebra system, as LaTeX, or as plain text.
+
+Guarantee: what is written stands for exactly the polynomial, term by term in its own order, whatever the length of its
+coefficients; the axes' names are changed only where the language reserves or can not spell them, and two names stay
+different.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from keyword import iskeyword
+
+from ptmcad.text.numerals import integer_text
+from ptmcad.text.plane import PlanePolynomial
+
+
+class Style(Enum):
+    """A language that polynomials can be written in."""
+
+    TEXT = "text"
+    SYMPY = "sympy"
+    MAPLE = "maple"
+    MATHEMATICA = "mathematica"
+    QEPCAD = "qepcad"
+    MSOLVE = "msolve"
+    LATEX = "latex"
+
+
+@dataclass(frozen=True, slots=True)
+class _Notation:
+    """How a language writes powers (a format of base and exponent) and products."""
+
+    power: str = "{}^{}"
+    times: str = "*"
+
+
+_NOTATIONS = {
+    Style.TEXT: _Notation(),
+    Style.SYMPY: _Notation(power="{}**{}"),
+    Style.MAPLE: _Notation(),
+    Style.MATHEMATICA: _Notation(),
+    Style.QEPCAD: _Notation(times=" "),
+    Style.MSOLVE: _Notation(),
+    Style.LATEX: _Notation(power="{}^{{{}}}", times=" "),
+}
+
+_LONGEST_PYTHON_NUMBER = 4000
+"""Digits; Python refuses decimal numbers of more than 4300 digits in a program, but takes hexadecimal ones."""
+_PYTHON_TAKEN = frozenset({"sympy", "variety"})
+_MAPLE_TAKEN = re.compile(
+    "and|assuming|break|by|catch|description|do|done|elif|else|end|error|export|fi|finally|for|from|global|if|implies|in|"
+    "intersect|local|minus|mod|module|next|not|od|option|options|or|proc|quit|read|return|save|stop|subset|then|to|try|"
+    "union|use|uses|while|xor|"
+    "Catalan|D|Digits|FAIL|I|NULL|O|Order|Pi|constants|false|gamma|infinity|lasterror|printlevel|true|undefined|variety"
+)
+"""Keywords, constants and variables of the system's own."""
+_MATHEMATICA_TAKEN = re.compile(r"[CDEIKNO]|[A-Z][A-Za-z]+\d*|variety")
+"""The system's own symbols start with a capital letter; those with one letter are seven."""
+_QEPCAD_TAKEN = frozenset({"true", "false", "TRUE", "FALSE"})
+_GREEK = re.compile(
+    "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|upsilon|phi|chi|psi|omega|"
+    "Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Upsilon|Phi|Psi|Omega"
+)
+_INDEXED = re.compile(r"([A-Za-z]+?)_?(\d[A-Za-z0-9_]*)?")
+
+
+def symbols(names: Sequence[str], style: Style) -> tuple[str, ...]:
+    """How a language spells names of the form ``[A-Za-z][A-Za-z0-9_]*``; different names stay different.
+
+    >>> symbols(("rho", "lambda"), Style.SYMPY), symbols(("E", "L_2"), Style.MATHEMATICA)
+    (('rho', 'lambda_'), ('E$', 'L$2'))
+    >>> symbols(("rho", "L2"), Style.LATEX)
+    ('\\\\rho', 'L_{2}')
+    """
+    spelled: list[str] = []
+    for name in names:
+        symbol = _SPELLINGS[style](name) if style in _SPELLINGS else name
+        while symbol in spelled:
+            symbol = rf"\bar{{{symbol}}}" if style is Style.LATEX else f"{symbol}1"
+        spelled.append(symbol)
+    return tuple(spelled)
+
+
+def polynomial_text(polynomial: PlanePolynomial, names: tuple[str, str], style: Style | str) -> str:
+    """The polynomial on one line.
+
+    Parameters
+    ----------
+    names : of the two axes; `symbols` tells how they are spelled.
+    style : a `Style` or its value, such as ``"maple"``.
+
+    Raises
+    ------
+    ValueError
+        For an unknown style.
+
+    >>> p = PlanePolynomial.of(((2, 0, 4), (0, 1, -1)))
+    >>> polynomial_text(p, ("rho", "L2"), "sympy"), polynomial_text(p, ("rho", "L2"), "latex")
+    ('4*rho**2 - L2', '4 \\\\rho^{2} - L_{2}')
+    """
+    return " ".join(polynomial_lines(polynomial, names, style, width=0)) or "0"
+
+
+def polynomial_lines(
+    polynomial: PlanePolynomial, names: tuple[str, str], style: Style | str, width: int = 100
+) -> list[str]:
+    """The polynomial on lines of at most ``width`` characters, broken before the sign of a term.
+
+    A term that is longer than that has a line of its own. Joined by blanks the lines are `polynomial_text`.
+    """
+    lines: list[str] = []
+    for term in _terms(polynomial, symbols(names, Style(style)), Style(style)):
+        if lines and len(lines[-1]) + 1 + len(term) <= width:
+            lines[-1] += f" {term}"
+        else:
+            lines.append(term)
+    return lines or ["0"]
+
+
+def _terms(polynomial: PlanePolynomial, spelled: tuple[str, ...], style: Style) -> Iterator[str]:
+    """Each term with its sign; the first one without when it is positive."""
+    notation = _NOTATIONS[style]
+    for n, (i, j, c) in enumerate(polynomial.terms):
+        factors = [notation.power.format(s, e) if e > 1 else s for s, e in zip(spelled, (i, j), strict=True) if e]
+        if abs(c) != 1 or not factors:
+            factors.insert(0, _number(abs(c), style))
+        sign = ("-" if c < 0 else "") if n == 0 else ("- " if c < 0 else "+ ")
+        yield sign + notation.times.join(factors)
+
+
+def _number(natural: int, style: Style) -> str:
+    digits = integer_text(natural)
+    return hex(natural) if style is Style.SYMPY and len(digits) > _LONGEST_PYTHON_NUMBER else digits
+
+
+def _python(name: str) -> str:
+    return f"{name}_" if iskeyword(name) or name in _PYTHON_TAKEN else name
+
+
+def _maple(name: str) -> str:
+    return f"{name}_" if _MAPLE_TAKEN.fullmatch(name) else name
+
+
+def _mathematica(name: str) -> str:
+    symbol = name.replace("_", "$")  # an underscore is a pattern there
+    return f"{symbol}$" if _MATHEMATICA_TAKEN.fullmatch(symbol) else symbol
+
+
+def _qepcad(name: str) -> str:
+    symbol = name.replace("_", "")  # letters and digits only
+    return f"{symbol}1" if symbol in _QEPCAD_TAKEN else symbol
+
+
+def _latex(name: str) -> str:
+    """``L2`` as a letter with an index, Greek letters by name, other words upright."""
+    match = _INDEXED.fullmatch(name)
+    word, index = match.groups() if match else (name, None)
+    if _GREEK.fullmatch(word):
+        symbol = f"\\{word}"
+    elif len(word) == 1:
+        symbol = word
+    else:
+        symbol = r"\mathrm{" + word.replace("_", r"\_") + "}"
+    return symbol if index is None else f"{symbol}_{{{index.replace('_', ',')}}}"
+
+
+_SPELLINGS = {
+    Style.SYMPY: _python,
+    Style.MAPLE: _maple,
+    Style.MATHEMATICA: _mathematica,
+    Style.QEPCAD: _qepcad,
+    Style.LATEX: _latex,
+}

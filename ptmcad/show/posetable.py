@@ -1,0 +1,166 @@
+"""The equilibria at a point as a table for the terminal.
+
+Guarantee: every digit is right; lines have at most `WIDTH` characters unless a single column needs more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from ptmcad.answer.poses import Pose, Poses
+from ptmcad.answer.regionmap import Status
+from ptmcad.mechanism import Mechanism, known_of
+from ptmcad.question.slice import merged
+from ptmcad.text.enclosure import Enclosure, exact_text
+
+WIDTH = 100
+_KINDS = {0: "stable", 1: "saddle", 2: "maximum"}
+
+Column = tuple[str, str, list[str]]
+"""Header, unit and entries."""
+
+
+def kind_of(pose: Pose) -> str:
+    """Stable, saddle, maximum or degenerate."""
+    return "degenerate" if pose.index is None else _KINDS[pose.index]
+
+
+def table(poses: Poses, digits: int | None = None) -> str:
+    """Everything about each equilibrium: one row for each in every block of columns.
+
+    Parameters
+    ----------
+    digits : significant digits, at most those that the poses were computed with; all of them unless given.
+    """
+    shown = poses.digits if digits is None else digits
+    lines = [*_wrapped("point", _point(poses)), *_wrapped("result", _summary(poses))]
+    for block in _blocks(poses, shown):
+        lines += ["", *_laid_out(block)]
+    if poses.equilibria:
+        lines += [
+            "",
+            *_wrapped("units", _units(known_of(poses.mechanism))),
+            *(_wrapped("tense", [_TENSE]) if poses.equilibria[0].admissible is not None else []),
+        ]
+    return "\n".join(lines)
+
+
+def _units(mechanism: Mechanism) -> list[str]:
+    length, force = mechanism.units
+    return [
+        f"lengths and coordinates in that of {length}",
+        f"forces in that of {force}",
+        "energies and the Hessian's eigenvalues in their product",
+        "angles between rod and base, " + " and ".join(f"{angle} at {at}" for angle, at in mechanism.pivots.items()),
+    ]
+
+
+_TENSE = "stable, and every spring longer than its free length; a negative force pushes"
+
+
+def _point(poses: Poses) -> list[str]:
+    values = {name: exact_text(value) for name, value in poses.parameters.items()}
+    mechanism = known_of(poses.mechanism)
+    values = merged(values, mechanism)
+    loads = [name for name in values if name in mechanism.forces]
+    parts = [f"{name} = {value}" for name, value in values.items() if name not in loads]
+    return parts + ([f"{n} = {values[n]}" for n in loads if values[n] != "0"] or ["no load"])
+
+
+def _summary(poses: Poses) -> list[str]:
+    if poses.status is Status.UNDECIDED:
+        return [poses.remark]
+    kinds = [kind_of(pose) for pose in poses.equilibria]
+    several = {"stable": "stable", "saddle": "saddles", "maximum": "maxima", "degenerate": "degenerate"}
+    tally = [
+        f"{kinds.count(kind)} {several[kind] if kinds.count(kind) > 1 else kind}" for kind in several if kind in kinds
+    ]
+    parts = [f"{len(kinds)} equilibria: {', '.join(tally)}", poses.status.value]
+    if any(pose.admissible is not None for pose in poses.equilibria):
+        tense = sum(pose.admissible is True for pose in poses.equilibria)
+        parts.insert(1, f"{tense} stable with every spring longer than its free length")
+    return parts + ([poses.remark] if poses.remark else [])
+
+
+def _wrapped(label: str, parts: Sequence[str], separator: str = ", ") -> list[str]:
+    """The parts after a label, on as many lines as they need."""
+    lines, indent = [], " " * 8
+    line = f"{label:8}"
+    for part, following in pairwise([*parts, ""]):
+        piece = part + (separator if following else "")
+        if len(line) + len(piece.rstrip()) > WIDTH and line.strip() and line != f"{label:8}":
+            lines.append(line.rstrip())
+            line = indent
+        line += piece
+    return [*lines, line.rstrip()]
+
+
+def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
+    found = poses.equilibria
+    if not found:
+        return []
+    mechanism = known_of(poses.mechanism)
+
+    def column(header: str, unit: str, numbers: Sequence[Enclosure]) -> Column:
+        return header, unit, [x.text(digits) for x in numbers]
+
+    states: list[Column] = [
+        ("state", "", [kind_of(p) for p in found]),
+        ("flat", "", ["yes" if p.flat else "no" for p in found]),
+        *([("tense", "", ["yes" if p.admissible else "no" for p in found])] if found[0].admissible is not None else []),
+        ("index", "", ["-" if p.index is None else str(p.index) for p in found]),
+        ("mult.", "", [str(p.multiplicity) for p in found]),
+        column("energy", "", [p.energy for p in found]),
+        column("eigenvalue 1", "", [p.eigenvalues[0] for p in found]),
+        column("eigenvalue 2", "", [p.eigenvalues[1] for p in found]),
+    ]
+    angles = [
+        column(name, unit, [getattr(p, field)[i] for p in found])
+        for field, unit in (("angles", "rad"), ("degrees", "deg"))
+        for i, name in enumerate(mechanism.angles)
+    ]
+    nodes = [
+        column(f"{name} {axis}", "", [p.nodes[name][i] for p in found])
+        for name in found[0].nodes
+        if name in mechanism.moving
+        for i, axis in enumerate("xy")
+    ]
+    springs = [
+        column(f"{what} {s.start}{s.end}", "", [getattr(p.springs[k], what) for p in found])
+        for what in ("length", "force")
+        for k, s in enumerate(found[0].springs)
+    ]
+    return [block for group in (states, angles, nodes, springs) for block in _fitting(group, len(str(len(found))))]
+
+
+def _fitting(columns: Sequence[Column], used: int) -> list[list[Column]]:
+    """The columns in as few blocks as the width allows, in their order."""
+    blocks: list[list[Column]] = [[]]
+    width = used
+    for column in columns:
+        wide = 2 + _width(column)
+        if blocks[-1] and width + wide > WIDTH:
+            blocks.append([])
+            width = used
+        blocks[-1].append(column)
+        width += wide
+    return blocks
+
+
+def _header(column: Column) -> str:
+    return f"{column[0]} [{column[1]}]" if column[1] else column[0]
+
+
+def _width(column: Column) -> int:
+    return max(len(_header(column)), *(len(entry) for entry in column[2]))
+
+
+def _laid_out(columns: Sequence[Column]) -> list[str]:
+    """A block of columns as lines: headers, then one row for each equilibrium, each with its number."""
+    count = len(columns[0][2])
+    first = len(str(count))
+    rows = [["#", *map(_header, columns)]]
+    rows += [[str(k + 1), *(column[2][k] for column in columns)] for k in range(count)]
+    widths = [first, *map(_width, columns)]
+    return ["  ".join(entry.rjust(width) for entry, width in zip(row, widths, strict=True)) for row in rows]

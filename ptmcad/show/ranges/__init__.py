@@ -1,0 +1,1 @@
+"""Ranges as tables and documents."""

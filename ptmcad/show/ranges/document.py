@@ -1,0 +1,171 @@
+"""Ranges, widths and paths as a JSON document, docs/range.schema.json.
+
+Guarantee: parameters, ends and samples are written exactly; every digit of a decimal is right; the same answer gives
+the same text.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from ptmcad.answer.intervals import CertifiedIntervals, CountInterval, CountIntervals, CriticalFreeLength
+from ptmcad.answer.paths import PathEnd, PathPoint, PosePaths
+from ptmcad.answer.widths import OperationWidths
+from ptmcad.question.slice import Axis
+from ptmcad.show.ranges.numbers import enclosure_data, end_data, number_data, settled, width_text
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.numerals import text_of
+from ptmcad.version import __version__
+
+FORMAT = "ptmcad-range/1"
+
+
+def line_data(found: CountIntervals, digits: int) -> dict[str, Any]:
+    """The intervals of a line as JSON data."""
+    return {
+        "along": _axis(found.along),
+        "at": {name: text_of(value) for name, value in found.at.items()},
+        "parameters": {n: e.to_text((found.along.name, "_")) for n, e in found.parameters.items()},
+        "intervals": [_interval(i, digits) for i in found.intervals],
+        "changes": [
+            {
+                "at": end_data(c.at, digits),
+                "kind": c.kind.value,
+                "before": list(c.before),
+                "after": list(c.after),
+                "event": c.event.name.lower(),
+                "text": c.text,
+            }
+            for c in found.changes
+        ],
+        "operation": [n for n, i in enumerate(found.intervals) if i.stable == 2],
+    }
+
+
+def enclosed_data(found: CertifiedIntervals, digits: int) -> dict[str, Any]:
+    """The intervals of a line on which springs have free lengths as JSON data."""
+    return {
+        "along": _axis(found.along),
+        "at": {name: text_of(value) for name, value in found.at.items()},
+        "intervals": [
+            {
+                "low": _place(i.low, digits),
+                "high": _place(i.high, digits),
+                "total": None if i.index is None else sum(i.index),
+                "stable": None if i.index is None else i.index[0],
+                "index": None if i.index is None else list(i.index),
+                "peaks": i.cones,
+                "sample": text_of(i.sample),
+            }
+            for i in found.intervals
+        ],
+        "changes": [{"at": _place(c.at, digits), "met": list(c.names), "proved": c.proved} for c in found.changes],
+    }
+
+
+def critical_data(found: Sequence[CriticalFreeLength], digits: int) -> list[dict[str, Any]]:
+    """Critical free lengths as JSON data."""
+    return [{"at": _place(c.free, digits), "signs": list(c.signs), "fold": c.fold} for c in found]
+
+
+def _place(enclosure: Enclosure, digits: int) -> dict[str, str | None]:
+    low, high = text_of(enclosure.low), text_of(enclosure.high)
+    return {"low": low, "high": high, "decimal": settled(enclosure, digits)}
+
+
+def _axis(axis: Axis) -> dict[str, Any]:
+    return {"name": axis.name, "window": [text_of(axis.low), text_of(axis.high)]}
+
+
+def _interval(interval: CountInterval, digits: int) -> dict[str, Any]:
+    return {
+        "low": end_data(interval.low, digits),
+        "high": end_data(interval.high, digits),
+        "total": interval.total,
+        "stable": interval.stable,
+        "index": list(interval.index),
+        "sample": text_of(interval.sample),
+        "width": width_text(interval, digits),
+    }
+
+
+def over_data(found: OperationWidths, digits: int) -> dict[str, Any]:
+    """The widths over the other axis as JSON data."""
+    return {
+        "along": _axis(found.along),
+        "over": _axis(found.over),
+        "rows": [
+            {
+                "value": text_of(row.value),
+                "operation": [_interval(i, digits) for i in row.operation],
+                "remark": row.remark,
+            }
+            for row in found.rows
+        ],
+        "maxima": [
+            {
+                "place": m.place.name.lower(),
+                "text": m.place.value,
+                "at": {"decimal": settled(m.at, digits) or "", "enclosure": enclosure_data(m.at)},
+                "width": {"decimal": settled(m.width, digits) or "", "enclosure": enclosure_data(m.width)},
+                "critical": None if m.critical is None else number_data(m.critical),
+                "ends": None if m.ends is None else [end_data(e, digits) for e in m.ends],
+            }
+            for m in found.maxima
+        ],
+    }
+
+
+def path_data(found: PosePaths) -> dict[str, Any]:
+    """The paths of stable poses as JSON data."""
+    return {
+        "along": _axis(found.along),
+        "at": {name: text_of(value) for name, value in found.at.items()},
+        "start": text_of(found.start),
+        "paths": [
+            {
+                "number": path.number,
+                "upright": path.upright,
+                "reverse": path.reverse,
+                "low": _path_end(path.low),
+                "high": _path_end(path.high),
+                "points": [_point(p) for p in path.points],
+            }
+            for path in found.paths
+        ],
+    }
+
+
+def _path_end(end: PathEnd) -> dict[str, Any]:
+    return {
+        "fate": end.fate.name.lower(),
+        "text": end.fate.value,
+        "at": end_data(end.at, DIGITS),
+        "last": _point(end.last),
+        "meeting": list(end.meeting),
+        "leaving": list(end.leaving),
+        "energy": None if end.energy is None else settled(end.energy, DIGITS),
+        "target": None if end.target is None else _point(end.target),
+        "target_energy": None if end.target_energy is None else settled(end.target_energy, DIGITS),
+    }
+
+
+DIGITS = 12
+
+
+def _point(point: PathPoint) -> dict[str, Any]:
+    return {"value": text_of(point.value), "angles": [settled(a, DIGITS) or "0" for a in point.angles]}
+
+
+def document(name: str, mechanism: str, parts: dict[str, Any]) -> str:
+    """The JSON text of an answer; ``parts`` has some of the entries line, enclosed, critical, over and path."""
+    data = {
+        "format": FORMAT,
+        "name": name,
+        "mechanism": mechanism,
+        **parts,
+        "versions": {"ptmcad": __version__},
+    }
+    return json.dumps(data, ensure_ascii=False, indent=1) + "\n"

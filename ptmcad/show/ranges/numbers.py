@@ -1,0 +1,79 @@
+"""Ends and widths as text, all digits of which are right.
+
+Guarantee: a text is the number rounded to nearest; it is refined as far as that needs.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+from ptmcad.algebra.numbers import refined
+from ptmcad.answer.intervals import CountInterval, End
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.numerals import integer_text, text_of
+
+MOST_DIGITS = 1000
+"""That may be asked for."""
+
+
+def end_text(end: End, digits: int) -> str:
+    """An end as a decimal."""
+    if isinstance(end, Fraction):
+        return Enclosure(end, end).text(digits)
+    exact = end.exact
+    if exact is not None:
+        return Enclosure(exact, exact).text(digits)
+    while not (found := Enclosure(end.low, end.high)).settles(digits):
+        end = refined(end, (end.high - end.low) / 2**64)
+    return found.text(digits)
+
+
+def settled(enclosure: Enclosure, digits: int) -> str | None:
+    """The text of an enclosure that can not be made narrower; None when it does not settle a single digit."""
+    for fewer in range(digits, 0, -1):
+        if enclosure.settles(fewer):
+            return enclosure.text(fewer)
+    return None
+
+
+def width_text(interval: CountInterval, digits: int) -> str:
+    """The width of an interval as a decimal.
+
+    A width that is a short decimal or lies nearer to one than 10^-1000 is shown with as many digits as are certain.
+    """
+    bits = 128
+    while True:
+        found = finer(interval, Fraction(1, 2**bits) * (interval.width.high or 1)).width
+        if found.settles(digits):
+            return found.text(digits)
+        if bits > 4 * MOST_DIGITS:
+            return settled(found, digits) or "0"
+        bits *= 2
+
+
+def end_data(end: End, digits: int) -> dict[str, Any]:
+    """An end for JSON: the window's edge, or the algebraic number with its decimal."""
+    if isinstance(end, Fraction):
+        return {"window": text_of(end), "decimal": end_text(end, digits)}
+    return {"decimal": end_text(end, digits), **number_data(end)}
+
+
+def number_data(number: AlgebraicNumber) -> dict[str, Any]:
+    """An algebraic number for JSON."""
+    return {
+        "polynomial": [integer_text(c) for c in number.polynomial],
+        "low": text_of(number.low),
+        "high": text_of(number.high),
+    }
+
+
+def enclosure_data(enclosure: Enclosure) -> list[str]:
+    """An enclosure for JSON."""
+    return [text_of(enclosure.low), text_of(enclosure.high)]
+
+
+def finer(interval: CountInterval, width: Fraction) -> CountInterval:
+    """The same interval with its ends isolated within ``width`` > 0."""
+    low, high = (e if isinstance(e, Fraction) else refined(e, width) for e in (interval.low, interval.high))
+    return CountInterval(low, high, interval.index, interval.sample)

@@ -1,0 +1,180 @@
+"""Ranges, widths and paths as text for the terminal.
+
+Guarantee: every digit that is shown is right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from flint import arb, ctx
+
+from ptmcad.algebra.polynomials import from_fraction
+from ptmcad.answer.intervals import CountInterval, CountIntervals, CriticalFreeLength, End
+from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePaths
+from ptmcad.answer.widths import Maximum, OperationWidths
+from ptmcad.show.ranges.numbers import end_text, settled, width_text
+from ptmcad.text.balls import enclosed
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.numerals import shortest_text
+from ptmcad.text.plane import PlanePolynomial
+
+LONGEST = 60
+"""Characters of a polynomial; of longer ones the degree is told."""
+_ANGLE_DIGITS = 8
+
+
+def table(found: CountIntervals, digits: int = 10) -> str:
+    """One row for each interval, then what happens at their ends, then the operation range."""
+    name = found.along.name
+    fixed = ", ".join(f"{n} = {shortest_text(v)}" for n, v in found.at.items())
+    rows = [["from", "to", "total", "stable", "min-saddle-max", "sample"]]
+    for i in found.intervals:
+        index = "-".join(map(str, i.index))
+        ends = [end_text(i.low, digits), end_text(i.high, digits)]
+        rows.append([*ends, str(i.total), str(i.stable), index, shortest_text(i.sample)])
+    lines = [f"{name} in ({shortest_text(found.along.low)}, {shortest_text(found.along.high)}) at {fixed}", ""]
+    lines += aligned(rows)
+    if found.changes:
+        lines.append("")
+        changes = [["at", "what happens as it grows", "root of"]]
+        changes += [[end_text(c.at, digits), c.text, formula(c.at, name)] for c in found.changes]
+        lines += aligned(changes)
+    lines.append("")
+    if not found.operation:
+        lines.append("operation range: none, there are nowhere two stable equilibria")
+    lines += [f"operation range: {_range_text(i, digits)}" for i in found.operation]
+    return "\n".join(lines)
+
+
+def _range_text(interval: CountInterval, digits: int) -> str:
+    edges = [side for side, end in (("lower", interval.low), ("upper", interval.high)) if isinstance(end, Fraction)]
+    note = ""
+    if edges:
+        note = f" (its {edges[0]} end is the window's edge)" if len(edges) == 1 else " (the whole window)"
+    low, high = end_text(interval.low, digits), end_text(interval.high, digits)
+    return f"{low} to {high}, width {width_text(interval, digits)}{note}"
+
+
+def formula(end: End, name: str) -> str:
+    """The polynomial of which an end is a root, or its degree when it is long."""
+    if isinstance(end, Fraction):
+        return ""
+    text = PlanePolynomial.of((k, 0, c) for k, c in enumerate(end.polynomial)).text((name, "_"))
+    return text if len(text) <= LONGEST else f"a polynomial of degree {end.degree}, in the JSON"
+
+
+def aligned(rows: list[list[str]]) -> list[str]:
+    """Rows as lines with columns of equal width."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows]
+
+
+def width_table(found: OperationWidths, digits: int = 10) -> str:
+    """The operation ranges at the tabulated values, and where they are widest."""
+    rows = [[found.over.name, "operation range from", "to", "width"]]
+    for row in found.rows:
+        value = shortest_text(row.value)
+        if row.remark or not row.operation:
+            rows.append([value, "degenerate" if row.remark else "none", "", ""])
+        for i in row.operation:
+            window = [" *" if isinstance(e, Fraction) else "" for e in (i.low, i.high)]
+            ends = [end_text(e, digits) + mark for e, mark in zip((i.low, i.high), window, strict=True)]
+            rows.append([value, *ends, width_text(i, digits)])
+    lines = aligned(rows)
+    if any("*" in cell for row in rows for cell in row):
+        lines.append(f"* the edge of the window of {found.along.name}")
+    lines.append("")
+    if not found.maxima:
+        lines.append("widest operation range: none, there are nowhere two stable equilibria")
+    for m in found.maxima:
+        lines.append(f"widest operation range: {maximum_text(m, found.over.name, digits)}")
+    return "\n".join(lines)
+
+
+def maximum_text(found: Maximum, over: str, digits: int) -> str:
+    """A maximum in words."""
+    if found.at.exact is not None or found.place.name in ("SMOOTH", "ENCLOSED"):
+        low, high = (Enclosure(v, v).text(3) for v in (found.at.low, found.at.high))
+        at = f"{over} = {settled(found.at, digits) or f'a value between {low} and {high}'}"
+    else:
+        low, high = (Enclosure(v, v).text(digits) for v in (found.at.low, found.at.high))
+        at = f"{over} from {low} to {high}"
+    near = ""
+    if found.critical is not None and found.critical.exact is None:
+        near = f", which holds one critical value, a root of a polynomial of degree {found.critical.degree}"
+    return f"width {settled(found.width, digits) or 'enclosed'} at {at}: {found.place.value}{near}"
+
+
+def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
+    """What becomes of each pose in both directions."""
+    name = found.along.name
+    lines = []
+    for path in found.paths:
+        side = "y3 > 0 and y4 > 0" if path.upright else "y3 < 0 and y4 < 0" if path.reverse else "y3, y4 of mixed sign"
+        place = next(p for p in path.points if p.value == path.start)
+        lines.append(
+            f"pose {path.number} at {name} = {shortest_text(path.start)}: {_angles(place, digits)}; {side} on the path"
+        )
+        lines += [f"  {direction}: {_end(e, name, digits)}" for direction, e in (("down", path.low), ("up", path.high))]
+    return "\n".join(lines) if lines else f"no stable pose at {name} = {shortest_text(found.start)}"
+
+
+def _end(end: PathEnd, name: str, digits: int) -> str:
+    at = f"{name} = {end_text(end.at, 10)}"
+    if end.fate is Fate.WINDOW:
+        return f"stable up to the window's edge {at}"
+    if end.fate is Fate.UNDECIDED or end.target is None or end.energy is None or end.target_energy is None:
+        return f"could not be followed beyond {name} = {shortest_text(end.last.value)}, before {at}"
+    words = ("a minimum", "a saddle", "a maximum")
+    met = " + ".join(words[k] for k in end.meeting)
+    left = " + ".join(words[k] for k in end.leaving) or "nothing"
+    what = f"{at}: {met} meet and leave {left}"
+    target = _angles(end.target, digits)
+    if end.fate is Fate.MERGE:
+        return f"{what}; the pose goes on, without a snap, as {target}"
+    drop = settled(Enclosure(end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low), 5)
+    kind = posture(end.target)
+    return f"{what}; snaps to {target} ({kind}), where the energy is lower by {drop or 'an undecided amount'}"
+
+
+def posture(point: PathPoint) -> str:
+    """The signs of y3 and y4."""
+    signs = [sine_sign(a) for a in point.angles]
+    if signs == [1, 1]:
+        return "y3 > 0, y4 > 0"
+    return "reverse: y3 < 0, y4 < 0" if signs == [-1, -1] else "y3, y4 of mixed sign or zero"
+
+
+def sine_sign(angle: Enclosure) -> int:
+    """The sign of an angle's sine; 0 when it is not known not to be zero."""
+    with ctx.workprec(160):
+        sine = arb(from_fraction(angle.low)).union(arb(from_fraction(angle.high))).sin()
+        return 1 if sine > 0 else -1 if sine < 0 else 0
+
+
+def _angles(point: PathPoint, digits: int) -> str:
+    return ", ".join(f"th{k} = {degrees(a, digits)}°" for k, a in enumerate(point.angles, 1))
+
+
+def degrees(angle: Enclosure, digits: int) -> str:
+    """An angle in degrees; a whole number that it is nearer to than its enclosure can tell is shown as such."""
+    with ctx.workprec(200):
+        ball = arb(from_fraction(angle.low)).union(arb(from_fraction(angle.high))) * 180 / arb.pi()
+        if (found := enclosed(ball, digits)) is not None:
+            return found.text(digits)
+        whole = ball.mid().unique_fmpz() if ball.mid().is_exact() else None
+        nearest = int((ball.mid() + arb("0.5")).floor().mid().fmpz() if whole is None else whole)
+        return str(nearest) if (ball - nearest).contains(0) else ball.mid().str(3, radius=False)
+
+
+def critical_table(found: Sequence[CriticalFreeLength], digits: int) -> str:
+    """One row for each critical free length."""
+    if not found:
+        return "no critical free length in the window, by elimination"
+    rows = [["critical by elimination", "signs of l1, l2, l3", ""]]
+    for c in found:
+        decimal = next((c.free.text(n) for n in range(digits, 0, -1) if c.free.settles(n)), "near 0")
+        rows.append([decimal, " ".join("+" if s > 0 else "-" for s in c.signs), "fold" if c.fold else ""])
+    return "\n".join(aligned(rows))

@@ -1,0 +1,121 @@
+"""The axes of a picture: symbols, units and scales that stay readable for windows of any size and place.
+
+Guarantee: the numbers at the ticks have few digits: a large offset and a power of ten are taken out, exactly, and put
+into the axis's name.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from ptmcad.mechanism import Kind
+from ptmcad.question.slice import Slice
+
+_UNITS = {Kind.LENGTH: "length", Kind.BASE: "length", Kind.STIFFNESS: "force/length", Kind.FORCE: "force"}
+_GREEK = {"rho": "ρ", "alpha": "α", "beta": "β", "theta": "θ", "lambda": "λ", "mu": "μ", "phi": "φ", "kappa": "κ"}
+_SUBSCRIPT = str.maketrans("0123456789x", "₀₁₂₃₄₅₆₇₈₉ₓ")
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """What the ticks show: (value - offset) / 10^exponent, from ``low`` to ``high``."""
+
+    offset: Fraction
+    exponent: int
+    low: float
+    high: float
+
+    def name(self, symbol: str, most: int = 24) -> str:
+        """The name of what is shown, such as ``(k - 1000) / 10⁻³``; an offset of more characters is cut off."""
+        if self.offset:
+            sign = "−" if self.offset > 0 else "+"
+            digits = _decimal(abs(self.offset))
+            symbol = f"{symbol} {sign} {digits if len(digits) <= most else digits[: most - 1] + '…'}"
+        if self.exponent:
+            symbol = f"({symbol})" if self.offset else symbol
+            symbol = f"{symbol} / 10{str(self.exponent).translate(_SUPERSCRIPT)}"
+        return symbol
+
+
+def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
+    """The scale for an interval, low < high, such that ticks have about so many digits more than they need.
+
+    >>> scale_of(Fraction(0), Fraction(2))
+    Scale(offset=Fraction(0, 1), exponent=0, low=0.0, high=2.0)
+    >>> scale_of(Fraction(10**20), Fraction(10**20 + 1)).name("k")
+    'k − 100000000000000000000'
+    >>> scale_of(Fraction(0), Fraction(1, 10**20)).name("ρ")
+    'ρ / 10⁻²⁰'
+    """
+    largest, width = max(abs(low), abs(high)), high - low
+    offset = Fraction(0)
+    if largest > width * 10**digits:
+        unit = Fraction(10) ** (_magnitude(width) + 1)
+        offset = low // unit * unit
+    largest = max(abs(low - offset), abs(high - offset))
+    exponent = _magnitude(largest)
+    if -min(digits, 3) <= exponent <= digits:
+        exponent = 0
+    power = Fraction(10) ** exponent
+    return Scale(offset, exponent, float((low - offset) / power), float((high - offset) / power))
+
+
+def symbol(name: str) -> str:
+    """A parameter's name as it is printed: ``L1`` as L₁, ``F3x`` as F₃ₓ, ``rho`` as ρ; other names as they are."""
+    match = re.fullmatch(r"([A-Za-z]|th)(\d{1,2}x?)", name)
+    if match:
+        return ("θ" if match[1] == "th" else match[1]) + match[2].translate(_SUBSCRIPT)
+    return _GREEK.get(name, name)
+
+
+def unit(slice: Slice, axis: int) -> str:
+    """The unit of an axis, empty when none is known: that of the parameters which are a number times the axis."""
+    parameters = slice.description.parameters
+    exponents = (1, 0) if axis == 0 else (0, 1)
+    found = set()
+    for name, expression in slice.parameters.items():
+        if expression.is_polynomial and [term[:2] for term in expression.numerator] == [exponents]:
+            known = parameters.get(name)
+            found |= {_UNITS[known.kind]} if known is not None and known.kind in _UNITS else set()
+    return found.pop() if len(found) == 1 else ""
+
+
+def dress(axes: Any, slice: Slice, x: tuple[Fraction, Fraction], y: tuple[Fraction, Fraction], small: bool) -> None:
+    """Give matplotlib axes their limits, ticks and names; in small ones (insets) without units."""
+    from matplotlib.ticker import MaxNLocator, ScalarFormatter
+
+    size = 7 if small else 9
+    for number, (matplotlib_axis, interval) in enumerate(((axes.xaxis, x), (axes.yaxis, y))):
+        scale = scale_of(*interval, digits=2 if small else 4)
+        (axes.set_ylim if number else axes.set_xlim)(scale.low, scale.high)
+        matplotlib_axis.set_major_locator(MaxNLocator(nbins=4 if small else 8, steps=[1, 2, 2.5, 5, 10]))
+        formatter = ScalarFormatter(useOffset=False)
+        formatter.set_scientific(False)
+        matplotlib_axis.set_major_formatter(formatter)
+        text = scale.name(_cut(symbol(slice.axes[number].name), 10 if small else 40), 9 if small else 24)
+        known = "" if small else unit(slice, number)
+        matplotlib_axis.set_label_text(f"{text} ({known})" if known else text, fontsize=size if small else size + 2)
+        axes.tick_params(axis="y" if number else "x", labelsize=size, length=2 if small else 3.5, direction="out")
+
+
+def _cut(text: str, most: int) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def _magnitude(value: Fraction) -> int:
+    """The largest e with 10^e <= value, for value > 0."""
+    e = len(str(value.numerator)) - len(str(value.denominator))
+    return e if Fraction(10) ** e <= value else e - 1
+
+
+def _decimal(value: Fraction) -> str:
+    """A decimal fraction, exactly."""
+    digits = 0
+    while (value * 10**digits).denominator != 1:
+        digits += 1
+    text = str((value * 10**digits).numerator).rjust(digits + 1, "0")
+    return f"{text[:-digits]}.{text[-digits:]}" if digits else text

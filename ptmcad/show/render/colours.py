@@ -1,0 +1,68 @@
+"""The colour of a count: the same in every picture, told apart by the colour-blind and on grey prints.
+
+Guarantee: two different counts of a torus (where saddles = minima + maxima) never have the same fill. Along a row of
+the palette the lightness falls by at least six units of CIE L* a step; the hues start from those of Okabe & Ito.
+
+Reference: Okabe & Ito, Color universal design, 2008.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ptmcad.answer.regionmap import MorseIndex, Region
+from ptmcad.question.slice import Count
+
+ONE_MAXIMUM = ("#f7f6f2", "#c7e4f6", "#eda43f", "#ca8d7a", "#45917d", "#8a5e8b", "#385880")
+"""Faces for 0, 1, 2, ... stable equilibria; L* = 97, 89, 73, 64, 55, 46, 37."""
+TWO_MAXIMA = ("#e8eacd", "#bf78a3", "#38836d", "#5d5db1", "#874120", "#4b3e62", "#253836")
+"""Faces for the same with two maxima; L* = 92, 59, 50, 43, 36, 29, 22."""
+HATCHES = ("////", "....", "xxxx", "oooo", "++++", "****", "\\\\\\\\", "----", "||||")
+"""Beyond the palette's end and for no or many maxima; repeated more densely where these do not suffice."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fill:
+    """A face colour and a matplotlib hatch, which may be empty."""
+
+    face: str
+    hatch: str = ""
+
+
+UNKNOWN = Fill("#ffffff")
+NONE = Fill("#ffffff", "////")
+UNDETERMINED = Fill("#8f8f8f")
+"""L* = 59; the only grey, so that its lightness need not differ from all others'."""
+
+
+def fill_of(region: Region, count: Count) -> Fill:
+    """The fill of a region, by the count that tells regions apart; white where that count is not known.
+
+    Totals are even on a torus (the Euler sum): 4 and 6 in all are coloured as 1 and 2 stable, which mostly go together.
+    """
+    if count is Count.STABLE:
+        return UNKNOWN if region.stable is None else _of(ONE_MAXIMUM, region.stable, 0)
+    if count is Count.ADMISSIBLE:
+        return UNKNOWN if region.admissible is None else _of(ONE_MAXIMUM, region.admissible, 0)
+    if count is Count.TOTAL:
+        if region.total is None:
+            return UNKNOWN
+        half, odd = divmod(region.total, 2)
+        return NONE if region.total == 0 else _of(TWO_MAXIMA if odd else ONE_MAXIMUM, half if odd else half - 1, 0)
+    return UNKNOWN if region.index is None else fill_of_index(region.index)
+
+
+def fill_of_index(index: MorseIndex) -> Fill:
+    """The fill for numbers of minima, saddles and maxima."""
+    minima, _, maxima = index
+    return _of(ONE_MAXIMUM if maxima <= 1 else TWO_MAXIMA, minima, (1, 0, 0)[maxima] if maxima < 3 else maxima - 2)
+
+
+def _of(row: tuple[str, ...], step: int, turns: int) -> Fill:
+    # diagonal numbering of (turns, rounds), so that no two pairs share a hatch
+    rounds = step // len(row)
+    number = (turns + rounds) * (turns + rounds + 1) // 2 + rounds
+    if number == 0:
+        return Fill(row[step % len(row)])
+    repeats, kind = divmod(number - 1, len(HATCHES))
+    return Fill(row[step % len(row)], HATCHES[kind] * (repeats + 1))

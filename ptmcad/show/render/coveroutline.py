@@ -1,0 +1,173 @@
+"""The outlines of a certified map's regions in a view, as polygons for drawing, and what it leaves open between them.
+
+Guarantee: without simplification the polygons are the components of the cover's complement exactly, but for the
+rounding of positions to floats; simplification moves no point of them by more than `TOLERANCE` of the view's size.
+
+Not guaranteed: that two simplified outlines with less than twice the tolerance between them do not cross. Nothing but
+pictures may be decided by an outline.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.cover.complement import Components, components
+from ptmcad.cover.outlines import outlines
+from ptmcad.cover.rectangles import Cover
+from ptmcad.cover.subdivision import FREE
+from ptmcad.show.render.view import Floats, View
+
+TOLERANCE = 1.5e-4
+"""Of the view's side; 0.05 pt where the side is 4.6 inches."""
+_FAR = (-1.0, 2.0)
+"""Positions beyond are moved there: what is out of the view has no shape."""
+
+
+@dataclass(frozen=True, slots=True)
+class CoverOutline:
+    """All that a picture of a view needs.
+
+    Attributes
+    ----------
+    corners : for each cell its polygons' corners in lattice steps, with the cell at the left hand.
+    region_at : region of each component of the complement, -1 for those without a cell.
+    """
+
+    result: RegionMap
+    view: View
+    complement: Components
+    corners: tuple[tuple[NDArray[np.int64], ...], ...]
+    region_at: NDArray[np.int64]
+
+    def in_view(self, view: View) -> CoverOutline:
+        """The same map in another view."""
+        return replace(self, view=view)
+
+    def polygons(self, region: int) -> Iterator[Floats]:
+        """The region's outlines; those around holes turn the other way."""
+        for cell in self.result.regions[region].cells:
+            yield from self._of_cell(cell)
+
+    def cells(self) -> Iterator[tuple[int, list[Floats]]]:
+        """Every cell's outlines."""
+        for cell in range(len(self.result.cells)):
+            found = list(self._of_cell(cell))
+            if found:
+                yield cell, found
+
+    def walls(self) -> Iterator[tuple[int, bool, Floats]]:
+        """None: a certified map knows no curve, only what encloses the curves."""
+        return iter(())
+
+    def edges(self) -> Iterator[Floats]:
+        """The outlines of all cells as closed lines: between two of them lies what is undetermined."""
+        for _, polygons in self.cells():
+            for polygon in polygons:
+                yield np.concatenate([polygon, polygon[:1]])
+
+    def raster(self, columns: int, rows: int) -> NDArray[np.int64]:
+        """The region just right of and above each pixel's centre, shape (rows, columns), from the bottom; -1: none."""
+        tree = self.complement.subdivision
+        steps = tree.steps
+        places = []
+        for axis, shown, n in zip(self.result.slice.axes, (self.view.x, self.view.y), (columns, rows), strict=True):
+            width = axis.high - axis.low
+            start, step = (shown[0] - axis.low) / width * steps, (shown[1] - shown[0]) / width * steps / n
+            places.append(np.array([int(start + (k + Fraction(1, 2)) * step) for k in range(n)], dtype=np.int64))
+        x, y = np.clip(places[0], 0, steps - 1), np.clip(places[1], 0, steps - 1)
+        leaf = tree.leaves_right_above(np.tile(x, rows), np.repeat(y, columns))
+        free = tree.state[leaf] == FREE
+        image = np.full(len(leaf), -1, dtype=np.int64)  # a covered leaf's owner is a cluster, not a component
+        image[free] = self.region_at[self.complement.owner[leaf[free]]]
+        return image.reshape(rows, columns)
+
+    def _of_cell(self, cell: int) -> Iterator[Floats]:
+        scale = [
+            (
+                float((axis.high - axis.low) / (shown[1] - shown[0]) / self.complement.cover.steps),
+                float((axis.low - shown[0]) / (shown[1] - shown[0])),
+            )
+            for axis, shown in zip(self.result.slice.axes, (self.view.x, self.view.y), strict=True)
+        ]
+        for corners in self.corners[cell]:
+            points = np.stack([corners[:, k] * scale[k][0] + scale[k][1] for k in (0, 1)], axis=1)
+            seen = simplified(np.clip(points, *_FAR), TOLERANCE)
+            if len(seen) > 2 and (seen.max(axis=0) > 0).all() and (seen.min(axis=0) < 1).all():
+                yield seen
+
+
+def cover_outline(result: RegionMap, cover: Cover) -> CoverOutline:
+    """The outlines of a certified map over its whole window.
+
+    Raises
+    ------
+    ValueError
+        When the map contradicts itself: a sample is in no component of its own, or a rectangle is none.
+    """
+    complement = components(cover)
+    number_of = _components_of(result, complement)
+    region_at = np.full(len(complement.areas) + 1, -1, dtype=np.int64)
+    for cell, number in number_of.items():
+        region_at[number] = result.cells[cell].region
+    traced = outlines(complement, list(number_of.values()))
+    return CoverOutline(result, View.whole(result), complement, traced, region_at)
+
+
+def _components_of(result: RegionMap, complement: Components) -> Mapping[int, int]:
+    """For each cell the component that holds its sample."""
+    found: dict[int, int] = {}
+    for number, cell in enumerate(result.cells):
+        place = [
+            (value - axis.low) / (axis.high - axis.low) * complement.cover.steps
+            for axis, value in zip(result.slice.axes, (cell.sample[0], cell.sample[1]), strict=True)
+        ]
+        component = complement.locate(*place)
+        if component is None or component in found.values():
+            raise ValueError(f"the sample of cell {number} is in the cover, or in the component of another cell")
+        found[number] = component
+    return found
+
+
+def simplified(points: Floats, tolerance: float) -> Floats:
+    """A closed polygon with fewer corners, all of them its own, from which it departs by at most the tolerance.
+
+    Method: Ramer, Douglas and Peucker; the two halves are those between the first corner and the one farthest from it.
+    """
+    points = points[(points != np.roll(points, 1, axis=0)).any(axis=1)]
+    n = len(points)
+    if n < 4:
+        return points
+    closed = np.concatenate([points, points[:1]])
+    kept = np.zeros(n + 1, dtype=np.bool_)
+    kept[[0, int(np.argmax(((points - points[0]) ** 2).sum(axis=1))), n]] = True
+    # all pieces are halved at once: `inner` are the corners whose piece may still depart too far
+    inner = np.flatnonzero(~kept)
+    while len(inner):
+        ends = np.flatnonzero(kept)
+        piece = np.searchsorted(ends, inner) - 1
+        away = _distances(closed[inner], closed[ends[piece]], closed[ends[piece + 1]])
+        starts = np.flatnonzero(np.diff(piece, prepend=-1))
+        group = np.cumsum(np.diff(piece, prepend=-1) != 0) - 1
+        farthest = np.maximum.reduceat(away, starts)
+        halved = farthest > tolerance
+        at = np.flatnonzero((away == farthest[group]) & halved[group])
+        kept[inner[at[np.diff(group[at], prepend=-1) != 0]]] = True  # one of them, where several are farthest
+        inner = inner[halved[group]]
+        inner = inner[~kept[inner]]
+    return closed[:-1][kept[:-1]]
+
+
+def _distances(points: Floats, a: Floats, b: Floats) -> Floats:
+    """From each point to its own segment, from a to b; all of shape (k, 2)."""
+    along, offset = b - a, points - a
+    square = (along * along).sum(axis=1)
+    share = np.divide((offset * along).sum(axis=1), square, out=np.zeros(len(points)), where=square > 0)
+    offset = offset - np.clip(share, 0.0, 1.0)[:, None] * along
+    distances: Floats = np.hypot(offset[:, 0], offset[:, 1])
+    return distances

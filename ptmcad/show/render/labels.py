@@ -1,0 +1,97 @@
+"""Places for the labels of arrows: near their tips, within the picture, apart from each other.
+
+Guarantee: the same for the same map, whatever the format. Labels overlap only where `TRIED` places for each do not
+suffice to keep them apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, hypot, pi, sin
+
+import numpy as np
+
+from ptmcad.show.render.view import Shapes
+
+FONT_SIZE = 8.0
+_EM = 0.64
+"""Width of a digit of DejaVu Sans against the font's size; letters are narrower, on the whole."""
+_DIRECTIONS = 16
+_DISTANCES = (34, 50, 70, 95, 125, 160, 200)
+TRIED = _DIRECTIONS * len(_DISTANCES)
+
+Box = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """The tip of an arrow and the centre of its label, as fractions of the picture's sides; the font's size."""
+
+    tip: tuple[float, float]
+    label: tuple[float, float]
+    size: float
+
+
+def place(tips: Sequence[tuple[float, float]], texts: Sequence[str], seen: Shapes, side: float) -> list[Placement]:
+    """Places for the texts, one after the other.
+
+    Parameters
+    ----------
+    side : of the picture, in points.
+    """
+    image = seen.raster(96, 96) if tips else np.zeros((1, 1), dtype=np.int64)
+    points = [(x * side, y * side) for x, y in tips]
+    taken: list[Box] = []
+    arrows: list[tuple[tuple[float, float], tuple[float, float]]] = []
+    result = []
+    for number, (tip, text) in enumerate(zip(points, texts, strict=True)):
+        half = ((len(text) * _EM * FONT_SIZE) / 2 + 4, FONT_SIZE * 0.6 + 4)
+        best, label = float("inf"), tip
+        for distance in _DISTANCES:
+            for k in range(_DIRECTIONS):
+                angle = 2 * pi * (k + 0.5) / _DIRECTIONS
+                x, y = tip[0] + (half[0] + distance) * cos(angle), tip[1] + (half[1] + distance) * sin(angle)
+                box = (x - half[0], y - half[1], x + half[0], y + half[1])
+                cost = float(distance)
+                cost += 1e6 * sum(max(0.0, e) for e in (6 - box[0], 6 - box[1], box[2] - side + 6, box[3] - side + 6))
+                cost += 1e4 * sum(_overlap(box, other) for other in taken)
+                cost += 1e3 * sum(_near(box, p) for j, p in enumerate(points) if j != number)
+                cost += 1e3 * sum(_crosses(a, b, tip, (x, y)) for a, b in arrows)
+                cost += 1e3 * sum(_meets(box, a, b) for a, b in arrows)
+                cost += 25 * _variety(image, box, side)
+                if cost < best:
+                    best, label = cost, (x, y)
+        taken.append((label[0] - half[0], label[1] - half[1], label[0] + half[0], label[1] + half[1]))
+        arrows.append((tip, label))
+        result.append(Placement(tips[number], (label[0] / side, label[1] / side), FONT_SIZE))
+    return result
+
+
+def _overlap(a: Box, b: Box) -> bool:
+    return a[0] < b[2] + 2 and b[0] < a[2] + 2 and a[1] < b[3] + 2 and b[1] < a[3] + 2
+
+
+def _near(box: Box, point: tuple[float, float]) -> bool:
+    return box[0] - 6 < point[0] < box[2] + 6 and box[1] - 6 < point[1] < box[3] + 6
+
+
+def _meets(box: Box, a: tuple[float, float], b: tuple[float, float]) -> bool:
+    """Whether an arrow passes through a box, seen at points a few points apart."""
+    n = max(2, int(hypot(b[0] - a[0], b[1] - a[1]) / 4))
+    return any(_near(box, (a[0] + (b[0] - a[0]) * k / n, a[1] + (b[1] - a[1]) * k / n)) for k in range(n + 1))
+
+
+def _crosses(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float], d: tuple[float, float]) -> bool:
+    def side(p: tuple[float, float], q: tuple[float, float], r: tuple[float, float]) -> bool:
+        return (q[0] - p[0]) * (r[1] - p[1]) > (q[1] - p[1]) * (r[0] - p[0])
+
+    return side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
+
+
+def _variety(image: np.ndarray[tuple[int, int], np.dtype[np.int64]], box: Box, side: float) -> int:
+    """How many other regions than one the box covers."""
+    rows, columns = image.shape
+    left, right = (int(min(max(v / side, 0.0), 0.999) * columns) for v in (box[0], box[2]))
+    bottom, top = (int(min(max(v / side, 0.0), 0.999) * rows) for v in (box[1], box[3]))
+    return len(np.unique(image[bottom : top + 1, left : right + 1])) - 1

@@ -1,0 +1,165 @@
+"""The legend: what each colour and each line means, with the regions of every count and their areas.
+
+Guarantee: every digit of an area is certified (`ptmcad.show.table.certified_digits`).
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from ptmcad.answer.regionmap import Region, RegionMap
+from ptmcad.question.slice import Count
+from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
+from ptmcad.show.table import certified_digits, count_text
+from ptmcad.text.numerals import decimal
+
+STRONG, THIN, INK = 1.3, 0.5, "#111111"
+"""Widths in points of walls that separate regions and of others, and the colour of both."""
+RIM, RIM_INK = 0.35, "#404040"
+"""The line around what is undetermined: less than a pixel at 150 dpi, so that a narrow strip is seen as a hairline."""
+
+LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
+"""Inches between lines, width of a swatch, characters in a line."""
+_MOST_AREAS = 16
+_HEADS = {
+    Count.STABLE: "Stable equilibria",
+    Count.TOTAL: "Equilibria",
+    Count.INDEX: "(minima, saddles, maxima)",
+    Count.ADMISSIBLE: "Stable, all springs taut",
+}
+
+
+Mark = Callable[[Any, float, float], None]
+"""Draws into a figure, from a place in inches (left, middle) to the right, no wider than a swatch."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """Some lines of text beside a fill, a line's width, a dot, a drawing of its own or nothing."""
+
+    lines: tuple[str, ...]
+    mark: Fill | float | str | Mark | None = None
+    strong: bool = False
+
+
+def entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> tuple[Entry, ...]:
+    """The legend's entries, from above.
+
+    Parameters
+    ----------
+    thin : whether the picture shows walls that separate nothing.
+    hidden : number of regions that are too thin to be seen and are shown by no inset.
+    """
+    return tuple(_entries(result, thin, samples, hidden))
+
+
+def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> Iterator[Entry]:
+    count = result.slice.count
+    groups: dict[str, list[Region]] = {}
+    for region in sorted(result.regions, key=lambda r: (_key(r, count), -r.area[0])):
+        groups.setdefault(count_text(region, count), []).append(region)
+    yield Entry((_HEADS[count],), strong=True)
+    for text, regions in groups.items():
+        yield Entry((_with_total(text, regions, count), *_areas(regions)), fill_of(regions[0], count))
+    yield Entry(())
+    if result.cover is not None and result.undetermined:
+        note = ("the count may change within it",) if len(result.regions) > 1 else ()
+        yield Entry((f"undetermined {percent(result.undetermined)}", *note), UNDETERMINED)
+    elif len(result.regions) > 1:
+        yield Entry(("the count changes",), STRONG)
+    if thin:
+        yield Entry(("equilibria merge or vanish,", "the count does not change"), THIN)
+    if samples:
+        yield Entry(("sample point of a cell",), "dot")
+    if hidden:
+        yield Entry((f"{hidden} more regions are too thin to be seen",))
+
+
+def _key(region: Region, count: Count) -> tuple[int, ...]:
+    value = {
+        Count.STABLE: region.stable,
+        Count.TOTAL: region.total,
+        Count.INDEX: region.index,
+        Count.ADMISSIBLE: region.admissible,
+    }[count]
+    return (-1,) if value is None else value if isinstance(value, tuple) else (value,)
+
+
+def percent(share: Fraction) -> str:
+    """A share of the window in percent: two digits, rounded up."""
+    return f"{decimal(100 * share, up=True, digits=2)} %"
+
+
+def _with_total(text: str, regions: list[Region], count: Count) -> str:
+    totals = {r.total for r in regions}
+    total = totals.pop() if len(totals) == 1 else None
+    if count is Count.TOTAL or total is None:
+        return text
+    return f"{text}   {total} equilibria" if count is Count.INDEX else f"{text}   of {total} equilibria"
+
+
+def _areas(regions: list[Region]) -> list[str]:
+    areas = [certified_digits(r.area, 7) for r in regions[:_MOST_AREAS]]
+    if len(regions) == 1:
+        return [f"area {areas[0]}"]
+    rest = regions[_MOST_AREAS:]
+    if rest:
+        together = (sum((r.area[0] for r in rest), Fraction(0)), sum((r.area[1] for r in rest), Fraction(0)))
+        areas.append(f"{len(rest)} more: {certified_digits(together, 7)} together")
+    comma = "; " if any(" to " in area for area in areas) else ", "
+    return textwrap.wrap(f"{len(regions)} regions, areas " + comma.join(areas), COLUMNS)
+
+
+def height(legend: tuple[Entry, ...]) -> float:
+    """In inches."""
+    return sum(_entry_height(entry) for entry in legend)
+
+
+def _entry_height(entry: Entry) -> float:
+    return LINE * len(entry.lines) + 0.07
+
+
+def draw_legend(figure: Any, legend: tuple[Entry, ...], left: float, top: float) -> None:
+    """Draw the entries from the place given in inches downwards."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Rectangle
+
+    inches = figure.dpi_scale_trans
+    for entry in legend:
+        middle = top - LINE / 2
+        match entry.mark:
+            case Fill(face, hatch):
+                figure.add_artist(
+                    Rectangle(
+                        (left, middle - 0.07), SWATCH, 0.14, transform=inches, facecolor=face, hatch=hatch or None,
+                        edgecolor=INK, linewidth=0.4,
+                    )
+                )  # fmt: skip
+            case float(width):
+                figure.add_artist(
+                    Line2D((left, left + SWATCH), (middle, middle), transform=inches, color=INK, linewidth=width)
+                )
+            case str():
+                figure.add_artist(
+                    Line2D((left + SWATCH / 2,), (middle,), transform=inches, color=INK, marker="o", markersize=2.5)
+                )
+            case None:
+                pass
+            case mark:
+                mark(figure, left, middle)
+        for k, line in enumerate(entry.lines):
+            figure.text(
+                left + (0 if entry.mark is None else SWATCH + 0.1),
+                middle - k * LINE,
+                line,
+                transform=inches,
+                va="center_baseline",
+                fontsize=9 if k == 0 else 8,
+                color=INK if k == 0 else "#444444",
+                fontweight="bold" if entry.strong else "normal",
+            )
+        top -= _entry_height(entry)

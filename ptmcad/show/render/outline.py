@@ -1,0 +1,280 @@
+"""The outline of a region map in a view: the walls of its stacks as polylines, for drawing.
+
+Guarantee: each wall is the branch that the map names, from exact root isolation of the stored polynomials at rational
+abscissae; every vertex is within 2^-17 of the view's size of the branch, and two neighbouring vertices are so near that
+their chord misses the branch's middle by at most `TOLERANCE` of the view's size, up to the depth of subdivision.
+
+Not guaranteed: the shape between the vertices. Nothing but pictures may be decided by an outline.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import cos, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.algebra.polynomials import coefficients_in, from_fraction, from_plane, to_fraction
+from ptmcad.algebra.real_roots import RealRoot, isolate, refine
+from ptmcad.answer.regionmap import RegionMap, Stack
+from ptmcad.exact.cad.curves import Curve, curve
+from ptmcad.show.render.view import Floats, Interval, View
+from ptmcad.text.plane import PlanePolynomial
+
+TOLERANCE = 1.5e-4
+DEPTH = 7
+_LIMIT = Fraction(1, 2**48)
+"""A stack's ends are seen as limits from this fraction of its width: a square root's error is 2^-24 of its size."""
+
+
+@dataclass(frozen=True, slots=True)
+class StackOutline:
+    """The part of a stack in the view, in the view's coordinates.
+
+    Attributes
+    ----------
+    number : the stack's number in the map.
+    along : shape (n,), increasing: positions on the base axis.
+    heights : shape (walls + 2, n): the window's lower edge, the walls, the window's upper edge; clipped to [-1, 2].
+    """
+
+    number: int
+    along: Floats
+    heights: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """All that a picture of a view needs.
+
+    Attributes
+    ----------
+    swapped : whether the stacks stand over the vertical axis.
+    lines : (position on the base axis, number of the stack at its left, number of its component) for vertical lines.
+    """
+
+    result: RegionMap
+    view: View
+    swapped: bool
+    stacks: tuple[StackOutline, ...]
+    lines: tuple[tuple[float, int, int], ...]
+
+    def in_view(self, view: View) -> Outline:
+        """The same map in another view."""
+        return outline(self.result, view)
+
+    def points(self, along: Floats, heights: Floats) -> Floats:
+        """Positions as an array of shape (n, 2) in the order of the picture's axes."""
+        pair = (heights, along) if self.swapped else (along, heights)
+        return np.stack(pair, axis=-1)
+
+    def polygons(self, region: int) -> Iterator[Floats]:
+        """The region's parts over each stack, neighbouring cells joined; all with the same orientation."""
+        for stack in self.stacks:
+            levels = [self.region(stack.number, k) == region for k in range(len(stack.heights) - 1)]
+            start = None
+            for level, inside in enumerate([*levels, False]):
+                if inside and start is None:
+                    start = level
+                elif not inside and start is not None:
+                    bottom = self.points(stack.along, stack.heights[start])
+                    top = self.points(stack.along, stack.heights[level])
+                    yield np.concatenate([bottom, top[::-1]])
+                    start = None
+
+    def cells(self) -> Iterator[tuple[int, list[Floats]]]:
+        """Every cell of the view with its outline, stack after stack from below."""
+        for stack in self.stacks:
+            for level, number in enumerate(self.result.stacks[stack.number].cells):
+                bottom = self.points(stack.along, stack.heights[level])
+                top = self.points(stack.along, stack.heights[level + 1])
+                yield number, [np.concatenate([bottom, top[::-1]])]
+
+    def edges(self) -> Iterator[Floats]:
+        """None: an exact map leaves nothing open between its cells."""
+        return iter(())
+
+    def walls(self) -> Iterator[tuple[int, bool, Floats]]:
+        """Every wall as (component, whether it separates two regions, polyline)."""
+        for stack in self.stacks:
+            for level, wall in enumerate(self.result.stacks[stack.number].walls):
+                separates = self.region(stack.number, level) != self.region(stack.number, level + 1)
+                yield wall.component, separates, self.points(stack.along, stack.heights[level + 1])
+        by_number = {stack.number: stack for stack in self.stacks}
+        for position, left, component in self.lines:
+            if left in by_number and left + 1 in by_number:
+                yield from self._line(position, component, by_number[left], by_number[left + 1])
+
+    def _line(
+        self, position: float, component: int, left: StackOutline, right: StackOutline
+    ) -> Iterator[tuple[int, bool, Floats]]:
+        before, after = left.heights[:, -1], right.heights[:, 0]
+        for low, high in pairwise(np.unique(np.concatenate([before, after]))):
+            middle = (low + high) / 2
+            regions = [
+                self.region(s.number, min(max(int(np.searchsorted(h, middle)) - 1, 0), len(h) - 2))
+                for s, h in ((left, before), (right, after))
+            ]
+            yield component, regions[0] != regions[1], self.points(np.full(2, position), np.array([low, high]))
+
+    def region(self, stack: int, level: int) -> int:
+        """The region of a stack's cell."""
+        return self.result.cells[self.result.stacks[stack].cells[level]].region
+
+    def raster(self, columns: int, rows: int) -> NDArray[np.int64]:
+        """The region at the centre of every pixel, shape (rows, columns), from the bottom; -1 where there is none."""
+        across, up = (rows, columns) if self.swapped else (columns, rows)
+        image = np.full((up, across), -1, dtype=np.int64)
+        centres = (np.arange(across) + 0.5) / across
+        heights = (np.arange(up) + 0.5) / up
+        for stack in self.stacks:
+            inside = np.flatnonzero((stack.along[0] < centres) & (centres < stack.along[-1]))
+            if not len(inside):
+                continue
+            edges = np.array([np.interp(centres[inside], stack.along, row) for row in stack.heights])
+            regions = np.array([self.region(stack.number, k) for k in range(len(edges) - 1)])
+            for k, column in enumerate(inside):
+                level = np.searchsorted(edges[:, k], heights) - 1
+                valid = (level >= 0) & (level < len(regions))
+                image[valid, column] = regions[level[valid]]
+        return image.T if self.swapped else image
+
+
+def outline(result: RegionMap, view: View | None = None) -> Outline:
+    """The outline of a map in a view, the whole window when None."""
+    view = View.whole(result) if view is None else view
+    base = result.base
+    curves = {
+        n: curve(n, from_plane(c.polynomial), base)
+        for n, c in enumerate(result.components)
+        if not c.left_out and c.polynomial.degrees[1 - base] > 0
+    }
+    roots = tuple(_Abscissa(result, k) for k in range(len(result.critical_values)))
+    low, high = view.along(base)
+    stacks = []
+    for number, stack in enumerate(result.stacks):
+        ends = _ends(result, stack, roots)
+        if ends[0] < high and ends[1] > low:
+            stacks.append(_Tracer(result, view, curves, stack, number).trace(ends))
+    lines = []
+    for k, abscissa in enumerate(roots):
+        component = _vertical_component(result, k)
+        at = (abscissa.middle - low) / (high - low)
+        if component is not None and 0 <= at <= 1:
+            lines.append((float(at), k, component))
+    return Outline(result, view, base == 1, tuple(stacks), tuple(lines))
+
+
+class _Abscissa:
+    """A critical abscissa: rational bounds of it that are short against the neighbouring stacks."""
+
+    def __init__(self, result: RegionMap, number: int) -> None:
+        values = result.critical_values
+        value = values[number]
+        axis = result.slice.axes[result.base]
+        before = values[number - 1].high if number else axis.low
+        after = values[number + 1].low if number + 1 < len(values) else axis.high
+        self.left, self.right = value.low, value.high
+        if value.low != value.high:
+            room = max(min(value.low - before, after - value.high), value.high - value.low)
+            plane = from_plane(PlanePolynomial.of((i, 0, c) for i, c in enumerate(value.polynomial)))
+            polynomial = coefficients_in(plane, 1)[0]
+            root = RealRoot(polynomial, from_fraction(value.low), from_fraction(value.high))
+            short = refine(root, from_fraction(room * _LIMIT))
+            self.left, self.right = to_fraction(short.low), to_fraction(short.high)
+        self.middle = (self.left + self.right) / 2
+
+
+def _ends(result: RegionMap, stack: Stack, critical: tuple[_Abscissa, ...]) -> Interval:
+    """Rational ends of a stack, just inside of it where an end is irrational."""
+    axis = result.slice.axes[result.base]
+    low = axis.low if stack.left is None else critical[stack.left].right
+    high = axis.high if stack.right is None else critical[stack.right].left
+    return low, high
+
+
+def _vertical_component(result: RegionMap, critical: int) -> int | None:
+    """The component that is a line over this critical abscissa, if there is one."""
+    value = result.critical_values[critical].polynomial
+    for n, c in enumerate(result.components):
+        if not c.left_out and c.polynomial.degrees[1 - result.base] == 0:
+            line = {term[result.base]: term[2] for term in c.polynomial.terms}
+            own = {i: coefficient for i, coefficient in enumerate(value) if coefficient}
+            if line in (own, {i: -coefficient for i, coefficient in own.items()}):
+                return n
+    return None
+
+
+class _Tracer:
+    """Traces the walls of one stack within a view."""
+
+    def __init__(self, result: RegionMap, view: View, curves: dict[int, Curve], stack: Stack, number: int) -> None:
+        self.stack, self.number = stack, number
+        self.curves = {n: curves[n] for n in {w.component for w in stack.walls}}
+        axis = result.slice.axes[1 - result.base]
+        self.fibre = (from_fraction(axis.low), from_fraction(axis.high))
+        self.base, self.shown = view.along(result.base), view.along(1 - result.base)
+        self.edges = (self._height(axis.low), self._height(axis.high))
+        self.width = from_fraction((self.shown[1] - self.shown[0]) / 2**17)
+
+    def trace(self, ends: Interval) -> StackOutline:
+        """The stack's walls from end to end, or to the view's edge."""
+        low, high = max(ends[0], self.base[0]), min(ends[1], self.base[1])
+        inner = (high - low) * _LIMIT
+        columns = {0.0: self._column(low + inner, low), 1.0: self._column(high - inner, high)}
+        wide = self._position(high) - self._position(low) > 0.01
+        steps = (0.0, 0.25, 0.5, 0.75, 1.0) if wide else (0.0, 0.5, 1.0)
+        pending = list(pairwise(steps)) if self.stack.walls else []
+        for s in steps[1:-1] if pending else ():
+            columns[s] = self._column(_between(low, high, s))
+        depth = DEPTH
+        while pending and depth:
+            depth -= 1
+            following = []
+            for s, t in pending:
+                middle = (s + t) / 2
+                columns[middle] = self._column(_between(low, high, middle))
+                if _deviation(columns[s], columns[middle], columns[t]) > TOLERANCE:
+                    following += [(s, middle), (middle, t)]
+            pending = following
+        ordered = np.array([columns[s] for s in sorted(columns)])
+        heights = np.maximum.accumulate(ordered[:, 1:].T, axis=0)
+        return StackOutline(self.number, ordered[:, 0], heights)
+
+    def _column(self, at: Fraction, drawn_at: Fraction | None = None) -> tuple[float, ...]:
+        """Position on the base axis, then the heights of the lower edge, the walls and the upper edge."""
+        u = from_fraction(at)
+        roots: dict[int, list[float]] = {}
+        for n, c in self.curves.items():
+            found = isolate(c.fibre(u), *self.fibre)
+            roots[n] = [self._height(to_fraction(refine(r, self.width).middle)) for r in found]
+        heights = [roots[w.component][w.root] for w in self.stack.walls]
+        return (self._position(at if drawn_at is None else drawn_at), self.edges[0], *heights, self.edges[1])
+
+    def _position(self, at: Fraction) -> float:
+        return float((at - self.base[0]) / (self.base[1] - self.base[0]))
+
+    def _height(self, at: Fraction) -> float:
+        scaled = (at - self.shown[0]) / (self.shown[1] - self.shown[0])
+        return float(min(max(scaled, Fraction(-1)), Fraction(2)))
+
+
+def _between(low: Fraction, high: Fraction, s: float) -> Fraction:
+    """An abscissa with few digits near low + (high - low) (1 - cos(pi s))/2, dense near both ends."""
+    share = Fraction((1 - cos(pi * s)) / 2)
+    near = (high - low) * min(share, 1 - share)
+    step = Fraction(2) ** (near.numerator.bit_length() - near.denominator.bit_length() - 5)
+    return round((low + (high - low) * share) / step) * step
+
+
+def _deviation(first: tuple[float, ...], middle: tuple[float, ...], last: tuple[float, ...]) -> float:
+    """The largest distance of a wall's middle point from its chord."""
+    a, b, c = np.array(first), np.array(middle), np.array(last)
+    across, up = c[0] - a[0], c[1:] - a[1:]
+    length = np.hypot(across, up)
+    cross = np.abs(across * (b[1:] - a[1:]) - up * (b[0] - a[0]))
+    return float(np.max(np.divide(cross, length, out=np.zeros_like(cross), where=length > 0)))

@@ -1,0 +1,241 @@
+"""The picture of all equilibria at one point: each drawn as a mechanism, at one scale, the stable ones strong.
+
+Guarantee: every equilibrium has a panel, with its kind and its energy, of which every digit shown is certified; the
+figure's label holds a title and a description in words. `ptmcad.show.render.printing.save` writes it.
+
+Not guaranteed: anything that only the picture tells. It is drawn in floating point from the exact poses.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ptmcad.answer.poses import Pose, Poses
+from ptmcad.mechanism import known_of
+from ptmcad.question.slice import merged
+from ptmcad.show.render.axes import symbol
+from ptmcad.show.render.legend import INK, Entry, draw_legend, height
+from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark
+from ptmcad.show.render.printing import settings
+from ptmcad.show.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Frame, arrow_lengths, frame_of, sketch
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.numerals import magnitude, shortest_text
+
+MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
+"""In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of the title."""
+_DIGITS = 6
+_LONGEST = 14
+"""Longer values of parameters are rounded in the title."""
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def draw_poses(poses: Poses) -> Figure:
+    """All equilibria as mechanisms, small multiples at one scale, stable ones first.
+
+    Parameters
+    ----------
+    poses : of the mechanism ``ptm``; when it has none (infinitely many equilibria), its remark is the picture.
+
+    Returns
+    -------
+    A figure without a canvas of pyplot, to be written by `ptmcad.show.render.printing.save`.
+    """
+    shown = in_order(poses)
+    if not shown:
+        return empty(poses)
+    frame, arrows = frame_of(shown), arrow_lengths(poses)
+    columns = 3 if len(shown) in (3, 5) or len(shown) > 5 else min(2, len(shown))
+    rows = -(-len(shown) // columns)
+    wide, tall = frame.width / 72, frame.height / 72
+    row = HEAD + tall + BELOW
+    entries = tuple(legend(poses, arrows))
+    below = max(rows * row + (rows - 1) * GAP, height(entries) + _SCALE_ROOM)
+    width = 2 * MARGIN + columns * (wide + GAP) + KEY
+    title = heading(poses, round(12.4 * (width - 2 * MARGIN)))
+    top = below + MARGIN
+    with settings():
+        figure = Figure(figsize=(width, top + TITLE_LINE * len(title) + 0.08 + MARGIN), facecolor="white")
+        figure.set_label(f"{' '.join(title)}\n{describe(poses)}")
+        write_title(figure, title, MARGIN)
+        for number, pose in enumerate(shown):
+            down, across = divmod(number, columns)
+            corner = (MARGIN + across * (wide + GAP), top - down * (row + GAP) - HEAD - tall)
+            panel(figure, pose, number + 1, frame, arrows, corner)
+        left = MARGIN + columns * (wide + GAP) + 0.1
+        draw_legend(figure, entries, left, top)
+        scale_bar(figure, frame, left, top - height(entries) - 0.12)
+    return figure
+
+
+def in_order(poses: Poses) -> tuple[Pose, ...]:
+    """Stable equilibria first, then the others, each by energy, as they are stored."""
+    return tuple(sorted(poses.equilibria, key=lambda pose: pose.stable is not True))
+
+
+def kind(pose: Pose) -> str:
+    """What an equilibrium is, in words."""
+    if pose.index is None:
+        return f"degenerate, multiplicity {pose.multiplicity}"
+    return ("stable (minimum)", "saddle", "maximum")[pose.index]
+
+
+def panel(
+    figure: Figure, pose: Pose, number: int, frame: Frame, arrows: Mapping[str, float], corner: tuple[float, float]
+) -> Any:
+    """One pose in axes at a place in inches, with its kind above and energy and angles below."""
+    width, tall = figure.get_size_inches()
+    strong = pose.stable is True
+    style = STRONG if strong else PALE
+    axes = figure.add_axes((corner[0] / width, corner[1] / tall, frame.width / 72 / width, frame.height / 72 / tall))
+    axes.set_gid(f"pose-{number}")
+    axes.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
+    for spine in axes.spines.values():
+        spine.set(color=INK if strong else "#b5b5b5", linewidth=1.0 if strong else 0.6)
+    draw_sketch(axes, sketch(pose, frame, arrows), style, f"pose-{number}-")
+    inches = figure.dpi_scale_trans
+    colour = INK if strong else "#555555"
+    flat = ", flat" if pose.flat else ""
+    figure.text(
+        corner[0], corner[1] + frame.height / 72 + 0.12, f"{number}  {kind(pose)}{flat}", transform=inches, fontsize=9,
+        fontweight="bold" if strong else "normal", color=colour, va="center",
+    )  # fmt: skip
+    angles = ", ".join(f"θ{k} = {number_text(a)}°" for k, a in zip("₁₂", pose.degrees, strict=True))
+    for k, line in enumerate((f"U = {number_text(pose.energy)}", angles)):
+        figure.text(
+            corner[0], corner[1] - 0.11 - 0.16 * k, line, transform=inches, fontsize=8, color=colour, va="center"
+        )
+    return axes
+
+
+def number_text(number: Enclosure, digits: int = _DIGITS) -> str:
+    """A certified number rounded to nearest, as it is printed."""
+    return printed_number(number.text(digits) if number.settles(digits) else number.text(1))
+
+
+def printed_number(text: str) -> str:
+    """A number as print has it: a true minus, and powers of ten as such."""
+    mantissa, _, exponent = text.replace("-", "−").partition("e")
+    if not exponent:
+        return mantissa
+    power = f"10{str(int(exponent.replace('−', '-'))).translate(_SUPERSCRIPT)}"
+    return {"1": power, "−1": f"−{power}"}.get(mantissa, f"{mantissa}·{power}")
+
+
+def value_text(value: Fraction) -> str:
+    """A parameter's value, exactly where that is short, else rounded and after the sign for it."""
+    text = shortest_text(value)
+    if len(text) <= _LONGEST and abs(value) < 10**7:
+        return f"=\N{NO-BREAK SPACE}{printed_number(text)}"
+    known = Enclosure(value, value)
+    rounded = known.text(7)
+    exact = Fraction(rounded) == value
+    return f"{'=' if exact else '≈'}\N{NO-BREAK SPACE}{printed_number(rounded)}"
+
+
+def assigned(name: str, value: Fraction) -> str:
+    """A parameter and its value, which no line break parts."""
+    return f"{symbol(name)}\N{NO-BREAK SPACE}{value_text(value)}"
+
+
+def values(poses: Poses) -> list[str]:
+    """The parameters with their values; equal stiffnesses or free lengths as one; loads only where there are any."""
+    mechanism = known_of(poses.mechanism)
+    shown = merged(poses.parameters, mechanism)
+    loads = {name: value for name, value in shown.items() if name in mechanism.forces}
+    rest = {name: value for name, value in shown.items() if name not in loads}
+    texts = [assigned(name, value) for name, value in rest.items()]
+    texts += [assigned(name, value) for name, value in loads.items() if value]
+    return texts if any(loads.values()) else [*texts, "no load"]
+
+
+def heading(poses: Poses, columns: int) -> list[str]:
+    """The title's lines: where the equilibria are."""
+    return textwrap.wrap(f"{_count(poses)} at " + ",  ".join(values(poses)), max(columns, 30))
+
+
+def _count(poses: Poses) -> str:
+    if not poses.equilibria:
+        return "Equilibria"
+    number = len(poses.equilibria)
+    return f"{number} equilibri{'um' if number == 1 else 'a'}, {poses.stable} stable,"
+
+
+def describe(poses: Poses) -> str:
+    """What the picture shows, in words."""
+    parts = [
+        f"{n}: {kind(p)}{', flat' if p.flat else ''}, U {number_text(p.energy)}, theta1 {number_text(p.degrees[0])}, "
+        f"theta2 {number_text(p.degrees[1])} degrees"
+        for n, p in enumerate(in_order(poses), 1)
+    ]
+    return f"Equilibria of the mechanism, {', '.join(values(poses))}. " + "; ".join(parts) + poses.remark
+
+
+def write_title(figure: Figure, lines: Sequence[str], left: float) -> None:
+    """The title at the top."""
+    top = figure.get_size_inches()[1] - MARGIN
+    for k, line in enumerate(lines):
+        figure.text(
+            left, top - TITLE_LINE * (k + 0.5), line, transform=figure.dpi_scale_trans, fontsize=11, va="center"
+        )
+
+
+def empty(poses: Poses) -> Figure:
+    """The picture when there is nothing to draw: it says why."""
+    lines = [*heading(poses, 80), "", *textwrap.wrap(poses.remark or "No equilibrium is known here.", 80)]
+    with settings():
+        figure = Figure(figsize=(7.0, 2 * MARGIN + TITLE_LINE * len(lines)), facecolor="white")
+        figure.set_label(f"{lines[0]}\n{describe(poses)}")
+        write_title(figure, lines, MARGIN)
+    return figure
+
+
+def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
+    """What lines and colours mean."""
+    yield Entry(("Poses",), strong=True)
+    yield Entry(("stable: strong colours, dark frame",), bar_mark(0, STRONG))
+    yield Entry(("unstable or degenerate: pale",), bar_mark(0, PALE))
+    yield Entry(("U: energy, in force · length",))
+    yield Entry(())
+    yield Entry(("Parts",), strong=True)
+    yield Entry(("bar A₁A₃ (wide)",), bar_mark(0))
+    yield Entry(("bar A₂A₄ (narrow)",), bar_mark(1))
+    yield Entry(("springs A₁A₄, A₂A₃, A₃A₄;", "drawn aside where one lies on", "a bar or is very short"), spring_mark())
+    yield Entry(("fixed support, at A₁",), symbol_mark("support"))
+    yield Entry(("slider on the base, at A₂",), symbol_mark("slider"))
+    if arrows:
+        loads = [assigned(name, poses.parameters[name]) for name in arrows]
+        shortened = any(abs(length) == SHORTEST_ARROW < LONGEST_ARROW for length in arrows.values())
+        lines = ["load; length by force" + (", except" if shortened else "")]
+        lines += ["that short ones are lengthened"] if shortened else []
+        yield Entry((*lines, *textwrap.wrap(",  ".join(loads), 33)), symbol_mark("load"))
+    yield Entry(())
+
+
+_SCALE_ROOM = 0.3
+
+
+def scale_bar(figure: Figure, frame: Frame, left: float, middle: float) -> None:
+    """A bar of known length, at most 60 points long."""
+    step = _round_below(Fraction(60) / frame.scale)
+    length = float(step * frame.scale) / 72
+    inches = figure.dpi_scale_trans
+    line = Line2D(
+        (left, left, left, left + length, left + length, left + length),
+        (middle - 0.04, middle + 0.04, middle, middle, middle + 0.04, middle - 0.04),
+        transform=inches, color=INK, linewidth=0.9, gid="scale",
+    )  # fmt: skip
+    figure.add_artist(line)
+    text = f"length {printed_number(Enclosure(step, step).text(2))}"
+    figure.text(left + length + 0.1, middle, text, transform=inches, fontsize=8, va="center_baseline", color="#444444")
+
+
+def _round_below(value: Fraction) -> Fraction:
+    """The largest 1, 2 or 5 times a power of ten that is not above the value."""
+    power = Fraction(10) ** magnitude(value)
+    return next(power * k for k in (5, 2, 1) if power * k <= value)

@@ -1,0 +1,147 @@
+"""Slivers: regions too thin to be seen at a drawing's resolution, and the views in which they are seen clearly.
+
+Guarantee: a region of which no square of three pixels' side fits into the drawing is reported; the view for it shows a
+square of it with at least a twelfth of the view's sides, or as much as `STEPS` steps of shortening the view reach.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.show.render.view import Interval, Shapes, View
+
+STEPS = 100
+MOST_ZOOMS = 12
+_PIXELS = 60
+_CLEAR = 2
+"""A square of 2 * _CLEAR + 1 pixels of the view's _PIXELS is seen clearly."""
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Sliver:
+    """A thin region and a point in the thick of it, in the axes' order."""
+
+    region: int
+    at: tuple[Fraction, Fraction]
+
+
+@dataclass(frozen=True, slots=True)
+class Zoom:
+    """A view that shows some slivers clearly."""
+
+    outline: Shapes
+    slivers: tuple[Sliver, ...]
+
+
+def thin_regions(whole: Shapes, pixels: int) -> tuple[int, ...]:
+    """The regions that are thinner than three of the drawing's pixels everywhere.
+
+    Parameters
+    ----------
+    pixels : of the drawing's side.
+    """
+    image = whole.raster(pixels, pixels)
+    return tuple(n for n in range(len(whole.result.regions)) if not _eroded(image == n).any())
+
+
+def zooms(whole: Shapes, thin: Sequence[int], most: int = MOST_ZOOMS) -> tuple[Zoom, ...]:
+    """Views that show the thin regions clearly, each as many of them as it happens to; at most so many views."""
+    waiting = list(thin)
+    found: list[Zoom] = []
+    while waiting and len(found) < most:
+        seen = _zoom(whole, waiting[0])
+        thick = {n: _thick(seen, n) for n in waiting}
+        shown = [n for n, (depth, _) in thick.items() if depth >= _CLEAR or n == waiting[0]]
+        found.append(Zoom(seen, tuple(Sliver(n, thick[n][1]) for n in shown)))
+        waiting = [n for n in waiting if n not in shown]
+    return tuple(found)
+
+
+def _zoom(whole: Shapes, region: int) -> Shapes:
+    """A view around the region, shortened until the region is clearly seen."""
+    view, seen = whole.view, whole
+    window = whole.view
+    for _ in range(STEPS):
+        box = _bounding_box(seen, region)
+        if box is None or min(box[1] - box[0], box[3] - box[2]) > 0.3:
+            break
+        view = View(_stretched(view.x, box[:2], window.x), _stretched(view.y, box[2:], window.y))
+        seen = whole.in_view(view)
+    for _ in range(STEPS):
+        depth, at = _thick(seen, region)
+        if depth >= _CLEAR:
+            break
+        factor = Fraction(1, 16 if depth < 0 else 2)
+        view = View(_shortened(view.x, at[0], window.x, factor), _shortened(view.y, at[1], window.y, factor))
+        seen = whole.in_view(view)
+    return seen
+
+
+def _bounding_box(seen: Shapes, region: int) -> tuple[float, float, float, float] | None:
+    """The visible part of the region: left, right, bottom, top in the view's coordinates."""
+    parts = [np.clip(polygon, 0.0, 1.0) for polygon in seen.polygons(region)]
+    if not parts:
+        return None
+    points = np.concatenate(parts)
+    (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
+    return float(left), float(right), float(bottom), float(top)
+
+
+def _stretched(shown: Interval, part: Sequence[float], window: Interval) -> Interval:
+    """The interval of the axis for the part, with a margin, if the part is short; else as it is."""
+    low, high = part
+    if high - low > 0.3:
+        return shown
+    margin = max(0.25 * (high - low), 2.0**-14)
+    width = shown[1] - shown[0]
+    return (
+        max(window[0], shown[0] + width * Fraction(low - margin)),
+        min(window[1], shown[0] + width * Fraction(high + margin)),
+    )
+
+
+def _shortened(shown: Interval, at: Fraction, window: Interval, factor: Fraction) -> Interval:
+    """A shorter interval around a point, within the window."""
+    width = (shown[1] - shown[0]) * factor
+    low = max(window[0], min(at - width / 2, window[1] - width))
+    return low, low + width
+
+
+def _thick(seen: Shapes, region: int) -> tuple[int, tuple[Fraction, Fraction]]:
+    """Half the side, in pixels, of the largest square within the region in the view (-1: none), and its centre."""
+    mask = seen.raster(_PIXELS, _PIXELS) == region
+    depth = -1
+    while mask.any():
+        depth, last = depth + 1, mask
+        mask = _eroded(mask)
+    if depth < 0:
+        return depth, _inside(seen, region)
+    rows, columns = np.nonzero(last)
+    middle = int(np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2))
+    x, y = (Fraction(2 * int(k[middle]) + 1, 2 * _PIXELS) for k in (columns, rows))
+    view = seen.view
+    return depth, (view.x[0] + (view.x[1] - view.x[0]) * x, view.y[0] + (view.y[1] - view.y[0]) * y)
+
+
+def _inside(seen: Shapes, region: int) -> tuple[Fraction, Fraction]:
+    """A sample point of the region, one in the view if there is any."""
+    (left, right), (bottom, top) = seen.view.x, seen.view.y
+    result: RegionMap = seen.result
+    samples = [result.cells[n].sample for n in result.regions[region].cells]
+    visible = [p for p in samples if left < p[0] < right and bottom < p[1] < top]
+    return (visible or samples)[0]
+
+
+def _eroded(mask: Mask) -> Mask:
+    """The pixels whose eight neighbours are all in the mask; outside of it there is nothing."""
+    rows = mask[1:-1] & mask[:-2] & mask[2:]
+    inner = rows[:, 1:-1] & rows[:, :-2] & rows[:, 2:]
+    return np.pad(inner, 1)

@@ -1,0 +1,81 @@
+"""What a picture of a region map is drawn from: a view of its window, and the shapes seen in it, whatever the engine.
+
+Guarantee: none but that of the classes that have these methods, `ptmcad.show.render.outline` for exact maps and
+`ptmcad.show.render.coveroutline` for certified ones. Positions are fractions of the view's sides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptmcad.answer.regionmap import RegionMap
+
+Floats = NDArray[np.float64]
+Interval = tuple[Fraction, Fraction]
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """The rectangle that is shown: intervals of the two axes, in their order."""
+
+    x: Interval
+    y: Interval
+
+    @classmethod
+    def whole(cls, result: RegionMap) -> View:
+        """The map's window."""
+        first, second = result.slice.axes
+        return cls((first.low, first.high), (second.low, second.high))
+
+    def along(self, axis: int) -> Interval:
+        """The interval of axis 0 or 1."""
+        return self.y if axis else self.x
+
+    def approximate_position(self, point: tuple[Fraction, Fraction]) -> tuple[float, float]:
+        """A point in the view's own coordinates, (0, 0) to (1, 1)."""
+        (left, right), (bottom, top) = self.x, self.y
+        return float((point[0] - left) / (right - left)), float((point[1] - bottom) / (top - bottom))
+
+
+class Shapes(Protocol):
+    """The shapes of a map in a view."""
+
+    @property
+    def result(self) -> RegionMap:
+        """The map."""
+        ...
+
+    @property
+    def view(self) -> View:
+        """The part of its window that is shown."""
+        ...
+
+    def in_view(self, view: View) -> Shapes:
+        """The same map in another view."""
+        ...
+
+    def polygons(self, region: int) -> Iterator[Floats]:
+        """Closed polygons, shape (k, 2), that together bound a region's part of the view."""
+        ...
+
+    def cells(self) -> Iterator[tuple[int, list[Floats]]]:
+        """Every cell of the view and its closed polygons."""
+        ...
+
+    def walls(self) -> Iterator[tuple[int, bool, Floats]]:
+        """Every wall as (component, whether it separates two regions, polyline)."""
+        ...
+
+    def edges(self) -> Iterator[Floats]:
+        """The rims of what is undetermined, as polylines."""
+        ...
+
+    def raster(self, columns: int, rows: int) -> NDArray[np.int64]:
+        """The region at the centre of every pixel, shape (rows, columns), from the bottom; -1 where there is none."""
+        ...

@@ -1,0 +1,129 @@
+"""Arithmetic with rational bounds of real numbers, and decimals that are certified to their last digit.
+
+Guarantee: the bounds of a result contain its value whenever those of the operands do; `decimal_text` is within one unit
+of its last digit of every number between the bounds.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import atan2, isqrt
+
+from ptmcad.text.numerals import integer_text, magnitude
+
+Bounds = tuple[Fraction, Fraction]
+
+_PI = (Fraction(3141592653589793238, 10**18), Fraction(3141592653589793239, 10**18))
+_BITS = 96
+"""Of the square roots' and the angles' own precision, well beyond that of stored boxes."""
+_LONGEST = 12
+"""Places before or after the point from which the form with an exponent is used."""
+
+
+def exactly(value: Fraction | int) -> Bounds:
+    """The bounds of a rational number."""
+    return Fraction(value), Fraction(value)
+
+
+def plus(*terms: Bounds) -> Bounds:
+    """The sum."""
+    return sum((t[0] for t in terms), Fraction(0)), sum((t[1] for t in terms), Fraction(0))
+
+
+def times(a: Bounds, b: Bounds) -> Bounds:
+    """The product."""
+    if a[0] == a[1]:
+        low, high = a[0] * b[0], a[0] * b[1]
+        return (low, high) if low <= high else (high, low)
+    corners = [x * y for x in a for y in b]
+    return min(corners), max(corners)
+
+
+def power(a: Bounds, exponent: int) -> Bounds:
+    """A natural power; an even one is not negative."""
+    if exponent == 1:
+        return a
+    ends = sorted(x**exponent for x in a)
+    return (Fraction(0), ends[1]) if exponent and exponent % 2 == 0 and a[0] < 0 < a[1] else (ends[0], ends[1])
+
+
+def square_root(a: Bounds) -> Bounds:
+    """The square root of a number that is not negative, though its lower bound may be."""
+    low, high = (_root(max(end, Fraction(0)), up) for end, up in zip(a, (False, True), strict=True))
+    return low, high
+
+
+def _root(value: Fraction, up: bool) -> Fraction:
+    if value == 0:
+        return value
+    shift = max(0, _BITS - value.numerator.bit_length() + value.denominator.bit_length())
+    scaled = (value.numerator << 2 * shift) // value.denominator
+    root = isqrt(scaled)
+    return Fraction(root + 1 if up and Fraction(root**2, 1 << 2 * shift) != value else root, 1 << shift)
+
+
+def degrees(cosine: Bounds, sine: Bounds) -> Bounds | None:
+    """The angle, in (-180, 180] up to its own width, whose cosine and sine lie between these bounds.
+
+    None when the bounds are too wide to tell, or no angle has such a cosine and sine nearby.
+    """
+    guess = Fraction(round(atan2(float(sum(sine)), float(sum(cosine))) * 2**60), 2**60)
+    c, s = _cosine_sine(guess)
+    across = plus(times(sine, c), times(cosine, (-s[1], -s[0])))  # sin(angle - guess)
+    along = plus(times(cosine, c), times(sine, s))  # cos(angle - guess)
+    widest = max(abs(across[0]), abs(across[1]))
+    if along[0] <= 0 or widest > Fraction(1, 1000):
+        return None
+    # |arcsin d - d| <= |d|^3 where |d| < 1/2
+    angle = (guess + across[0] - widest**3, guess + across[1] + widest**3)
+    return times(times(angle, exactly(180)), (1 / _PI[1], 1 / _PI[0]))
+
+
+def _cosine_sine(angle: Fraction) -> tuple[Bounds, Bounds]:
+    """Bounds of cosine and sine of a number in [-4, 4] with a denominator of at most `_BITS` bits, from Taylor sums.
+
+    In units of 2^-_BITS, the error of a term is at most 4/k times that of the one before it, and 2 for rounding twice;
+    it stays below 13, and there are fewer than 60 terms. Those left out are halved from one to the next and sum up to
+    less than 60.
+    """
+    scaled = (angle.numerator << _BITS) // angle.denominator
+    sums = [0, 0]
+    term, k = 1 << _BITS, 0
+    while k < 8 or abs(term) > 16:
+        sums[k % 2] += term if k % 4 < 2 else -term
+        k += 1
+        term = (term * scaled >> _BITS) // k
+    cosine, sine = ((Fraction(total - 1000, 1 << _BITS), Fraction(total + 1000, 1 << _BITS)) for total in sums)
+    return cosine, sine
+
+
+def decimal_text(a: Bounds, exponent: int) -> str:
+    """A decimal with 10^exponent as the unit of its last digit, or a larger unit where the bounds are wider.
+
+    >>> decimal_text((Fraction(-1, 3), Fraction(-1, 3)), -4), decimal_text((Fraction(1), Fraction(11, 10)), -4)
+    ('−0.3333', '1.0')
+    >>> decimal_text(exactly(123456), 3), decimal_text(exactly(Fraction(1, 10**20)), -22)
+    ('123e3', '100e-22')
+    """
+    low, high = a
+    width = high - low
+    if width > 0:
+        exponent = max(exponent, magnitude(width))
+    unit = Fraction(10) ** exponent
+    while True:
+        digits = round((low + high) / 2 / unit)
+        if high - digits * unit <= unit and digits * unit - low <= unit:
+            break
+        exponent, unit = exponent + 1, unit * 10
+    text = integer_text(abs(digits))
+    sign = "−" if digits < 0 else ""
+    if exponent > 0 or exponent < -_LONGEST:
+        return f"{sign}{text}e{exponent}" if digits else "0"
+    text = text.zfill(1 - exponent)
+    return sign + (f"{text[:exponent]}.{text[exponent:]}" if exponent else text)
+
+
+def last_place(values: list[Bounds], digits: int) -> int:
+    """The exponent of the last place that gives the largest of some numbers so many digits."""
+    largest = max((abs(end) for value in values for end in value), default=Fraction(0))
+    return (magnitude(largest) if largest else 0) + 1 - digits

@@ -1,0 +1,223 @@
+"""The region map as inline SVG: fills, walls, axes, and one focusable area for every cell.
+
+Guarantee: every cell of the view has an area with its number; nothing is drawn with a style attribute, which the page's
+policy forbids. The same map gives the same text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from html import escape
+from math import ceil
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from ptmcad.answer.regionmap import Cell, Region, RegionMap
+from ptmcad.show.render.colours import Fill, fill_of
+from ptmcad.show.render.slivers import thin_regions, zooms
+from ptmcad.show.render.view import Shapes
+from ptmcad.show.report.frame import BOTTOM, LEFT, RIM, SIDE, frame
+from ptmcad.show.table import count_text
+from ptmcad.text.numerals import shortest_text
+
+Mark = tuple[str, tuple[float, float]]
+"""A letter and its place in the view, as fractions of the sides."""
+Label = tuple[int, float, float]
+"""A region and the place of its count."""
+
+SHOWN = 300
+"""Pixels of the map's side on a phone: regions thinner than three of them get a view of their own."""
+LABEL, _LETTER = 42, 0.55
+"""Size of the counts' type on phones, in the picture's units, and a character's width against it, on the whole."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """The whole window, and views of thin regions, as SVG; ``places`` are the samples' positions in the window."""
+
+    whole: str
+    details: tuple[str, ...]
+    places: tuple[tuple[float, float], ...]
+    thin_walls: bool
+    hidden: int
+
+
+def chart(seen: Shapes) -> Chart:
+    """The pictures of a map."""
+    result = seen.result
+    thin = thin_regions(seen, SHOWN)
+    views = zooms(seen, thin)
+    marks = [(chr(ord("A") + k), zoom) for k, zoom in enumerate(views)]
+    tips = [
+        (letter, seen.view.approximate_position(sliver.at)) for letter, zoom in marks for sliver in zoom.slivers[:1]
+    ]
+    places = tuple(seen.view.approximate_position((c.sample[0], c.sample[1])) for c in result.cells)
+    return Chart(
+        whole=_picture(seen, "map", tips, _region_labels(seen)),
+        details=tuple(_picture(zoom.outline, f"detail-{letter}", (), ()) for letter, zoom in marks),
+        places=places,
+        thin_walls=any(not separates for _, separates, _ in seen.walls()),
+        hidden=len(thin) - sum(len(zoom.slivers) for zoom in views),
+    )
+
+
+def pattern_defs(fills: Sequence[Fill]) -> str:
+    """The patterns that hatched fills refer to, as a hidden SVG."""
+    hatches = sorted({fill.hatch for fill in fills if fill.hatch})
+    if not hatches:
+        return ""
+    body = "".join(_pattern(hatch) for hatch in hatches)
+    return f'<svg class="defs" width="0" height="0" aria-hidden="true"><defs>{body}</defs></svg>'
+
+
+def hatch_id(hatch: str) -> str:
+    """The pattern's name: matplotlib's hatch character, which is repeated for density, as a number, and how often."""
+    return f"hatch-{ord(hatch[0]):x}-{len(hatch)}"
+
+
+def _pattern(hatch: str) -> str:
+    """A tile whose density follows the number of characters, as in the other pictures."""
+    size = round(48 / len(hatch), 1)
+    half = size / 2
+    marks = {
+        "/": f'<path d="M0 {size}L{size} 0"/>',
+        "\\": f'<path d="M0 0L{size} {size}"/>',
+        "x": f'<path d="M0 0L{size} {size}M0 {size}L{size} 0"/>',
+        "-": f'<path d="M0 {half}H{size}"/>',
+        "|": f'<path d="M{half} 0V{size}"/>',
+        "+": f'<path d="M0 {half}H{size}M{half} 0V{size}"/>',
+        ".": f'<circle class="dot" cx="{half}" cy="{half}" r="{size / 8:.2f}"/>',
+        "o": f'<circle cx="{half}" cy="{half}" r="{size / 4:.2f}"/>',
+        "*": f'<path d="M{half} {size / 5:.2f}V{size * 0.8:.2f}M{size / 5:.2f} {half}H{size * 0.8:.2f}'
+        f'M{size / 4:.2f} {size / 4:.2f}L{size * 0.75:.2f} {size * 0.75:.2f}"/>',
+    }
+    body = "".join(marks[c] for c in dict.fromkeys(hatch))
+    return (
+        f'<pattern id="{hatch_id(hatch)}" class="hatch" width="{size}" height="{size}" '
+        f'patternUnits="userSpaceOnUse">{body}</pattern>'
+    )
+
+
+def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[Label]) -> str:
+    result = seen.result
+    count = result.slice.count
+    plate = "plate" if result.cover is None else "undetermined"
+    parts = [
+        f'<svg id="{name}" class="map" viewBox="0 0 {LEFT + SIDE + RIM} {RIM + SIDE + BOTTOM}" role="group" '
+        f'aria-label="{escape(_window_text(seen))}">',
+        f'<clipPath id="{name}-window"><rect width="{SIDE}" height="{SIDE}"/></clipPath>',
+        f'<g transform="translate({LEFT} {RIM})">',
+        f'<rect class="{plate}" width="{SIDE}" height="{SIDE}"/><g clip-path="url(#{name}-window)">',
+    ]
+    for number, region in enumerate(result.regions):
+        outline = "".join(_closed(p) for p in seen.polygons(number))
+        if not outline:
+            continue
+        fill = fill_of(region, count)
+        parts.append(f'<path class="fill" fill="{fill.face}" d="{outline}"/>')
+        if fill.hatch:
+            parts.append(f'<path class="fill" fill="url(#{hatch_id(fill.hatch)})" d="{outline}"/>')
+    rim = "".join(_open(line) for line in seen.edges())
+    if rim:
+        parts.append(f'<path class="rim" d="{rim}"/>')
+    lines: dict[tuple[bool, int], list[str]] = {}
+    for component, separates, line in seen.walls():
+        lines.setdefault((separates, component), []).append(_open(line))
+    for (separates, component), pieces in sorted(lines.items()):
+        kind = "wall strong" if separates else "wall"
+        parts.append(f'<path class="{kind}" data-curve="{component}" d="{"".join(pieces)}"/>')
+    for region_number, x, y in labels:
+        text = count_text(result.regions[region_number], count)
+        parts.append(
+            f'<text class="count" x="{x * SIDE:.1f}" y="{(1 - y) * SIDE:.1f}" dy=".36em">{escape(text)}</text>'
+        )
+    parts += _cells(seen)
+    parts.append("</g>")
+    parts += frame(seen)
+    for letter, (x, y) in marks:
+        parts.append(
+            f'<g class="mark" transform="translate({x * SIDE:.1f} {(1 - y) * SIDE:.1f})"><circle r="13"/>'
+            f'<text dy=".36em">{letter}</text></g>'
+        )
+    parts.append('<circle class="sample" r="5" visibility="hidden"/></g></svg>')
+    return "".join(parts)
+
+
+def _window_text(seen: Shapes) -> str:
+    axes = seen.result.slice.axes
+    ends = (seen.view.x, seen.view.y)
+    spans = (f"{a.name} from {_short(e[0])} to {_short(e[1])}" for a, e in zip(axes, ends, strict=True))
+    return "Region map over " + " and ".join(spans)
+
+
+def _short(value: Fraction) -> str:
+    text = shortest_text(value)
+    return text if len(text) <= 12 else f"{float(value):.6g}" if abs(value) < 10**300 else text[:12] + "…"
+
+
+def _position(point: NDArray[np.float64]) -> str:
+    return f"{point[0] * SIDE:.2f} {(1 - point[1]) * SIDE:.2f}"
+
+
+def _open(line: NDArray[np.float64]) -> str:
+    return "M" + "L".join(_position(p) for p in line)
+
+
+def _closed(polygon: NDArray[np.float64]) -> str:
+    return _open(polygon) + "Z"
+
+
+def _cells(seen: Shapes) -> Iterator[str]:
+    """The cells of the view, from the left and from below, as areas that take pointer and focus."""
+    for number, polygons in seen.cells():
+        yield (
+            f'<path class="cell" data-cell="{number}" tabindex="-1" role="button" aria-pressed="false" '
+            f'aria-label="{escape(cell_text(seen.result, number))}" d="{"".join(map(_closed, polygons))}"/>'
+        )
+
+
+def cell_text(result: RegionMap, number: int) -> str:
+    """What a cell is, in words: its region, its counts, its sample."""
+    cell = result.cells[number]
+    at = ", ".join(f"{name} = {_short(cell.sample[name])}" for name in cell.sample.names)
+    return f"Cell {number} of region {cell.region}: {counts_text(cell)}; sample {at}"
+
+
+def counts_text(part: Cell | Region) -> str:
+    """The counts in words, as far as they are known."""
+    stable, total = part.stable, part.total
+    if part.admissible is not None:
+        known = replace(part, admissible=None)
+        more = f", {counts_text(known)}" if (stable, total) != (None, None) else ""
+        return f"{part.admissible} admissible{more}"
+    if stable is None and total is None:
+        return "counts not known"
+    if total is None:
+        return f"{stable} stable"
+    noun = "equilibrium" if total == 1 else "equilibria"
+    return f"{total} {noun}" if stable is None else f"{stable} stable of {total} {noun}"
+
+
+def _region_labels(seen: Shapes) -> list[Label]:
+    """For each region into which its count can be written, even in the larger type of phones, a point deep inside."""
+    pixels = 60
+    image = seen.raster(pixels, pixels)
+    found = []
+    for number, region in enumerate(seen.result.regions):
+        half = ceil(len(count_text(region, seen.result.slice.count)) * LABEL * _LETTER / 2 * pixels / SIDE) + 1
+        room = sliding_window_view(np.pad(image == number, ((2, 2), (half, half))), (5, 2 * half + 1)).all(axis=(2, 3))
+        if not room.any():
+            continue
+        while room.any():
+            last = room
+            padded = np.pad(room, 1)
+            inner = padded[1:-1] & padded[:-2] & padded[2:]
+            room = inner[:, 1:-1] & inner[:, :-2] & inner[:, 2:]
+        rows, columns = np.nonzero(last)
+        middle = int(np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2))
+        found.append((number, (columns[middle] + 0.5) / pixels, (rows[middle] + 0.5) / pixels))
+    return found

@@ -1,0 +1,102 @@
+"""Whether the numbers by which the parts of a map refer to each other lead anywhere.
+
+Guarantee: after `check_numbers` every reference of a map has its target, and its samples are in the window. Whether the
+map is true is `ptmcad.verify`'s question.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ptmcad.answer.regionmap import Cell, Region, RegionMap
+from ptmcad.errors import ConfigError
+from ptmcad.question.slice import Count
+
+MOST = 1000
+"""Equilibria that a fill can tell; no mechanism of two angles and three springs has so many."""
+
+
+def check_numbers(result: RegionMap) -> None:
+    """Check the references among stacks, cells, regions, components and critical values.
+
+    Raises
+    ------
+    ConfigError
+        With the first reference that leads nowhere.
+    """
+    base = result.base
+    for s, stack in enumerate(result.stacks):
+        _within(stack.cells, len(result.cells), f"stack {s}", "cell")
+        _within((w.component for w in stack.walls), len(result.components), f"stack {s}", "component")
+        ends = [end for end in (stack.left, stack.right) if end is not None]
+        _within(ends, len(result.critical_values), f"stack {s}", "critical value")
+        if len(stack.cells) != len(stack.walls) + 1:
+            raise _fault(f"stack {s} has {len(stack.cells)} cells and {len(stack.walls)} walls")
+        for wall in stack.walls:
+            component = result.components[wall.component]
+            if component.left_out or component.polynomial.degrees[1 - base] == 0:
+                raise _fault(f"stack {s} has a wall on component {wall.component}, which has no graph there")
+        for level, number in enumerate(stack.cells):
+            if (result.cells[number].stack, result.cells[number].level) != (s, level):
+                raise _fault(f"cell {number} is not at level {level} of stack {s}")
+    if result.cover is not None:
+        if result.stacks or result.components or any(cell.stack is not None for cell in result.cells):
+            raise _fault("it has a cover, as certified maps have, and stacks or curves, as exact ones")
+    elif sum(len(stack.cells) for stack in result.stacks) != len(result.cells):
+        raise _fault("not every cell is in one stack")
+    for n, cell in enumerate(result.cells):
+        _within((cell.region,), len(result.regions), f"cell {n}", "region")
+        _check_counts(cell, f"cell {n}")
+        # where only stable equilibria are counted, a certified map has no boxes of the others
+        expected = (cell.total, cell.stable) if result.cover is not None and cell.total is None else (cell.total,)
+        if cell.solutions and len(cell.solutions) not in expected:
+            raise _fault(f"cell {n} has {cell.total} equilibria and {len(cell.solutions)} boxes")
+        region = result.regions[cell.region]
+        if n not in region.cells:
+            raise _fault(f"cell {n} is in region {cell.region}, which does not have it")
+        for name in _told_by(result.slice.count):
+            if getattr(cell, name) != getattr(region, name):
+                raise _fault(f"cell {n} and its region {cell.region} differ in their counts")
+        if not all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, cell.sample, strict=True)):
+            raise _fault(f"the sample of cell {n} is not in the window")
+    for n, region in enumerate(result.regions):
+        most = max((n for n in (region.stable, region.total, region.admissible, *(region.index or ())) if n), default=0)
+        if region.area[0] > region.area[1]:
+            raise _fault(f"region {n} has an area below its own lower bound")
+        if most > MOST:
+            raise _fault(f"region {n} counts {most} equilibria, more than {MOST}")
+        _within(region.cells, len(result.cells), f"region {n}", "cell")
+        _check_counts(region, f"region {n}")
+        if not region.cells:
+            raise _fault(f"region {n} has no cells")
+        if any(result.cells[number].region != n for number in region.cells):
+            raise _fault(f"region {n} has a cell that is in another one")
+    for n, value in enumerate(result.critical_values):
+        if len(value.polynomial) < 2 or not value.polynomial[-1] or value.low > value.high:
+            raise _fault(f"critical value {n} is no root in an interval")
+
+
+def _check_counts(part: Cell | Region, place: str) -> None:
+    """The Morse index has to add up to the other counts, as far as these are known."""
+    if part.index is not None and (part.total, part.stable) != (sum(part.index), part.index[0]):
+        raise _fault(f"{place} has index {part.index}, {part.total} equilibria and {part.stable} stable ones")
+
+
+def _told_by(count: Count) -> tuple[str, ...]:
+    """The counts that are the same in all cells of a region."""
+    return {
+        Count.STABLE: ("stable",),
+        Count.TOTAL: ("total",),
+        Count.INDEX: ("stable", "total", "index"),
+        Count.ADMISSIBLE: ("admissible",),
+    }[count]
+
+
+def _within(numbers: Iterable[int], length: int, place: str, what: str) -> None:
+    for number in numbers:
+        if not 0 <= number < length:
+            raise _fault(f"{place} names {what} {number}, which is not there")
+
+
+def _fault(problem: str) -> ConfigError:
+    return ConfigError(f"the map contradicts itself: {problem}; check it with ptmcad verify")

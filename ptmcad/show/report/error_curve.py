@@ -1,0 +1,145 @@
+"""The curve of error against run time, read from a measurement's file and drawn with logarithmic axes.
+
+Guarantee: a file that is not such a measurement is refused with the place of the fault; every point of it is drawn and
+told in the table.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from html import escape
+from math import ceil, floor, log10
+from pathlib import Path
+
+from ptmcad.errors import ConfigError
+from ptmcad.show.document.node import Node
+from ptmcad.show.report.sections import table
+from ptmcad.text.textfile import read_text
+
+FORMAT = "ptmcad-error-time/1"
+MOST_BYTES = 1_000_000
+_MOST_SERIES, _MOST_POINTS = 8, 1000
+_WIDTH, _HEIGHT, _LEFT, _BOTTOM = 600, 360, 110, 100
+_MARKS = ("M-6 0a6 6 0 1 0 12 0a6 6 0 1 0 -12 0", "M-6 -6H6V6H-6Z", "M0 -7L7 6H-7Z", "M0 -8L8 0L0 8L-8 0Z")
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """Measurements of one method: pairs (seconds, error), both positive, in the order in which they are joined."""
+
+    name: str
+    points: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorCurve:
+    """What the error is, in words, and its measurements."""
+
+    error: str
+    series: tuple[Series, ...]
+
+
+def read_error_curve(path: Path) -> ErrorCurve:
+    """Read a measurement: ``{"format": FORMAT, "error": text, "series": [{"name": text, "points": [[s, e], ...]}]}``.
+
+    Raises
+    ------
+    ConfigError
+        When the file is missing or is no such measurement.
+    """
+    text = read_text(path, MOST_BYTES, f"a {FORMAT} file")
+    try:
+        return _decode(json.loads(text))
+    except (ValueError, RecursionError) as error:
+        raise ConfigError(f"is not a {FORMAT} file: {error}", file=str(path)) from error
+
+
+def _decode(data: object) -> ErrorCurve:
+    document = Node(data, "").record("format", "error", "series")
+    if document["format"].text() != FORMAT:
+        raise document["format"].fault(f"is not {FORMAT!r}")
+
+    def positive(node: Node) -> float:
+        value = node.number()
+        if value < 1e-300:
+            raise node.fault("is not positive")
+        return value
+
+    def pair(node: Node) -> tuple[float, float]:
+        seconds, error = node.each(positive, 2)
+        return seconds, error
+
+    def series(node: Node) -> Series:
+        s = node.record("name", "points")
+        points = s["points"].each(pair)
+        if not 0 < len(points) <= _MOST_POINTS:
+            raise s["points"].fault(f"has not 1 to {_MOST_POINTS} entries")
+        return Series(s["name"].line(60), points)
+
+    found = document["series"].each(series)
+    if not 0 < len(found) <= _MOST_SERIES:
+        raise document["series"].fault(f"has not 1 to {_MOST_SERIES} entries")
+    return ErrorCurve(document["error"].line(200), found)
+
+
+def error_section(curve: ErrorCurve) -> str:
+    """The section: picture, legend and table."""
+    rows = ((escape(s.name), f"{x:.4g}", f"{y:.3g}") for s in curve.series for x, y in s.points)
+    legend = "".join(f"<li>{_sample(k)}<span>{escape(s.name)}</span></li>" for k, s in enumerate(curve.series))
+    return (
+        '<section aria-labelledby="h-errors"><h2 id="h-errors">Error against time</h2>'
+        f'<p>{escape(curve.error)}</p>{"".join(_picture(curve))}<ul class="legend">{legend}</ul>'
+        f"<details><summary>The measurements</summary>{table(('method', 'seconds', 'error'), rows, 'Measurements')}"
+        "</details></section>"
+    )
+
+
+def _sample(number: int) -> str:
+    """The line and the mark of a series, for the legend."""
+    mark = _MARKS[number % len(_MARKS)]
+    return (
+        '<svg class="swatch line" viewBox="-15 -9 30 18" aria-hidden="true">'
+        f'<path class="series s{number}" d="M-14 0H14"/><path class="point s{number}" d="{mark}"/></svg>'
+    )
+
+
+def _picture(curve: ErrorCurve) -> Iterator[str]:
+    points = [point for s in curve.series for point in s.points]
+    (left, right), (low, high) = (_decades([p[k] for p in points]) for k in (0, 1))
+    yield f'<svg class="map chart" viewBox="0 0 {_LEFT + _WIDTH + 24} {24 + _HEIGHT + _BOTTOM}" role="img" '
+    yield f'aria-label="{escape(curve.error)}, against seconds"><g transform="translate({_LEFT} 24)">'
+    for decade in range(left, right + 1, max(1, (right - left) // 6)):
+        x = (decade - left) / (right - left) * _WIDTH
+        yield f'<path class="grid" d="M{x:.1f} 0V{_HEIGHT}"/>'
+        yield f'<text class="number x" x="{x:.1f}" y="{_HEIGHT + 14}" dy=".8em">{_power(decade)}</text>'
+    for decade in range(low, high + 1, max(1, (high - low) // 6)):
+        y = _HEIGHT - (decade - low) / (high - low) * _HEIGHT
+        yield f'<path class="grid" d="M0 {y:.1f}H{_WIDTH}"/>'
+        yield f'<text class="number y" x="-14" y="{y:.1f}" dy=".36em">{_power(decade)}</text>'
+    yield f'<text class="name" x="{_WIDTH / 2}" y="{_HEIGHT + _BOTTOM - 16}">seconds</text>'
+    yield f'<text class="name" transform="translate({36 - _LEFT} {_HEIGHT / 2}) rotate(-90)">error</text>'
+    yield f'<rect class="frame" width="{_WIDTH}" height="{_HEIGHT}"/>'
+    for k, s in enumerate(curve.series):
+        places = [
+            (
+                (log10(x) - left) / (right - left) * _WIDTH,
+                _HEIGHT - (log10(y) - low) / (high - low) * _HEIGHT,
+            )
+            for x, y in s.points
+        ]
+        yield f'<path class="series s{k}" d="M{"L".join(f"{x:.1f} {y:.1f}" for x, y in places)}"/>'
+        for x, y in places:
+            mark = _MARKS[k % len(_MARKS)]
+            yield f'<path class="point s{k}" transform="translate({x:.1f} {y:.1f})" d="{mark}"/>'
+    yield "</g></svg>"
+
+
+def _decades(values: list[float]) -> tuple[int, int]:
+    low, high = floor(log10(min(values))), ceil(log10(max(values)))
+    return (low, high) if low < high else (low, low + 1)
+
+
+def _power(decade: int) -> str:
+    return f"10{str(decade).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"

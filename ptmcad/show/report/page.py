@@ -1,0 +1,166 @@
+"""The page: the template filled with the map, its data and the sections.
+
+Guarantee: the policy in its head allows nothing but the page's own style sheet and script, told by their hashes; the
+data can not end the element it stands in. The same result gives the same bytes, timings apart.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+from html import escape
+from importlib.resources import files
+from string import Template
+from typing import Any
+
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Support
+from ptmcad.show.render.axes import symbol
+from ptmcad.show.render.colours import fill_of
+from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.view import Shapes
+from ptmcad.show.report import sections
+from ptmcad.show.report.chart import Chart, chart, counts_text, pattern_defs
+from ptmcad.show.report.consistency import check_numbers
+from ptmcad.show.report.equilibria import MECHANISM, at_sample, both
+from ptmcad.show.report.error_curve import ErrorCurve, error_section
+from ptmcad.show.report.formulas import curves
+from ptmcad.show.report.frame import SIDE
+from ptmcad.show.table import certified_digits
+from ptmcad.text.numerals import text_of
+from ptmcad.version import __version__
+
+SCRIPTS = ("theme.js", "mechanism.js", "landscape.js", "cells.js")
+"""In the order in which they run."""
+
+
+def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None = None) -> str:
+    """The whole page as HTML text.
+
+    Parameters
+    ----------
+    timings : whether run times are told; without them the text is the same for the same slice.
+    errors : the curve of error against time, if it was measured.
+
+    Raises
+    ------
+    ConfigError
+        When the map is a certified one, or contradicts itself so that it can not be drawn.
+    """
+    check_numbers(result)
+    seen = _outline(result)
+    drawn = chart(seen)
+    style, script = _asset("page.css"), "".join(_asset(name) for name in SCRIPTS)
+    return Template(_asset("page.html")).substitute(
+        policy=escape(_policy(style, script)),
+        title=escape(result.slice.heading),
+        name=escape(result.slice.name),
+        banner=sections.banner(result),
+        question=sections.question(result),
+        patterns=pattern_defs([fill_of(r, result.slice.count) for r in result.regions]),
+        map=drawn.whole,
+        details=_details(drawn),
+        legend=sections.legend(result, drawn),
+        regions=sections.regions(result),
+        curves=_curves(result),
+        plan=sections.left_out(result),
+        times=sections.times_and_precision(result, timings),
+        errors=error_section(errors) if errors else "",
+        again=sections.again(result),
+        version=escape(__version__),
+        data=harmless(_data(result, drawn)),
+        style=style,
+        script=script,
+    )
+
+
+def _outline(result: RegionMap) -> Shapes:
+    try:
+        return shapes(result)
+    except (IndexError, ValueError, ArithmeticError) as error:
+        raise ConfigError(f"the map contradicts itself ({error}); check it with ptmcad verify") from error
+
+
+def _curves(result: RegionMap) -> str:
+    """The section of the boundary curves; a certified map knows only rectangles that hold them."""
+    if result.cover is not None:
+        return ""
+    return '<section aria-labelledby="h-curves"><h2 id="h-curves">Boundary curves</h2>' + curves(result) + "</section>"
+
+
+def _details(drawn: Chart) -> str:
+    """The views of thin regions below the map."""
+    if not drawn.details:
+        return ""
+    views = "".join(
+        f"<figure>{picture}<figcaption>{chr(ord('A') + k)}, zoomed</figcaption></figure>"
+        for k, picture in enumerate(drawn.details)
+    )
+    return f'<div class="details" role="group" aria-label="Views of thin regions">{views}</div>'
+
+
+def _asset(name: str) -> str:
+    return (files("ptmcad.show.report") / name).read_text(encoding="utf-8")
+
+
+def _policy(style: str, script: str) -> str:
+    return (
+        f"default-src 'none'; style-src '{_hash(style)}'; script-src '{_hash(script)}'; base-uri 'none'; "
+        "form-action 'none'"
+    )
+
+
+def _hash(text: str) -> str:
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+
+
+def harmless(data: object) -> str:
+    """JSON that neither closes nor opens an element, nor is cut by an old line separator."""
+    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    for character in "<>&\u2028\u2029":
+        text = text.replace(character, f"\\u{ord(character):04x}")
+    return text
+
+
+def _drawing() -> dict[str, Any]:
+    """What the script draws of the mechanism, by the numbers of its points."""
+    number = {name: n for n, name in enumerate(MECHANISM.points)}
+    return {
+        "points": [symbol(name) for name in MECHANISM.points],
+        "rods": [[number[a], number[b]] for a, b in MECHANISM.bars],
+        "springs": [[number[spring.start], number[spring.end]] for spring in MECHANISM.springs],
+        "loaded": [number[load.point] for load in MECHANISM.loads],
+        "moving": [number[name] for name in MECHANISM.moving],
+        "angles": [symbol(name) for name in MECHANISM.angles],
+        "pinned": number[MECHANISM.held(Support.PIN)],
+        "sliding": number[MECHANISM.held(Support.SLIDER_X)],
+    }
+
+
+def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
+    """What the script shows and draws."""
+    names = result.slice.axis_names
+    return {
+        "side": SIDE,
+        "base": result.base,
+        "axes": [symbol(name) for name in names],
+        "drawable": result.slice.mechanism == MECHANISM.name,
+        "mechanism": _drawing(),
+        "regions": [{"area": certified_digits(r.area), "counts": counts_text(r)} for r in result.regions],
+        "stacks": [list(s.cells) for s in result.stacks],
+        "cells": [
+            {
+                "at": [round(x * SIDE, 2), round((1 - y) * SIDE, 2)],
+                "stack": cell.stack,
+                "level": cell.level,
+                "region": cell.region,
+                "counts": counts_text(cell),
+                "index": list(cell.index) if cell.index else None,
+                "sample": [[name, both(cell.sample[name]), text_of(cell.sample[name])] for name in names],
+                **at_sample(result, cell),
+            }
+            for cell, (x, y) in zip(result.cells, drawn.places, strict=True)
+        ],
+    }

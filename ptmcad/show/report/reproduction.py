@@ -1,0 +1,138 @@
+"""The problem record and the command lines that pose a result's question again.
+
+Guarantee: a record or command line that is returned, read by `ptmcad.question.config`, gives the result's slice,
+parameter for parameter: that is tried before it is returned. What can not be posed again is None.
+"""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Kind
+from ptmcad.question.config import slice_from_mapping, slice_from_options
+from ptmcad.question.slice import Count, Slice
+from ptmcad.text.numerals import text_of
+from ptmcad.text.yamltree import plain_data, read_text
+
+
+@dataclass(frozen=True, slots=True)
+class Reproduction:
+    """Ways to the same slice: a record in YAML, and a command line that needs none (it can not set the title)."""
+
+    record: str | None
+    command: str | None
+
+
+def reproduction(slice: Slice) -> Reproduction:
+    """How the question of a slice is put again."""
+    # what the user wrote, if that gives the same functions; else the functions themselves
+    for values in (_given(slice, slice.text), _given(slice, {})):
+        record = _yaml(_mapping(slice, values))
+        if _same(slice, record):
+            return Reproduction(record, _command(slice, values))
+    return Reproduction(None, None)
+
+
+def _given(slice: Slice, written: Mapping[str, str]) -> dict[str, str]:
+    """The values that a record has to give: not those of the axes, nor the defaults."""
+    names = slice.axis_names
+    mechanism = slice.description
+    always = (mechanism.first(Kind.LENGTH), mechanism.first(Kind.STIFFNESS))  # what the reader compares others with
+    # shorthands are no parameters where the springs do not have them, but other texts may name them
+    alone = {name: text for name, text in written.items() if name not in slice.parameters}
+    values = {
+        name: text for name, text in alone.items()
+        if mechanism.kind(name) is not Kind.FREE_LENGTH or text != mechanism.parameters[name].default
+    }  # fmt: skip
+    for name, expression in slice.parameters.items():
+        text = written.get(name, expression.to_text(names))
+        known = mechanism.parameters.get(name)
+        if known is not None and name not in names and known.alias_of in alone and known.kind is Kind.STIFFNESS:
+            values[name] = text  # else the shorthand would be that spring's too
+            continue
+        if name in names or (known is not None and text == known.default and name not in always):
+            continue
+        if known is not None and expression == slice.parameters.get(known.alias_of):
+            continue
+        values[name] = text
+    for shorthand, own in mechanism.shorthands.items():
+        if mechanism.kind(shorthand) is Kind.FREE_LENGTH and shorthand not in (*names, *alone):
+            free = {values.get(name, "") for name in own}
+            if len(free) == 1 and (text := free.pop()) and shorthand not in text:
+                values = {name: value for name, value in values.items() if name not in own} | {shorthand: text}
+    return values
+
+
+def _mapping(slice: Slice, values: Mapping[str, str]) -> dict[str, object]:
+    return {
+        "name": slice.name,
+        **({"title": slice.title} if slice.title else {}),
+        "mechanism": slice.mechanism,
+        "parameters": dict(values),
+        "axes": {axis.name: [text_of(axis.low), text_of(axis.high)] for axis in slice.axes},
+        "count": slice.count.value,
+    }
+
+
+def _same(slice: Slice, record: str) -> bool:
+    try:
+        found = slice_from_mapping(plain_data(read_text(record)))
+    except ConfigError:  # then this way does not lead to the slice, which is what is asked
+        return False
+    return _core(found) == _core(slice)
+
+
+def _core(slice: Slice) -> Slice:
+    """The slice without what does not bear on the computation."""
+    return replace(slice, reference={}, text={})
+
+
+def _command(slice: Slice, values: Mapping[str, str]) -> str | None:
+    axes = ",".join(slice.axis_names)
+    ranges = [f"{a.name}={text_of(a.low)}:{text_of(a.high)}" for a in slice.axes]
+    sets = [f"{name}={value}" for name, value in values.items()]
+    try:
+        found = slice_from_options(slice=axes, sets=sets, ranges=ranges, count=slice.count)
+    except ConfigError:
+        return None
+    if replace(_core(found), name="", title="") != replace(_core(slice), name="", title=""):
+        return None
+    words = ["ptmcad", "classify", "--slice", axes]
+    for text in ranges:
+        words += ["--range", text]
+    for text in sets:
+        words += ["--set", text]
+    if slice.count is not Count.STABLE:
+        words += ["--count", slice.count.value]
+    return shlex.join(words)
+
+
+def _yaml(mapping: Mapping[str, object]) -> str:
+    """The record as YAML; every text in double quotes, which take JSON's escapes."""
+    lines = []
+    for key, value in mapping.items():
+        if isinstance(value, dict):
+            inner = ", ".join(f"{_quoted(k)}: {_value(v)}" for k, v in value.items())
+            lines.append(f"{key}: {{{inner}}}")
+        else:
+            lines.append(f"{key}: {_value(value)}")
+    return "\n".join(lines) + "\n"
+
+
+def _value(value: object) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(_quoted(v) for v in value)}]"
+    return _quoted(value)
+
+
+def _quoted(value: object) -> str:
+    text = str(value)
+    plain = text.isascii() and text.replace("_", "a").isalnum() and text[0].isalpha() and text.lower() not in _WORDS
+    return text if plain else json.dumps(text, ensure_ascii=False)
+
+
+_WORDS = frozenset(("null", "true", "false", "yes", "no", "on", "off", "y", "n", "nan", "inf"))

@@ -1,0 +1,244 @@
+"""The page's sections below the map: the question, regions, what was left out, times, how to do it again.
+
+Guarantee: whatever comes from the result goes through `html.escape`, also what the reader of results has let pass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from html import escape
+
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.question.slice import Count
+from ptmcad.show.render.colours import Fill, fill_of
+from ptmcad.show.render.legend import entries, percent
+from ptmcad.show.report.bounds import exactly
+from ptmcad.show.report.chart import Chart, counts_text, hatch_id
+from ptmcad.show.report.equilibria import both, told
+from ptmcad.show.report.reproduction import reproduction
+from ptmcad.show.table import certified_digits
+from ptmcad.text.numerals import decimal, text_of
+
+_COUNTED = {
+    Count.STABLE: "regions are told apart by the number of stable equilibria",
+    Count.TOTAL: "regions are told apart by the number of equilibria",
+    Count.INDEX: "regions are told apart by the numbers of minima, saddles and maxima",
+    Count.ADMISSIBLE: "regions are told apart by the number of stable equilibria with every spring longer than its "
+    "free length",
+}
+_STATUS = {
+    Status.EXACT: "Exact: every point of the window off the boundary curves is in a region, and the counts are proved.",
+    Status.CERTIFIED: "Certified: counts are proved wherever one is given.",
+    Status.UNDECIDED: "Undecided: the result gives no counts.",
+    Status.PARTIAL: "Partial: a limit stopped the computation before its end.",
+}
+Row = Iterable[str]
+
+
+def table(head: Row, rows: Iterable[Row], label: str, stacked: bool = False) -> str:
+    """A table of markup in a box that scrolls by itself; a stacked one has its entries below each other on phones."""
+    names = tuple(head)
+    kind = ' class="stacked"' if stacked else ""
+    above = "".join(f'<th scope="col">{name}</th>' for name in names)
+    body = "".join(f"<tr>{''.join(map(_entry, names, row))}</tr>" for row in rows)
+    return (
+        f'<div class="scroll" role="region" tabindex="0" aria-label="{escape(label)}"><table{kind}>'
+        f"<thead><tr>{above}</tr></thead><tbody>{body}</tbody></table></div>"
+    )
+
+
+def _entry(name: str, entry: str) -> str:
+    """An entry with its column's name, which takes its place before it where the screen is narrow."""
+    return f'<td data-label="{escape(name)}"><div>{entry}</div></td>'
+
+
+def copied(text: str, label: str) -> str:
+    """A text in a box with a button that copies it."""
+    return (
+        f'<div class="copied"><button type="button" class="copy">Copy {escape(label)}</button>'
+        f'<pre tabindex="0" aria-label="{escape(label)}"><code>{escape(text)}</code></pre></div>'
+    )
+
+
+def swatch(fill: Fill) -> str:
+    """A small square of a fill."""
+    hatch = f'<rect width="30" height="18" fill="url(#{hatch_id(fill.hatch)})"/>' if fill.hatch else ""
+    return (
+        f'<svg class="swatch" viewBox="0 0 30 18" aria-hidden="true"><rect width="30" height="18" fill="{fill.face}"/>'
+        f"{hatch}</svg>"
+    )
+
+
+def banner(result: RegionMap) -> str:
+    """A warning above everything for a result that is not whole."""
+    if result.status is Status.EXACT and result.undetermined == 0:
+        return ""
+    text = _STATUS.get(result.status, "The result is of an unusual kind.")
+    if result.cover is not None:
+        text += f" Undetermined: {percent(result.undetermined)} of the window, drawn in grey."
+    elif result.undetermined:
+        text += f" The undecided fraction of the window is {both(result.undetermined)}."
+    if result.status is Status.PARTIAL:
+        text += " What is missing below was not computed; what is there is proved, but areas may not be known yet."
+    return f'<p class="banner" role="status"><strong>{escape(result.status.value.capitalize())} result.</strong> ' \
+           f"{escape(text)}</p>"  # fmt: skip
+
+
+def question(result: RegionMap) -> str:
+    """What was asked: mechanism, axes, parameters, count."""
+    slice = result.slice
+    axes = "; ".join(f"{a.name} from {both(a.low)} to {both(a.high)}" for a in slice.axes)
+    names = slice.axis_names
+    values = [(n, e.to_text(names)) for n, e in told(slice.parameters).items() if n not in names]
+    shown = ", ".join(f"{n} = {v}" for n, v in values if v != "0")
+    zero = ", ".join(n for n, v in values if v == "0")
+    mechanism = "the planar tensegrity mechanism of Wenger and Chablat" if slice.mechanism == "ptm" else slice.mechanism
+    items = [
+        ("Mechanism", mechanism),
+        ("Axes", axes),
+        ("Parameters", shown + (f"{'; ' if shown else ''}zero: {zero}" if zero else "")),
+        ("Count", _COUNTED[slice.count]),
+        ("Answer", answer(result)),
+    ]
+    return "<dl>" + "".join(f"<dt>{escape(a)}</dt><dd>{escape(b)}</dd>" for a, b in items) + "</dl>"
+
+
+def answer(result: RegionMap) -> str:
+    """The result in one line."""
+    cells, regions = len(result.cells), len(result.regions)
+    if not cells:
+        return f"no cells were computed; {result.status.value}"
+    if result.cover is not None:
+        return (
+            f"{regions} region{'s' * (regions != 1)}, {percent(result.undetermined)} of the window undetermined; "
+            f"{result.status.value}"
+        )
+    curves = sum(c.separates for c in result.components)
+    return (
+        f"{regions} region{'s' * (regions != 1)} in {cells} cell{'s' * (cells != 1)}, parted by {curves} "
+        f"curve{'s' * (curves != 1)}; {result.status.value}"
+    )
+
+
+def legend(result: RegionMap, chart: Chart) -> str:
+    """What colours and lines mean, in words."""
+    parts = []
+    for entry in entries(result, chart.thin_walls, samples=False, hidden=chart.hidden):
+        match entry.mark:
+            case Fill() as fill:
+                parts.append(f"<li>{swatch(fill)}<span>{escape(': '.join(_head_and_rest(entry.lines)))}</span></li>")
+            case float(width):
+                line = f'<path class="{"wall strong" if width > 1 else "wall"}" d="M0 9H30"/>'
+                mark = f'<svg class="swatch line" viewBox="0 0 30 18" aria-hidden="true">{line}</svg>'
+                parts.append(f"<li>{mark}<span>{escape(' '.join(entry.lines))}</span></li>")
+            case _ if entry.lines:
+                parts.append(f"<li><b>{escape(' '.join(entry.lines))}</b></li>")
+    return f'<ul class="legend" aria-label="Legend">{"".join(parts)}</ul>'
+
+
+def _head_and_rest(lines: tuple[str, ...]) -> tuple[str, ...]:
+    """A count, and what is said about its regions in one line."""
+    return tuple(" ".join(part) for part in (lines[:1], lines[1:]) if part)
+
+
+def regions(result: RegionMap) -> str:
+    """Every region with counts, area and cells."""
+    rows = []
+    for number, region in enumerate(result.regions):
+        index = "-".join(map(str, region.index)) if region.index else ""
+        buttons = "".join(f'<button type="button" class="chip" data-cell="{n}">{n}</button>' for n in region.cells)
+        low, high = region.area
+        middle = certified_digits(region.area)
+        if result.cover is not None:
+            bounds = f"proved: {decimal(low, up=False, digits=7)} to {decimal(high, up=True, digits=7)}"
+        elif low == high:
+            bounds = f"exactly {text_of(low)}"
+        else:
+            width = certified_digits(exactly(high - low), 1)
+            bounds = f"bounds {width} apart"
+        sample = ", ".join(f"{escape(n)} = {escape(both(region.sample[n]))}" for n in region.sample.names)
+        rows.append(
+            (
+                f"{swatch(fill_of(region, result.slice.count))} {number}",
+                escape(counts_text(region)) + (f" ({escape(index)})" if index else ""),
+                f"{middle}<br><small>{bounds}</small>",
+                sample,
+                f'<span class="chips">{buttons}</span>',
+            )
+        )
+    if not rows:
+        return "<p>No regions are known yet.</p>"
+    note = "" if all(r.index is None for r in result.regions) else "<p>In brackets: minima-saddles-maxima.</p>"
+    return table(("region", "count", "area", "sample", "cells"), rows, "Regions", stacked=True) + note
+
+
+def left_out(result: RegionMap) -> str:
+    """The plan: what was done and what was not, and why."""
+    done = [s for s in result.plan if s.done]
+    saved = [s for s in result.plan if not s.done]
+
+    def listed(steps: Iterable[tuple[str, str]]) -> str:
+        return "<ul>" + "".join(f"<li>{escape(a)} <small>({escape(b)})</small></li>" for a, b in steps) + "</ul>"
+
+    parts = []
+    if saved:
+        parts.append("<h3>Left out</h3>" + listed((s.what, s.reason) for s in saved))
+    if done:
+        parts.append("<h3>Computed</h3>" + listed((s.what, s.reason) for s in done))
+    return "".join(parts) or "<p>The result holds no plan.</p>"
+
+
+def times_and_precision(result: RegionMap, timings: bool) -> str:
+    """Seconds by stage, the bits that were needed, and versions."""
+    return "".join(_times_and_precision(result, timings))
+
+
+def _times_and_precision(result: RegionMap, timings: bool) -> Iterator[str]:
+    if timings and result.timings:
+        rows = [(escape(name), f"{seconds:.4f}") for name, seconds in result.timings.items()]
+        yield table(("stage", "seconds"), rows, "Times")
+    if result.precision:
+        bits = ", ".join(f"{name} {value} bits" for name, value in result.precision.items())
+        yield f"<p>Precision that was needed: {escape(bits)}.</p>"
+    if result.versions:
+        versions = ", ".join(f"{name} {value}" for name, value in result.versions.items())
+        yield f"<p>Computed with {escape(versions)}.</p>"
+
+
+def again(result: RegionMap) -> str:
+    """How to compute the result anew and how to check it."""
+    return "".join(_again(result))
+
+
+def _again(result: RegionMap) -> Iterator[str]:
+    name = result.slice.name
+    found = reproduction(result.slice)
+    if found.record is None:
+        yield "<p>No problem record gives this slice: the result was not made by ptmcad classify, or was changed.</p>"
+    else:
+        yield f"<p>Save this problem record as <code>{escape(name)}.yaml</code>:</p>"
+        yield copied(found.record, "the record")
+        yield "<p>and run</p>"
+        yield copied(f"ptmcad classify {name}.yaml", "the command")
+    if found.command is not None:
+        yield "<p>Without a record, the same slice under another name:</p>"
+        yield copied(found.command, "the whole command")
+    if result.cover is None:
+        yield (
+            "<p>Two runs give the same result, times apart. Only the bounds of areas depend on a further option, "
+            "<code>--area-tolerance</code>.</p><h3>Check it</h3><p>The result carries its proof. This checks it by "
+            "methods that share no code with those that made it:</p>"
+        )
+    else:
+        yield (
+            "<p>The option <code>--tolerance</code> says how much may stay undetermined; a longer run goes on from "
+            "this result with <code>--resume</code>.</p><h3>Check it</h3><p>This proves the counts again, and a random "
+            "sample of what encloses the curves, by other interval methods:</p>"
+        )
+    yield copied(f"ptmcad verify {name}.json", "the check")
+    yield "<p>For one point:</p>"
+    sample = result.regions[0].sample if result.regions else None
+    first, second = result.slice.axes
+    at = (sample[0], sample[1]) if sample else ((first.low + first.high) / 2, (second.low + second.high) / 2)
+    point = ",".join(f"{axis.name}={text_of(v)}" for axis, v in zip(result.slice.axes, at, strict=True))
+    yield copied(f"ptmcad locate {name}.json --at {point}", "the question")

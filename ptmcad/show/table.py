@@ -1,0 +1,142 @@
+"""The five-line table of a region map for the terminal."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from fractions import Fraction
+
+from ptmcad.answer.regionmap import Region, RegionMap, Status
+from ptmcad.cover.rectangles import Cover
+from ptmcad.question.slice import Count
+from ptmcad.text.numerals import decimal, magnitude
+
+_NAMES = {
+    Count.STABLE: "stable",
+    Count.TOTAL: "in all",
+    Count.INDEX: "(minima, saddles, maxima)",
+    Count.ADMISSIBLE: "stable and admissible",
+}
+
+
+def count_text(region: Region, count: Count) -> str:
+    """The count by which regions are told apart, as text."""
+    if count is Count.STABLE:
+        return str(region.stable)
+    if count is Count.TOTAL:
+        return str(region.total)
+    if count is Count.ADMISSIBLE:
+        return str(region.admissible)
+    return "({}, {}, {})".format(*region.index) if region.index else "?"
+
+
+def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
+    """The longest decimal, of at most ``most`` digits, that is within one unit of its last digit of both bounds.
+
+    Two decimals, joined by "to", when not even two digits are certain (or the one that is asked for).
+    """
+    low, high = bounds
+    middle = (low + high) / 2
+    if high == 0:
+        return "0"
+    top = magnitude(middle)
+    for exponent in range(top - most, top + (most == 1)):
+        unit = Fraction(10) ** exponent
+        digits = round(middle / unit)
+        if len(str(digits)) <= most and digits > 0 and high - digits * unit <= unit and digits * unit - low <= unit:
+            return decimal(digits * unit, up=False, digits=most)
+    return f"{decimal(low, up=False, digits=2)} to {decimal(high, up=True, digits=2)}"
+
+
+def interval_text(bounds: tuple[Fraction, Fraction]) -> str:
+    """Both bounds, rounded outwards by a hundredth of their distance at most.
+
+    >>> interval_text((Fraction("1.69822"), Fraction("1.75450"))), interval_text((Fraction(0), Fraction(2)))
+    ('1.6982 to 1.7545', '0 to 2')
+    """
+    low, high = bounds
+    if low >= high:
+        return certified_digits(bounds)
+    digits = max(2, magnitude(high) - magnitude(high - low) + 3)
+    return f"{_down_to(low, digits, high)} to {decimal(high, up=True, digits=digits)}"
+
+
+def _down_to(value: Fraction, digits: int, largest: Fraction) -> str:
+    """The value rounded down to the decimal place that ``digits`` digits of the largest end in."""
+    unit = Fraction(10) ** (magnitude(largest) + 1 - digits)
+    return decimal(value // unit * unit, up=False)
+
+
+def _short(value: Fraction) -> str:
+    """A number, not negative, in two digits, of any size."""
+    return (
+        "0.0e+00" if value == 0 else f"{float(value):.1e}" if abs(magnitude(value)) < 300 else f"1e{magnitude(value)}"
+    )
+
+
+def _curves(result: RegionMap) -> str:
+    names = result.slice.axis_names
+    alike = Counter(
+        (c.kind.value, c.polynomial.degrees, len(c.polynomial.terms)) for c in result.components if c.separates
+    )
+    curves = "; ".join(
+        f"{n} {kind} of degree {degrees[0]} in {names[0]}, {degrees[1]} in {names[1]} ({terms} terms)"
+        for (kind, degrees, terms), n in alike.items()
+    )
+    return f"curves    {curves or 'none separates counts'}"
+
+
+def _covered(cover: Cover) -> str:
+    n = len(cover.rectangles)
+    return f"cover     {n} rectangle{'s' * (n != 1)} around the curves where counts change"
+
+
+_Bounds = tuple[str, tuple[Fraction, Fraction]]
+
+
+def _by_count(bounds: Sequence[_Bounds], result: RegionMap) -> list[_Bounds]:
+    """The area of all points with one count: at least that of its cells, and with all that is undetermined at most.
+
+    A certified map may have many small regions; this is also what they leave out.
+    """
+    first, second = result.slice.axes
+    undetermined = result.undetermined * (first.high - first.low) * (second.high - second.low)
+    found: list[_Bounds] = []
+    for text in sorted({text for text, _ in bounds}):
+        low = sum((area[0] for other, area in bounds if other == text), Fraction(0))
+        found.append((text, (low, low + undetermined)))
+    return found
+
+
+def table(result: RegionMap) -> str:
+    """Regions, counts, areas, boundary curves with degrees (or the cover), time and error."""
+    count = result.slice.count
+    tally = Counter(count_text(r, count) for r in result.regions)
+    counts = "; ".join(f"{text} {_NAMES[count]}: {n} region{'s' * (n > 1)}" for text, n in sorted(tally.items()))
+    bounds = [(count_text(r, count), r.area) for r in result.regions]
+    if result.cover is not None:
+        bounds = _by_count(bounds, result)
+    told = certified_digits if result.cover is None else interval_text
+    areas = "; ".join(f"{text}: {told(area)}" for text, area in bounds)
+    if result.status is Status.EXACT and len(bounds) > 1 and not any(low for _, (low, _) in bounds):
+        areas = "not computed"
+    widths = [(high - low) / low for _, (low, high) in bounds if low]
+    known = widths and len(widths) == len(bounds) and min(widths) >= 0  # a damaged file may say anything
+    error = _short(max(widths)) if known else "unknown"
+    bound = "no area bounds" if areas == "not computed" else f"area bounds within {error}"
+    if result.cover is not None and bounds:
+        # relative to a region that is hardly larger than its border a width says nothing
+        bound = f"area bounds at most {_short(max(high - low for _, (low, high) in bounds))} apart"
+    seconds = result.timings.get("total")
+    time = "not recorded" if seconds is None else f"{seconds:.2f} s"
+    share = float(result.undetermined)  # nothing is misclassified by either engine, see docs/error.md
+    wrong = "error 0, nothing undetermined" if share == 0 else f"error {share:.2g}, the undetermined share"
+    return "\n".join(
+        [
+            f"regions   {len(result.regions)} of {len(result.cells)} cells, {result.status.value}",
+            f"counts    {counts or 'none yet'}",
+            f"areas     {areas or 'none yet'}",
+            _curves(result) if result.cover is None else _covered(result.cover),
+            f"time      {time}; {wrong}; {bound}",
+        ]
+    )

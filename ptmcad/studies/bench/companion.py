@@ -1,0 +1,143 @@
+"""The rival that people write: on an N x N grid, eigenvalues of the companion matrix of a sextic in tan(theta2/2).
+
+Guarantee: none for the counts, as with every such program; they are what floating point and a tolerance say. The same
+input gives the same counts.
+
+All of it is vectorised: eigenvalues of stacked companion matrices (numpy, hence LAPACK), imaginary parts below
+`IMAGINARY` dropped, two Newton steps on what is left, theta1 from the first equation, stability from the Hessian's
+signs. It runs as ``python -m ptmcad.studies.bench.companion QUESTION N RESULT`` and imports no algebra.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+IMAGINARY = 1e-7
+"""Relative size of imaginary parts that are taken for rounding; nearby values change the result little."""
+POLISHING = 2
+AT_ONCE = 40_000
+"""Points whose matrices are in memory together."""
+LEADING = 1e-14
+"""A leading coefficient that is relatively smaller everywhere in the window is taken for zero: the degree is lower."""
+
+Values = dict[str, Array]
+
+
+def grid_values(question: dict[str, Any], n: int) -> Values:
+    """The mechanism's parameters at the n x n pixel centres, of shape (n * n,), the second axis running fastest."""
+    (x0, x1), (y0, y1) = question["window"]
+    x = x0 + (x1 - x0) * (np.arange(n) + 0.5) / n
+    y = y0 + (y1 - y0) * (np.arange(n) + 0.5) / n
+    first, second = (a.ravel() for a in np.meshgrid(x, y, indexing="ij"))
+
+    def evaluated(terms: list[list[float]]) -> Array:
+        total = np.zeros(n * n)
+        for i, j, c in terms:
+            total += c * first ** int(i) * second ** int(j)
+        return total
+
+    return {name: evaluated(above) / evaluated(below) for name, (above, below) in question["parameters"].items()}
+
+
+def sextics(p: Values) -> Array:
+    """Coefficients in t = tan(theta2/2), the highest first, of shape (points, 7); see `ptmcad.studies.bench.qepcad`."""
+    b1, b2 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
+    zero = np.zeros_like(b1)
+    # numerators over 1 + t^2, constant term first
+    v = np.stack([p["F3"], 2 * b1, -p["F3"]], axis=1)
+    w = np.stack([-p["F4"], 2 * b2, p["F4"]], axis=1)
+    square = b1 * b1 + (p["k3"] * p["L2"]) ** 2 + p["F3"] ** 2
+    along, up = 2 * b1 * p["k3"] * p["L2"], 4 * p["k3"] * p["L2"] * p["F3"]
+    norm = np.stack([square - along, up, square + along], axis=1)
+    circle = np.stack([zero + 1, zero, zero + 1], axis=1) * ((p["k3"] * p["L1"]) ** 2)[:, None]
+    difference = _product(circle, _product(v, v)) - _product(norm, _product(w, w))
+    return difference[:, ::-1]
+
+
+def _product(a: Array, b: Array) -> Array:
+    result = np.zeros((len(a), a.shape[1] + b.shape[1] - 1))
+    for i in range(a.shape[1]):
+        result[:, i : i + b.shape[1]] += a[:, i : i + 1] * b
+    return result
+
+
+def counts(p: Values) -> NDArray[np.int8]:
+    """Stable and total counts at each point, of shape (2, points)."""
+    polynomials = sextics(p)
+    size = np.abs(polynomials).max(axis=1, keepdims=True)
+    polynomials = polynomials / np.where(size > 0, size, 1)
+    while polynomials.shape[1] > 2 and np.abs(polynomials[:, 0]).max() < LEADING:
+        polynomials = polynomials[:, 1:]
+    found = np.zeros((2, len(polynomials)), dtype=np.int8)
+    for start in range(0, len(polynomials), AT_ONCE):
+        part = slice(start, start + AT_ONCE)
+        found[:, part] = _counts(polynomials[part], {name: values[part] for name, values in p.items()})
+    return found
+
+
+def _counts(polynomials: Array, p: Values) -> NDArray[np.int8]:
+    degree = polynomials.shape[1] - 1
+    leading = polynomials[:, :1]
+    monic = polynomials[:, 1:] / np.where(leading == 0, np.finfo(float).tiny ** 0.25, leading)
+    companion = np.zeros((len(polynomials), degree, degree))
+    companion[:, 0, :] = -monic
+    companion[:, np.arange(1, degree), np.arange(degree - 1)] = 1
+    roots = np.linalg.eigvals(companion)
+    real = np.abs(roots.imag) < IMAGINARY * (1 + np.abs(roots.real))
+    t = _polished(polynomials, roots.real)
+    stable = real & _stable(t, {name: values[:, None] for name, values in p.items()})
+    return np.stack([stable.sum(axis=1), real.sum(axis=1)]).astype(np.int8)
+
+
+def _polished(polynomials: Array, t: Array) -> Array:
+    for _ in range(POLISHING):
+        value, slope = np.zeros_like(t), np.zeros_like(t)
+        for c in polynomials.T:
+            slope = slope * t + value
+            value = value * t + c[:, None]
+        with np.errstate(all="ignore"):
+            step = value / slope
+        t = np.where(np.isfinite(step) & (np.abs(step) < 1e-3 * (1 + np.abs(t))), t - step, t)
+    return t
+
+
+def _stable(t: Array, p: Values) -> NDArray[np.bool_]:
+    """Whether the Hessian is positive definite at the equilibrium that belongs to t."""
+    with np.errstate(all="ignore"):
+        c2, s2 = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
+        b1, b2 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
+        along, up = b1 - p["k3"] * p["L2"] * c2, p["k3"] * p["L2"] * s2 + p["F3"]
+        norm = np.hypot(along, up)
+        c1, s1 = along / norm, up / norm
+        # (c1, s1) or its negative: the one that fulfils the second equation better
+        rest, turned = b2 * s2 - p["F4"] * c2, p["k3"] * p["L1"] * (s1 * c2 + c1 * s2)
+        sign = np.where(np.abs(turned - rest) <= np.abs(turned + rest), 1.0, -1.0)
+        c1, s1 = sign * c1, sign * s1
+        c12 = c1 * c2 - s1 * s2
+        h11 = p["L1"] * (up * s1 + along * c1)
+        h22 = p["L2"] * (b2 * c2 + p["F4"] * s2 - p["k3"] * p["L1"] * c12)
+        h12 = -p["k3"] * p["L1"] * p["L2"] * c12
+        answer: NDArray[np.bool_] = (h11 > 0) & (h11 * h22 - h12 * h12 > 0)
+        return answer
+
+
+def main(arguments: list[str]) -> None:
+    """Read the question, count, save an array of shape (2, N, N) and print the seconds that it took."""
+    question, n, target = json.loads(Path(arguments[0]).read_text(encoding="utf-8")), int(arguments[1]), arguments[2]
+    start = perf_counter()
+    found = counts(grid_values(question, n)).reshape(2, n, n)
+    seconds = perf_counter() - start
+    np.save(target, found)
+    print(json.dumps({"computing": seconds}))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

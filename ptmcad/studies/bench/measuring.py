@@ -1,0 +1,378 @@
+"""Running a study: methods take turns, times are taken, and each answer is measured against the exact map.
+
+Guarantee: all methods are run at their first setting before any is at its second; there each round runs every method
+once, in an order drawn from the seed, beside the reference job. Nothing is measured while something else is run.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from fractions import Fraction
+from multiprocessing import get_all_start_methods, get_context
+from pathlib import Path
+
+import numpy as np
+
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.ask.classification import classify
+from ptmcad.errors import PtmcadError
+from ptmcad.question.slice import Slice
+from ptmcad.show.table import count_text
+from ptmcad.studies.bench import qepcad
+from ptmcad.studies.bench.cover_error import cover_error
+from ptmcad.studies.bench.error import MapError, exact_error, grid_error
+from ptmcad.studies.bench.methods import Job, Method, jobs, question
+from ptmcad.studies.bench.process import Outcome, Usage, run
+from ptmcad.studies.bench.reference import COUNTS, Column, Reference, Walls, centres, reference, shown_count, walls
+from ptmcad.studies.bench.study import Figures, Measurement, Study, Times, figures, outward, times
+from ptmcad.studies.bench.suite import machine, versions
+
+FLOOR = (
+    sys.executable,
+    "-c",
+    "import flint, numpy, click, yaml; numpy.linalg.eigvals(numpy.random.default_rng(1).random((8000, 6, 6)))",
+)
+"""The reference job: start-up, and some linear algebra that is always the same."""
+LONG = 1.25
+"""Seconds from which on a job is not repeated."""
+MOST_PANELS = 10_000
+"""Of all walls together: what is steep takes many, and some slices have walls too steep for the measurement."""
+NO_MAP = "no exact map to compare with: the share is the engine's"
+NO_WALLS = "errors not measured: the true walls are too steep for chains of chords; shares are the engine's"
+GRACE = 1.0
+"""Seconds that an engine has to save what it has when its time is over."""
+GROWTH = 4.5
+"""A grid is taken to need so many times the time of the one before, which has a quarter of its pixels."""
+
+Report = Callable[[str], None]
+
+
+@dataclass(slots=True)
+class _Runs:
+    """What the runs of one job gave so far."""
+
+    job: Job
+    usages: list[Usage]
+    computing: list[float]
+    reason: str = ""
+
+    @property
+    def due(self) -> bool:
+        return not self.reason and not (self.usages and self.usages[0].seconds > LONG)
+
+
+def measure(
+    slice: Slice,
+    record: Path,
+    verified: Callable[[RegionMap], bool],
+    *,
+    methods: Sequence[Method] = tuple(Method),
+    rounds: int = 3,
+    seed: int = 1,
+    time_limit: float = 60.0,
+    quick: bool = False,
+    warm_up: bool = True,
+    report: Report = lambda _: None,
+) -> Study:
+    """Measure error against run time on one slice.
+
+    Parameters
+    ----------
+    record : the slice's own file.
+    verified : whether an independent check confirms a map, such as `ptmcad.verify`; the errors rest on it.
+    rounds : runs of each job that takes no longer than `LONG`; others are run once.
+    seed : of the order within a round, and of the starts of the scipy grid.
+    time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
+    quick : fewer and coarser settings.
+    warm_up : run the certified engine once before, because the first run on a machine compiles.
+    report : told what is being done.
+
+    Raises
+    ------
+    PtmcadError
+        When the slice has no map, or an answer of ours contradicts the reference.
+    """
+    exact, sides, sound = None, None, None
+    if not slice.has_free_lengths:
+        report(f"{slice.name}: the exact map that errors are measured against")
+        result = classify(slice, count="index")
+        sound = verified(result)
+        exact = reference(result)
+        sides = _walls(exact)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "question.json").write_text(
+            question(slice, None if exact is None else exact.result), encoding="utf-8"
+        )
+        started, absent = _begin(slice, record, methods, folder, quick, seed)
+        if warm_up:
+            _compile(started)
+        report(f"{slice.name}: {len(started)} jobs")
+        floor = _rounds(started, rounds, seed, time_limit, report)
+        report(f"{slice.name}: errors")
+        measured = _all_measured(started, slice, exact, sides)
+    return Study(
+        slice=slice.name,
+        heading=slice.heading,
+        machine=machine(),
+        versions=versions(),
+        seed=seed,
+        rounds=rounds,
+        time_limit=time_limit,
+        quick=quick,
+        verified=sound,
+        floor=floor,
+        measurements=(*measured, *absent),
+    )
+
+
+def _walls(exact: Reference) -> dict[str, Walls] | None:
+    """The exact map's walls as chains of chords; None where that takes more than `MOST_PANELS` panels."""
+    panels = 0
+
+    def count() -> None:
+        nonlocal panels
+        panels += 1
+        if panels > MOST_PANELS:
+            raise _TooManyError
+
+    try:
+        return walls(exact, count)
+    except _TooManyError:
+        return None
+
+
+class _TooManyError(Exception):
+    """More panels than the measurement may take."""
+
+
+def _begin(
+    slice: Slice, record: Path, methods: Sequence[Method], folder: Path, quick: bool, seed: int
+) -> tuple[list[_Runs], list[Measurement]]:
+    started: list[_Runs] = []
+    absent: list[Measurement] = []
+    for method in methods:
+        found = jobs(method, slice, record.resolve(), folder, quick, seed)
+        if isinstance(found, str):
+            absent.append(Measurement(method.value, "", None, reason=found))
+        else:
+            started += [_Runs(job, [], []) for job in found]
+    return started, absent
+
+
+def _compile(started: Sequence[_Runs]) -> None:
+    """Run the certified engine's first job, if there is one: what is told is the time of every later run."""
+    for r in started:
+        if r.job.method is Method.CERTIFIED:
+            run(r.job.commands[0][0], timeout=300)
+            return
+
+
+def _rounds(runs: Sequence[_Runs], rounds: int, seed: int, time_limit: float, report: Report) -> Times:
+    """Run all jobs; the times of the reference job are returned."""
+    order = random.Random(seed)
+    spent = {r.job.method: 0.0 for r in runs}
+    last = dict(spent)
+    floor = []
+    run(FLOOR)
+    for rank in range(1 + max((r.job.rank for r in runs), default=0)):
+        turns = [r for r in runs if r.job.rank == rank]
+        for _ in range(rounds):
+            floor.append(run(FLOOR).seconds)
+            order.shuffle(turns)
+            for r in turns:
+                method = r.job.method
+                left = time_limit - spent[method]
+                # a finer tolerance takes no less than the coarser one before it
+                growth = GROWTH if r.job.grows else 1.0 if method is Method.CERTIFIED else 0.0
+                needed = r.usages[-1].seconds if r.usages else growth * last[method]
+                if not r.due or (r.usages and left < needed):
+                    continue
+                if left <= needed:
+                    r.reason = f"left out: it does not fit into the {time_limit:g} s for each method"
+                    continue
+                report(f"{method.value}, {r.job.setting}")
+                last[method] = _run(r, left, time_limit)
+                spent[method] += last[method]
+    return times(floor)
+
+
+def _run(r: _Runs, left: float, time_limit: float) -> float:
+    """Run a job once, record it, and return the seconds that it took."""
+    total: list[Usage] = []
+    if r.job.method is Method.CERTIFIED:
+        return _run_until(r, left, time_limit)
+    for command, text in r.job.commands:
+        usage = run(command, text=text, timeout=max(left - sum(u.seconds for u in total), 0.1))
+        total.append(qepcad.judged(usage) if r.job.method is Method.QEPCAD else usage)
+        if total[-1].outcome is not Outcome.DONE:
+            break
+    seconds = sum(u.seconds for u in total)
+    last = total[-1]
+    if last.outcome is Outcome.DONE:
+        r.usages.append(
+            Usage(last.outcome, seconds, sum(u.processor_seconds for u in total), max(u.peak_mebibytes for u in total))
+        )
+        if r.job.method in (Method.COMPANION, Method.MULTISTART, Method.GCAD):
+            r.computing.append(json.loads(last.output)["computing"])
+        elif r.job.answer is not None:
+            r.computing.append(json.loads(r.job.answer.read_text(encoding="utf-8"))["timings"]["total"])
+    elif not r.usages:
+        message = last.message.strip().splitlines()
+        r.reason = (
+            f"stopped: the {time_limit:g} s for each method were used up"
+            if last.outcome is Outcome.TIMED_OUT
+            else f"{last.outcome.value}: {message[-1] if message else 'no message'}"
+        )
+    return seconds
+
+
+def _run_until(r: _Runs, left: float, time_limit: float) -> float:
+    """The same for a job that has an answer at any time, and a smaller error later."""
+    assert r.job.answer is not None
+    r.job.answer.unlink(missing_ok=True)
+    command = (*r.job.commands[0][0], "--timeout", f"{max(left - GRACE, 0.1):.2f}")
+    usage = run(command, timeout=left + GRACE)
+    if r.job.answer.exists():
+        r.usages.append(Usage(Outcome.DONE, usage.seconds, usage.processor_seconds, usage.peak_mebibytes))
+        r.computing.append(json.loads(r.job.answer.read_text(encoding="utf-8"))["timings"]["total"])
+    elif not r.usages:
+        message = usage.message.splitlines()
+        r.reason = (
+            f"stopped: the {time_limit:g} s for each method were used up"
+            if "time limit" in usage.message
+            else f"{usage.outcome.value}: {message[-1] if message else 'no message'}"
+        )
+    return usage.seconds
+
+
+def _all_measured(
+    started: Sequence[_Runs], slice: Slice, exact: Reference | None, sides: dict[str, Walls] | None
+) -> tuple[Measurement, ...]:
+    """The errors of all jobs' answers, computed side by side where a system can fork: nothing is timed by now."""
+    processes = min(os.cpu_count() or 1, len(started))
+    if processes < 2 or "fork" not in get_all_start_methods():
+        return tuple(_measured(r, slice, exact, sides) for r in started)
+    known = (started, slice, exact, sides)
+    with ProcessPoolExecutor(processes, get_context("fork"), _inherit, (known, os.getpid())) as pool:
+        return tuple(pool.map(_measured_here, range(len(started))))
+
+
+_inherited: list[tuple[Sequence[_Runs], Slice, Reference | None, dict[str, Walls] | None]] = []
+"""In a forked process, what it computes with: far too much to be sent to it."""
+
+
+def _inherit(known: tuple[Sequence[_Runs], Slice, Reference | None, dict[str, Walls] | None], parent: int) -> None:
+    _inherited[:] = [known]
+    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: int) -> None:
+    """End this process when its parent has ended, however that did: the other processes keep its pipes open."""
+    while os.getppid() == parent:
+        time.sleep(0.2)
+    os._exit(1)
+
+
+def _measured_here(number: int) -> Measurement:
+    started, slice, exact, sides = _inherited[0]
+    return _measured(started[number], slice, exact, sides)
+
+
+def _measured(r: _Runs, slice: Slice, exact: Reference | None, sides: dict[str, Walls] | None) -> Measurement:
+    job = r.job
+    if not r.usages:
+        return Measurement(job.method.value, job.setting, None, reason=r.reason or "not run")
+    found: dict[str, Figures] = {}
+    width: float | None = None
+    note = ""
+    if job.method in (Method.EXACT, Method.CERTIFIED):
+        assert job.answer is not None
+        result = RegionMap.from_json(job.answer.read_text(encoding="utf-8"))
+        width = outward((Fraction(0), area_width(result)))[1]
+        if result.status is Status.PARTIAL:
+            note = "stopped at the limit, short of its tolerance"
+        if job.method is Method.EXACT and exact is not None:
+            _agree(result, exact)
+        if exact is None or sides is None:
+            share = outward((result.undetermined, result.undetermined))
+            found[slice.count.value] = Figures(wrong=share, undetermined=share[1])
+            note = "; ".join([note] * bool(note) + [NO_MAP if exact is None else NO_WALLS])
+        elif job.method is Method.EXACT:
+            found = {count: figures(exact_error(sides[count])) for count in COUNTS}
+        else:
+            errors = {count: cover_error(exact, sides[count], result, count) for count in COUNTS}
+            found = {count: figures(error) for count, error in errors.items() if error is not None}
+    elif job.method in (Method.COMPANION, Method.MULTISTART):
+        assert job.answer is not None and exact is not None
+        if sides is None:
+            return Measurement(job.method.value, job.setting, None, reason=NO_WALLS)
+        found = grid_figures(exact, sides, np.load(job.answer))
+        note = qepcad.LOSES_PI if qepcad.question(slice) == qepcad.LOSES_PI else ""
+    elif job.method is Method.QEPCAD:
+        count = "stable" if "stable" in job.setting else "total"
+        found[count] = Figures(wrong=(0.0, 0.0), undetermined=0.0)
+        note = "an exact formula by its own claim, up to a set of measure zero; the sextic was given"
+    else:
+        found["index"] = Figures(wrong=(0.0, 0.0), undetermined=0.0)
+        note = "cells by its own claim; the curves were given, and nothing is counted"
+    return Measurement(
+        method=job.method.value,
+        setting=job.setting,
+        seconds=times([u.seconds for u in r.usages]),
+        computing=times(r.computing) if r.computing else None,
+        peak=round(max(u.peak_mebibytes for u in r.usages), 1),
+        note=note,
+        figures=found,
+        area_width=width,
+    )
+
+
+def grid_figures(exact: Reference, sides: dict[str, Walls], drawn: np.ndarray) -> dict[str, Figures]:
+    """The figures of a grid for each count.
+
+    Parameters
+    ----------
+    drawn : stable and total counts, of shape (2, n, n).
+    """
+    stable, total = drawn.astype(np.int16)
+    columns: tuple[Column, ...] = centres(exact, len(stable))
+    found: dict[str, MapError] = {
+        count: grid_error(exact, sides[count], columns, shown_count(stable, total, count), count) for count in COUNTS
+    }
+    return {count: figures(error) for count, error in found.items()}
+
+
+def area_width(result: RegionMap) -> Fraction:
+    """The widest bounds of the area of all points with one count, as a share of the window's area."""
+    first, second = result.slice.axes
+    window = (first.high - first.low) * (second.high - second.low)
+    low: dict[str, Fraction] = {}
+    high: dict[str, Fraction] = {}
+    for region in result.regions:
+        key = count_text(region, result.slice.count)
+        low[key] = low.get(key, Fraction(0)) + region.area[0]
+        high[key] = high.get(key, Fraction(0)) + region.area[1]
+    widths = [
+        # in a certified map the undetermined part may belong to any count
+        (high[key] - low[key]) / window if result.cover is None else result.undetermined
+        for key in low
+    ]
+    return max(widths, default=Fraction(1))
+
+
+def _agree(result: RegionMap, exact: Reference) -> None:
+    """Refuse an exact map that says other than the reference at one of its samples, or leaves something open."""
+    for cell in result.cells:
+        found = exact.result.locate(**dict(cell.sample))
+        if (found.stable, found.total) != (cell.stable, cell.total) or result.undetermined:
+            raise PtmcadError(f"two exact maps of {result.slice.name} differ at {dict(cell.sample)}")

@@ -1,0 +1,231 @@
+"""The classification as a user of QEPCAD would do it: the sextic made by hand, one quantifier elimination per count.
+
+Guarantee: where `question` returns a `Question`, its sextic's real roots t2 = tan(theta2/2) are, over all parameters
+outside a set of measure zero, in one-to-one correspondence with the equilibria of the slice.
+
+Not guaranteed: the answer on that set of measure zero. QEPCAD is allowed to be wrong there, as an expert would allow it
+(it is two to five times faster so); and an equilibrium at theta2 = pi has no t2.
+
+The elimination. With b1 = (k2+k3) rho + F3x, b2 = (k1+k3) rho - F4x, P = b1 - k3 L2 c2 and Q = k3 L2 s2 + F3 the first
+equation is Q c1 - P s1 = 0, so (c1, s1) = +-(P, Q)/sqrt(P^2+Q^2); the second, k3 L1 s12 - b2 s2 + F4 c2 = 0, becomes
+
+    k3^2 L1^2 (F3 c2 + b1 s2)^2 = (b2 s2 - F4 c2)^2 (P^2 + Q^2)
+
+once squared. Each of its roots belongs to one of the two signs. With c2 = (1-t^2)/(1+t^2), s2 = 2t/(1+t^2) and the
+denominators cleared it is p(t) = 0, p of degree six. With V = F3 c2 + b1 s2 and W = b2 s2 - F4 c2, up to positive
+factors H11 is V W and, where that is positive, the second derivative of the energy along the curve E1 = 0 is -V p'(t).
+So a root is a stable equilibrium exactly if V W > 0 and V p' < 0.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import shutil
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from fractions import Fraction
+from itertools import zip_longest
+
+from ptmcad.question.slice import Axis, Slice
+from ptmcad.studies.bench.process import Outcome, Usage
+from ptmcad.text.expressions import Expression, constant
+
+_GARBAGE_COLLECTED_CELLS = 20_000_000
+_ANSWER = re.compile(r"An equivalent quantifier-free formula:\s*(.*?)\n\s*\n", re.DOTALL)
+
+InT = tuple[Expression, ...]
+"""A polynomial in t over Q(x, y): the coefficients of 1, t, t^2, ..."""
+
+_CIRCLE: InT = (constant(1), constant(0), constant(1))
+_COSINE: InT = (constant(1), constant(0), constant(-1))
+_SINE: InT = (constant(0), constant(2))
+
+
+class Task(Enum):
+    """What QEPCAD is asked: in which part of the window are there exactly so many equilibria?"""
+
+    SIX = "6 equilibria"
+    FOUR = "4 equilibria"
+    TWO_STABLE = "2 stable equilibria"
+
+
+TOTAL = (Task.SIX, Task.FOUR)
+"""The tasks that make up the classification by the total count."""
+
+Terms = tuple[tuple[int, int, int, int], ...]
+"""A polynomial in x, y and t: ``(i, j, n, c)`` means c x^i y^j t^n, c an integer, the content being 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """The sextic over a window, ready to be put to QEPCAD.
+
+    Attributes
+    ----------
+    sextic, slope : the sextic and its derivative in t, up to a positive factor.
+    v, w : numerators of V and W, up to a positive factor.
+    axes : the window.
+    """
+
+    sextic: Terms
+    slope: Terms
+    v: Terms
+    w: Terms
+    axes: tuple[Axis, Axis]
+
+    def text(self, task: Task, *, swapped: bool = False, then: Sequence[str] = ("solution T",)) -> str:
+        """QEPCAD's standard input.
+
+        Parameters
+        ----------
+        swapped : eliminate the first axis before the second, instead of the second before the first.
+        then : the commands that are given once the decomposition is made.
+        """
+        return f"{self.problem(task, swapped=swapped, then=then)}\nquit\n"
+
+    def problem(self, task: Task, *, swapped: bool = False, then: Sequence[str] = ("solution T",)) -> str:
+        """The same without the end of the session, so that other problems may follow."""
+        condition = f"{_text(self.sextic)} = 0"
+        if task is Task.TWO_STABLE:
+            v, w, slope = _text(self.v), _text(self.w), _text(self.slope)
+            condition += rf" /\ [[{v} > 0 /\ {w} > 0 /\ {slope} < 0] \/ [{v} < 0 /\ {w} < 0 /\ {slope} > 0]]"
+        number = {Task.SIX: 6, Task.FOUR: 4, Task.TWO_STABLE: 2}[task]
+        window = r" /\ ".join(
+            bound
+            for name, axis in zip("xy", self.axes, strict=True)
+            for bound in (f"{_line(name, axis.low)} > 0", f"{_line(name, axis.high)} < 0")
+        )
+        return "\n".join(
+            (
+                f"[ x is {self.axes[0].name}, y is {self.axes[1].name} ]",
+                "(y,x,t)" if swapped else "(x,y,t)",
+                "2",
+                f"(X{number} t)[ {condition} ].",
+                f"assume [ {window} ]",
+                "measure-zero-error",
+                "go",
+                "go",
+                "go",
+                *then,
+            )
+        )
+
+
+LOSES_PI = "an equilibrium at theta2 = pi over the whole window: t2 = tan(theta2/2) loses it"
+
+
+def question(slice: Slice) -> Question | str:
+    """The sextic of a slice, or the reason why there is none to put to QEPCAD."""
+    if slice.mechanism != "ptm":
+        return f"the sextic is the paper's mechanism's, not that of {slice.mechanism}"
+    if slice.has_free_lengths:
+        return "with free lengths there is no sextic"
+    if not all(value.is_polynomial for value in slice.parameters.values()):
+        return "a parameter is not a polynomial in the axes"
+    polynomial = sextic(slice)
+    if len(polynomial) < 7 or not polynomial[6].numerator:
+        return LOSES_PI
+    slope = tuple(n * coefficient for n, coefficient in enumerate(polynomial))[1:]
+    v, w = _v_and_w(slice)
+    return Question(_terms(polynomial), _terms(slope), _terms(v), _terms(w), slice.axes)
+
+
+def sextic(slice: Slice) -> InT:
+    """The polynomial in t2 that is left when theta1 has been eliminated, in Q(x, y)[t]."""
+    value = slice.parameters
+    l1, l2, k3, f3 = value["L1"], value["L2"], value["k3"], value["F3"]
+    b1 = (value["k2"] + k3) * value["rho"] + value["F3x"]
+    v, w = _v_and_w(slice)
+    squared_norm = _sum(
+        _scaled(b1 * b1 + k3 * k3 * l2 * l2 + f3 * f3, _CIRCLE),
+        _scaled(-2 * b1 * k3 * l2, _COSINE),
+        _scaled(2 * k3 * l2 * f3, _SINE),
+    )
+    return _sum(
+        _scaled(k3 * k3 * l1 * l1, _product(_CIRCLE, _product(v, v))),
+        _scaled(constant(-1), _product(squared_norm, _product(w, w))),
+    )
+
+
+def _v_and_w(slice: Slice) -> tuple[InT, InT]:
+    """V and W times 1 + t^2."""
+    value = slice.parameters
+    b1 = (value["k2"] + value["k3"]) * value["rho"] + value["F3x"]
+    b2 = (value["k1"] + value["k3"]) * value["rho"] - value["F4x"]
+    v = _sum(_scaled(value["F3"], _COSINE), _scaled(b1, _SINE))
+    return v, _sum(_scaled(b2, _SINE), _scaled(-value["F4"], _COSINE))
+
+
+def program() -> str | None:
+    """Where QEPCAD is, None when it is not installed."""
+    return shutil.which("qepcad")
+
+
+def command() -> tuple[str, ...] | None:
+    """The command that reads a question from standard input, None when QEPCAD is not installed."""
+    where = program()
+    return (where, "-noecho", f"+N{_GARBAGE_COLLECTED_CELLS}") if where is not None else None
+
+
+def judged(usage: Usage) -> Usage:
+    """The same run, but a failure when QEPCAD ended without an answer: it exits with 0 after most errors."""
+    if usage.outcome is Outcome.DONE and not answer(usage):
+        return replace(usage, outcome=Outcome.FAILED, message="no answer")
+    return usage
+
+
+def answer(usage: Usage) -> str:
+    """The quantifier-free formula in QEPCAD's output, empty when there is none."""
+    return formula(usage.output)
+
+
+def formula(output: str) -> str:
+    """The quantifier-free formula in a text that QEPCAD wrote, empty when there is none."""
+    found = _ANSWER.search(output)
+    return " ".join(found.group(1).split()) if found else ""
+
+
+def _sum(*polynomials: InT) -> InT:
+    total: Sequence[Expression] = ()
+    for polynomial in polynomials:
+        total = [a + b for a, b in zip_longest(total, polynomial, fillvalue=constant(0))]
+    return tuple(total)
+
+
+def _scaled(factor: Expression, polynomial: InT) -> InT:
+    return tuple(factor * coefficient for coefficient in polynomial)
+
+
+def _product(left: InT, right: InT) -> InT:
+    total = [constant(0)] * (len(left) + len(right) - 1)
+    for i, a in enumerate(left):
+        for j, b in enumerate(right):
+            total[i + j] = total[i + j] + a * b
+    return tuple(total)
+
+
+def _terms(polynomial: InT) -> Terms:
+    terms = [(i, j, n, c) for n, coefficient in enumerate(polynomial) for i, j, c in coefficient.numerator]
+    scale = math.lcm(*(c.denominator for *_, c in terms))
+    content = math.gcd(*(int(c * scale) for *_, c in terms))
+    return tuple((i, j, n, int(c * scale) // content) for i, j, n, c in terms)
+
+
+def _text(terms: Terms) -> str:
+    text = " ".join(
+        f"{'+' if c > 0 else '-'} {abs(c)}{_power('x', i)}{_power('y', j)}{_power('t', n)}" for i, j, n, c in terms
+    )
+    return text.removeprefix("+ ")
+
+
+def _power(name: str, exponent: int) -> str:
+    if exponent == 0:
+        return ""
+    return f" {name}" if exponent == 1 else f" {name}^{exponent}"
+
+
+def _line(name: str, end: Fraction) -> str:
+    """The line q name - p, positive where ``name > p/q``."""
+    return f"{end.denominator} {name} {'-' if end > 0 else '+'} {abs(end.numerator)}"

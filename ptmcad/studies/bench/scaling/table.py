@@ -1,0 +1,89 @@
+"""The scaling measurement as a Markdown page: one table of exponents, and one of medians for each family."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from statistics import median
+from typing import Any
+
+MANY = 1000
+_NAMES = {"seconds": "processor time", "wall": "wall time", "memory": "memory", "boxes": "boxes treated"}
+
+
+def to_markdown(report: Mapping[str, Any]) -> str:
+    """The page."""
+    lines = [
+        "# Scaling",
+        "",
+        "Exponents p of cost = c x^p, by least squares in logarithms, with 5 % and 95 % bounds from resampled runs.",
+        "Lower and upper are the slopes over the two halves of the range; where they differ, one exponent says little;",
+        "where cost = a + c x^p fits, the fixed cost a is given, and the exponent beyond it with its bounds.",
+        "Seconds are processor time unless they are called wall time; memory is the growth of the resident set.",
+        "[What grows and why](../scaling.md) explains it. Written by `python -m ptmcad.studies.bench.scaling`.",
+        "",
+        f"Rounds: {report['rounds']}, seed {report['seed']}.",
+        "",
+        "Machine: " + "; ".join(f"{key} {value}" for key, value in report["machine"].items()) + ".",
+        "",
+        "Versions: " + "; ".join(f"{key} {value}" for key, value in report["versions"].items()) + ".",
+    ]
+    for family in report["families"]:
+        lines += ["", f"## {family['title']}", "", f"Along {family['axis']}. Expected: {family['expected']}.", ""]
+        lines += _fits(family)
+        lines += ["", *_runs(family)]
+        lines += [f"\nSize {size} has no figures: {reason}." for size, reason in family["reasons"].items()]
+    return "\n".join(lines) + "\n"
+
+
+def _fits(family: Mapping[str, Any]) -> Iterator[str]:
+    yield "| what | from - to | exponent | R^2 | lower, upper | verdict |"
+    yield "|---|---|---|---|---|---|"
+    for name, f in family["fits"].items():
+        yield (
+            f"| {_NAMES.get(name, name)} | {f['first']:g} - {f['last']:g} | {f['exponent']:.2f} "
+            f"({f['low']:.2f} to {f['high']:.2f}) | {f['determination']:.3f} | {f['lower']:.2f}, {f['upper']:.2f} "
+            f"| {f['verdict']}{_beyond(f)} |"
+        )
+
+
+def _beyond(f: Mapping[str, Any]) -> str:
+    """The fixed cost and the exponent beyond it, where there is one."""
+    if not f["fixed"]:
+        return ""
+    fixed = f"{f['fixed']:,.0f}" if f["fixed"] >= MANY else f"{f['fixed']:.2g}"
+    return f"; beyond a fixed {fixed}: {f['growth']:.2f} ({f['growth_low']:.2f} to {f['growth_high']:.2f})"
+
+
+def _runs(family: Mapping[str, Any]) -> Iterator[str]:
+    """Medians by abscissa, the spread of the seconds, and what was found."""
+    against = family["against"]
+    groups: dict[float, list[Any]] = {}
+    for run in family["runs"]:
+        groups.setdefault(run["size"] if against == "size" else run["found"][against], []).append(run)
+    facts = [k for k in (family["runs"][0]["found"] if family["runs"] else {}) if k != against]
+    stages = list(dict.fromkeys(stage for run in family["runs"] for stage in run["stages"]))
+    stages = stages if len(stages) > 1 else []
+    yield "| " + " | ".join([family["axis"], "runs", "s: median (min - max)", "wall s", *stages, "MiB", *facts]) + " |"
+    yield "|---" * (5 + len(stages) + len(facts)) + "|"
+    for place, runs in sorted(groups.items()):
+        seconds, walls = [run["seconds"] for run in runs], [run["wall"] for run in runs]
+        memory = [max(run["memory"].values()) for run in runs if run["memory"]]
+        cells = [
+            f"{place:g}",
+            str(len(runs)),
+            f"{_number(median(seconds))} ({_number(min(seconds))} - {_number(max(seconds))})",
+            _number(median(walls)),
+            *(_number(median(run["stages"].get(stage, 0.0) for run in runs)) for stage in stages),
+            f"{median(memory):.1f}" if memory else "-",
+            *(_range([run["found"][fact] for run in runs]) for fact in facts),
+        ]
+        yield "| " + " | ".join(cells) + " |"
+
+
+def _number(seconds: float) -> str:
+    return f"{seconds:.4f}" if seconds < 0.1 else f"{seconds:.2f}"
+
+
+def _range(values: list[float]) -> str:
+    low, high = min(values), max(values)
+    return f"{low:g}" if low == high else f"{low:g} - {high:g}"

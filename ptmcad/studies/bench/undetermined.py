@@ -1,0 +1,101 @@
+"""Undetermined area against run time of the certified engine: ``python -m ptmcad.studies.bench.undetermined
+RECORD...``.
+
+Guarantee: each point is one run in this process, with a tolerance of half that of the run before, after a run that has
+loaded the compiled code: wall and processor seconds, and the exact share of the window that was left, rounded.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+from time import perf_counter, process_time
+from typing import Any
+
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.errors import LimitReached, PtmcadError
+from ptmcad.question.config import load
+from ptmcad.studies.bench.suite import machine, versions
+
+FORMAT = "ptmcad-undetermined/2"
+COARSEST = Fraction(1, 100)
+
+
+def measure(record: Path, finest: Fraction, timeout: float, jobs: int) -> dict[str, Any]:
+    """One record's runs as JSON data: tolerances from `COARSEST`, halved until the finest, or until one takes too long.
+
+    Parameters
+    ----------
+    timeout : seconds for a run; what was left undetermined then is a point, too.
+
+    Raises
+    ------
+    PtmcadError
+        When the record is wrong.
+    """
+    from ptmcad.certified.engine import certified_map
+
+    slice = load(record)
+    runs: list[dict[str, Any]] = []
+    tolerance = COARSEST
+    while tolerance >= finest and all(run["status"] == "certified" for run in runs):
+        wall, processor = perf_counter(), process_time()
+        try:
+            result = certified_map(slice, tolerance=tolerance, deadline=wall + timeout, jobs=jobs)
+        except LimitReached as stopped:
+            if not isinstance(stopped.partial, RegionMap):
+                raise
+            result = stopped.partial
+        runs.append({
+            "tolerance": str(tolerance),
+            "status": result.status.value,
+            "undetermined": float(f"{float(result.undetermined):.3g}"),
+            "seconds": round(perf_counter() - wall, 2),
+            "processor": round(process_time() - processor, 2),
+            "cells": len(result.cells),
+            "rectangles": len(result.cover.rectangles) if result.cover else 0,
+        })  # fmt: skip
+        tolerance /= 2
+    return {"record": slice.name, "runs": runs}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure, print, and write undetermined.json; the exit status is 0, or 2 for bad input."""
+    parser = argparse.ArgumentParser(
+        prog="python -m ptmcad.studies.bench.undetermined", description="Undetermined area against run time."
+    )
+    parser.add_argument("records", nargs="*", type=Path, help="problem records; default: configs/ with free lengths")
+    parser.add_argument("--out", type=Path, help="folder for undetermined.json")
+    parser.add_argument("--finest", type=Fraction, default=Fraction(1, 25600), help="tolerance (default 1/25600)")
+    parser.add_argument("--timeout", type=float, default=150.0, help="seconds for each run (default 150)")
+    parser.add_argument("--jobs", type=int, default=2, help="threads (default 2)")
+    chosen = parser.parse_args(arguments)
+    try:
+        records = chosen.records or [p for p in sorted(Path("configs").glob("*.yaml")) if load(p).has_free_lengths]
+        if records:
+            measure(records[0], COARSEST, 60.0, chosen.jobs)  # loads the compiled code, or compiles it
+        rows = []
+        for record in records:
+            rows.append(measure(record, chosen.finest, chosen.timeout, chosen.jobs))
+            print(json.dumps(rows[-1]), flush=True)
+        if chosen.out is not None:
+            data = {
+                "format": FORMAT,
+                "machine": machine(),
+                "versions": versions(),
+                "jobs": chosen.jobs,
+                "rows": rows,
+            }
+            (chosen.out / "undetermined.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    except (PtmcadError, OSError) as error:
+        print(f"python -m ptmcad.studies.bench.undetermined: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

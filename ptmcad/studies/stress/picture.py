@@ -1,0 +1,92 @@
+"""The plot of a stress campaign: the error of double precision against what is extreme, family by family.
+
+Guarantee: every point that has an error is drawn; where the count of double precision is wrong it is drawn as such,
+also where no error exists.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import log10
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ptmcad.show.render.printing import settings
+from ptmcad.studies.stress.measure import Outcome
+from ptmcad.text.numerals import magnitude
+
+FLOOR = 1e-20
+"""Errors below are drawn here: enclosures of 12 digits have middles about 1e-19 off."""
+NOTE = "Of poses in radians, of lines relative to the window. At 1e-20: none or less; at the top: no pose found."
+COLUMNS = 4
+RIGHT, WRONG, OURS = "#385880", "#c1440e", "#45917d"
+
+
+def draw_stress(outcomes: Sequence[Outcome]) -> Figure:
+    """One small plot for each family of points; the figure's label is its description."""
+    points = [o for o in outcomes if o.verdict.condition is not None or o.verdict.error is not None]
+    families = list(dict.fromkeys(o.case.family for o in points))
+    rows = max(1, -(-len(families) // COLUMNS))
+    with settings():
+        figure = Figure(figsize=(12, 2.6 * rows + 1.1), layout="constrained")
+        wrong = sum(not o.verdict.double_right for o in points)
+        title = "Error of double precision against what is extreme"
+        ours = sum(not o.verdict.right for o in points)
+        told = f"{len(points)} cases; the count of double precision is wrong in {wrong}, ptmcad's in {ours}."
+        figure.set_label(f"{title}\n{told}")
+        figure.suptitle(title, fontsize=13)
+        axes = [figure.add_subplot(rows, COLUMNS, k + 1) for k in range(len(families))]
+        for k, (family, place) in enumerate(zip(families, axes, strict=True)):
+            _family(place, family, [o for o in points if o.case.family == family])
+            if k % COLUMNS == 0:
+                place.set_ylabel("error", fontsize=8)
+        if axes:
+            handles, labels = _legend(axes[0])
+            figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=9, title=NOTE,
+                          title_fontsize=9)  # fmt: skip
+        return figure
+
+
+def _family(axes: Axes, family: str, outcomes: Sequence[Outcome]) -> None:
+    for right, marker, colour in ((True, "o", RIGHT), (False, "X", WRONG)):
+        chosen = [o for o in outcomes if bool(o.verdict.double_right) is right]
+        axes.semilogy(
+            [exponent(o.case.stiffness) for o in chosen], [_drawn(o.verdict.double_error) for o in chosen],
+            linestyle="none", marker=marker, markersize=6, color=colour, markeredgewidth=0.3, markeredgecolor="white",
+        )  # fmt: skip
+    axes.semilogy(
+        [exponent(o.case.stiffness) for o in outcomes], [_drawn(o.verdict.error) for o in outcomes],
+        linestyle="none", marker="_", markersize=7, color=OURS,
+    )  # fmt: skip
+    axes.set_ylim(FLOOR / 10, 30)
+    axes.set_yticks([1e-20, 1e-15, 1e-10, 1e-5, 1], ["1e-20", "1e-15", "1e-10", "1e-5", "1"])
+    axes.minorticks_off()
+    axes.margins(x=0.15)
+    axes.set_title(family, fontsize=10)
+    axes.tick_params(labelsize=8)
+    axes.xaxis.set_major_formatter(lambda value, _: f"1e{value:g}")
+    axes.locator_params(axis="x", nbins=4, integer=True)
+    axes.grid(True, color="#dddddd", linewidth=0.5)
+
+
+def _legend(axes: Axes) -> tuple[list[Artist], list[str]]:
+    shown = ((RIGHT, "o", "double precision, count right"), (WRONG, "X", "double precision, count wrong"),
+             (OURS, "_", "ptmcad, middle of the enclosure"))  # fmt: skip
+    handles: list[Artist] = [
+        axes.plot([], [], linestyle="none", marker=marker, color=colour, markersize=7)[0] for colour, marker, _ in shown
+    ]
+    return handles, [label for _, _, label in shown]
+
+
+def exponent(value: Fraction) -> float:
+    """The logarithm to base 10 of a positive number, beyond a float's range too."""
+    whole = magnitude(value)
+    return whole + log10(float(value / Fraction(10) ** whole))
+
+
+def _drawn(error: float | None) -> float:
+    """An error's height: no pose at all is as bad as can be."""
+    return 10.0 if error is None else max(error, FLOOR)

@@ -1,0 +1,168 @@
+"""A campaign as text: a table for the terminal, a page for the manual, JSON and CSV.
+
+Guarantee: JSON and CSV hold every figure; a number that does not exist is null or empty, never 0.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Sequence
+from math import isfinite
+from typing import Any
+
+from ptmcad.studies.stress.campaign import MOST_COST, Campaign
+from ptmcad.studies.stress.case import Case, LineQuestion, MapQuestion
+from ptmcad.studies.stress.measure import Outcome
+from ptmcad.text.numerals import shortest_text
+
+HEADINGS = ("case", "known", "ptmcad", "double", "double's error", "condition", "bits", "ms", "x tame")
+
+
+def number_text(value: float | None, digits: int = 2) -> str:
+    """A number for a table: ``-`` when there is none."""
+    return "-" if value is None else f"{value:.{digits}g}"
+
+
+def cells(outcome: Outcome) -> tuple[str, ...]:
+    """A row of the table, in the order of `HEADINGS`."""
+    v, c = outcome.verdict, outcome.cost
+    return (
+        outcome.case.name,
+        v.expected,
+        v.found if v.right else f"{v.found} WRONG",
+        v.double if v.double_right else f"{v.double} wrong",
+        number_text(v.double_error),
+        number_text(v.condition),
+        str(v.bits or "-"),
+        f"{1000 * c.seconds:.3g}",
+        f"{c.ratio:.2g}",
+    )
+
+
+def table(campaign: Campaign) -> str:
+    """The campaign as a table for a terminal, with a summary below."""
+    rows = [HEADINGS, *map(cells, campaign.outcomes)]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(HEADINGS))]
+    lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows]
+    return "\n".join([*lines, "", *summary(campaign)])
+
+
+def markdown(campaign: Campaign) -> str:
+    """The campaign as a Markdown page, one table for each family.
+
+    Times are left out, so that the same versions write the same page; the work beside its sibling's stands for them.
+    """
+    kept = [k for k, name in enumerate(HEADINGS) if name not in ("ms", "x tame")]
+    names = [*(HEADINGS[k] for k in kept), "work x tame"]
+    wrong, total = len(campaign.double_wrong), len(campaign.outcomes)
+    lines = [
+        "# The stress cases, one by one",
+        "",
+        f"Written by `ptmcad stress` with seed {campaign.seed}. ptmcad is right in {total - len(campaign.wrong)} of "
+        f"{total} cases; double precision is wrong in {wrong}. "
+        "[What is tried, and what the columns mean](../stress.md).",
+    ]
+    for family in dict.fromkeys(o.case.family for o in campaign.outcomes):
+        lines += ["", f"## {family[0].upper()}{family[1:]}", "", _row(names), _row(["---"] * len(names))]
+        for outcome in campaign.outcomes:
+            if outcome.case.family == family:
+                row = cells(outcome)
+                lines.append(_row([*(row[k] for k in kept), f"{outcome.cost.work_ratio:.2g}"]))
+    return "\n".join(lines) + "\n"
+
+
+def _row(texts: Sequence[str]) -> str:
+    return f"| {' | '.join(texts)} |"
+
+
+def summary(campaign: Campaign) -> Iterable[str]:
+    """What the campaign says, line by line."""
+    total = len(campaign.outcomes)
+    yield f"ptmcad is right in {total - len(campaign.wrong)} of {total} cases"
+    for outcome in campaign.wrong:
+        yield f"  {outcome.case.name}: {'; '.join(outcome.verdict.remarks)}"
+    yield f"double precision is wrong in {len(campaign.double_wrong)} of {total}"
+    if campaign.outcomes:
+        worst = max(campaign.outcomes, key=lambda o: o.cost.ratio)
+        yield (
+            f"an extreme case costs at most {worst.cost.ratio:.2g} times its tame sibling ({worst.case.name}); "
+            f"more than {MOST_COST:g} times: {len(campaign.dear)}"
+        )
+    if not campaign.complete:
+        yield f"stopped: {campaign.wanted - total} cases were not run"
+
+
+def listing(cases: Sequence[Case]) -> str:
+    """Name, family, question and source of each case."""
+    rows = [(c.name, c.family, question_text(c), c.source) for c in cases]
+    widths = [max((len(row[k]) for row in rows), default=0) for k in range(3)]
+    return "\n".join(
+        "  ".join([*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3]]) for row in rows
+    )
+
+
+def question_text(case: Case) -> str:
+    """What is asked, in a word."""
+    if isinstance(case.question, MapQuestion):
+        return "map" if case.question.tolerance is None else "certified map"
+    return "line" if isinstance(case.question, LineQuestion) else "point"
+
+
+def to_json(campaign: Campaign) -> str:
+    """Everything about a campaign."""
+    document = {
+        "kind": "ptmcad stress",
+        "complete": campaign.complete,
+        "seed": campaign.seed,
+        "repeats": campaign.repeats,
+        "machine": campaign.machine,
+        "versions": campaign.versions,
+        "cases": [record(outcome) for outcome in campaign.outcomes],
+    }
+    return json.dumps(document, indent=1, allow_nan=False) + "\n"
+
+
+def to_csv(campaign: Campaign) -> str:
+    """The same, one row for each case."""
+    text = io.StringIO()
+    rows = [record(outcome) for outcome in campaign.outcomes]
+    if rows:
+        writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({**row, "remarks": "; ".join(row["remarks"])} for row in rows)
+    return text.getvalue()
+
+
+def record(outcome: Outcome) -> dict[str, Any]:
+    """A case and what came out, as plain data."""
+    case, v, c = outcome.case, outcome.verdict, outcome.cost
+    return {
+        "name": case.name,
+        "family": case.family,
+        "asked": question_text(case),
+        "stiffness": shortest_text(case.stiffness),
+        "source": case.source,
+        "expected": v.expected,
+        "found": v.found,
+        "right": v.right,
+        "remarks": list(v.remarks),
+        "double": v.double,
+        "double_right": v.double_right,
+        "error": _finite(v.error),
+        "double_error": _finite(v.double_error),
+        "condition": _finite(v.condition),
+        "bits": v.bits,
+        "calls": c.calls,
+        "sibling_calls": c.sibling_calls,
+        "seconds": c.seconds,
+        "sibling_seconds": c.sibling_seconds,
+        "ratio": c.ratio,
+        "ratio_low": c.spread[0],
+        "ratio_high": c.spread[1],
+    }
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and isfinite(value) else None

@@ -1,0 +1,204 @@
+"""Enclosures of real numbers, and real algebraic numbers: what certified answers are made of.
+
+Guarantee: an `Enclosure` contains the number it stands for, and each digit of its `text` is right: the text is the
+number rounded to nearest. An `AlgebraicNumber` is exact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from ptmcad.text.numerals import integer_text, magnitude, text_of
+
+DIGITS = 10
+"""Significant digits of a text unless another number is asked for."""
+_PLAIN = 6
+"""Zeros after the point, or places before it beyond the digits, from which the form with an exponent is used."""
+
+
+@dataclass(frozen=True, slots=True)
+class Enclosure:
+    """A closed interval with rational ends; the number is exact when they are equal."""
+
+    low: Fraction
+    high: Fraction
+
+    @property
+    def exact(self) -> Fraction | None:
+        """The number itself when it is known exactly."""
+        return self.low if self.low == self.high else None
+
+    @property
+    def center(self) -> Fraction:
+        """The middle."""
+        return (self.low + self.high) / 2
+
+    @property
+    def radius(self) -> Fraction:
+        """Half the width; 0 for a number that is known exactly."""
+        return (self.high - self.low) / 2
+
+    def __float__(self) -> float:
+        """The middle, rounded: for pictures, never for decisions."""
+        return float(self.center)
+
+    def settles(self, digits: int = DIGITS) -> bool:
+        """Whether the enclosure determines its number rounded to ``digits`` significant digits, and to any fewer.
+
+        It does when it is exact, or when it contains neither zero nor a multiple of half a unit of the last digit. A
+        number that is not exactly known must therefore not be such a multiple, as no irrational number is.
+        """
+        if self.low == self.high:
+            return True
+        if self.low <= 0 <= self.high:
+            return False
+        near, far = (self.low, self.high) if self.low > 0 else (-self.high, -self.low)
+        half = Fraction(10) ** (magnitude(near) + 1 - digits) / 2
+        return -(-near // half) - 1 == far // half
+
+    def text(self, digits: int = DIGITS) -> str:
+        """The number rounded to nearest, with ``digits`` significant digits.
+
+        Zeros at the end are left out only where the text is the number exactly; an exact number halfway between two
+        texts goes to the even one. Exact zero is ``0``; very small and very large numbers are written as ``1.5e-7``.
+
+        >>> Enclosure(Fraction(1, 3), Fraction(1, 3)).text(4), Enclosure(Fraction(1, 4), Fraction(1, 4)).text()
+        ('0.3333', '0.25')
+        >>> Enclosure(Fraction(1499, 1000), Fraction(1501, 1000)).text(2)
+        Traceback (most recent call last):
+        ...
+        ValueError: the enclosure does not determine 2 digits
+
+        Raises
+        ------
+        ValueError
+            When the enclosure is too wide; `settles` tells it before.
+        """
+        if not self.settles(digits):
+            raise ValueError(f"the enclosure does not determine {digits} digits")
+        if self.low == self.high == 0:
+            return "0"
+        value = self.center
+        mantissa, exponent = _rounded(abs(value), digits)
+        exact = self.low == self.high and abs(value) == mantissa * Fraction(10) ** exponent
+        return ("-" if value < 0 else "") + _decimal(mantissa, exponent, digits, exact)
+
+
+def exact_text(value: Fraction) -> str:
+    """An exact number as a decimal where it is one, else as a fraction.
+
+    >>> exact_text(Fraction(-3, 2)), exact_text(Fraction(10) ** 30), exact_text(Fraction(1, 3))
+    ('-1.5', '1e30', '1/3')
+    """
+    twos = (value.denominator & -value.denominator).bit_length() - 1
+    rest = value.denominator >> twos
+    fives = rest.bit_length() * 43067655807 // 10**11  # divided by the logarithm of 5 to base 2, so off by one at most
+    fives = next((k for k in range(max(0, fives - 1), fives + 2) if 5**k == rest), -1)
+    if fives < 0:
+        return text_of(value)
+    places = max(twos, fives)
+    digits = integer_text(abs(value.numerator) * 10**places // value.denominator).rstrip("0")
+    return Enclosure(value, value).text(max(1, len(digits)))
+
+
+def _rounded(value: Fraction, digits: int) -> tuple[int, int]:
+    """The pair (m, e) of which m 10^e is the positive value rounded to nearest, m having so many digits."""
+    exponent = magnitude(value) + 1 - digits
+    mantissa = round(value / Fraction(10) ** exponent)
+    return (mantissa // 10, exponent + 1) if mantissa == 10**digits else (mantissa, exponent)
+
+
+def _decimal(mantissa: int, exponent: int, digits: int, shorten: bool) -> str:
+    """m 10^e as text, m having so many digits; zeros at the end of the decimals are dropped when asked for."""
+    written = integer_text(mantissa)
+    point = digits + exponent  # where the point comes, counted from the first digit
+    suffix = ""
+    if -_PLAIN < point <= 0:
+        whole, decimals = "0", "0" * -point + written
+    elif 0 < point <= digits:
+        whole, decimals = written[:point], written[point:]
+    elif shorten and digits < point <= digits + _PLAIN:
+        whole, decimals = written + "0" * (point - digits), ""
+    else:
+        whole, decimals, suffix = written[0], written[1:], f"e{point - 1}"
+    if shorten:
+        decimals = decimals.rstrip("0")
+    return whole + (f".{decimals}" if decimals else "") + suffix
+
+
+@dataclass(frozen=True, slots=True)
+class AlgebraicNumber:
+    """The only real root of ``polynomial`` in [low, high].
+
+    Attributes
+    ----------
+    polynomial : in Z[T], irreducible, primitive, leading coefficient positive; constant term first.
+    """
+
+    polynomial: tuple[int, ...]
+    low: Fraction
+    high: Fraction
+
+    @property
+    def degree(self) -> int:
+        """The degree over the rationals."""
+        return len(self.polynomial) - 1
+
+    @property
+    def exact(self) -> Fraction | None:
+        """The number itself when it is rational."""
+        return Fraction(-self.polynomial[0], self.polynomial[1]) if self.degree == 1 else None
+
+    def __float__(self) -> float:
+        """The middle, rounded: for pictures, never for decisions."""
+        return float((self.low + self.high) / 2)
+
+    def compare(self, value: Fraction) -> int:
+        """The sign of the number minus a rational one."""
+        if (exact := self.exact) is not None:
+            return (exact > value) - (exact < value)
+        if not self.low <= value <= self.high:
+            return 1 if value < self.low else -1
+        return 1 if self._sign(value) == self._sign(self.low) else -1
+
+    def refined(self, width: Fraction) -> AlgebraicNumber:
+        """The same number in an interval no wider than ``width``, by bisection."""
+        if (exact := self.exact) is not None:
+            return AlgebraicNumber(self.polynomial, exact, exact)
+        low, high = self.low, self.high
+        at_low = self._sign(low)  # not zero: an irreducible polynomial of higher degree has no rational root
+        while high - low > width:
+            middle = _dyadic_between(low, high)
+            if self._sign(middle) == at_low:
+                low = middle
+            else:
+                high = middle
+        return AlgebraicNumber(self.polynomial, low, high)
+
+    def enclosure(self, digits: int = DIGITS) -> Enclosure:
+        """An enclosure that settles ``digits`` digits."""
+        number = self.refined(self.high - self.low)
+        while not (found := Enclosure(number.low, number.high)).settles(digits):
+            number = number.refined((number.high - number.low) / 16)
+        return found
+
+    def text(self, digits: int = DIGITS) -> str:
+        """The number rounded to nearest, as `Enclosure.text` writes it."""
+        return self.enclosure(digits).text(digits)
+
+    def _sign(self, at: Fraction) -> int:
+        """The sign of the polynomial at a rational number."""
+        above, below = at.numerator, at.denominator
+        total, power = 0, 1
+        for coefficient in reversed(self.polynomial):
+            total = total * above + coefficient * power
+            power *= below
+        return (total > 0) - (total < 0)
+
+
+def _dyadic_between(low: Fraction, high: Fraction) -> Fraction:
+    """A number in the middle third of the interval with a short binary expansion, so that bisection stays cheap."""
+    width = high - low
+    bits = max(0, width.denominator.bit_length() - width.numerator.bit_length() + 3)
+    return Fraction(round((low + high) / 2 * 2**bits), 2**bits)

@@ -1,0 +1,95 @@
+"""A polynomial in the two axes, with integer coefficients, independent of any engine.
+
+Guarantee: terms are sorted by exponents, coefficients are nonzero and without common factor, the first one positive,
+so two polynomials that are equal up to a constant are equal objects.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from math import gcd
+from typing import Any
+
+from ptmcad.text.numerals import MAX_DIGITS, integer_of, integer_text
+
+
+@dataclass(frozen=True, slots=True)
+class PlanePolynomial:
+    """A primitive polynomial in Z[x, y]; ``terms`` holds ``(i, j, c)`` for c x^i y^j, highest exponents first."""
+
+    terms: tuple[tuple[int, int, int], ...]
+
+    @classmethod
+    def of(cls, terms: Iterable[tuple[int, int, int]]) -> PlanePolynomial:
+        """The primitive polynomial that is proportional to the given one."""
+        ordered = sorted(((int(i), int(j), int(c)) for i, j, c in terms if c), reverse=True)
+        content = gcd(*(c for _, _, c in ordered)) if ordered else 1
+        if ordered and ordered[0][2] < 0:
+            content = -content
+        return cls(tuple((i, j, c // content) for i, j, c in ordered))
+
+    @property
+    def degrees(self) -> tuple[int, int]:
+        """The degree in each axis."""
+        return (max((i for i, _, _ in self.terms), default=0), max((j for _, j, _ in self.terms), default=0))
+
+    @property
+    def total_degree(self) -> int:
+        return max((i + j for i, j, _ in self.terms), default=0)
+
+    def __call__(self, x: Fraction, y: Fraction) -> Fraction:
+        """The exact value at a rational point."""
+        return sum((c * x**i * y**j for i, j, c in self.terms), Fraction(0))
+
+    def text(self, names: tuple[str, str] = ("x", "y"), power: str = "^") -> str:
+        """The polynomial as text, such as ``2*x^2*y - 1``."""
+        text = ""
+        for i, j, c in self.terms:
+            factors = [f"{n}{power}{e}" if e > 1 else n for n, e in zip(names, (i, j), strict=True) if e]
+            if abs(c) != 1 or not factors:
+                factors.insert(0, integer_text(abs(c)))
+            sign = ("-" if c < 0 else "") if not text else (" - " if c < 0 else " + ")
+            text += sign + "*".join(factors)
+        return text or "0"
+
+    def to_sympy(self, names: tuple[str, str] = ("x", "y")) -> Any:
+        """The polynomial as a SymPy expression in symbols of these names."""
+        import sympy
+
+        x, y = (sympy.Symbol(name) for name in names)
+        return sympy.Add(*(c * x**i * y**j for i, j, c in self.terms))
+
+    @classmethod
+    def parse(cls, text: str, names: tuple[str, str] = ("x", "y")) -> PlanePolynomial:
+        """The polynomial that `text` wrote (for longer texts than the expression parser takes).
+
+        Raises
+        ------
+        ValueError
+            When the text was not written by `text`.
+        """
+        if text == "0":
+            return cls(())
+        terms = []
+        for sign, body in re.findall(r"(^-?|[+-]) ?([^ ]+)", text):
+            powers, coefficient = [0, 0], 1
+            for factor in body.split("*"):
+                name, _, exponent = factor.partition("^")
+                if name in names:
+                    powers[names.index(name)] += _natural(exponent) if exponent else 1
+                else:
+                    coefficient *= _natural(factor)
+            terms.append((powers[0], powers[1], -coefficient if sign == "-" else coefficient))
+        result = cls.of(terms)
+        if result.text(names) != text:
+            raise ValueError(f"not a primitive polynomial in {names[0]} and {names[1]}: {text[:60]}")
+        return result
+
+
+def _natural(digits: str) -> int:
+    if not (digits.isascii() and digits.isdigit()) or len(digits) > MAX_DIGITS:
+        raise ValueError(f"{digits[:40]!r} is not a natural number")
+    return integer_of(digits)

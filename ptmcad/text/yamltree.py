@@ -1,0 +1,225 @@
+"""A YAML text as a tree whose every scalar and key knows the file, the line and the key path it stands at.
+
+Guarantee: scalars keep the text that was written (``0.1`` stays ``0.1``, never a float); no tag, anchor, alias or
+second document is accepted, no key occurs twice, and bytes, depth, number of values and length of keys are bounded, so
+that reading ends in a fraction of a second and bounded memory. Every refusal is a `ConfigError` that names the place.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from ptmcad.errors import ConfigError, shown
+from ptmcad.text import textfile
+
+MAX_BYTES = 200_000
+MAX_DEPTH = 20
+MAX_VALUES = 10_000
+MAX_KEY = 100
+"""Longer keys make no sense; every place in a tree holds the path of keys to it."""
+_DIRECTIVE = re.compile(r"^%", re.MULTILINE)
+_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_NULLS = frozenset({"", "~", "null", "Null", "NULL"})
+_BOOLEANS = frozenset({"true", "false", "yes", "no", "on", "off", "y", "n"})
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where something stands: file, line (from 1) and dotted key path; each may be unknown."""
+
+    key: str | None = None
+    file: str | None = None
+    line: int | None = None
+
+    def error(self, message: str) -> ConfigError:
+        """A `ConfigError` that names this place."""
+        return ConfigError(message, key=self.key, file=self.file, line=self.line)
+
+    def below(self, key: str, line: int | None = None) -> Place:
+        """The place of an entry under this one."""
+        path = key if self.key is None else f"{self.key}.{key}"
+        return Place(path, self.file, self.line if line is None else line)
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A scalar as written; `plain` when it was not quoted."""
+
+    text: str
+    place: Place
+    plain: bool = True
+
+    @property
+    def is_null(self) -> bool:
+        return self.plain and self.text in _NULLS
+
+    @property
+    def is_boolean(self) -> bool:
+        return self.plain and self.text.lower() in _BOOLEANS
+
+
+@dataclass(frozen=True, slots=True)
+class Sequence:
+    """A list."""
+
+    items: tuple[Node, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Tree:
+    """A mapping, in the order in which it was written."""
+
+    entries: Mapping[str, Node]
+    place: Place
+
+
+Node = Scalar | Sequence | Tree
+
+
+def read_file(path: str | Path) -> Tree:
+    """Read a YAML file whose root is a mapping.
+
+    Raises
+    ------
+    ConfigError
+        If the file is missing, is no regular file, can not be read, is larger than `MAX_BYTES`, is not UTF-8 text, is
+        not YAML, or uses what the module's docstring excludes.
+    """
+    return read_text(textfile.read_text(path, MAX_BYTES, "a problem record (a YAML file)"), str(path))
+
+
+def read_text(text: str, file: str | None = None) -> Tree:
+    """Read a YAML text whose root is a mapping; `file` is named in messages. Raises `ConfigError`."""
+    root = Place(file=file)
+    directive = _DIRECTIVE.search(text)
+    if directive is not None:  # the parser's time is quadratic in their number
+        line = text.count("\n", 0, directive.start()) + 1
+        raise Place(file=file, line=line).error("a line that starts with % is not accepted: YAML would take it for a "
+                                                "directive")  # fmt: skip
+    try:
+        node = _document(_counted(yaml.parse(text, Loader=_LOADER), root), root)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        problem = shown(" ".join(filter(None, (error.context, error.problem))), 300)
+        raise ConfigError(f"is not YAML: {problem}", file=file, line=mark.line + 1 if mark else None) from error
+    except yaml.YAMLError as error:
+        raise ConfigError(
+            "is not YAML: it has a character that text does not have (is it a binary file?)", file=file
+        ) from error
+    if not isinstance(node, Tree):
+        found = "is empty" if isinstance(node, Scalar) and node.is_null else "is not a mapping of keys to values"
+        raise ConfigError(f"{found}: a problem record has lines such as 'axes: {{rho: [0, 2], L2: [0, 2]}}'", file=file)
+    return node
+
+
+def from_python(value: object, place: Place) -> Node:
+    """The same tree from Python data: mappings, lists, tuples, str, int, bool, None, Fraction.
+
+    Raises
+    ------
+    ConfigError
+        For a float (it is not the decimal that was written) and any other type.
+    """
+    if isinstance(value, Mapping):
+        for key in value:
+            if not isinstance(key, str):
+                raise place.error(f"the key {key!r} is not text")
+        return Tree({key: from_python(entry, place.below(key)) for key, entry in value.items()}, place)
+    if isinstance(value, list | tuple):
+        return Sequence(tuple(from_python(item, place) for item in value), place)
+    if value is None or isinstance(value, bool):
+        return Scalar({None: "null", True: "true", False: "false"}[value], place)
+    if isinstance(value, str):
+        return Scalar(value, place, plain=False)
+    if isinstance(value, int | Fraction):
+        return Scalar(str(value), place)
+    remedy = ': write it as text, such as "0.1", or as a fractions.Fraction' if isinstance(value, float) else ""
+    raise place.error(f"{value!r} of type {type(value).__name__} is not exact plain data{remedy}")
+
+
+def plain_data(node: Node) -> Any:
+    """The tree as Python data: dict, list, int for plain integers, bool, None; every other scalar stays text."""
+    if isinstance(node, Tree):
+        return {key: plain_data(entry) for key, entry in node.entries.items()}
+    if isinstance(node, Sequence):
+        return [plain_data(item) for item in node.items]
+    if node.is_null:
+        return None
+    if node.plain and node.text.lower() in ("true", "false"):
+        return node.text.lower() == "true"
+    digits = node.text.removeprefix("-")
+    if node.plain and digits.isascii() and digits.isdecimal() and len(digits) < 100:
+        return int(node.text)
+    return node.text
+
+
+def _document(events: Iterator[Any], root: Place) -> Node:
+    """The only document's root node."""
+    node: Node = Scalar("", root)
+    documents = 0
+    for event in events:
+        if isinstance(event, yaml.DocumentStartEvent):
+            documents += 1
+            if documents > 1:
+                raise Place(file=root.file, line=_line(event)).error("a second document starts here: one record a file")
+        elif isinstance(event, yaml.NodeEvent):
+            node = _node(event, events, root, 0)
+    return node
+
+
+def _counted(events: Iterator[Any], root: Place) -> Iterator[Any]:
+    """The events, as long as they are not too many."""
+    values = 0
+    for event in events:
+        values += isinstance(event, yaml.NodeEvent)
+        if values > MAX_VALUES:
+            raise Place(file=root.file, line=_line(event)).error(f"more than {MAX_VALUES} values: this is not a "
+                                                                 "problem record")  # fmt: skip
+        yield event
+
+
+def _node(event: Any, events: Iterator[Any], place: Place, depth: int) -> Node:
+    """The node that starts with `event`; the rest of it is taken from `events`."""
+    here = Place(place.key, place.file, _line(event))
+    if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
+        raise here.error("anchors (&) and aliases (*) are not accepted: write the value out, or quote the text")
+    if event.tag is not None:
+        raise here.error(f"the tag {shown(event.tag, 80)} is not accepted: leave it out")
+    if depth > MAX_DEPTH:
+        raise here.error(f"more than {MAX_DEPTH} levels of nesting")
+    if isinstance(event, yaml.ScalarEvent):
+        return Scalar(event.value, here, plain=bool(event.implicit[0]))
+    if isinstance(event, yaml.SequenceStartEvent):
+        items = []
+        while not isinstance(event := next(events), yaml.SequenceEndEvent):
+            items.append(_node(event, events, place, depth + 1))
+        return Sequence(tuple(items), here)
+    entries: dict[str, Node] = {}
+    lines: dict[str, int] = {}
+    while not isinstance(event := next(events), yaml.MappingEndEvent):
+        key = _node(event, events, place, depth + 1)
+        line = _line(event)
+        if not isinstance(key, Scalar) or key.is_null:
+            raise Place(place.key, place.file, line).error("a key must be a name")
+        if len(key.text) > MAX_KEY:
+            raise Place(place.key, place.file, line).error(f"a key has more than {MAX_KEY} characters")
+        at = place.below(key.text, line)
+        if key.text == "<<":
+            raise at.error("merge keys are not accepted: write the entries out")
+        if key.text in entries:
+            raise at.error(f"the key occurs twice; first in line {lines[key.text]}: leave one out")
+        lines[key.text] = line
+        entries[key.text] = _node(next(events), events, at, depth + 1)
+    return Tree(entries, here)
+
+
+def _line(event: Any) -> int:
+    return int(event.start_mark.line) + 1

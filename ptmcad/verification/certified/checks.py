@@ -1,0 +1,65 @@
+"""All checks of a certified map, in the order in which one rests on another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from hashlib import sha256
+
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.verification.certified.parameters import check_domain
+from ptmcad.verification.certified.points import check_points
+from ptmcad.verification.certified.sampling import check_boxes
+from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
+from ptmcad.verification.certified.system import check_potential
+from ptmcad.verification.parameters import check_text
+from ptmcad.verification.report import Check, VerifyReport, Violation, checked
+
+BOXES = 40
+NOT_CHECKED = (
+    ("the whole free area", "only places and boxes in it: a proof of all of it costs more than the map"),
+    ("plan", "what it says of curves and unknowns is no claim about the regions"),
+    ("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),
+)
+
+
+def verify_certified(result: RegionMap, seed: int | None, boxes: int | None) -> VerifyReport:
+    """Check a map with a cover; see `ptmcad.verification.verify`."""
+    claims = CertifiedClaims(result)
+    drawn = fingerprint(result) if seed is None else str(seed)
+    number = BOXES if boxes is None else boxes
+    steps: tuple[tuple[str, str, Callable[[CertifiedClaims], str]], ...] = (
+        ("form", "comparison", check_form),
+        ("parameters as written", "expressions compared", check_text),
+        ("signs of parameters", "Sturm counts, elimination", check_domain),
+        ("equations", "potential from the nodes", check_potential),
+        ("components", "sweep over the rectangles", check_components),
+        ("regions and areas", "sweep, breadth-first search", check_regions),
+        ("counts and solutions", "Krawczyk's test and exclusion in balls", check_points),
+        ("random boxes", "Krawczyk's test over boxes of parameters", partial(check_boxes, seed=drawn, number=number)),
+    )
+    checks = checked(claims, steps)
+    checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
+    return VerifyReport(tuple(checks))
+
+
+def contradiction(result: RegionMap) -> str:
+    """What in a stored map contradicts the rest of it, by checks that take no time; empty when nothing does.
+
+    It does not tell whether the counts are right, nor whether rectangles are missing that no other entry tells of.
+    """
+    claims = CertifiedClaims(result)
+    for check in (check_form, check_components, check_regions):
+        try:
+            check(claims)
+        except Violation as violation:
+            return str(violation)
+    return ""
+
+
+def fingerprint(result: RegionMap) -> str:
+    """A hash of the slice's parameters, of the cover and of the counts."""
+    names = result.slice.axis_names
+    claims = [f"{n}={e.to_text(names)}" for n, e in sorted(result.slice.parameters.items())]
+    claims += [repr(result.slice.axes), repr(result.cover), repr([(c.sample, c.stable, c.total) for c in result.cells])]
+    return sha256("\n".join(claims).encode()).hexdigest()[:16]

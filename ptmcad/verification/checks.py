@@ -1,0 +1,106 @@
+"""All checks of a result, in the order in which one rests on another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from hashlib import sha256
+
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
+from ptmcad.verification.areas import check_areas
+from ptmcad.verification.auxiliary import check_auxiliary
+from ptmcad.verification.certified.checks import verify_certified
+from ptmcad.verification.certified.parameters import check_domain
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.counts import check_counts
+from ptmcad.verification.merging import check_merges, check_regions, check_shape
+from ptmcad.verification.model import check_system
+from ptmcad.verification.parameters import check_boundary, check_text
+from ptmcad.verification.plan import check_plan
+from ptmcad.verification.report import Check, VerifyReport, checked
+from ptmcad.verification.solutions import check_solutions
+from ptmcad.verification.structure import check_critical_values, check_stacks
+from ptmcad.verification.variety import check_irreducible, check_norm
+from ptmcad.verification.window import check_left_out
+
+NOT_CHECKED = (
+    ("plan without trace", "predicted costs; which savings were made that make no difference in this file"),
+    ("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),
+)
+
+CheckOf = tuple[str, str, Callable[[Claims], str]]
+"""The name of a check, its method, and the function that raises `Violation` or tells what it checked."""
+
+_SINCE_VARIETY: tuple[CheckOf, ...] = (
+    ("critical values", "discriminants, resultants, Sturm", check_critical_values),
+    ("walls and samples", "Sturm counts between samples", check_stacks),
+    ("counts", "signatures of trace forms", check_counts),
+    ("solutions", "interval Newton in each box", check_solutions),
+    ("adjacencies", "Sturm counts on segments", check_adjacencies),
+    ("no adjacency missing", "parity, resultants, Sturm", check_no_adjacency_missing),
+    ("non-adjacencies", "segments, parity, Sturm", check_non_adjacencies),
+    ("merges", "comparison of counts", check_merges),
+    ("regions", "breadth-first search", check_regions),
+    ("areas", "power series, Cauchy's bound", check_areas),
+)
+
+
+def verify(result: RegionMap, seed: int | None = None, boxes: int | None = None) -> VerifyReport:
+    """Check a result without the code that made it.
+
+    Parameters
+    ----------
+    seed : of the random points at which the variety is compared with the norm of det H, or of the random boxes of a
+        certified map; drawn from a hash of the claims when None, so that nobody can fit claims to the points.
+    boxes : number of random boxes of a certified map, `ptmcad.verification.certified.checks.BOXES` when None.
+
+    Guarantee
+    ---------
+    When the report is ``ok``, every claim in its table holds; the variety's completeness up to an error probability
+    below 1e-10 (`ptmcad.verification.variety`). Of a partial result, what it has is checked.
+
+    Not guaranteed
+    --------------
+    What the table lists as not checked.
+    """
+    if result.cover is not None or result.status is Status.CERTIFIED:
+        return verify_certified(result, seed, boxes)
+    steps = checks_of(result, seed)
+    missing: set[str] = set()
+    if result.status is Status.PARTIAL:
+        missing = set() if result.stacks else {name for name, _, _ in _SINCE_VARIETY}
+    checks = checked(Claims(result), steps, missing)
+    checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
+    return VerifyReport(tuple(checks))
+
+
+def checks_of(result: RegionMap, seed: int | None) -> tuple[CheckOf, ...]:
+    """The checks of an exact map, in the order in which one rests on another: name, method and function.
+
+    Parameters
+    ----------
+    seed : as for `verify`.
+    """
+    drawn = fingerprint(result) if seed is None else str(seed)
+    return (
+        ("shape", "cross references", check_shape),
+        ("parameters as written", "expressions compared", check_text),
+        ("signs of parameters", "Sturm counts, elimination", check_domain),
+        ("equations", "potential from the nodes", check_system),
+        ("irreducible components", "factorization", check_irreducible),
+        ("variety complete", "norm of det H at random points", partial(check_norm, seed=drawn)),
+        ("boundary components", "factors of the parameters", check_boundary),
+        ("left out", "Sturm counts, resultants", check_left_out),
+        ("plan", "built once more", check_plan),
+        ("auxiliary components", "values at random points", partial(check_auxiliary, seed=drawn)),
+        *_SINCE_VARIETY,
+    )
+
+
+def fingerprint(result: RegionMap) -> str:
+    """A hash of the slice's parameters and of the stored variety."""
+    names = result.slice.axis_names
+    claims = [f"{n}={e.to_text(names)}" for n, e in sorted(result.slice.parameters.items())]
+    claims += [f"{c.kind.value}: {c.polynomial.text(names)}" for c in result.components]
+    return sha256("\n".join(claims).encode()).hexdigest()[:16]
