@@ -283,7 +283,9 @@ def test_signals_at_any_moment_of_the_start(tmp_path: Path) -> None:
         time.sleep(moments.uniform(0, 0.25))
         process.send_signal(number)
         _, errors = process.communicate(timeout=60)
-        assert (process.returncode, errors) in ((0, b""), (128 + number, b""))
+        assert process.returncode in (0, 128 + number)
+        # what was computed by then, and is not yet in place, is saved
+        assert errors == b"" or (process.returncode and errors.startswith(b"stopped: by SIG")), errors
         assert not [name for name in os.listdir(tmp_path) if name.startswith(".")]
 
 
