@@ -122,8 +122,12 @@ def decide(expression: Expression, axes: Axes, need: Need, max_work: int | None 
 
 def place(verdict: Witness | Undecided, axes: Axes) -> str:
     """Where it is, in words: ``at rho = 1, m = 2``, or ``near``."""
+    if isinstance(verdict, Witness) and verdict.distance:  # the digits that it is known by
+        return "near " + ", ".join(
+            f"{axis.name} = {approximate_text(value)}" for axis, value in zip(axes, verdict.point, strict=True)
+        )
     if isinstance(verdict, Witness):
-        return f"{'near' if verdict.distance else 'at'} {named(verdict.point, axes)}"
+        return f"at {named(verdict.point, axes)}"
     return f"near {named(_middle(verdict.boxes[0]), axes)}"
 
 
