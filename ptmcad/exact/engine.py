@@ -6,7 +6,7 @@ Guarantee: the map is exact (`Status.EXACT`): no step decides anything by roundi
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -41,13 +41,12 @@ from ptmcad.exact.models.elimination import elimination_system
 from ptmcad.exact.models.text import system_text
 from ptmcad.exact.plan import plan_of
 from ptmcad.exact.variety import discriminant_variety
+from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, without_free_lengths
 from ptmcad.version import __version__
 
 AREA_TOLERANCE = Fraction(1, 10_000)
-
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass(slots=True)
@@ -76,25 +75,12 @@ class _Clock:
         self.check()
 
 
-def exact_map(
-    slice: Slice,
-    area_tolerance: Fraction = AREA_TOLERANCE,
-    deadline: float | None = None,
-    progress: Progress | None = None,
-    keep: frozenset[str] = frozenset(),
-    partial: Callable[[RegionMap], None] | None = None,
-    areas: bool = True,
-) -> RegionMap:
+def exact_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
     """The region map of a slice without free lengths.
 
     Parameters
     ----------
-    area_tolerance : largest relative width of each region's area bounds.
-    deadline : reading of `time.perf_counter` after which `LimitReached` is raised.
-    progress : called as progress(stage, done, total).
-    keep : names of savings to switch off, of `ptmcad.question.savings`.
-    partial : called with the map after each stage that improves it, the complete one included.
-    areas : whether to enclose the regions' areas; without, they are known only to be at most the window's.
+    options : of which ``deadline`` counts, not ``timeout``.
 
     Raises
     ------
@@ -107,13 +93,13 @@ def exact_map(
     """
     without_free_lengths(slice.parameters, "an exact map is")
     now = perf_counter()
-    clock = _Clock(progress, deadline, now, now, {})
+    clock = _Clock(options.progress, options.deadline, now, now, {})
     best: RegionMap | None = None
     try:
-        for reached in _stages(slice, area_tolerance if areas else None, clock, keep):
+        for reached in _stages(slice, options, clock):
             best = reached
-            if partial is not None:
-                partial(reached)
+            if options.partial is not None:
+                options.partial(reached)
     except LimitReached as stop:
         raise LimitReached(str(stop), partial=best) from stop
     assert best is not None
@@ -136,7 +122,7 @@ def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVari
     """
     without_free_lengths(slice.parameters, "the discriminant variety is")
     now = perf_counter()
-    first = next(_stages(slice, AREA_TOLERANCE, _Clock(None, None, now, now, {}), keep))
+    first = next(_stages(slice, Options(keep=keep), _Clock(None, None, now, now, {})))
     system = system_of(slice.mechanism)
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     return SliceVariety(
@@ -148,13 +134,9 @@ def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVari
     )
 
 
-def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozenset[str]) -> Iterator[RegionMap]:
-    """The region map after the variety, after the counts, and complete; the first two are marked as partial.
-
-    Parameters
-    ----------
-    relative : largest relative width of areas' bounds, None when they are not asked for.
-    """
+def _stages(slice: Slice, options: Options, clock: _Clock) -> Iterator[RegionMap]:
+    """The region map after the variety, after the counts, and complete; the first two are marked as partial."""
+    keep = options.keep
     prove_slice(slice)
     system = system_of(slice.mechanism)
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
@@ -181,7 +163,7 @@ def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozen
         adjacencies=(),
         non_adjacencies=(),
         regions=(),
-        plan=plan_of(slice, variety.components, base, costs, keep, relative is not None),
+        plan=plan_of(slice, variety.components, base, costs, keep, options.areas),
         undetermined=Fraction(1),
         versions={
             "ptmcad": __version__,
@@ -219,13 +201,14 @@ def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozen
     counted = assemble(started, projection, stacks, points, counts, crossings, lines)
     yield counted
     clock.stage("adjacency")
-    if relative is None:
+    if not options.areas:
         times = {**clock.seconds, "total": perf_counter() - clock.started}
         yield replace(counted, status=Status.EXACT, timings=times)
         return
 
     clock.report("areas", 0, 1)
     cells_alone = "equal-counts" in keep
+    relative = options.area_tolerance or AREA_TOLERANCE
     whole = (slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low)
     rows = [tuple(n if cells_alone else counted.cells[n].region for n in stack.cells) for stack in counted.stacks]
     bounds, bits = region_areas(stacks, rows, curves, window[base], window[1 - base], relative, clock.check)
