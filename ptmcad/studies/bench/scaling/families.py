@@ -136,8 +136,8 @@ def fibres(size: int, seed: int) -> tuple[Run, ...]:
     """The equilibria of every design without its free length, by algebra: four or six."""
     from ptmcad.algebra.polynomials import from_expression, from_fraction
     from ptmcad.exact.counting import equilibria as equilibria_at
-    from ptmcad.exact.engine import point_values
     from ptmcad.exact.models import system_of
+    from ptmcad.exact.stages import point_values
 
     slice = design_slice("0", "-10")
     system = system_of(slice.mechanism)
