@@ -28,6 +28,7 @@ from ptmcad.cli import run
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.options import Options
 from ptmcad.process.handover import Receiver, Topic, connect, disconnect
 from ptmcad.process.supervisor import LATE, _Watch
 
@@ -44,10 +45,10 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """Replace the engine by one that gives `certified_map`; the dictionary receives the arguments."""
     calls: dict[str, Any] = {}
 
-    def stand_in(slice: ptmcad.Slice, **options: Any) -> RegionMap:
-        calls.update(slice=slice, **options)
-        if options["progress"] is not None:
-            options["progress"]("undetermined 28 %", 1, 2)
+    def stand_in(slice: ptmcad.Slice, options: Options) -> RegionMap:
+        calls.update(slice=slice, options=options)
+        if options.progress is not None:
+            options.progress("undetermined 28 %", 1, 2)
         if "stop" in calls:
             raise LimitReached("the time limit was reached", partial=certified_map(slice.count, Status.PARTIAL))
         return replace(certified_map(slice.count), slice=slice, timings={"curves": 1.0})
@@ -92,14 +93,15 @@ def test_the_check_of_a_map_to_go_on_from_is_part_of_the_time_limit(
         engine.clear()
         begun = perf_counter()
         assert run(["classify", *HAND, *options, limit]) == 0
-        assert least <= engine["deadline"] - begun <= most + (perf_counter() - begun)
+        assert least <= engine["options"].deadline - begun <= most + (perf_counter() - begun)
 
 
 def test_auto_gives_free_lengths_to_the_certified_engine(engine: dict[str, Any]) -> None:
     before = perf_counter()
     result = ptmcad.classify(free_slice(), tolerance="1/50", timeout=100, jobs=2, count="total")
-    assert (engine["tolerance"], engine["jobs"], engine["resume"]) == (Fraction(1, 50), 2, None)
-    assert before + 100 <= engine["deadline"] <= perf_counter() + 100
+    options = engine["options"]
+    assert (options.tolerance, options.jobs, options.resume) == (Fraction(1, 50), 2, None)
+    assert before + 100 <= options.deadline <= perf_counter() + 100
     assert engine["slice"].count is ptmcad.Count.TOTAL
     assert result.timings.keys() == {"curves", "total"}
     engine.clear()
@@ -123,8 +125,8 @@ def test_a_result_to_files_and_on_from_it(
     stored = RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8"))
     assert stored == replace(certified_map(), slice=stored.slice)
     assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED), "--jobs", "1"]) == 0
-    assert engine["resume"] == certified_map().cover
-    assert engine["jobs"] == 1
+    assert engine["options"].resume.cover == certified_map().cover
+    assert engine["options"].jobs == 1
 
 
 def test_the_time_limit_saves_the_map_so_far(
@@ -202,8 +204,8 @@ def search():
 def draw(result, path, samples):
     path.write_text("a picture")
 {work}
-def certified_map(slice, *, partial, deadline, **options):
-    partial(replace(by_hand.certified_map(Count.STABLE, Status.PARTIAL), slice=slice))
+def certified_map(slice, options):
+    options.partial(replace(by_hand.certified_map(Count.STABLE, Status.PARTIAL), slice=slice))
     search()
     return replace(by_hand.certified_map(Count.STABLE), slice=slice)
 for name in ("compiled", "loading", "engine"):
@@ -284,7 +286,7 @@ def test_compiling_is_no_part_of_the_time_limit(
     assert stopped == math.inf
     assert 1600 <= again - begun <= 1600 + taken
     # the library loads once more, which takes no time outside of this test
-    assert 2600 <= engine["deadline"] - counted <= 2600 + taken
+    assert 2600 <= engine["options"].deadline - counted <= 2600 + taken
     watch = _Watch(0, 0, 0, ())
     watch.told[Topic.DEADLINE] = [repr(stopped), ""]
     assert watch._deadline() is None
@@ -320,8 +322,9 @@ def _resumed_and_stopped(earlier: RegionMap, found: RegionMap) -> None:
     """Go on from a map, be handed another one, and be stopped with that."""
     handed: list[RegionMap] = []
 
-    def stand_in(slice: ptmcad.Slice, **options: Any) -> RegionMap:
-        options["partial"](found)
+    def stand_in(slice: ptmcad.Slice, options: Options) -> RegionMap:
+        assert options.partial is not None
+        options.partial(found)
         assert handed == ([found] if found.undetermined < earlier.undetermined else [])
         raise LimitReached("the time limit was reached", partial=found)
 

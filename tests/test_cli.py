@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from fractions import Fraction
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
@@ -21,6 +22,7 @@ import pytest
 from ptmcad.answer.regionmap import Status
 from ptmcad.cli import COMMANDS, group, run
 from ptmcad.errors import ConfigError, LimitReached, OutputError
+from ptmcad.options import Options
 from ptmcad.process.output import check_writable, text_writer, write_files
 
 ROOT = Path(__file__).parent.parent
@@ -51,9 +53,10 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """Replace the engine and the pictures; the dictionary receives the arguments and may hold what to raise."""
     calls: dict[str, Any] = {}
 
-    def classify(slice: Any, **options: Any) -> StandIn:
-        calls.update(slice=slice, **options)
-        options["progress"]("counts", 1, 2)
+    def region_map(slice: Any, options: Options) -> StandIn:
+        calls.update(slice=slice, options=options)
+        assert options.progress is not None
+        options.progress("counts", 1, 2)
         if "raise" in calls:
             raise calls["raise"]
         return StandIn(slice.name)
@@ -65,7 +68,7 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
             raise calls["draw raises"]
 
     pipeline = ModuleType("ptmcad.ask.classification")
-    pipeline.classify = classify  # type: ignore[attr-defined]
+    pipeline.region_map = region_map  # type: ignore[attr-defined]
     pipeline.prepare = lambda *_: None  # type: ignore[attr-defined]
     render = ModuleType("ptmcad.show.render")
     render.draw = draw  # type: ignore[attr-defined]
@@ -95,8 +98,9 @@ def test_files_and_table(engine: dict[str, Any], tmp_path: Path, capfd: pytest.C
     captured = capfd.readouterr()
     assert captured.out == "table of fig4\n"
     assert captured.err == ""
-    assert (engine["engine"], engine["jobs"], engine["timeout"], engine["samples"]) == ("exact", 2, 5.0, True)
-    assert engine["area_tolerance"].denominator == 10**9
+    options = engine["options"]
+    assert (options.engine, options.jobs, options.timeout, engine["samples"]) == ("exact", 2, 5.0, True)
+    assert options.area_tolerance == Fraction(1, 10**9)
     assert engine["slice"].count.value == "index"
 
 
@@ -215,7 +219,7 @@ def test_sigterm_removes_the_temporary_files(tmp_path: Path) -> None:
         "    def to_json(self, timings): return 'new'\n"
         "def draw(result, path, samples):\n"
         "    path.write_text('half'); time.sleep(60)\n"
-        "pipeline.classify, pipeline.prepare = lambda slice, **options: Result(), lambda *_: None\n"
+        "pipeline.region_map, pipeline.prepare = lambda slice, options: Result(), lambda *_: None\n"
         "render.draw = draw\n"
         "sys.modules.update({'ptmcad.ask.classification': pipeline, 'ptmcad.show.render': render})\n"
         "from ptmcad.cli import main\n"

@@ -183,7 +183,7 @@ def test_a_limit_leaves_the_best_map_so_far(stage: str, monkeypatch: pytest.Monk
     def stop(*_arguments: object) -> None:
         raise LimitReached("the limit of this test")
 
-    monkeypatch.setattr(f"ptmcad.exact.engine.{stage}", stop)
+    monkeypatch.setattr(f"ptmcad.exact.stages.{stage}", stop)
     with pytest.raises(LimitReached) as stopped:
         classify(record)
     partial = stopped.value.partial

@@ -65,13 +65,13 @@ def engine(progress, partial):
 def draw(result, path, samples):
     path.write_text("half a picture")
 {work}
-def classify(slice, *, progress, partial, **options):
-    partial(Result("partial"))
-    engine(progress, partial)
-    partial(Result("exact"))
+def region_map(slice, options):
+    options.partial(Result("partial"))
+    engine(options.progress, options.partial)
+    options.partial(Result("exact"))
     return Result("exact")
 pipeline, render = types.ModuleType("ptmcad.ask.classification"), types.ModuleType("ptmcad.show.render")
-pipeline.classify, pipeline.prepare, render.draw = classify, lambda *_: None, draw
+pipeline.region_map, pipeline.prepare, render.draw = region_map, lambda *_: None, draw
 sys.modules.update({"ptmcad.ask.classification": pipeline, "ptmcad.show.render": render})
 from ptmcad.__main__ import main
 main()

@@ -75,13 +75,13 @@ if engine != "real":
             return '{"status": "%s", "slice": {"count": "%s"}}' % (self.status.value, self.slice.count.value)
         def table(self):
             return ""
-    def classify(slice, *, partial, **options):
-        partial(Result(slice, "partial"))
+    def region_map(slice, options):
+        options.partial(Result(slice, "partial"))
         time.sleep(0.05)
-        partial(Result(slice, engine))
+        options.partial(Result(slice, engine))
         return Result(slice, engine)
     sys.modules["ptmcad.ask.classification"] = pipeline = types.ModuleType("ptmcad.ask.classification")
-    pipeline.classify, pipeline.prepare = classify, lambda *_: None
+    pipeline.region_map, pipeline.prepare = region_map, lambda *_: None
 from ptmcad.__main__ import main
 main()
 """

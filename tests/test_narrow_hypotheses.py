@@ -27,6 +27,7 @@ from ptmcad.certified.mechanism import NAMES
 from ptmcad.certified.parameters import positive_base, slice_mechanism
 from ptmcad.certified.points import PointCount, point_counter
 from ptmcad.errors import ConfigError, DegenerateSliceError, LimitReached
+from ptmcad.options import Options
 from ptmcad.question.slice import Count, Slice
 
 UNIT = {"L1": 1, "k": 1, "F3": "-1/10", "F4": "-1/10", "l0": "1/5"}
@@ -77,7 +78,7 @@ def test_a_pole_on_the_window_s_edge(changes: dict[str, Any], at_least: int) -> 
     record = {"name": "narrow", "parameters": given, "axes": {"rho": [0, "1/2"], "L2": ["1/2", 1]}, "count": "stable"}
     slice, end = ptmcad.slice_from_mapping(record), None if at_least else perf_counter() + 30
     try:
-        m = certified_map(slice, tolerance=Q(1, 4), deadline=end)
+        m = certified_map(slice, Options(tolerance=Q(1, 4), deadline=end))
     except LimitReached as stopped:  # the hardest leave much undetermined, which is no fault
         if stopped.partial is None:
             return
@@ -148,7 +149,7 @@ def test_rho_and_a_bar_equal_everywhere_but_written_otherwise() -> None:
     window = {"m": ["1/2", 1], "L2": ["1/2", 1]}
     s = slice_of(window, rho="m*(m + 2)/(m + 2)", L1="(m^2 + m)/(1 + m)")
     with pytest.raises(DegenerateSliceError, match="rho = L1 everywhere"):
-        certified_map(s, tolerance=Q(1, 10), deadline=perf_counter() + 20)
+        certified_map(s, Options(tolerance=Q(1, 10), deadline=perf_counter() + 20))
 
 
 def test_rho_nearly_equal_to_a_bar_everywhere() -> None:

@@ -20,6 +20,7 @@ from ptmcad.answer.regionmap import Cell, RegionMap, Solution, Status, System
 from ptmcad.cli.verify import command
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover, Rectangle
+from ptmcad.options import Options
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Point
 from ptmcad.verification.certified.energy import NAMES, Energy
@@ -45,7 +46,7 @@ def made(count: str) -> RegionMap:
     })  # fmt: skip
     from ptmcad.certified.engine import certified_map
 
-    return certified_map(slice, tolerance=Fraction(1, 50), jobs=1)
+    return certified_map(slice, Options(tolerance=Fraction(1, 50), jobs=1))
 
 
 @pytest.fixture(scope="module")
@@ -277,7 +278,7 @@ def certified(count: str, axes: dict[str, list[str]], tolerance: Fraction, **par
     from ptmcad.certified.engine import certified_map
 
     record = {"name": "small", "mechanism": "ptm", "parameters": parameters, "axes": axes, "count": count}
-    return certified_map(slice_from_mapping(record), tolerance=tolerance, jobs=1)
+    return certified_map(slice_from_mapping(record), Options(tolerance=tolerance, jobs=1))
 
 
 def test_rectangles_that_tell_nothing_do_not_draw_places() -> None:

@@ -17,15 +17,10 @@ from time import perf_counter
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.savings import kept, load_all
 from ptmcad.question.slice import Count, Slice, without_free_lengths
-from ptmcad.text.syntax import did_you_mean
-
-ENGINES = ("auto", "exact", "certified")
-
-Progress = Callable[[str, int, int], None]
-"""Called as progress(stage, done, total); a stage that ends with "%" says itself how far the work is."""
 
 
 def classify(
@@ -71,49 +66,71 @@ def classify(
     LimitReached
         After ``timeout`` seconds, with what there is of the map as ``partial``.
     """
-    if engine not in ENGINES:
-        raise ConfigError(f"{engine!r} is none of {', '.join(ENGINES)}{did_you_mean(engine, ENGINES)}", key="engine")
+    options = Options(
+        engine=engine,
+        timeout=timeout,
+        tolerance=_share(tolerance, "tolerance"),
+        area_tolerance=_share(area_tolerance, "area_tolerance"),
+        jobs=jobs,
+        progress=progress,
+        keep=frozenset((keep,) if isinstance(keep, str) else keep),
+        partial=partial,
+        resume=resume,
+        areas=areas,
+    )
     try:
-        slice = slice if count is None else replace(slice, count=Count(count))
+        counted = slice if count is None else replace(slice, count=Count(count))
     except ValueError as error:
         raise ConfigError(str(error), key="count") from error
-    undetermined, relative = _share(tolerance, "tolerance"), _share(area_tolerance, "area_tolerance")
+    return region_map(counted, options)
+
+
+def region_map(slice: Slice, options: Options) -> RegionMap:
+    """The region map of a slice as `classify` gives it.
+
+    Parameters
+    ----------
+    options : whose ``deadline`` is set here, from ``timeout``, once the engine is loaded.
+
+    Raises
+    ------
+    ConfigError, HypothesisError, LimitReached
+        As `classify` does.
+    """
     _check_count(slice)
-    certified = is_certified(slice, engine)
-    if not areas:
-        _check_no_areas(certified, relative)
-    off = kept(keep, certified)
+    certified = is_certified(slice, options.engine)
+    if not options.areas:
+        _check_no_areas(certified, options)
+    options = replace(options, keep=kept(options.keep, certified))
     if certified:
-        _check_certified(slice, relative, resume)
-        prepare(slice, engine, progress, off)
+        _check_certified(slice, options)
+        prepare(slice, options)
     started = perf_counter()
-    deadline = None if timeout is None else started + timeout
+    options = replace(options, deadline=None if options.timeout is None else started + options.timeout)
     if certified:
-        result = _certified(slice, undetermined, deadline, jobs, progress, off, partial, resume)
+        result = _certified(slice, options)
         return replace(result, timings={**result.timings, "total": perf_counter() - started})
     try:
         without_free_lengths(slice.parameters, "an exact map is")
     except ConfigError as error:
         raise ConfigError(f"{error.message}: choose certified or auto", key="engine") from error
-    if resume is not None:
+    if options.resume is not None:
         raise ConfigError("only the certified engine can go on from an earlier map", key="resume")
-    if "imports" in off:
+    if "imports" in options.keep:
         load_all()
-    from ptmcad.exact.engine import AREA_TOLERANCE, exact_map
+    from ptmcad.exact.engine import exact_map
 
-    return exact_map(slice, AREA_TOLERANCE if relative is None else relative, deadline, progress, off, partial, areas)
+    return exact_map(slice, options)
 
 
-def _check_no_areas(certified: bool, area_tolerance: Fraction | None) -> None:
+def _check_no_areas(certified: bool, options: Options) -> None:
     if certified:
         raise ConfigError("the certified engine has areas for nothing: it can not leave them out", key="areas")
-    if area_tolerance is not None:
+    if options.area_tolerance is not None:
         raise ConfigError("areas are not asked for, but a tolerance for them is given: leave one out", key="areas")
 
 
-def prepare(
-    slice: Slice, engine: str = "auto", progress: Progress | None = None, keep: frozenset[str] = frozenset()
-) -> None:
+def prepare(slice: Slice, options: Options) -> None:
     """Load what an engine needs, and compile it where this machine has not done so: no part of any time limit.
 
     Raises
@@ -121,11 +138,11 @@ def prepare(
     ConfigError
         Where the certified engine is wanted and numba is missing, or the memory limit leaves it no room.
     """
-    if is_certified(slice, engine):
-        if "imports" in keep:
+    if is_certified(slice, options.engine):
+        if "imports" in options.keep:
             with loading("all that there is"):
                 load_all()
-        load_certified(progress)
+        load_certified(options.progress)
 
 
 def load_certified(progress: Progress | None = None) -> None:
@@ -143,27 +160,20 @@ def load_certified(progress: Progress | None = None) -> None:
     load(progress)
 
 
-def _check_certified(slice: Slice, area_tolerance: Fraction | None, resume: RegionMap | None) -> None:
-    if area_tolerance is not None:
+def _check_certified(slice: Slice, options: Options) -> None:
+    if options.area_tolerance is not None:
         raise ConfigError(
             "the certified engine bounds areas by what it leaves undetermined: give tolerance instead",
             key="area_tolerance",
         )
-    if resume is not None:
-        check_resumable(slice, resume)
+    if options.resume is not None:
+        check_resumable(slice, options.resume)
 
 
-def _certified(
-    slice: Slice,
-    tolerance: Fraction | None,
-    deadline: float | None,
-    jobs: int | None,
-    progress: Progress | None,
-    keep: frozenset[str],
-    partial: Callable[[RegionMap], None] | None,
-    earlier: RegionMap | None,
-) -> RegionMap:
+def _certified(slice: Slice, options: Options) -> RegionMap:
     from ptmcad.certified.engine import certified_map
+
+    earlier, partial = options.resume, options.partial
 
     def improved(found: RegionMap) -> None:
         """What is handed on is never less than the map from which the computation went on."""
@@ -171,16 +181,7 @@ def _certified(
             partial(found)
 
     try:
-        return certified_map(
-            slice,
-            tolerance=tolerance,
-            deadline=deadline,
-            jobs=jobs,
-            progress=progress,
-            partial=None if partial is None else improved,
-            resume=None if earlier is None else earlier.cover,
-            keep=keep,
-        )
+        return certified_map(slice, replace(options, partial=None if partial is None else improved))
     except LimitReached as stop:
         found = stop.partial
         if earlier is None or (isinstance(found, RegionMap) and found.undetermined < earlier.undetermined):

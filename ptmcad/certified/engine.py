@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from math import inf
 
@@ -34,6 +34,7 @@ from ptmcad.cover.filling import combined, gathered, simplified
 from ptmcad.cover.rectangles import MOST_STEPS, Cover, Rectangle
 from ptmcad.cover.subdivision import rectangle_array
 from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.options import DEFAULTS, Options
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice
 from ptmcad.version import __version__
@@ -68,44 +69,14 @@ FALL = Fraction(9, 10)
 STEPS = 2**24
 """Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
 
-Progress = Callable[[str, int, int], None]
 
-
-@dataclass(frozen=True, slots=True)
-class Options:
-    """What is asked of `certified_map` beside the slice; see there."""
-
-    tolerance: Fraction = TOLERANCE
-    deadline: float | None = None
-    jobs: int = 1
-    progress: Progress | None = None
-    partial: Callable[[RegionMap], None] | None = None
-    keep: frozenset[str] = frozenset()
-
-
-def certified_map(
-    slice: Slice,
-    *,
-    tolerance: Fraction | None = None,
-    deadline: float | None = None,
-    jobs: int | None = None,
-    progress: Progress | None = None,
-    partial: Callable[[RegionMap], None] | None = None,
-    resume: Cover | None = None,
-    keep: frozenset[str] = frozenset(),
-) -> RegionMap:
+def certified_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
     """The region map of a slice by interval methods.
 
     Parameters
     ----------
-    tolerance : largest undetermined share of the window's area at which to stop; `TOLERANCE` when None.
-    deadline : reading of `time.perf_counter` at which to stop; `ptmcad.certified.loading.load` comes before, so that
-        compilation is no part of it.
-    jobs : number of threads, all processors when None. The map does not depend on it.
-    progress : called as progress(what, done, total).
-    partial : called with maps on the way, each complete but for a larger undetermined area.
-    resume : cover of an earlier map of the same slice and count: what was outside it stays decided.
-    keep : names of savings to switch off, of `ptmcad.question.savings`.
+    options : of which ``deadline`` counts, not ``timeout``; `ptmcad.certified.loading.load`, which compiles, comes
+        before it is set. Maps on the way are complete but for a larger undetermined area.
 
     Raises
     ------
@@ -117,28 +88,29 @@ def certified_map(
     if any(max(abs(axis.low), abs(axis.high)) > LARGEST for axis in slice.axes):
         raise ConfigError(f"the certified engine computes in floats: an axis may reach {float(LARGEST):g}, no more")
     prove_slice(slice)
-    options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial, keep)
-    return _Run(slice, options, resume).run()
+    return _Run(slice, options).run()
 
 
 class _Run:
     """One computation of a map: the enclosures, which shrink, and the time each part took."""
 
-    def __init__(self, slice: Slice, options: Options, resume: Cover | None):
+    def __init__(self, slice: Slice, options: Options):
         load(options.progress)
         self.pace = Pace(options.deadline)
         self.clock = self.pace.clock
         self.slice, self.options = slice, options
+        self.tolerance = options.tolerance or TOLERANCE
+        self.jobs = options.jobs or os.cpu_count() or 1
         self.seconds = {"plan": 0.0, "curves": 0.0, "regions": 0.0}
         self.area = float((slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low))
         steps = STEPS
-        while steps * options.tolerance < 64 and steps < MOST_STEPS:
+        while steps * self.tolerance < 64 and steps < MOST_STEPS:
             steps *= 2
         horizontal, vertical = slice.axes
         self.lattice = Lattice(((horizontal.low, horizontal.high), (vertical.low, vertical.high)), steps)
-        self.resumed = resume
+        self.resumed = None if options.resume is None else options.resume.cover
         wanted = curves(slice, slice.count, options.keep)
-        self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, resume))
+        self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, self.resumed))
         self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted, options.keep), _versions())
         self.best: RegionMap | None = None
         """The map with the least undetermined area of those that were handed over."""
@@ -150,7 +122,7 @@ class _Run:
 
     def run(self) -> RegionMap:
         undetermined = Fraction(1)
-        tolerance = self.options.tolerance
+        tolerance = self.tolerance
         if self.resumed is not None and _share(self.resumed) <= tolerance:
             result = self.map(self.resumed, Status.CERTIFIED)
             if result.undetermined <= tolerance:
@@ -159,7 +131,7 @@ class _Run:
             start, regions = self.clock(), self.seconds["regions"]
             report = self._report(level, undetermined)
             self._thinned = None
-            in_time = refine(self.enclosures, self.area * 4.0**-level, self.options.jobs, report, self._late)
+            in_time = refine(self.enclosures, self.area * 4.0**-level, self.jobs, report, self._late)
             self.seconds["curves"] += self.clock() - start - (self.seconds["regions"] - regions)
             if not in_time:
                 return self._stopped("the time limit was reached")
@@ -188,7 +160,7 @@ class _Run:
 
     def thin_cover(self, undetermined: Fraction) -> Cover | None:
         """A cover of strips that are thin enough for the tolerance, if they can be, in the time that there is."""
-        allowed = self.options.tolerance
+        allowed = self.tolerance
         if undetermined > WITHIN * allowed or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes()):
             return None
         start = self.clock()
@@ -238,7 +210,7 @@ class _Run:
     def _strips(self) -> Thinning:
         if self._thinned is None:
             start, boxes = self.clock(), self.boxes()
-            self._thinned = thinning(self.enclosures, self.lattice, self.options.jobs)
+            self._thinned = thinning(self.enclosures, self.lattice, self.jobs)
             self.pace.thin.record(boxes, self.clock() - start)
         return self._thinned
 
@@ -289,7 +261,7 @@ class _Run:
         LimitReached
             Otherwise, with that map; without one where nothing is decided yet.
         """
-        tolerance = self.options.tolerance
+        tolerance = self.tolerance
         if self.best is None and self.options.partial is not None:
             self._hand_over(Fraction(1))  # a cheap one first: what strips take is not known yet
         so_far = self.partial()

@@ -13,13 +13,14 @@ from typing import Any
 import click
 
 from ptmcad.cli.formats import formats_of
-from ptmcad.cli.limits import clock_stopped, limit_options, limits
+from ptmcad.cli.gathering import gathered
+from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.slices import slice_options
+from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.errors import ConfigError, ExpressionError, LimitReached
+from ptmcad.options import Options
 from ptmcad.process.handover import Topic, tell, watched
-from ptmcad.process.memory import Bound
 from ptmcad.process.output import (
     Writer,
     check_writable,
@@ -29,7 +30,6 @@ from ptmcad.process.output import (
     where_saved,
     write_files,
 )
-from ptmcad.question.config import slice_from_options
 from ptmcad.question.savings import check_names, kept
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import rational
@@ -40,32 +40,48 @@ SHORTEST = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
-    """What is asked of the engine and of the output, beside the slice.
+class Output:
+    """What is to be printed and written beside the table, and where."""
 
-    ``spent`` is the part of ``timeout``, in seconds, that was needed to read and check the map from which to go on.
-    """
+    out: Path
+    formats: tuple[str, ...]
+    explain: bool
+    samples: bool
+    no_timings: bool
 
-    engine: str = "auto"
-    out: Path = Path()
-    formats: tuple[str, ...] = ("json", "png", "svg")
-    explain: bool = False
-    jobs: int | None = None
-    timeout: float | None = None
-    tolerance: Fraction | None = None
-    area_tolerance: Fraction | None = None
-    resume: Any = None
-    samples: bool = False
-    timings: bool = True
-    keep: tuple[str, ...] = ()
-    areas: bool = True
-    spent: float = 0.0
+    def text(self, result: Any) -> str:
+        """The result's JSON."""
+        text: str = result.to_json(timings=not self.no_timings)
+        return text
 
 
-def classify_to_files(slice: Slice, request: Request) -> Any:
+def _wanted(
+    engine: str,
+    jobs: int | None,
+    tolerance: Fraction | None,
+    area_tolerance: Fraction | None,
+    keep: tuple[str, ...],
+    no_areas: bool,
+) -> Options:
+    return Options(
+        engine=engine,
+        jobs=jobs,
+        tolerance=tolerance,
+        area_tolerance=area_tolerance,
+        keep=frozenset(keep),
+        areas=not no_areas,
+    )
+
+
+def classify_to_files(slice: Slice, options: Options, output: Output, spent: float = 0.0) -> Any:
     """Classify the slice, write the files asked for, and return the `RegionMap`.
 
     Guarantee: the folder has been proved writable before the computation starts; files are written all or none.
+
+    Parameters
+    ----------
+    spent : the part of the options' ``timeout``, in seconds, that was needed to read and check the map from which to
+        go on.
 
     Raises
     ------
@@ -74,67 +90,51 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
     PtmcadError
         Any other of its kinds, with nothing written.
     """
-    check_writable(request.out, tuple(f"{slice.name}.{suffix}" for suffix in request.formats))
-    target = request.out / f"{slice.name}.json"
-    beside = tuple(f"{slice.name}.{suffix}" for suffix in request.formats if suffix != "json")
-    if "json" in request.formats:
+    check_writable(output.out, tuple(f"{slice.name}.{suffix}" for suffix in output.formats))
+    target = output.out / f"{slice.name}.json"
+    beside = tuple(f"{slice.name}.{suffix}" for suffix in output.formats if suffix != "json")
+    if "json" in output.formats:
         tell(Topic.TARGET, str(target), *beside)
 
     def handed_over(result: Any) -> None:
-        _hand_over(request, result)
+        _hand_over(output, result)
 
-    left = None if request.timeout is None else max(request.timeout - request.spent, SHORTEST)
     with ProgressBar() as progress:
-        with clock_stopped(request.timeout, request.spent):  # the time that the import takes is not the computation's
-            from ptmcad.ask.classification import classify, prepare
+        options = replace(options, progress=progress, partial=handed_over if watched() else None)
+        with clock_stopped(options.timeout, spent):  # the time that the import takes is not the computation's
+            from ptmcad.ask.classification import prepare, region_map
 
-            _tell_why_none(slice, request, "the engine was still being loaded or compiled")
-            prepare(slice, request.engine, progress)
-        _tell_why_none(slice, request, "the first level of the search was not done")
+            _tell_why_none(slice, options, output, "the engine was still being loaded or compiled")
+            prepare(slice, options)
+        _tell_why_none(slice, options, output, "the first level of the search was not done")
+        left = None if options.timeout is None else max(options.timeout - spent, SHORTEST)
         try:
-            result = classify(
-                slice,
-                engine=request.engine,
-                timeout=left,
-                tolerance=request.tolerance,
-                area_tolerance=request.area_tolerance,
-                jobs=request.jobs,
-                progress=progress,
-                partial=handed_over if watched() else None,
-                resume=request.resume,
-                keep=request.keep,
-                areas=request.areas,
-            )
+            result = region_map(slice, replace(options, timeout=left))
         except LimitReached as stopped:
-            if stopped.partial is None or "json" not in request.formats:
+            if stopped.partial is None or "json" not in output.formats:
                 raise
-            text = _hand_over(request, stopped.partial)  # first: if this process is ended now, the other one has it
+            text = _hand_over(output, stopped.partial)  # first: if this process is ended now, the other one has it
             place = save_stopped(target, text, beside=beside)
             where = f"the partial result is in {place}{where_saved(target, place, beside)}"
             further = "" if getattr(stopped.partial, "cover", None) is None else how_to_go_on(place)
             raise LimitReached(f"{stopped}; {where}{further}") from stopped
-        _save(result, slice.name, request.formats, request)
+        _save(result, slice.name, output)
     return result
 
 
-def _text(result: Any, request: Request) -> str:
-    text: str = result.to_json(timings=request.timings)
-    return text
-
-
-def _tell_why_none(slice: Slice, request: Request, reason: str) -> None:
+def _tell_why_none(slice: Slice, options: Options, output: Output, reason: str) -> None:
     """Say why there is no map yet to the process that watches, when maps of this engine can be gone on from."""
     from ptmcad.ask.engines import is_certified
 
-    if "json" in request.formats and is_certified(slice, request.engine):
-        kept = "; the map to go on from is as it was" if request.resume is not None else ""
+    if "json" in output.formats and is_certified(slice, options.engine):
+        kept = "; the map to go on from is as it was" if options.resume is not None else ""
         tell(Topic.RESUMABLE, f"{reason}{kept}")
 
 
-def _hand_over(request: Request, result: Any) -> str:
+def _hand_over(output: Output, result: Any) -> str:
     """Give the result so far to the process that watches, which saves it if this one has to be stopped; its text."""
-    text = _text(result, request)
-    if "json" in request.formats:
+    text = output.text(result)
+    if "json" in output.formats:
         state = "partial" if result.status.value == "partial" else "complete"
         open_share = "" if result.cover is None else f", {_percent(result.undetermined)} of it undetermined,"
         tell(Topic.RESULT, state, text, open_share)
@@ -145,23 +145,24 @@ def _percent(share: Fraction) -> str:
     return f"{float(100 * share):.2g} %"
 
 
-def _save(result: Any, name: str, formats: tuple[str, ...], request: Request) -> None:
+def _save(result: Any, name: str, output: Output) -> None:
     """Write the pictures and, last, the JSON."""
     writers: dict[str, Writer] = {}
-    text = _hand_over(request, result) if "json" in formats else ""  # first: drawing may take longer than there is time
+    # first: drawing may take longer than there is time
+    text = _hand_over(output, result) if "json" in output.formats else ""
 
     def draw(path: Path) -> None:
         from ptmcad.show.render import draw as drawn  # brings matplotlib
 
-        drawn(result, path, samples=request.samples)
+        drawn(result, path, samples=output.samples)
 
-    for file in (f"{name}.{suffix}" for suffix in formats if suffix != "json"):
+    for file in (f"{name}.{suffix}" for suffix in output.formats if suffix != "json"):
         writers[file] = picture(file, draw)
-    if "json" in formats:
+    if "json" in output.formats:
         writers[f"{name}.json"] = text_writer(text)
-        write_result(request.out, writers, f"{name}.json", text)
+        write_result(output.out, writers, f"{name}.json", text)
     else:
-        write_files(request.out, writers)
+        write_files(output.out, writers)
 
 
 def explanation(steps: Iterable[Any]) -> str:
@@ -169,7 +170,7 @@ def explanation(steps: Iterable[Any]) -> str:
     return "\n".join(str(step) for step in steps)
 
 
-def announced(slice: Slice, request: Request) -> tuple[Any, ...]:
+def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
     """Print what is known of the plan before anything is computed, and return these steps.
 
     Raises
@@ -180,14 +181,14 @@ def announced(slice: Slice, request: Request) -> tuple[Any, ...]:
     from ptmcad.ask.engines import is_certified
     from ptmcad.exact import plan
 
-    certified = is_certified(slice, request.engine)
-    off = kept(request.keep, certified)
+    certified = is_certified(slice, options.engine)
+    off = kept(options.keep, certified)
     if certified:
         from ptmcad.certified.plan import beforehand
 
         steps = beforehand(slice, off)
     else:
-        steps = plan.beforehand(slice, off, request.areas)
+        steps = plan.beforehand(slice, off, options.areas)
     click.echo(f"plan of {slice.name}, {'certified' if certified else 'exact'} engine, before it starts:")
     click.echo(explanation(steps))
     later = () if certified else tuple(name for name in plan.LATER if name not in off)
@@ -271,27 +272,9 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @click.option("--no-areas", is_flag=True, help="Leave the regions' areas out, often half of the work (exact engine).")
 @click.option("--samples", is_flag=True, help="Draw the cells' sample points.")
 @click.option("--no-timings", is_flag=True, help="Leave run times out of the JSON, so that it is the same every time.")
+@gathered(options=_wanted, output=Output)
 def command(
-    *,
-    config: Path | None,
-    axes: str | None,
-    sets: tuple[str, ...],
-    ranges: tuple[str, ...],
-    count: str | None,
-    engine: str,
-    out: Path,
-    formats: tuple[str, ...],
-    explain: bool,
-    jobs: int | None,
-    timeout: float | None,
-    max_memory: Bound | None,
-    tolerance: Fraction | None,
-    resume: Path | None,
-    area_tolerance: Fraction | None,
-    samples: bool,
-    no_timings: bool,
-    keep: tuple[str, ...],
-    no_areas: bool,
+    *, asked: Asked, count: str | None, options: Options, output: Output, limits: Limits, resume: Path | None
 ) -> None:
     """Map the regions of a slice by their number of equilibria.
 
@@ -311,31 +294,19 @@ def command(
         ptmcad classify --slice rho,F --range rho=0:2 --range F=-10:0 --set F3=F --set F4=F --format json
         ptmcad classify --slice rho,L2 --range rho=1/20:2 --range L2=0:2 --set l0=1/5 --set F3=-10 --set F4=-10
     """
-    slice = slice_from_options(config, axes, sets, ranges, count)
-    request = Request(
-        engine=engine,
-        out=out,
-        formats=formats,
-        explain=explain,
-        jobs=jobs,
-        timeout=timeout,
-        tolerance=tolerance,
-        area_tolerance=area_tolerance,
-        samples=samples,
-        timings=not no_timings,
-        keep=keep,
-        areas=not no_areas,
-    )
-    with limits(timeout, max_memory):
+    slice = asked.slice(count)
+    options = replace(options, timeout=limits.timeout)
+    spent = 0.0
+    with held(limits):
         if resume is not None:
-            if "json" in formats:
+            if "json" in output.formats:
                 tell(Topic.RESUMABLE, "the map to go on from was still being checked; it is as it was")
             begun = time.monotonic()
             earlier = _resumed(slice, resume)  # of many rectangles that takes a while, which is part of the limit
-            request = replace(request, resume=earlier, spent=time.monotonic() - begun)
-        steps = announced(slice, request) if explain else ()
-        result = classify_to_files(slice, request)
+            options, spent = replace(options, resume=earlier), time.monotonic() - begun
+        steps = announced(slice, options) if output.explain else ()
+        result = classify_to_files(slice, options, output, spent)
     further = [step for step in result.plan if step not in steps]
-    if explain and further:
+    if output.explain and further:
         click.echo(f"decided on the way:\n{explanation(further)}")
     click.echo(result.table())

@@ -11,10 +11,12 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import click
 
+from ptmcad.cli.gathering import gathered
 from ptmcad.process.handover import Topic, tell, watched
 from ptmcad.process.memory import Bound, bound_of, bounded, default_bound
 
@@ -31,8 +33,17 @@ def _bound(_context: click.Context, _parameter: click.Parameter, value: str | No
     return None if value is None else bound_of(value)
 
 
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Seconds and memory that a command may take, None for no limit of its own."""
+
+    timeout: float | None
+    max_memory: Bound | None
+
+
 def limit_options(command: F) -> F:
-    """Add the options ``timeout`` (seconds or None) and ``max_memory`` (a `Bound` or None)."""
+    """Add ``--timeout`` and ``--max-memory``, which the command gets as ``limits``."""
+    command = gathered(limits=Limits)(command)
     command = click.option("--max-memory", callback=_bound, metavar="SIZE",
                            help="Stop before using more memory, such as 500M or 2G (exit status 3; 2 when it is "
                                 "too little to start with).  "
@@ -58,12 +69,12 @@ def clock_stopped(timeout: float | None, spent: float = 0.0) -> Iterator[None]:
 
 
 @contextmanager
-def limits(timeout: float | None, max_memory: Bound | None) -> Iterator[None]:
+def held(limits: Limits) -> Iterator[None]:
     """Set the limits for what is done inside."""
-    tell_deadline(timeout)
-    bound = max_memory or (default_bound() if watched() else None)
+    tell_deadline(limits.timeout)
+    bound = limits.max_memory or (default_bound() if watched() else None)
     if bound is not None:
-        tell(Topic.MEMORY, str(bound.size), bound.text, "default" if max_memory is None else "asked")
+        tell(Topic.MEMORY, str(bound.size), bound.text, "default" if limits.max_memory is None else "asked")
         # numpy's linear algebra, which nothing here uses, would reserve memory for every processor of the machine
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     tell(Topic.LOADING, "")  # the program itself is there

@@ -10,10 +10,9 @@ from pathlib import Path
 import click
 
 from ptmcad.answer.regionmap import Location, RegionMap
-from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.stored import read_result
 from ptmcad.errors import ConfigError, shown
-from ptmcad.process.memory import Bound
 from ptmcad.process.streams import reader_left
 from ptmcad.text.textfile import lines_of
 
@@ -142,9 +141,7 @@ def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str]) 
 @click.option("--csv", "table", type=click.Path(path_type=Path), metavar="FILE",
               help="A CSV file whose first row names the axes; prints a CSV row for each of its points.")  # fmt: skip
 @limit_options
-def command(
-    *, result: Path, at: str | None, table: Path | None, timeout: float | None, max_memory: Bound | None
-) -> None:
+def command(*, result: Path, at: str | None, table: Path | None, limits: Limits) -> None:
     """Tell in which cell and region of RESULT a rational point lies, and the number of equilibria there.
 
     The answer is exact, however near the point is to a boundary: "on the variety" exactly on a curve, "outside the
@@ -159,7 +156,7 @@ def command(
     """
     if (at is None) == (table is None):
         raise ConfigError("give a point, as in --at rho=7/10,L2=3/2, or --csv FILE")
-    with limits(timeout, max_memory):
+    with held(limits):
         stored = read_result(result)
         if table is not None:
             _table(stored, rows_of(table, stored), table)

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.limits import limit_options, limits, tell_deadline
+from ptmcad.cli.limits import Limits, held, limit_options, tell_deadline
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import shown_path
-from ptmcad.process.memory import Bound
 from ptmcad.process.output import check_writable
 
 
@@ -17,7 +16,7 @@ from ptmcad.process.output import check_writable
 @click.option("--out", type=click.Path(path_type=Path), default=Path("paper"), show_default=True,
               help="Folder for the files.")  # fmt: skip
 @limit_options
-def command(*, out: Path, timeout: float | None, max_memory: Bound | None) -> int:
+def command(*, out: Path, limits: Limits) -> int:
     """Reproduce the paper: equations, figures 2 to 5, and every claim confirmed, corrected or refuted.
 
     Writes index.html, claims.html, claims.md, claims.json, equations.md, equations.tex, and for every figure the region
@@ -28,12 +27,12 @@ def command(*, out: Path, timeout: float | None, max_memory: Bound | None) -> in
     Example:
         ptmcad paper --out paper
     """
-    with limits(timeout, max_memory):
+    with held(limits):
         check_writable(out)  # before the libraries are loaded, which takes a second
         from ptmcad.studies.paper.claim import Verdict
         from ptmcad.studies.paper.reproduce import reproduce
 
-        tell_deadline(timeout)  # anew: the time that the import took is not the computation's
+        tell_deadline(limits.timeout)  # anew: the time that the import took is not the computation's
         with ProgressBar() as progress:
             found = reproduce(out, progress)
         click.echo(found.table())

@@ -8,11 +8,10 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.formats import formats_of
-from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.stored import read_result
 from ptmcad.errors import ConfigError, PictureError, shown_path
-from ptmcad.process.memory import Bound
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import portable_file
 
@@ -35,8 +34,7 @@ def command(
     out: Path | None,
     dpi: int,
     samples: bool,
-    timeout: float | None,
-    max_memory: Bound | None,
+    limits: Limits,
 ) -> None:
     """Draw RESULT, a JSON file of `ptmcad classify`.
 
@@ -45,7 +43,7 @@ def command(
         ptmcad classify --slice L2,rho --format json
         ptmcad plot slice-L2-rho.json --format png,svg --dpi 300
     """
-    with limits(timeout, max_memory):
+    with held(limits):
         stored = read_result(result)
         folder = result.parent if out is None else out
         portable_file(f"{result.stem}.{formats[0]}", "RESULT")

@@ -13,11 +13,10 @@ import click
 from click.core import ParameterSource
 
 from ptmcad.cli.formats import formats_of
-from ptmcad.cli.limits import clock_stopped, limit_options, limits
+from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.process.memory import Bound
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import PARAMETERS, file_name, load, slice_from_options
 from ptmcad.question.slice import Slice
@@ -222,8 +221,7 @@ def command(
     start: str | None,
     pose: int | None,
     critical: bool,
-    timeout: float | None,
-    max_memory: Bound | None,
+    limits: Limits,
 ) -> None:
     """Find the intervals of constant count along one axis; the operation range is where two equilibria are stable.
 
@@ -246,7 +244,7 @@ def command(
     if pose is not None and start is None:
         raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
     stem = f"{slice.name}-range" if name is None else file_name(name, "--name")
-    with limits(timeout, max_memory):
+    with held(limits):
         if formats and slice.has_free_lengths:
             from ptmcad.question.line import has_free_lengths
 
@@ -262,7 +260,7 @@ def command(
             from ptmcad.question.line import has_free_lengths
 
             if has_free_lengths(slice, along, other):
-                with clock_stopped(timeout):  # the time that compiling takes is not the computation's
+                with clock_stopped(limits.timeout):  # the time that compiling takes is not the computation's
                     load_certified()
         found = answer(slice, request)
         click.echo(found.text)

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.stored import read_result
 from ptmcad.errors import ConfigError, shown_path
-from ptmcad.process.memory import Bound
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, portable_file
 
@@ -34,8 +33,7 @@ def command(
     name: str | None,
     bench: Path | None,
     no_timings: bool,
-    timeout: float | None,
-    max_memory: Bound | None,
+    limits: Limits,
 ) -> None:
     """Write RESULT, a JSON file of `ptmcad classify`, as one HTML page.
 
@@ -47,7 +45,7 @@ def command(
         ptmcad classify --slice L2,rho --format json
         ptmcad report slice-L2-rho.json
     """
-    with limits(timeout, max_memory):
+    with held(limits):
         stored = read_result(result)
         folder = result.parent if out is None else out
         file = portable_file(f"{name or result.stem}.html", "--name")

@@ -6,16 +6,42 @@ Guarantee: every such command takes the same words for the same slice.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
+from ptmcad.cli.gathering import gathered
+from ptmcad.question.config import slice_from_options
+from ptmcad.question.slice import Slice
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """The record and what changes it, as they were typed."""
+
+    config: Path | None
+    axes: str | None
+    sets: tuple[str, ...]
+    ranges: tuple[str, ...]
+
+    def slice(self, count: str | None = None) -> Slice:
+        """The slice that is meant.
+
+        Raises
+        ------
+        ConfigError
+            For anything wrong with the record or the options.
+        """
+        return slice_from_options(self.config, self.axes, self.sets, self.ranges, count)
+
+
 def slice_options(command: F) -> F:
-    """Add ``config``, ``axes``, ``sets`` and ``ranges``, as `ptmcad.question.config.slice_from_options` takes them."""
+    """Add CONFIG, ``--slice``, ``--set`` and ``--range``, which the command gets as ``asked``."""
+    command = gathered(asked=Asked)(command)
     for add in (
         click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", help="The range of an axis."),
         click.option("--set", "sets", multiple=True, metavar="NAME=VALUE",

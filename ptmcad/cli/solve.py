@@ -9,11 +9,10 @@ import click
 
 from ptmcad.answer.poses import MOST_DIGITS, Poses
 from ptmcad.cli.formats import formats_of
-from ptmcad.cli.limits import clock_stopped, limit_options, limits
+from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError
-from ptmcad.process.memory import Bound
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, point_from_options
 from ptmcad.question.slice import FREE_LENGTHS
@@ -85,8 +84,7 @@ def command(
     out: Path,
     name: str | None,
     landscape: bool,
-    timeout: float | None,
-    max_memory: Bound | None,
+    limits: Limits,
 ) -> None:
     """Find every equilibrium at one point of the parameters, with stability, spring forces and energy.
 
@@ -104,14 +102,14 @@ def command(
         raise ConfigError("give a point, as in --at rho=1,L2=3/2")
     start = "poses" if name is None else file_name(name, "--name")
     names = file_names(start, formats, landscape)
-    with limits(timeout, max_memory):
+    with held(limits):
         parameters = point_from_options(config, {} if at is None else point_of(at), sets)
         if names:
             check_writable(out, names)
         from ptmcad.ask.classification import load_certified
         from ptmcad.ask.solving import poses_at
 
-        with clock_stopped(timeout):  # the time that imports and compiling take is not the computation's
+        with clock_stopped(limits.timeout):  # the time that imports and compiling take is not the computation's
             if any(parameters.get(length) for length in FREE_LENGTHS):
                 load_certified()
         poses = poses_at(parameters, digits)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -10,11 +11,10 @@ from typing import TYPE_CHECKING
 import click
 
 from ptmcad.cli.formats import formats_of
-from ptmcad.cli.limits import clock_stopped, limit_options, limits
+from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.process.memory import Bound
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 
 if TYPE_CHECKING:
@@ -86,8 +86,7 @@ def command(
     formats: tuple[str, ...],
     out: Path,
     only_list: bool,
-    timeout: float | None,
-    max_memory: Bound | None,
+    limits: Limits,
 ) -> int:
     """Run stiff and extreme cases: springs, lengths and forces of very different size, points next to folds and cusps.
 
@@ -105,8 +104,9 @@ def command(
     """
     from ptmcad.studies.stress.named import chosen  # the cases' numbers need no library
 
+    timeout = limits.timeout
     limit = None if timeout is None else timeout + GRACE
-    with limits(limit, max_memory):
+    with held(replace(limits, timeout=limit)):
         cases = _cases(names, number, seed, everything=only_list)
         if only_list:
             from ptmcad.studies.stress.report import listing

@@ -6,12 +6,11 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.limits import limit_options, limits
-from ptmcad.cli.slices import slice_options
+from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.errors import shown_path
-from ptmcad.process.memory import Bound
 from ptmcad.process.output import check_writable, text_writer, write_files
-from ptmcad.question.config import portable_file, slice_from_options
+from ptmcad.question.config import portable_file
 from ptmcad.show.export import FORMATS
 
 
@@ -23,14 +22,10 @@ from ptmcad.show.export import FORMATS
 @limit_options
 def command(
     *,
-    config: Path | None,
-    axes: str | None,
-    sets: tuple[str, ...],
-    ranges: tuple[str, ...],
+    asked: Asked,
     format: str,
     out: Path | None,
-    timeout: float | None,
-    max_memory: Bound | None,
+    limits: Limits,
 ) -> None:
     """Compute the curves off which the number of equilibria is locally constant.
 
@@ -48,11 +43,11 @@ def command(
         ptmcad variety --slice L2,rho --format maple --out unloaded.mpl
         ptmcad variety --slice rho,L2 --set F3=-10 --set F4=-10 --format qepcad
     """
-    slice = slice_from_options(config, axes, sets, ranges)
+    slice = asked.slice()
     if out is not None:
         portable_file(out.name, "--out")
         check_writable(out.parent, (out.name,))
-    with limits(timeout, max_memory):
+    with held(limits):
         from ptmcad.exact.engine import slice_variety
 
         text = slice_variety(slice).text(format)

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.limits import limit_options, limits
+from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.stored import read_result
-from ptmcad.process.memory import Bound
 
 
 @click.command("verify")
@@ -18,9 +17,7 @@ from ptmcad.process.memory import Bound
 @click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
               help="Random boxes of the free area of a certified map.  [default: 40]")  # fmt: skip
 @limit_options
-def command(
-    *, result: Path, seed: int | None, boxes: int | None, timeout: float | None, max_memory: Bound | None
-) -> int:
+def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
 
     Prints what was checked, and how. The exit status is 0 when every check passed, 1 when one failed (the first
@@ -31,7 +28,7 @@ def command(
         ptmcad classify --slice L2,rho --format json
         ptmcad verify slice-L2-rho.json
     """
-    with limits(timeout, max_memory):
+    with held(limits):
         stored = read_result(result)
         from ptmcad.verification import verify
 

@@ -1,20 +1,20 @@
-"""From the engine's cells to the engine-neutral `RegionMap`.
+"""From what the engine's stages have found to the engine-neutral `RegionMap`, made once, of as much as there is.
 
-Guarantee: nothing is decided here but the merging of cells; numbers are copied exactly.
+Guarantee: nothing is decided here; numbers are copied exactly.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from flint import fmpq
+import flint
 
 from ptmcad.algebra.polynomials import to_fraction
 from ptmcad.answer.regionmap import (
-    Adjacency,
     Cell,
     CriticalValue,
     Merge,
@@ -22,134 +22,107 @@ from ptmcad.answer.regionmap import (
     Reason,
     Region,
     RegionMap,
-    Segment,
     Solution,
     Stack,
+    Status,
     Wall,
 )
-from ptmcad.exact.cad.adjacency import Crossing, Passage
+from ptmcad.exact.cad.adjacency import Crossing
 from ptmcad.exact.cad.projection import Projection
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.exact.counting import Counts, Equilibria
-from ptmcad.exact.regions import Link, merge
-from ptmcad.question.slice import Count, Point
-from ptmcad.text.numerals import decimal, fraction_of
+from ptmcad.exact.models.text import system_text
+from ptmcad.exact.plan import plan_of
+from ptmcad.exact.regions import members
+from ptmcad.exact.stages import Areas, Cells, SliceProblem, Variety, segment_of
+from ptmcad.options import Options
+from ptmcad.question.slice import Point
+from ptmcad.version import __version__
+
+
+@dataclass(frozen=True, slots=True)
+class Reached:
+    """What there is by now; None what there is not."""
+
+    variety: Variety
+    cells: Cells | None = None
+    areas: Areas | None = None
 
 
 def assemble(
-    started: RegionMap,
-    projection: Projection,
-    stacks: Sequence[StackData],
-    points: Sequence[tuple[fmpq, fmpq]],
-    found: Sequence[Equilibria],
-    crossings: Sequence[Crossing],
-    lines: dict[tuple[int, ...], int],
+    problem: SliceProblem,
+    options: Options,
+    reached: Reached,
+    status: Status = Status.PARTIAL,
+    timings: Mapping[str, float] | None = None,
 ) -> RegionMap:
-    """The map with cells, adjacencies and regions, whose areas are known only to lie within the window's.
-
-    Parameters
-    ----------
-    started : the map with its slice and components.
-    points, found : sample and equilibria of each cell, stack by stack from below.
-    crossings : between neighbouring stacks.
-    lines : the components that are lines across the fibre direction, by the coefficients of their polynomials.
-    """
-    names = started.slice.axis_names
-    counts = [e.counts for e in found]
-    keys = [count_key(c, started.slice.count) for c in counts]
-    adjacencies = _adjacencies(stacks, crossings, projection, lines, keys)
-    region_of = merge(keys, [Link(a.first, a.second, a.component) for a in adjacencies])
-    samples = [Point(names, to_fraction(x), to_fraction(y)) for x, y in points]
+    """The map of what was reached; areas that are not known lie within the window's."""
+    variety, cells, areas = reached.variety, reached.cells, reached.areas
+    adjacencies = () if cells is None else cells.neighbours.adjacencies
     separating = {a.component for a in adjacencies if a.merge is Merge.SEPARATED}
-    places = [(s, level) for s, stack in enumerate(stacks) for level in range(len(stack.heights))]
-    first, second = started.slice.axes
-    return replace(
-        started,
-        components=tuple(replace(c, separates=n in separating) for n, c in enumerate(started.components)),
-        critical_values=tuple(
-            CriticalValue(
-                tuple(int(c) for c in r.polynomial.coeffs()),
-                to_fraction(r.low),
-                to_fraction(r.high),
-                projection.origin(r.polynomial),
-            )
-            for r in projection.abscissae
-        ),
-        stacks=_stacks(stacks),
-        cells=tuple(
-            Cell(
-                s,
-                level,
-                samples[n],
-                region_of[n],
-                counts[n].total,
-                counts[n].stable,
-                counts[n].index,
-                _solutions(found[n]),
-            )
-            for n, (s, level) in enumerate(places)
-        ),
+    precision: dict[str, int] = {}
+    if cells is not None:
+        precision["solutions"] = max(e.bits for e in cells.counts.found)
+    if areas is not None:
+        precision["areas"] = areas.bits
+    samples = () if cells is None else _samples(problem, cells)
+    return RegionMap(
+        slice=problem.slice,
+        status=status,
+        system=system_text(problem.system),
+        base=variety.base,
+        complex_solutions=variety.complex_solutions,
+        components=variety.components
+        if cells is None
+        else tuple(replace(c, separates=n in separating) for n, c in enumerate(variety.components)),
+        critical_values=() if cells is None else _critical_values(cells.projection),
+        stacks=() if cells is None else _stacks(cells.stacks.stacks),
+        cells=() if cells is None else tuple(_cells(cells, samples)),
         adjacencies=adjacencies,
-        non_adjacencies=_non_adjacencies(stacks, crossings),
-        regions=_regions(region_of, counts, samples, (first.high - first.low) * (second.high - second.low)),
-        undetermined=Fraction(0),
-        precision={"solutions": max(e.bits for e in found)},
+        non_adjacencies=() if cells is None else _non_adjacencies(cells.stacks.stacks, cells.neighbours.crossings),
+        regions=() if cells is None else _regions(cells, samples, areas, problem.area),
+        plan=plan_of(problem.slice, variety.components, variety.base, variety.costs, options.keep, options.areas),
+        undetermined=Fraction(1 if cells is None else 0),
+        versions=versions(),
+        precision=precision,
+        timings=timings or {},
     )
 
 
-def with_areas(counted: RegionMap, areas: Sequence[tuple[Fraction, Fraction]], bits: int) -> RegionMap:
-    """The map with the regions' areas, each bound written outwards in decimals.
+def versions() -> dict[str, str]:
+    """Of what a result rests on."""
+    return {
+        "ptmcad": __version__,
+        "python": ".".join(map(str, sys.version_info[:2])),
+        "python-flint": flint.__version__,
+        "flint": flint.__FLINT_VERSION__,
+    }
 
-    Parameters
-    ----------
-    bits : the precision that the areas needed.
-    """
-    bounds = [(fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True))) for low, high in areas]
-    return replace(
-        counted,
-        regions=tuple(replace(r, area=b) for r, b in zip(counted.regions, bounds, strict=True)),
-        precision={**counted.precision, "areas": bits},
+
+def _samples(problem: SliceProblem, cells: Cells) -> tuple[Point, ...]:
+    names = problem.slice.axis_names
+    return tuple(Point(names, to_fraction(x), to_fraction(y)) for x, y in cells.stacks.points)
+
+
+def _critical_values(projection: Projection) -> tuple[CriticalValue, ...]:
+    return tuple(
+        CriticalValue(
+            tuple(int(c) for c in r.polynomial.coeffs()),
+            to_fraction(r.low),
+            to_fraction(r.high),
+            projection.origin(r.polynomial),
+        )
+        for r in projection.abscissae
     )
 
 
-def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
-    """The count by which regions are told apart."""
-    if count is Count.STABLE:
-        return (counts.stable,)
-    return (counts.total,) if count is Count.TOTAL else counts.index
-
-
-def _adjacencies(
-    stacks: Sequence[StackData],
-    crossings: Sequence[Crossing],
-    projection: Projection,
-    vertical_components: dict[tuple[int, ...], int],
-    keys: Sequence[tuple[int, ...]],
-) -> tuple[Adjacency, ...]:
-    found: list[Adjacency] = []
-
-    def link(first: int, second: int, component: int | None, segment: Segment | None) -> None:
-        if component is None:
-            kind = Merge.PROVEN
-        else:
-            kind = Merge.EQUAL_COUNT if keys[first] == keys[second] else Merge.SEPARATED
-        found.append(Adjacency(first, second, component, segment, kind))
-
-    first = 0
-    for s, stack in enumerate(stacks):
-        for level, wall in enumerate(stack.walls):
-            link(first + level, first + level + 1, wall.component, None)
-        following = first + len(stack.heights)
-        if s < len(crossings):
-            line = tuple(int(c) for c in projection.abscissae[s].polynomial.coeffs())
-            for p in crossings[s].passages:
-                link(first + p.left, following + p.right, vertical_components.get(line), _segment(p))
-        first = following
-    return tuple(found)
-
-
-def _segment(p: Passage) -> Segment:
-    return (to_fraction(p.low), to_fraction(p.high), to_fraction(p.height))
+def _cells(cells: Cells, samples: Sequence[Point]) -> Iterator[Cell]:
+    places = ((s, level) for s, stack in enumerate(cells.stacks.stacks) for level in range(len(stack.heights)))
+    for (s, level), sample, region, found in zip(
+        places, samples, cells.neighbours.region_of, cells.counts.found, strict=True
+    ):
+        counts = found.counts
+        yield Cell(s, level, sample, region, counts.total, counts.stable, counts.index, _solutions(found))
 
 
 def _non_adjacencies(stacks: Sequence[StackData], crossings: Sequence[Crossing]) -> tuple[NonAdjacency, ...]:
@@ -161,8 +134,8 @@ def _non_adjacencies(stacks: Sequence[StackData], crossings: Sequence[Crossing])
                 critical_value=s,
                 left=tuple(range(first + slot.left[0], first + slot.left[1] + 1)),
                 right=tuple(range(following + slot.right[0], following + slot.right[1] + 1)),
-                below=None if slot.below is None else _segment(slot.below),
-                above=None if slot.above is None else _segment(slot.above),
+                below=None if slot.below is None else segment_of(slot.below),
+                above=None if slot.above is None else segment_of(slot.above),
                 reason=Reason(slot.closing.value),
             )
             for slot in crossing.slots
@@ -192,33 +165,35 @@ def _stacks(stacks: Sequence[StackData]) -> tuple[Stack, ...]:
     return tuple(result)
 
 
-def _regions(
-    region_of: Sequence[int],
-    counts: Sequence[Counts],
-    samples: Sequence[Point],
-    whole: Fraction,
-) -> tuple[Region, ...]:
-    regions = []
-    cells_of: list[list[int]] = [[] for _ in range(1 + max(region_of))]
-    for n, number in enumerate(region_of):
-        cells_of[number].append(n)
-    for cells in map(tuple, cells_of):
-        members = [counts[n] for n in cells]
+def _regions(cells: Cells, samples: Sequence[Point], areas: Areas | None, whole: Fraction) -> tuple[Region, ...]:
+    """The cells merged, in the order of the regions' numbers.
 
-        def common(values: list[Any]) -> Any:
-            return values[0] if all(v == values[0] for v in values) else None
+    Parameters
+    ----------
+    whole : the window's area.
+    """
+    merged = members(cells.neighbours.region_of)
+    bounds = ((Fraction(0), whole),) * len(merged) if areas is None else areas.bounds
+    return tuple(
+        _region(numbers, [cells.counts.found[n].counts for n in numbers], samples, area)
+        for numbers, area in zip(merged, bounds, strict=True)
+    )
 
-        regions.append(
-            Region(
-                stable=common([c.stable for c in members]),
-                total=common([c.total for c in members]),
-                index=common([c.index for c in members]),
-                area=(Fraction(0), whole),
-                cells=cells,
-                sample=min((samples[n] for n in cells), key=_height),
-            )
-        )
-    return tuple(regions)
+
+def _region(
+    cells: tuple[int, ...], counts: Sequence[Counts], samples: Sequence[Point], area: tuple[Fraction, Fraction]
+) -> Region:
+    def common(values: list[Any]) -> Any:
+        return values[0] if all(v == values[0] for v in values) else None
+
+    return Region(
+        stable=common([c.stable for c in counts]),
+        total=common([c.total for c in counts]),
+        index=common([c.index for c in counts]),
+        area=area,
+        cells=cells,
+        sample=min((samples[n] for n in cells), key=_height),
+    )
 
 
 def _height(point: Point) -> tuple[int, ...]:

@@ -51,3 +51,11 @@ def merge(keys: Sequence[Hashable], links: Sequence[Link]) -> tuple[int, ...]:
             parent[max(a, b)] = min(a, b)
     numbers: dict[int, int] = {}
     return tuple(numbers.setdefault(root(i), len(numbers)) for i in range(len(keys)))
+
+
+def members(region_of: Sequence[int]) -> tuple[tuple[int, ...], ...]:
+    """The cells of every region."""
+    cells: list[list[int]] = [[] for _ in range(1 + max(region_of))]
+    for n, number in enumerate(region_of):
+        cells[number].append(n)
+    return tuple(map(tuple, cells))

@@ -90,7 +90,7 @@ def kept(names: Iterable[str], certified: bool) -> frozenset[str]:
     ConfigError
         For a name that no saving has, or one of the other engine's.
     """
-    given = (names,) if isinstance(names, str) else tuple(names)
+    given = (names,) if isinstance(names, str) else sorted(names)
     check_names(given)
     engine = Engine.CERTIFIED if certified else Engine.EXACT
     own = frozenset(s.name for s in SAVINGS if s.engine in (engine, Engine.ANY))

@@ -21,8 +21,8 @@ from forger.decompose import decomposed
 from ptmcad.algebra.polynomials import from_expression, from_fraction
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.exact.assembly import _solutions
-from ptmcad.exact.engine import count_at
 from ptmcad.exact.models import system_of
+from ptmcad.exact.stages import count_at
 from ptmcad.question.slice import Count, Point
 from ptmcad.verification.claims import Claims, bracket, fraction
 from ptmcad.verification.derivation import rational

@@ -22,6 +22,7 @@ from forger.decompose import decomposed
 from forger.judge import Tally, judge, places_of, violation
 from forger.maps import named
 from ptmcad.answer.regionmap import NO_POINT, Component, Kind, RegionMap
+from ptmcad.options import Options
 from ptmcad.question.slice import Count
 from ptmcad.text.plane import PlanePolynomial
 
@@ -148,7 +149,7 @@ def certified_map_of(count: str) -> RegionMap:
         "parameters": {"L1": "1", "k": "100", "F3": "-10", "F4": "-10", "l0": "1/5"},
         "axes": {"rho": ["1", "3/2"], "L2": ["3/4", "5/4"]},
     }  # fmt: skip
-    return certified_map(ptmcad.slice_from_mapping(record), tolerance=Fraction(1, 50), jobs=1)
+    return certified_map(ptmcad.slice_from_mapping(record), Options(tolerance=Fraction(1, 50), jobs=1))
 
 
 BOXES = 40

@@ -15,6 +15,7 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified import assembly, engine, loading, refinement
 from ptmcad.certified.pace import ALLOWANCE, SAFETY, SHARE, SHORTEST, Pace
 from ptmcad.errors import LimitReached
+from ptmcad.options import Options
 
 
 class Clock:
@@ -123,7 +124,9 @@ def stopped(
             module = assembly if phase == "components" else engine
             patch.setattr(module, phase, clock.slowed(getattr(module, phase), length))
         with pytest.raises(LimitReached) as limit:
-            engine.certified_map(window(), tolerance=Fraction(1, 10**9), deadline=deadline, jobs=1, partial=hand)
+            engine.certified_map(
+                window(), Options(tolerance=Fraction(1, 10**9), deadline=deadline, jobs=1, partial=hand)
+            )
     found = limit.value.partial
     assert found is None or isinstance(found, RegionMap)
     return deadline - clock.now, found, handed
@@ -160,7 +163,7 @@ def test_counts_are_left_out_before_the_limit_is_missed(monkeypatch: pytest.Monk
     monkeypatch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
     monkeypatch.setattr(PointCounter, "at", clock.slowed(PointCounter.at, 10.0))
     deadline = clock() + 16
-    result = engine.certified_map(window(), tolerance=Fraction(99, 100), deadline=deadline, jobs=1)
+    result = engine.certified_map(window(), Options(tolerance=Fraction(99, 100), deadline=deadline, jobs=1))
     assert clock.now <= deadline + 10
     assert len(result.cells) == 2
 
@@ -169,7 +172,7 @@ def test_before_anything_is_decided_the_message_says_that_there_is_no_map(monkey
     clock = Clock()
     monkeypatch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
     with pytest.raises(LimitReached, match="before anything was decided: there is no map to save yet") as limit:
-        engine.certified_map(window(), deadline=clock() + SHORTEST / 2, jobs=1)
+        engine.certified_map(window(), Options(deadline=clock() + SHORTEST / 2, jobs=1))
     assert limit.value.partial is None
 
 

@@ -24,8 +24,8 @@ from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
 from ptmcad.answer.regionmap import Kind, MorseIndex
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
-from ptmcad.exact.engine import count_at, domain_limits
 from ptmcad.exact.models import ParametricSystem, system_of
+from ptmcad.exact.stages import count_at, domain_limits
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Axis, Slice

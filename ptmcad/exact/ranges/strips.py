@@ -11,14 +11,12 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_expression, from_fraction, from_plane
+from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine
 from ptmcad.answer.regionmap import MorseIndex
-from ptmcad.exact.cad.curves import Curve, curve
-from ptmcad.exact.cad.projection import project
-from ptmcad.exact.cad.stacks import BaseEnd, StackData, Wall, lift
-from ptmcad.exact.engine import avoided_by_samples, count_at, domain_limits
-from ptmcad.exact.models import system_of
+from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.stacks import BaseEnd, StackData, Wall
+from ptmcad.exact.stages import Variety, domain_limits, problem_of, projection_of, seen_from, stacks_of
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.question.slice import Slice, without_free_lengths
 
@@ -80,30 +78,19 @@ def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
     """
     base = 1 - slice.axis_names.index(along)
     refuse_free_lengths(slice)
-    system = system_of(slice.mechanism)
-    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
-    x, y = ((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
-    window = (x, y)
-    variety = discriminant_variety(system, parameters, window, domain_limits(system, parameters))
-    curves, verticals = [], []
-    for n, component in enumerate(variety.components):
-        if component.left_out:
-            continue
-        p = from_plane(component.polynomial)
-        if component.polynomial.degrees[1 - base] > 0:
-            curves.append(curve(n, p, base))
-        else:
-            verticals.append(coefficients_in(p, 1 - base)[0])
-    projection = project(curves, verticals, window[base], window[1 - base])
-    stacks = lift(
-        curves, projection.abscissae, window[base], window[1 - base], avoided_by_samples(variety.components, base)
+    problem = problem_of(slice)
+    window = problem.window
+    found = discriminant_variety(
+        problem.system, problem.parameters, window, domain_limits(problem.system, problem.parameters)
     )
+    curves, lines = seen_from(found.components, base)
+    variety = Variety(found.components, found.complex_solutions, base, curves, lines, (0, 0))
+    stacks = stacks_of(problem, variety, projection_of(problem, variety)).stacks
     by_number = {c.component: c for c in curves}
 
     def counted(stack: StackData, height: fmpq) -> MorseIndex:
         at = (stack.sample, height) if base == 0 else (height, stack.sample)
-        where = ", ".join(f"{name} = {value}" for name, value in zip(slice.axis_names, at, strict=True))
-        return count_at(where, system, parameters, at).counts.index
+        return problem.count(at).counts.index
 
     return tuple(
         strip

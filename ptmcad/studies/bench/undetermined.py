@@ -18,6 +18,7 @@ from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import LimitReached, PtmcadError
+from ptmcad.options import Options
 from ptmcad.question.config import load
 from ptmcad.studies.bench.suite import machine, versions
 
@@ -45,7 +46,7 @@ def measure(record: Path, finest: Fraction, timeout: float, jobs: int) -> dict[s
     while tolerance >= finest and all(run["status"] == "certified" for run in runs):
         wall, processor = perf_counter(), process_time()
         try:
-            result = certified_map(slice, tolerance=tolerance, deadline=wall + timeout, jobs=jobs)
+            result = certified_map(slice, Options(tolerance=tolerance, deadline=wall + timeout, jobs=jobs))
         except LimitReached as stopped:
             if not isinstance(stopped.partial, RegionMap):
                 raise

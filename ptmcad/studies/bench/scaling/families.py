@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ptmcad.errors import PtmcadError
+from ptmcad.options import Options
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 from ptmcad.studies.bench.scaling.folds import (
@@ -78,7 +79,7 @@ def exact(size: int, slice: Slice, regions: int | None = None) -> tuple[Run]:
     from ptmcad.exact.engine import exact_map
 
     watch = Stages()
-    result = exact_map(slice, progress=lambda stage, done, total: watch.begin(stage))
+    result = exact_map(slice, Options(progress=lambda stage, done, total: watch.begin(stage)))
     used = [c.polynomial for c in result.components if not c.left_out]
     run = watch.run(
         size,
@@ -135,8 +136,8 @@ def fibres(size: int, seed: int) -> tuple[Run, ...]:
     """The equilibria of every design without its free length, by algebra: four or six."""
     from ptmcad.algebra.polynomials import from_expression, from_fraction
     from ptmcad.exact.counting import equilibria as equilibria_at
-    from ptmcad.exact.engine import point_values
     from ptmcad.exact.models import system_of
+    from ptmcad.exact.stages import point_values
 
     slice = design_slice("0", "-10")
     system = system_of(slice.mechanism)
@@ -176,7 +177,7 @@ def tolerances(size: int, seed: int) -> tuple[Run]:
             boxes += done
 
     watch.begin("map")
-    result = certified_map(certified_window(), tolerance=Fraction(1, size), jobs=1, progress=progress)
+    result = certified_map(certified_window(), Options(tolerance=Fraction(1, size), jobs=1, progress=progress))
     if result.undetermined * size > 1:
         raise PtmcadError(f"{float(result.undetermined):.3g} is undetermined, more than 1/{size}")
     rectangles = 0 if result.cover is None else len(result.cover.rectangles)
@@ -188,7 +189,7 @@ def threads(size: int, seed: int) -> tuple[Run]:
     from ptmcad.certified.engine import certified_map
 
     watch = Stages()
-    result = certified_map(certified_window(), tolerance=Fraction(1, 400), jobs=size)
+    result = certified_map(certified_window(), Options(tolerance=Fraction(1, 400), jobs=size))
     return (watch.run(size, {"cells": len(result.cells)}),)
 
 
@@ -321,7 +322,7 @@ def warm_up(certified: bool) -> None:
         from ptmcad.certified.points import point_counter
 
         point_counter(design_slice("1/5", "-10")).at(Fraction(1), Fraction(3, 2), Count.TOTAL)
-        certified_map(certified_window(), tolerance=Fraction(1, 4), jobs=1)
+        certified_map(certified_window(), Options(tolerance=Fraction(1, 4), jobs=1))
 
 
 def touch(certified: bool) -> None:

@@ -1,0 +1,387 @@
+"""The stages of the exact engine, each a function of what it needs to a result with a name.
+
+Guarantee: no stage decides anything by rounding without an error bound, and none looks at a later one.
+
+    SliceProblem -> Variety -> Projection -> Stacks -> SampleCounts -> Neighbours -> Areas
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+
+from flint import fmpq
+
+from ptmcad.algebra.polynomials import (
+    Coefficient,
+    Ratio,
+    UnivariatePolynomial,
+    coefficients_in,
+    evaluate,
+    from_expression,
+    from_fraction,
+    from_plane,
+    to_fraction,
+)
+from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.algebra.resultants import Check, nothing
+from ptmcad.algebra.window import Interval
+from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
+from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
+from ptmcad.exact.cad.adjacency import Crossing, Passage, cross
+from ptmcad.exact.cad.area import region_areas
+from ptmcad.exact.cad.curves import Curve, curve
+from ptmcad.exact.cad.projection import Projection, predicted_cost, project
+from ptmcad.exact.cad.stacks import Avoided, StackData, lift
+from ptmcad.exact.counting import Counts, DegeneratePoint, Equilibria, equilibria, solutions_at
+from ptmcad.exact.models import ParametricSystem, system_of
+from ptmcad.exact.regions import Link, members, merge
+from ptmcad.exact.variety import discriminant_variety
+from ptmcad.question.slice import Count, Slice
+from ptmcad.text.numerals import decimal, fraction_of
+
+Sample = tuple[fmpq, fmpq]
+Report = Callable[[int, int], None]
+"""Called as report(done, total); may raise to stop."""
+
+
+def unreported(_done: int, _total: int) -> None:
+    """The report that nobody asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class SliceProblem:
+    """A slice as the stages read it.
+
+    Attributes
+    ----------
+    parameters : each parameter as a ratio of polynomials in Z[x, y].
+    window : the ranges of x and y.
+    """
+
+    slice: Slice
+    system: ParametricSystem
+    parameters: dict[str, Ratio]
+    window: tuple[Interval, Interval]
+
+    @property
+    def area(self) -> Fraction:
+        """Of the window."""
+        first, second = self.slice.axes
+        return (first.high - first.low) * (second.high - second.low)
+
+    def place(self, at: Sample) -> str:
+        """A point in words, for messages."""
+        return ", ".join(f"{name} = {value}" for name, value in zip(self.slice.axis_names, at, strict=True))
+
+    def count(self, at: Sample) -> Equilibria:
+        """The equilibria at a point off the variety; raises what `count_at` does."""
+        return count_at(self.place(at), self.system, self.parameters, at)
+
+
+@dataclass(frozen=True, slots=True)
+class Variety:
+    """The discriminant variety as seen from the base axis.
+
+    Attributes
+    ----------
+    curves : the components that are used, but for lines across the base.
+    lines : these, by the components' numbers.
+    costs : predicted for each of the two base axes.
+    """
+
+    components: tuple[Component, ...]
+    complex_solutions: int
+    base: int
+    curves: Sequence[Curve]
+    lines: dict[int, UnivariatePolynomial]
+    costs: tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Stacks:
+    """The stacks over the base, and the sample of every cell, stack by stack from below."""
+
+    stacks: tuple[StackData, ...]
+    points: tuple[Sample, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SampleCounts:
+    """The equilibria at each cell's sample, and the counts by which regions are told apart."""
+
+    found: tuple[Equilibria, ...]
+    keys: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Neighbours:
+    """What separates the cells and what does not.
+
+    Attributes
+    ----------
+    crossings : between neighbouring stacks.
+    adjacencies : all pairs of cells with an open arc in common.
+    region_of : the region of each cell.
+    """
+
+    crossings: tuple[Crossing, ...]
+    adjacencies: tuple[Adjacency, ...]
+    region_of: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Areas:
+    """Bounds of each region's area, written outwards in decimals, and the bits of precision that they needed."""
+
+    bounds: tuple[tuple[Fraction, Fraction], ...]
+    bits: int
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """The decomposition with its counts: what there is when only areas are missing."""
+
+    projection: Projection
+    stacks: Stacks
+    counts: SampleCounts
+    neighbours: Neighbours
+
+
+def problem_of(slice: Slice) -> SliceProblem:
+    """The slice in the ring of the engine."""
+    system = system_of(slice.mechanism)
+    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
+    first, second = ((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
+    return SliceProblem(slice, system, parameters, (first, second))
+
+
+def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset()) -> Variety:
+    """The variety, over the base axis of the cheaper decomposition.
+
+    Parameters
+    ----------
+    keep : names of savings to switch off, of `ptmcad.question.savings`.
+
+    Raises
+    ------
+    DegenerateSliceError, InfiniteSolutionsError
+        When every point of the slice is exceptional, with one of them as a witness.
+    """
+    system, parameters, window = problem.system, problem.parameters, problem.window
+    try:
+        found = discriminant_variety(system, parameters, window, domain_limits(system, parameters), keep)
+    except (DegenerateSliceError, InfiniteSolutionsError) as error:
+        raise type(error)(f"{error}; {_witness(problem)}") from error
+    views = [seen_from(found.components, base) for base in (0, 1)]
+    costs = (predicted_cost(views[0][0]), predicted_cost(views[1][0]))
+    base = 1 if costs[1] < costs[0] and "axis-order" not in keep else 0
+    return Variety(found.components, found.complex_solutions, base, *views[base], costs)
+
+
+def seen_from(
+    components: Sequence[Component], base: int, reason: str = ""
+) -> tuple[list[Curve], dict[int, UnivariatePolynomial]]:
+    """The components that are used, or left out for a reason: curves, and lines across the base by their numbers."""
+    curves, lines = [], {}
+    for n, c in enumerate(components):
+        if c.left_out == reason:
+            if c.polynomial.degrees[1 - base] > 0:
+                curves.append(curve(n, from_plane(c.polynomial), base))
+            else:
+                lines[n] = coefficients_in(from_plane(c.polynomial), 1 - base)[0]
+    return curves, lines
+
+
+def domain_limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coefficient]:
+    """What bounds the slice's domain: lengths and stiffnesses that vary, and the parameters' denominators."""
+    names = (*system.positive, *system.nonnegative)
+    limits = [*(parameters[name][0] for name in names), *(below for _, below in parameters.values())]
+    return [limit for limit in limits if not limit.is_constant()]
+
+
+def projection_of(
+    problem: SliceProblem, variety: Variety, keep: frozenset[str] = frozenset(), check: Check = nothing
+) -> Projection:
+    """The abscissae over which the order of the curves can change."""
+    window, base = problem.window, variety.base
+    return project(variety.curves, list(variety.lines.values()), window[base], window[1 - base], check, keep)
+
+
+def stacks_of(problem: SliceProblem, variety: Variety, projection: Projection) -> Stacks:
+    """The stacks between them, with samples."""
+    window, base = problem.window, variety.base
+    # there real solutions stay regular but complex ones are lost, and a fibre may not be finite
+    harmless, lines = seen_from(variety.components, base, HARMLESS)
+    avoided = Avoided(harmless, list(lines.values()))
+    stacks = lift(variety.curves, projection.abscissae, window[base], window[1 - base], avoided)
+    points = (((s.sample, height) if base == 0 else (height, s.sample)) for s in stacks for height in s.heights)
+    return Stacks(stacks, tuple(points))
+
+
+def counts_of(problem: SliceProblem, stacks: Stacks, report: Report = unreported) -> SampleCounts:
+    """The equilibria at every sample."""
+    found = []
+    for k, at in enumerate(stacks.points):
+        report(k, len(stacks.points))
+        found.append(problem.count(at))
+    return with_keys(problem, found)
+
+
+def with_keys(problem: SliceProblem, found: Sequence[Equilibria]) -> SampleCounts:
+    """The equilibria with what tells regions apart."""
+    return SampleCounts(tuple(found), tuple(count_key(e.counts, problem.slice.count) for e in found))
+
+
+def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
+    """The count by which regions are told apart."""
+    if count is Count.STABLE:
+        return (counts.stable,)
+    return (counts.total,) if count is Count.TOTAL else counts.index
+
+
+def crossings_of(
+    problem: SliceProblem, variety: Variety, stacks: Stacks, report: Report = unreported, check: Check = nothing
+) -> tuple[Crossing, ...]:
+    """What is adjacent across each abscissa, with proof."""
+    fibre, crossings = problem.window[1 - variety.base], []
+    for k, (left, right) in enumerate(pairwise(stacks.stacks)):
+        report(k, len(stacks.stacks) - 1)
+        crossings.append(cross(variety.curves, left, right, fibre, check))
+    return tuple(crossings)
+
+
+def neighbours_of(
+    variety: Variety,
+    projection: Projection,
+    stacks: Stacks,
+    counts: SampleCounts,
+    crossings: tuple[Crossing, ...],
+) -> Neighbours:
+    """The adjacencies, and the cells merged into regions.
+
+    Raises
+    ------
+    ArithmeticError
+        When the counts contradict the decomposition.
+    """
+    lines = {_coefficients(p): n for n, p in variety.lines.items()}
+    across = [lines.get(_coefficients(r.polynomial)) for r in projection.abscissae]
+    adjacencies = tuple(_adjacencies(stacks.stacks, crossings, across, counts.keys))
+    region_of = merge(counts.keys, [Link(a.first, a.second, a.component) for a in adjacencies])
+    return Neighbours(crossings, adjacencies, region_of)
+
+
+def _adjacencies(
+    stacks: Sequence[StackData],
+    crossings: Sequence[Crossing],
+    across: Sequence[int | None],
+    keys: Sequence[tuple[int, ...]],
+) -> Iterator[Adjacency]:
+    """Pairs of cells within each stack, and then with the next one.
+
+    Parameters
+    ----------
+    across : the component that is a line over each abscissa, if one is.
+    """
+
+    def link(first: int, second: int, component: int | None, segment: Segment | None) -> Adjacency:
+        if component is None:
+            kind = Merge.PROVEN
+        else:
+            kind = Merge.EQUAL_COUNT if keys[first] == keys[second] else Merge.SEPARATED
+        return Adjacency(first, second, component, segment, kind)
+
+    first = 0
+    for s, stack in enumerate(stacks):
+        for level, wall in enumerate(stack.walls):
+            yield link(first + level, first + level + 1, wall.component, None)
+        following = first + len(stack.heights)
+        if s < len(crossings):
+            for p in crossings[s].passages:
+                yield link(first + p.left, following + p.right, across[s], segment_of(p))
+        first = following
+
+
+def segment_of(passage: Passage) -> Segment:
+    """The open segment that proves a passage."""
+    return (to_fraction(passage.low), to_fraction(passage.high), to_fraction(passage.height))
+
+
+def areas_of(
+    problem: SliceProblem, variety: Variety, known: Cells, tolerance: Fraction, keep: frozenset[str], check: Check
+) -> Areas:
+    """Bounds of the regions' areas.
+
+    Parameters
+    ----------
+    tolerance : largest relative width of each region's bounds before they are written in decimals.
+    """
+    base, region_of = variety.base, known.neighbours.region_of
+    alone = "equal-counts" in keep
+    numbers = iter(range(len(region_of)) if alone else region_of)
+    stacks = known.stacks.stacks
+    rows = [tuple(next(numbers) for _ in stack.heights) for stack in stacks]
+    window = problem.window
+    bounds, bits = region_areas(stacks, rows, variety.curves, window[base], window[1 - base], tolerance, check)
+    if alone:
+        bounds = tuple(_sum_of([bounds[n] for n in cells], problem.area) for cells in members(region_of))
+    return Areas(
+        tuple((fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True))) for low, high in bounds), bits
+    )
+
+
+def _sum_of(areas: Sequence[tuple[Fraction, Fraction]], most: Fraction) -> tuple[Fraction, Fraction]:
+    return sum((low for low, _ in areas), Fraction(0)), min(sum((high for _, high in areas), Fraction(0)), most)
+
+
+def count_at(where: str, system: ParametricSystem, parameters: dict[str, Ratio], at: Sample) -> Equilibria:
+    """The equilibria at a sample point, after a check that the geometry exists there.
+
+    Parameters
+    ----------
+    where : the point in words, for messages.
+
+    Raises
+    ------
+    GeometryError
+        When a length or stiffness is not positive there.
+    DegenerateSliceError
+        When some equilibrium is singular there.
+    """
+    values = point_values(parameters, at)
+    for name in (*system.positive, *system.nonnegative):
+        if values[name] < 0 or (values[name] == 0 and name in system.positive):
+            raise GeometryError(
+                f"{name} = {values[name]} at {where}, but it must be positive in the whole window; "
+                f"narrow the range or change {name}"
+            )
+    try:
+        return equilibria(system, values)
+    except DegeneratePoint as error:
+        raise DegenerateSliceError(
+            f"{error}, a point that should lie off the variety: the slice has a whole area of singular equilibria"
+        ) from error
+
+
+def point_values(parameters: dict[str, Ratio], at: Sample) -> dict[str, fmpq]:
+    """The parameters at a point where their denominators do not vanish."""
+    return {name: evaluate(a, *at) / evaluate(b, *at) for name, (a, b) in parameters.items()}
+
+
+def _witness(problem: SliceProblem) -> str:
+    """What is wrong at one point of a slice that is degenerate everywhere."""
+    at = (simplest_between(*problem.window[0]), simplest_between(*problem.window[1]))
+    where = problem.place(at)
+    if any(evaluate(below, *at) == 0 for _, below in problem.parameters.values()):
+        return f"at {where} a parameter has a zero denominator"
+    different, multiplicity = solutions_at(problem.system, point_values(problem.parameters, at))
+    if different is None:
+        return f"for example at {where} there are infinitely many solutions"
+    return f"for example at {where} only {different} of {multiplicity} solutions are different"
+
+
+def _coefficients(p: UnivariatePolynomial) -> tuple[int, ...]:
+    return tuple(int(c) for c in p.coeffs())
