@@ -124,7 +124,7 @@ def window_cad(result: RegionMap, *, full: bool = False) -> Decomposition:
 
     Parameters
     ----------
-    full : lift over sections of the x-axis too (much dearer: their abscissae are algebraic numbers).
+    full : lift over sections of the x-axis too (much more expensive: their abscissae are algebraic numbers).
     """
     used = [seen_from_base(c.polynomial, result.base) for c in result.components if not c.left_out]
     edges = [f"{_text(_edge(end, 0))} {sign} 0" for end, sign in _ends(_axis(result, 0))]

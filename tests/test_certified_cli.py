@@ -29,7 +29,7 @@ from ptmcad.cli.progress import ProgressBar
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.process.handover import Receiver, Topic, connect, disconnect
-from ptmcad.process.supervisor import LATE, _Watch
+from ptmcad.process.supervisor import OVERRUN_SECONDS, _Watch
 
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = json.loads((ROOT / "docs" / "region-map.schema.json").read_text(encoding="utf-8"))
@@ -289,7 +289,7 @@ def test_compiling_is_no_part_of_the_time_limit(
     watch.told[Topic.DEADLINE] = [repr(stopped), ""]
     assert watch._deadline() is None
     watch.told[Topic.DEADLINE] = [repr(again), "600 s"]
-    assert watch._deadline() == again + LATE
+    assert watch._deadline() == again + OVERRUN_SECONDS
 
 
 @forked

@@ -29,7 +29,7 @@ import ptmcad
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.process.commit import recover
-from ptmcad.process.handover import Receiver, Topic, connect, disconnect, tell
+from ptmcad.process.handover import Receiver, Topic, connect, disconnect, send
 from ptmcad.process.memory import bound_of, default_bound
 from ptmcad.process.output import check_writable, save_stopped, text_writer, write_files
 
@@ -844,7 +844,7 @@ def test_messages_arrive_whole_or_not_at_all(messages: list[tuple[Topic, list[st
         connect(file.fileno())
         try:
             for topic, texts in messages:
-                tell(topic, *texts)
+                send(topic, *texts)
         finally:
             disconnect()
         file.seek(0)

@@ -582,7 +582,7 @@ def test_a_third_line_that_is_none_is_noticed(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_six_equilibria_would_not_refute(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A witness with six equilibria decides nothing: a lower bound can not confirm the claim either."""
+    """A witness with six equilibria decides nothing: a lower bound cannot confirm the claim either."""
     monkeypatch.setattr(extensions, "WITNESSES", (extensions.AT_ELIMINATED,))
     assert extensions.at_most_six().verdict is Verdict.UNDECIDED
 

@@ -1,4 +1,4 @@
-"""The HTML report without a browser: what is in it, what can not get into it, and that it can be posed again."""
+"""The HTML report without a browser: what is in it, what cannot get into it, and that it can be posed again."""
 
 from __future__ import annotations
 

@@ -530,5 +530,5 @@ def test_the_page_of_figures_is_made_from_the_stored_runs() -> None:
     for family in report["families"]:
         assert not family["reasons"]
         seen = {run.abscissa(family["against"], r) for r in family["runs"]}
-        for suffix in command.PICTURES if len(seen) >= command.FEWEST else ():
+        for suffix in command.PICTURES if len(seen) >= command.MIN_PICTURE_SIZES else ():
             assert STORED.with_name(f"scaling-{family['name']}.{suffix}").exists()

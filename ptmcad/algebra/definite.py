@@ -1,7 +1,7 @@
 """Whether a polynomial is negative, or zero, somewhere in an open rectangle: decided, not sampled.
 
 Guarantee: `PROVED` and a `Found` point are theorems. `OPEN` is returned only where the work would be more than was
-allowed, `Near` only where a zero over an irrational abscissa can not be told from an end of the fibre to `BITS` bits.
+allowed, `Near` only where a zero over an irrational abscissa cannot be told from an end of the fibre to `BITS` bits.
 
 Why this decides. Write p as a constant times powers of different irreducible factors over Q. An irreducible f that
 changes sign does so across a curve; two factors meet in finitely many points; so p changes sign in the rectangle if and

@@ -107,4 +107,4 @@ class Poses:
 
 
 DIGITS = 12
-MOST_DIGITS = 1000
+MAX_DIGITS = 1000

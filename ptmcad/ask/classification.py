@@ -106,7 +106,7 @@ def classify(
 
 def _check_no_areas(certified: bool, area_tolerance: Fraction | None) -> None:
     if certified:
-        raise ConfigError("the certified engine has areas for nothing: it can not leave them out", key="areas")
+        raise ConfigError("the certified engine has areas for nothing: it cannot leave them out", key="areas")
     if area_tolerance is not None:
         raise ConfigError("areas are not asked for, but a tolerance for them is given: leave one out", key="areas")
 

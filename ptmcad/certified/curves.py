@@ -87,7 +87,7 @@ def _folds(slice: Slice, keep: frozenset[str], *, stable: bool) -> Iterator[Curv
     graph = Graph()
     m = slice_mechanism(graph, slice, factored=factored)
     there = m.at_equilibrium
-    short = SHORT * parameter_formulas(graph, slice)["L1"]
+    short = SHORT_LENGTH * parameter_formulas(graph, slice)["L1"]
     # unloaded, a stable configuration with spring 3 short is told from the multiples without phi
     apart = m.unit is not None and not (stable and m.unloaded)
     e1, e2 = m.equilibrium
@@ -112,17 +112,17 @@ def _folds(slice: Slice, keep: frozenset[str], *, stable: bool) -> Iterator[Curv
     graph = Graph()
     m = slice_mechanism(graph, slice, phi=True, factored=factored)
     there = m.at_equilibrium
-    short = SHORT * parameter_formulas(graph, slice)["L1"]
+    short = SHORT_LENGTH * parameter_formulas(graph, slice)["L1"]
     yield Curve(
         f"{name}, spring 3 short",
-        f"{reason}; l3 is at most {SHORT} L1",
+        f"{reason}; l3 is at most {SHORT_LENGTH} L1",
         system(
-            [*_present(m.aligned), *m.equilibrium, m.hessian.blown_up],
+            [*_present(m.aligned), *m.equilibrium, m.hessian.determinant_times_l3],
             (0, 1, 2, 3, 4),
             _dependent(
                 keep,
                 [*m.dependent, *_present(m.unit)],
-                [there.blown_up, *([m.turned] if stable else [there.levelled])],
+                [there.determinant_times_l3, *([m.turned] if stable else [there.levelled])],
             ),
             [m.lengths[2], short - length(*m.vectors[2]), *(_semidefinite(m) if stable else [])],
         ),
@@ -191,7 +191,7 @@ def _present(formula: Formula | None) -> list[Formula]:
     return [] if formula is None else [formula]
 
 
-SHORT = Fraction(1, 8)
+SHORT_LENGTH = Fraction(1, 8)
 """Below this length of spring 3, as a part of L1, its direction is a variable of its own."""
 _CURVES: dict[Count, Callable[[Slice, frozenset[str]], Iterator[Curve]]] = {
     Count.STABLE: _stable,

@@ -18,7 +18,7 @@ _TURN_ERROR = 1e-14
 
 
 def distinct(unique: Boxes, narrow: Boxes, first: int) -> NDArray[np.int64] | None:
-    """Rows of zeros that are all different; every zero is one of them. None when some pair can not be told.
+    """Rows of zeros that are all different; every zero is one of them. None when some pair cannot be told.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ class Hessian:
     p22: Formula
     q: Formula
     determinant: Formula
-    blown_up: Formula
+    determinant_times_l3: Formula
     """l3 D: finite also where spring 3 has no length."""
     levelled: Formula
     """l1 l2 l3 D: finite everywhere."""

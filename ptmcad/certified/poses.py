@@ -180,8 +180,8 @@ def _numbers(parameters: Mapping[str, Fraction], box: Box, flat: tuple[int, int]
     trace, spread = numbers.pop("trace"), numbers.pop("spread")
     root = _Number(spread.ball.sqrt() if spread.ball > 0 else spread.ball.nonnegative_part().sqrt())
     if spread.exact is not None:
-        above, below = isqrt(spread.exact.numerator), isqrt(spread.exact.denominator)
-        whole = Fraction(above, below)
+        numerator, denominator = isqrt(spread.exact.numerator), isqrt(spread.exact.denominator)
+        whole = Fraction(numerator, denominator)
         root = _Number(_arb(spread.exact).sqrt(), whole if whole * whole == spread.exact else None)
     for name, sign in (("low", -1), ("high", 1)):
         half_sum = (trace.ball + sign * root.ball) / 2

@@ -18,7 +18,7 @@ from ptmcad.cli.pictures import picture, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import slice_options
 from ptmcad.errors import ConfigError, ExpressionError, LimitReached
-from ptmcad.process.handover import Topic, tell, watched
+from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.memory import Bound
 from ptmcad.process.output import (
     Writer,
@@ -35,7 +35,7 @@ from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import rational
 
 FORMATS = ("json", "png", "svg", "pdf")
-SHORTEST = 0.01
+MIN_SECONDS = 0.01
 """Seconds that are left in any case, so that the result from which to go on is handed on."""
 
 
@@ -78,19 +78,19 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
     target = request.out / f"{slice.name}.json"
     beside = tuple(f"{slice.name}.{suffix}" for suffix in request.formats if suffix != "json")
     if "json" in request.formats:
-        tell(Topic.TARGET, str(target), *beside)
+        send(Topic.TARGET, str(target), *beside)
 
     def handed_over(result: Any) -> None:
         _hand_over(request, result)
 
-    left = None if request.timeout is None else max(request.timeout - request.spent, SHORTEST)
+    left = None if request.timeout is None else max(request.timeout - request.spent, MIN_SECONDS)
     with ProgressBar() as progress:
         with clock_stopped(request.timeout, request.spent):  # the time that the import takes is not the computation's
             from ptmcad.ask.classification import classify, prepare
 
-            _tell_why_none(slice, request, "the engine was still being loaded or compiled")
+            _report_why_none(slice, request, "the engine was still being loaded or compiled")
             prepare(slice, request.engine, progress)
-        _tell_why_none(slice, request, "the first level of the search was not done")
+        _report_why_none(slice, request, "the first level of the search was not done")
         try:
             result = classify(
                 slice,
@@ -122,13 +122,13 @@ def _text(result: Any, request: Request) -> str:
     return text
 
 
-def _tell_why_none(slice: Slice, request: Request, reason: str) -> None:
+def _report_why_none(slice: Slice, request: Request, reason: str) -> None:
     """Say why there is no map yet to the process that watches, when maps of this engine can be gone on from."""
     from ptmcad.ask.engines import is_certified
 
     if "json" in request.formats and is_certified(slice, request.engine):
         kept = "; the map to go on from is as it was" if request.resume is not None else ""
-        tell(Topic.RESUMABLE, f"{reason}{kept}")
+        send(Topic.RESUMABLE, f"{reason}{kept}")
 
 
 def _hand_over(request: Request, result: Any) -> str:
@@ -137,7 +137,7 @@ def _hand_over(request: Request, result: Any) -> str:
     if "json" in request.formats:
         state = "partial" if result.status.value == "partial" else "complete"
         open_share = "" if result.cover is None else f", {_percent(result.undetermined)} of it undetermined,"
-        tell(Topic.RESULT, state, text, open_share)
+        send(Topic.RESULT, state, text, open_share)
     return text
 
 
@@ -329,7 +329,7 @@ def command(
     with limits(timeout, max_memory):
         if resume is not None:
             if "json" in formats:
-                tell(Topic.RESUMABLE, "the map to go on from was still being checked; it is as it was")
+                send(Topic.RESUMABLE, "the map to go on from was still being checked; it is as it was")
             begun = time.monotonic()
             earlier = _resumed(slice, resume)  # of many rectangles that takes a while, which is part of the limit
             request = replace(request, resume=earlier, spent=time.monotonic() - begun)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.limits import limit_options, limits, tell_deadline
+from ptmcad.cli.limits import limit_options, limits, report_deadline
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import shown_path
 from ptmcad.process.memory import Bound
@@ -33,7 +33,7 @@ def command(*, out: Path, timeout: float | None, max_memory: Bound | None) -> in
         from ptmcad.studies.paper.claim import Verdict
         from ptmcad.studies.paper.reproduce import reproduce
 
-        tell_deadline(timeout)  # anew: the time that the import took is not the computation's
+        report_deadline(timeout)  # anew: the time that the import took is not the computation's
         with ProgressBar() as progress:
             found = reproduce(out, progress)
         click.echo(found.table())

@@ -19,7 +19,6 @@ from ptmcad.answer.regionmap import (
     CriticalValue,
     Merge,
     NonAdjacency,
-    Reason,
     Region,
     RegionMap,
     Segment,
@@ -27,7 +26,7 @@ from ptmcad.answer.regionmap import (
     Stack,
     Wall,
 )
-from ptmcad.exact.cad.adjacency import Crossing, Passage
+from ptmcad.exact.cad.adjacency import Crossing, Separator
 from ptmcad.exact.cad.projection import Projection
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.exact.counting import Counts, Equilibria
@@ -142,13 +141,13 @@ def _adjacencies(
         following = first + len(stack.heights)
         if s < len(crossings):
             line = tuple(int(c) for c in projection.abscissae[s].polynomial.coeffs())
-            for p in crossings[s].passages:
+            for p in crossings[s].separators:
                 link(first + p.left, following + p.right, vertical_components.get(line), _segment(p))
         first = following
     return tuple(found)
 
 
-def _segment(p: Passage) -> Segment:
+def _segment(p: Separator) -> Segment:
     return (to_fraction(p.low), to_fraction(p.high), to_fraction(p.height))
 
 
@@ -159,13 +158,13 @@ def _non_adjacencies(stacks: Sequence[StackData], crossings: Sequence[Crossing])
         found += [
             NonAdjacency(
                 critical_value=s,
-                left=tuple(range(first + slot.left[0], first + slot.left[1] + 1)),
-                right=tuple(range(following + slot.right[0], following + slot.right[1] + 1)),
-                below=None if slot.below is None else _segment(slot.below),
-                above=None if slot.above is None else _segment(slot.above),
-                reason=Reason(slot.closing.value),
+                left=tuple(range(first + gap.left[0], first + gap.left[1] + 1)),
+                right=tuple(range(following + gap.right[0], following + gap.right[1] + 1)),
+                below=None if gap.below is None else _segment(gap.below),
+                above=None if gap.above is None else _segment(gap.above),
+                reason=gap.reason,
             )
-            for slot in crossing.slots
+            for gap in crossing.gaps
         ]
         first = following
     return tuple(found)

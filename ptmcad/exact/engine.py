@@ -246,7 +246,7 @@ def _sum_of(areas: Sequence[tuple[Fraction, Fraction]], most: Fraction) -> tuple
 def domain_limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coefficient]:
     """What bounds the slice's domain: lengths and stiffnesses that vary, and the parameters' denominators."""
     names = (*system.positive, *system.nonnegative)
-    limits = [*(parameters[name][0] for name in names), *(below for _, below in parameters.values())]
+    limits = [*(parameters[name][0] for name in names), *(denominator for _, denominator in parameters.values())]
     return [limit for limit in limits if not limit.is_constant()]
 
 

@@ -75,7 +75,7 @@ def discriminant_variety(
     equations = on_slice(system, parameters)
     algebra = _algebra(equations)
     rows = multiples(algebra, equations.jacobian)
-    jacobian_norm = determinant([[ratio(c, below) for c in row] for row, below in rows])
+    jacobian_norm = determinant([[ratio(c, denominator) for c in row] for row, denominator in rows])
     if jacobian_norm[0].is_zero():
         raise DegenerateSliceError(
             "the slice lies inside the discriminant variety: at every point of it some equilibrium has a singular "

@@ -29,7 +29,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ptmcad.errors import OutputError
-from ptmcad.process.handover import Topic, tell, undisturbed
+from ptmcad.process.handover import Topic, send, undisturbed
 from ptmcad.process.journal import REDO, UNDO, Journal, Move, as_text, hidden, journals, read_journal
 
 if sys.platform != "win32":
@@ -101,7 +101,7 @@ def _lock(descriptor: int, folder: Path, patience: float | None) -> bool:
                 time.sleep(_PAUSE)
             elif patience is None:
                 silent = False
-                tell(Topic.WAITING, str(folder))
+                send(Topic.WAITING, str(folder))
             else:
                 raise
         except OSError:  # a file system without locks
@@ -125,7 +125,7 @@ def put_into_place(files: Mapping[Path, Path]) -> None:
     *others, (voucher, new) = files.items()
     journal = voucher.with_name(f".{voucher.stem}.{os.urandom(4).hex()}{REDO}")
     with undisturbed():
-        tell(Topic.RENAMES, str(journal), str(voucher), identity(new))
+        send(Topic.RENAMES, str(journal), str(voucher), identity(new))
         if not others:  # one step, which needs no journal
             with _as_they_were(voucher):
                 disk.replace(new, voucher)
@@ -218,7 +218,7 @@ def _as_they_were(voucher: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise OutputError(f"{_place(error, voucher)} can not be written: {reason(error)}; {UNCHANGED}") from error
+        raise OutputError(f"{_place(error, voucher)} cannot be written: {reason(error)}; {UNCHANGED}") from error
 
 
 def _place(error: OSError, default: Path) -> str:
@@ -240,18 +240,18 @@ def _carry_out(journal: Journal) -> None:
             _back(journal)
         except OSError as error:
             place = _place(error, journal.moves[-1].target)
-            raise OutputError(f"{place} can not be put back: {reason(error)}; {UNFINISHED}") from error
+            raise OutputError(f"{place} cannot be put back: {reason(error)}; {UNFINISHED}") from error
         return
     try:
         _forward(journal.moves)
     except OSError as error:
-        text = f"{_place(error, journal.moves[-1].target)} can not be written: {reason(error)}"
+        text = f"{_place(error, journal.moves[-1].target)} cannot be written: {reason(error)}"
         undo = Journal(journal.path.with_suffix(UNDO), journal.moves)
         try:
             disk.replace(journal.path, undo.path)
             _back(undo)
         except OSError as again:
-            text += f", and earlier files can not be put back: {reason(again)}; {UNFINISHED}"
+            text += f", and earlier files cannot be put back: {reason(again)}; {UNFINISHED}"
             raise OutputError(text) from error
         raise OutputError(f"{text}; {UNCHANGED}") from error
     with suppress(OSError):  # everything is in place; what stays is hidden, without effect, and removed by a later run
@@ -320,7 +320,7 @@ def _write(journal: Path, moves: tuple[Move, ...]) -> None:
     """Put the journal into place, whole and on disk."""
     temporary = hidden(moves[-1].target.with_suffix(REDO))
     olds = [str(move.old) for move in moves if move.old is not None]
-    tell(Topic.TEMPORARY, str(temporary), *olds)
+    send(Topic.TEMPORARY, str(temporary), *olds)
     try:
         with temporary.open("x", encoding="utf-8") as stream:
             stream.write(as_text(moves))

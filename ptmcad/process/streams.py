@@ -2,7 +2,7 @@
 
 Guarantee: once the reader of the pipe has gone, what is written is dropped and nothing fails. Every other failure, such
 as a full disk, is raised as for any file, unless the stream is the one for messages: there is no third place to tell
-that they can not be told, so there they are dropped. A descriptor that its owner has made non-blocking is waited for.
+that they cannot be told, so there they are dropped. A descriptor that its owner has made non-blocking is waited for.
 """
 
 import io

@@ -4,9 +4,9 @@ C code that runs for minutes never returns to the interpreter, and may abort: ne
 can stop or save anything there. So the computation runs in a forked child, and the parent, which only waits, acts.
 
 Guarantee: a signal, or the time limit, ends the child within a second whatever it does: it is asked to leave first and
-killed after `GRACE`. A library that waits for memory in vain (`ptmcad.process.shortage`) is ended after some seconds.
+killed after `GRACE_SECONDS`. A library that waits for memory in vain (`ptmcad.process.shortage`) is ended in seconds.
 What the caller has made of signals, masks and standard streams is no obstacle. No temporary file that the child has
-told of stays. When a limit ends it (time; the caller's on processor time; memory, also where a library aborts on a
+reported stays. When a limit ends it (time; the caller's on processor time; memory, also where a library aborts on a
 failed allocation or the system kills the child), the last result that it handed over is saved and the status is 3. When
 a signal ends it, such a result is saved if one can go on from it, and where there is none yet the message says why. A
 parent that is killed takes the child with it.
@@ -26,7 +26,7 @@ from collections.abc import Callable, Sequence
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
-from ptmcad.process.handover import Receiver, Topic, connect, disconnect, tell
+from ptmcad.process.handover import Receiver, Topic, connect, disconnect, send
 from ptmcad.process.streams import open_standard_streams, quiet_stream
 
 if sys.platform != "win32":
@@ -34,16 +34,16 @@ if sys.platform != "win32":
 if TYPE_CHECKING:
     from ptmcad.process.shortage import Limit, Usage, Waiting
 
-GRACE = 0.3
+GRACE_SECONDS = 0.3
 """Seconds from the request to leave to the kill."""
 
-LATE = 0.25
+OVERRUN_SECONDS = 0.25
 """Seconds by which the child may overrun its time limit: it looks at the clock itself, and does so first."""
 
-LOOK = 0.25
+POLL_SECONDS = 0.25
 """Seconds between two looks at the child's memory."""
 
-SPARE = 16
+SPARE_DESCRIPTORS = 16
 """Descriptors that there must be beside the open ones: for pipes, for imports, for the files of a result."""
 
 _CHUNK = 1 << 16
@@ -92,7 +92,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             stream.flush()
-    tell(Topic.DONE)
+    send(Topic.DONE)
     os._exit(status)
 
 
@@ -137,10 +137,10 @@ class _Watch:
         """The child's exit code, or minus the signal that ended it."""
         open_ends = {self.messages, self.printed, wake}
         kill_at: float | None = None
-        look_at = time.monotonic() + LOOK
+        look_at = time.monotonic() + POLL_SECONDS
         while True:
             due = kill_at if kill_at is not None else self._deadline()
-            timeout = LOOK if due is None else min(LOOK, max(0.0, due - time.monotonic()))
+            timeout = POLL_SECONDS if due is None else min(POLL_SECONDS, max(0.0, due - time.monotonic()))
             for end in select.select(list(open_ends), [], [], timeout)[0]:
                 if not self._read(end):
                     open_ends.discard(end)
@@ -157,14 +157,14 @@ class _Watch:
             due = self._deadline()
             self.out_of_time = not self.caught and due is not None and now >= due
             if not self.caught and not self.out_of_time and now >= look_at:
-                look_at = now + LOOK
+                look_at = now + POLL_SECONDS
                 if self._waits_for_memory(now):
                     self.waits_for_memory = True
                     os.kill(self.child, signal.SIGKILL)  # it would not listen
                     kill_at = now + 60
             if self.caught or self.out_of_time:
                 os.kill(self.child, signal.SIGTERM if signal.SIGTERM in self.heeded else signal.SIGKILL)
-                kill_at = now + GRACE
+                kill_at = now + GRACE_SECONDS
 
     def _waits_for_memory(self, now: float) -> bool:
         """Look at the child's memory."""
@@ -190,7 +190,7 @@ class _Watch:
 
     def _deadline(self) -> float | None:
         told = float(self.told[Topic.DEADLINE][0]) if Topic.DEADLINE in self.told else math.inf
-        return None if told == math.inf else told + LATE  # infinite while the clock stands still
+        return None if told == math.inf else told + OVERRUN_SECONDS  # infinite while the clock stands still
 
     def _read(self, end: int) -> bool:
         """Take what there is; False at the end of the pipe."""
@@ -266,10 +266,10 @@ class _Watch:
 
         That is: while libraries were loaded under a small limit, or when half of a limit had been used.
         """
-        from ptmcad.process.shortage import SMALL
+        from ptmcad.process.shortage import LOW_LIMIT
 
         most = self._most()
-        if self._loading() and any(limit.size < SMALL for limit in self._limits(lifted=True)):
+        if self._loading() and any(limit.size < LOW_LIMIT for limit in self._limits(lifted=True)):
             return True
         return most is not None and any(2 * limit.room(most) <= limit.size for limit in self._limits())
 
@@ -295,7 +295,7 @@ class _Watch:
 
         try:
             if journal:
-                finish(Path(journal), GRACE)
+                finish(Path(journal), GRACE_SECONDS)
             discard(map(Path, temporaries))
         except (OSError, OutputError) as error:
             _say(f"error: {error}\n")
@@ -348,10 +348,10 @@ def _check_descriptors() -> None:
     """Refuse a limit on open files that would be met somewhere on the way."""
     spare: list[int] = []
     try:
-        while len(spare) < SPARE:
+        while len(spare) < SPARE_DESCRIPTORS:
             spare.append(os.dup(0))
     except OSError as error:
-        _say(f"error: {error.strerror}: ptmcad needs {SPARE} more than are open (ulimit -n)\n")
+        _say(f"error: {error.strerror}: ptmcad needs {SPARE_DESCRIPTORS} more than are open (ulimit -n)\n")
         os._exit(2)
     finally:
         for descriptor in spare:
@@ -414,5 +414,5 @@ def _say(text: str) -> None:
                 rest = rest[os.write(2, rest) :]
             except BlockingIOError:  # of a caller that has made it non-blocking
                 select.select([], [2], [])
-    except OSError:  # nobody reads standard error, or it is full: there is no third place to tell it
+    except OSError:  # nobody reads standard error, or it is full: there is no third place to report it
         return

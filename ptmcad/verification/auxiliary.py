@@ -26,7 +26,7 @@ from ptmcad.verification.plan import kept
 from ptmcad.verification.report import Violation
 
 POINTS, BITS = 12, 48
-CERTAIN = 2**16
+MIN_CERTAIN_PART = 2**16
 """A value's part that it shares with no other one tells its multiplicity when it is larger than this."""
 _SAVINGS = {"sign-curve": "the norm of H11", "hermite-matrix": "the Hermite matrix's determinant"}
 
@@ -102,7 +102,7 @@ def _multiplicity(value: Fraction, at: Sequence[int], k: int) -> int | None:
     for other in (_SMALL_PRIMES, *at[:k], *at[k + 1 :]):
         while (common := gcd(own, other)) > 1:
             own //= common
-    if own < CERTAIN:
+    if own < MIN_CERTAIN_PART:
         return None
     numerator, denominator, found = value.numerator, value.denominator, 0
     while numerator % own == 0:

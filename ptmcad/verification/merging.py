@@ -21,7 +21,7 @@ def check_shape(claims: Claims) -> str:
     """Numbers refer to what exists, in order."""
     r = claims.result
     if r.status not in (Status.EXACT, Status.PARTIAL):
-        raise Violation(f"the status {r.status.value!r} can not be checked: only exact and partial results can")
+        raise Violation(f"the status {r.status.value!r} cannot be checked: only exact and partial results can")
     if r.undetermined != (0 if r.stacks else 1):
         raise Violation(f"{approximate_text(r.undetermined)} of the window is said to be undetermined, but "
                         f"{'all cells' if r.stacks else 'no cells'} are stored")  # fmt: skip

@@ -44,16 +44,16 @@ class Sign(Enum):
 
 def has_no_pole(e: Expression, window: Window) -> Sign:
     """Whether the denominator, as it is stored, has no zero in the open window."""
-    below = _polynomial(e.denominator)
-    return _sign(below * _side(below, window), window, strict=True)
+    denominator = _polynomial(e.denominator)
+    return _sign(denominator * _side(denominator, window), window, strict=True)
 
 
 def is_in_domain(e: Expression, window: Window, strict: bool) -> Sign:
     """Whether a function without a pole is positive, or not negative, in the open window."""
     if not e.numerator:
         return Sign.WRONG if strict else Sign.PROVED
-    below = _polynomial(e.denominator)
-    return _sign(_polynomial(e.numerator) * _side(below, window), window, strict)
+    denominator = _polynomial(e.denominator)
+    return _sign(_polynomial(e.numerator) * _side(denominator, window), window, strict)
 
 
 def _polynomial(terms: Iterable[tuple[int, int, Fraction]]) -> fmpz_mpoly:

@@ -29,7 +29,7 @@ def check_left_out(claims: Claims) -> str:
         if not c.left_out or (c.left_out == HARMLESS and c.kind is Kind.INFINITY):
             continue
         if c.left_out != NO_POINT:
-            raise Violation(f"component {n} is left out for a reason that can not be checked: {c.left_out[:60]}")
+            raise Violation(f"component {n} is left out for a reason that cannot be checked: {c.left_out[:60]}")
         number += 1
         hit = _point_in_window(PlaneCurve.of(n, c.polynomial, result.base), claims)
         if hit is not None:

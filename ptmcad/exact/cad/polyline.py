@@ -26,9 +26,9 @@ from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
 
 _BITS = 128
-_PLACES = 2**60
+_GRID_STEPS = 2**60
 """Ends of chords are rounded to this part of the fibre."""
-ROUNDING = Fraction(2, _PLACES)
+ROUNDING = Fraction(2, _GRID_STEPS)
 """By which distances are made larger for that."""
 SHORT, FLAT, LITTLE = Fraction(1, 2**12), Fraction(1, 2**12), Fraction(1, 2**34)
 """Between two heights a wall is shut in on panels of at most the first width; that does when they are the second apart,
@@ -83,9 +83,9 @@ def chords(
     def place(share: Fraction) -> Fraction:
         if share not in heights:
             u = base[0] + width * fmpq(share.numerator, share.denominator)
-            at = refine(isolate(curve.fibre(u), *fibre)[root], height / _PLACES)
-            rounded = ((at.middle - fibre[0]) / height * _PLACES + fmpq(1, 2)).floor()
-            heights[share] = Fraction(int(rounded), _PLACES)
+            at = refine(isolate(curve.fibre(u), *fibre)[root], height / _GRID_STEPS)
+            rounded = ((at.middle - fibre[0]) / height * _GRID_STEPS + fmpq(1, 2)).floor()
+            heights[share] = Fraction(int(rounded), _GRID_STEPS)
         return heights[share]
 
     waiting = [span]
@@ -119,7 +119,7 @@ def _distance(
         return None
     mantissa, exponent = (abs(slope.second) * arb(radius * radius / 2 / height)).upper().man_exp()
     distance = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-    return -((-distance * _PLACES).__floor__()) * Fraction(1, _PLACES)
+    return -((-distance * _GRID_STEPS).__floor__()) * Fraction(1, _GRID_STEPS)
 
 
 def _between_heights(
@@ -127,7 +127,7 @@ def _between_heights(
 ) -> Fraction | None:
     """How far apart two heights are between which a wall with these ends is shut in over a panel; None: not proved.
 
-    The wall does not leave the window, and it can not cross a height at which p has no zero over the panel.
+    The wall does not leave the window, and it cannot cross a height at which p has no zero over the panel.
     """
     width, height = base[1] - base[0], fibre[1] - fibre[0]
     u = base[0] + width * fmpq((panel[0] + panel[1]).numerator, (panel[0] + panel[1]).denominator) / 2

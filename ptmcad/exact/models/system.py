@@ -186,11 +186,11 @@ def _substitute(
     for monomial, part in system.ring.split(p).items():
         total: Ratio = (ZERO, ONE)
         for exponents, coefficient in part.items():
-            above, below = ONE * int(coefficient.p), ONE * int(coefficient.q)
+            numerator, denominator = ONE * int(coefficient.p), ONE * int(coefficient.q)
             for value, e in zip(values, exponents, strict=True):
                 if e:
-                    above, below = above * value[0] ** e, below * value[1] ** e
-            total = add_ratios(total, ratio(above, below))
+                    numerator, denominator = numerator * value[0] ** e, denominator * value[1] ** e
+            total = add_ratios(total, ratio(numerator, denominator))
         if not total[0].is_zero():
             result[monomial] = total
     return result

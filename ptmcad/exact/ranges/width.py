@@ -48,10 +48,10 @@ from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
 ROWS = 41
 """Rows of the table."""
-_FINE = fmpq(1, 2**120)
-_SMALLEST = fmpq(1, 2**50)
+_END_WIDTH = fmpq(1, 2**120)
+_MIN_PIECE = fmpq(1, 2**50)
 """Length of a piece, against the strip's, that is not cut any more."""
-_MOST_PIECES = 20_000
+_MAX_PIECES = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,12 +126,12 @@ class _Search:
     # ------------------------------------------------------------------------------------------------ lower bounds
 
     def sample(self, strip: Strip) -> None:
-        (_, left), (right, _) = base_interval(strip, _FINE)
+        (_, left), (right, _) = base_interval(strip, _END_WIDTH)
         for k in range(1, 8):
             self.width_at(strip, left + (right - left) * fmpq(k, 8))
 
     def width_at(self, strip: Strip, u: fmpq) -> Interval:
-        low, high = (at_abscissa(b, u, strip.fibre, _FINE) for b in (strip.low, strip.high))
+        low, high = (at_abscissa(b, u, strip.fibre, _END_WIDTH) for b in (strip.low, strip.high))
         width = (high.low - low.high, high.high - low.low)
         self.known = max(self.known, width[0])
         return width
@@ -139,17 +139,17 @@ class _Search:
     # -------------------------------------------------------------------------------------------------- strips' ends
 
     def plateau(self, strip: Strip) -> None:
-        (left, _), (_, right) = base_interval(strip, _FINE)
+        (left, _), (_, right) = base_interval(strip, _END_WIDTH)
         self.candidates.append(_Candidate(Place.PLATEAU, (left, right), self.width_at(strip, strip.sample)))
 
     def ends(self, strip: Strip) -> None:
         """Settle neighbourhoods of rational ends with the largest limits, and list the rest as one piece."""
-        left, right = base_interval(strip, _FINE)
+        left, right = base_interval(strip, _END_WIDTH)
         low, high = left[0], right[1]
         for side, (at, end) in enumerate(((left, strip.left), (right, strip.right))):
             if at[0] != at[1]:
                 continue
-            lowest, highest = (limit(b, strip, at[0], _FINE) for b in (strip.low, strip.high))
+            lowest, highest = (limit(b, strip, at[0], _END_WIDTH) for b in (strip.low, strip.high))
             if lowest is None or highest is None:
                 continue
             (a_low, a_high), (b_low, b_high) = _bounds(lowest), _bounds(highest)
@@ -168,7 +168,7 @@ class _Search:
                 low = at[0] + length
             else:
                 high = at[0] - length
-        self.add(_Piece(strip, low, high, low == left[0], high == right[1], (right[1] - left[0]) * _SMALLEST))
+        self.add(_Piece(strip, low, high, low == left[0], high == right[1], (right[1] - left[0]) * _MIN_PIECE))
 
     # -------------------------------------------------------------------------------------------------------- pieces
 
@@ -196,7 +196,7 @@ class _Search:
             if -negative < self.known:
                 return  # and so are all others
             count += 1
-            if count > _MOST_PIECES or piece.high - piece.low < piece.smallest:
+            if count > _MAX_PIECES or piece.high - piece.low < piece.smallest:
                 end = piece.strip.left if piece.open_left else piece.strip.right if piece.open_right else None
                 critical = None if end is None or end.root is None else algebraic_number(end.root)
                 self.candidates.append(

@@ -52,7 +52,7 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
     ValueError
         For another suffix.
     OSError
-        When the file can not be written.
+        When the file cannot be written.
 
     Guarantee
     ---------

@@ -29,7 +29,7 @@ Mark = tuple[str, tuple[float, float]]
 Label = tuple[int, float, float]
 """A region and the place of its count."""
 
-SHOWN = 300
+MAP_PIXELS = 300
 """Pixels of the map's side on a phone: regions thinner than three of them get a view of their own."""
 LABEL, _LETTER = 42, 0.55
 """Size of the counts' type on phones, in the picture's units, and a character's width against it, on the whole."""
@@ -49,7 +49,7 @@ class Chart:
 def chart(seen: Shapes) -> Chart:
     """The pictures of a map."""
     result = seen.result
-    thin = thin_regions(seen, SHOWN)
+    thin = thin_regions(seen, MAP_PIXELS)
     views = zooms(seen, thin)
     marks = [(chr(ord("A") + k), zoom) for k, zoom in enumerate(views)]
     tips = [

@@ -12,7 +12,7 @@ from ptmcad.answer.regionmap import Cell, Region, RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count
 
-MOST = 1000
+MAX_EQUILIBRIA = 1000
 """Equilibria that a fill can tell; no mechanism of two angles and three springs has so many."""
 
 
@@ -63,8 +63,8 @@ def check_numbers(result: RegionMap) -> None:
         most = max((n for n in (region.stable, region.total, region.admissible, *(region.index or ())) if n), default=0)
         if region.area[0] > region.area[1]:
             raise _fault(f"region {n} has an area below its own lower bound")
-        if most > MOST:
-            raise _fault(f"region {n} counts {most} equilibria, more than {MOST}")
+        if most > MAX_EQUILIBRIA:
+            raise _fault(f"region {n} counts {most} equilibria, more than {MAX_EQUILIBRIA}")
         _within(region.cells, len(result.cells), f"region {n}", "cell")
         _check_counts(region, f"region {n}")
         if not region.cells:

@@ -14,7 +14,7 @@ from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.legend import entries, percent
 from ptmcad.show.report.bounds import exactly
 from ptmcad.show.report.chart import Chart, counts_text, hatch_id
-from ptmcad.show.report.equilibria import both, told
+from ptmcad.show.report.equilibria import both, distinct_parameters
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import certified_digits
 from ptmcad.text.numerals import decimal, text_of
@@ -89,7 +89,7 @@ def question(result: RegionMap) -> str:
     slice = result.slice
     axes = "; ".join(f"{a.name} from {both(a.low)} to {both(a.high)}" for a in slice.axes)
     names = slice.axis_names
-    values = [(n, e.to_text(names)) for n, e in told(slice.parameters).items() if n not in names]
+    values = [(n, e.to_text(names)) for n, e in distinct_parameters(slice.parameters).items() if n not in names]
     shown = ", ".join(f"{n} = {v}" for n, v in values if v != "0")
     zero = ", ".join(n for n, v in values if v == "0")
     mechanism = "the planar tensegrity mechanism of Wenger and Chablat" if slice.mechanism == "ptm" else slice.mechanism

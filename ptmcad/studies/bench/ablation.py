@@ -48,10 +48,12 @@ PATIENCE = 30.0
 SWAPPED = ("axis-order",)
 """Savings that are measured with the axes exchanged as well, as the records give the better order first."""
 
-Told = Callable[[str], None]
+Progress = Callable[[str], None]
 
 
-def ablation(records: Sequence[Path], rounds: int = 3, seed: int = 1, told: Told = lambda _: None) -> dict[str, Any]:
+def ablation(
+    records: Sequence[Path], rounds: int = 3, seed: int = 1, told: Progress = lambda _: None
+) -> dict[str, Any]:
     """The benchmark as JSON data.
 
     Parameters
@@ -64,7 +66,7 @@ def ablation(records: Sequence[Path], rounds: int = 3, seed: int = 1, told: Told
     Raises
     ------
     PtmcadError
-        When a record can not be read or computed.
+        When a record cannot be read or computed.
     """
     order = random.Random(seed)
     slices = {path: load(path) for path in records}
@@ -98,8 +100,8 @@ def exchanged(slice: Slice) -> Slice:
     """The slice with its axes exchanged."""
 
     def turned(e: Expression) -> Expression:
-        above, below = (tuple(sorted((j, i, c) for i, j, c in part)) for part in (e.numerator, e.denominator))
-        return Expression(above, below)
+        numerator, denominator = (tuple(sorted((j, i, c) for i, j, c in part)) for part in (e.numerator, e.denominator))
+        return Expression(numerator, denominator)
 
     return replace(
         slice,

@@ -17,7 +17,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.studies.bench.study import Figures, Measurement, Study, Times
 
 MARGIN = 1.1
-SINGLE = 1.5
+SINGLE_RUN_MARGIN = 1.5
 """The same where one of the two was run once only, so that its spread is not known."""
 
 
@@ -90,7 +90,7 @@ def _changes(old: Study, new: Study, before: Measurement, after: Measurement | N
 
 def _time(old_floor: Times, before: Times, new_floor: Times, after: Times) -> tuple[Verdict, float]:
     """The verdict, and the ratio of medians over their floors."""
-    margin = MARGIN if before.runs > 1 and after.runs > 1 else SINGLE
+    margin = MARGIN if before.runs > 1 and after.runs > 1 else SINGLE_RUN_MARGIN
     ratio = (after.median / new_floor.median) / (before.median / old_floor.median)
     if after.minimum / new_floor.maximum > margin * before.maximum / old_floor.minimum:
         return Verdict.SLOWER, ratio

@@ -25,9 +25,9 @@ from ptmcad.studies.bench.error import Bounds, MapError, faintest
 from ptmcad.studies.bench.reference import Reference, Walls, regions, shown_count
 
 Integers = NDArray[np.int64]
-FINEST = 2.0**-16
+MIN_BOX_SHARE = 2.0**-16
 """Share of the window's side below which the boxes around walls are not made smaller."""
-MOST_PARTS = 200
+MAX_PARTS = 200
 """Components that are located; the area of any others counts as doubtful."""
 
 
@@ -56,7 +56,7 @@ def cover_error(exact: Reference, walls: Walls, result: RegionMap, count: str) -
     agreed = [0] * len(walls.counts)
     wrong = unshown = 0
     for n, area in enumerate(parts.areas):
-        if n >= MOST_PARTS:
+        if n >= MAX_PARTS:
             doubt += area
             continue
         place = _inside(parts, n)
@@ -134,7 +134,7 @@ def _outside(shown: Components, chords: NDArray[np.float64]) -> tuple[tuple[int,
         box, leaf = tree.meeting(boxes, closed=False)
         poking = np.unique(box[tree.state[leaf] == FREE])
         size = np.abs(ends[poking, :, 1] - ends[poking, :, 0]).max(axis=1)
-        small = size <= FINEST * steps
+        small = size <= MIN_BOX_SHARE * steps
         found.append(boxes[poking[small]])
         longer = chords[poking[~small]]
         middle = (longer[:, :2] + longer[:, 2:4]) / 2

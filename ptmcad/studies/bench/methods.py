@@ -1,6 +1,6 @@
 """The methods that are compared, each as processes to run at a number of settings.
 
-Guarantee: each job gets the same slice, with exact numbers where the method takes them; what a method can not do for a
+Guarantee: each job gets the same slice, with exact numbers where the method takes them; what a method cannot do for a
 slice, or what is not installed, is told with its reason.
 """
 

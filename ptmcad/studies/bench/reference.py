@@ -26,11 +26,11 @@ from ptmcad.exact.cad.stacks import roots_over
 from ptmcad.exact.regions import Link, merge
 from ptmcad.question.slice import Count
 
-APART = Fraction(1, 2**18)
+MAX_CHORD_DISTANCE = Fraction(1, 2**18)
 """Largest distance between a wall and its chord, as a share of the window's side."""
-GAP = Fraction(1, 2**32)
+GAP_HALF_WIDTH = Fraction(1, 2**32)
 """Half of the base's share around a critical value that is left to the gaps."""
-NARROWEST = Fraction(1, 2**24)
+MIN_STACK_WIDTH = Fraction(1, 2**24)
 """Share of the base of the narrowest panels; those on which nothing is proved go to the gaps."""
 DEPTH = 12
 """Halvings of the fibre over a gap."""
@@ -109,13 +109,18 @@ def reference(result: RegionMap) -> Reference:
         RealRoot(UnivariatePolynomial(list(c.polynomial)), from_fraction(c.low), from_fraction(c.high))
         for c in result.critical_values
     )
-    narrow = (base[1] - base[0]) * from_fraction(GAP) / 2
-    ends = [(Fraction(0), GAP)]  # on the window's edge branches may meet too
+    narrow = (base[1] - base[0]) * from_fraction(GAP_HALF_WIDTH) / 2
+    ends = [(Fraction(0), GAP_HALF_WIDTH)]  # on the window's edge branches may meet too
     for value in critical:
         near = refine(value, narrow)
         low, high = to_share(near.low, base), to_share(near.high, base)
-        ends.append(((low / GAP).__floor__() * GAP - GAP, -((-high / GAP).__floor__()) * GAP + GAP))
-    ends.append((1 - GAP, Fraction(1)))
+        ends.append(
+            (
+                (low / GAP_HALF_WIDTH).__floor__() * GAP_HALF_WIDTH - GAP_HALF_WIDTH,
+                -((-high / GAP_HALF_WIDTH).__floor__()) * GAP_HALF_WIDTH + GAP_HALF_WIDTH,
+            )
+        )
+    ends.append((1 - GAP_HALF_WIDTH, Fraction(1)))
     spans = tuple((left[1], right[0]) for left, right in pairwise(ends))
     return Reference(result, base, fibre, curves, lines, spans, critical)
 
@@ -144,7 +149,9 @@ def walls(exact: Reference, check: Callable[[], None] = lambda: None) -> dict[st
                     continue
                 if (s, level) not in chains:
                     source = by_component[wall.component]
-                    chains[s, level] = chords(source, wall.root, span, exact.base, exact.fibre, APART, NARROWEST, check)
+                    chains[s, level] = chords(
+                        source, wall.root, span, exact.base, exact.fibre, MAX_CHORD_DISTANCE, MIN_STACK_WIDTH, check
+                    )
                 sides += [(c, below, above) for c in chains[s, level]]
         meeting = [by_component[n] for n in sorted(separating)]
         gaps = tuple(_gaps(exact, [c for c, _, _ in sides], meeting, reaches, check))

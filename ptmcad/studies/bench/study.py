@@ -16,7 +16,7 @@ from ptmcad.text.numerals import decimal
 
 FORMAT = "ptmcad-bench/1"
 DIGITS = 6
-SEEN = 0.99
+SEEN_SHARE = 0.99
 """A grid sees a region when it shows this share of it, at least, with its count."""
 Bounds = tuple[float, float]
 
@@ -139,13 +139,13 @@ def smallest_grid(study: Study, method: str, count: str, seen: bool) -> int | No
 
     Parameters
     ----------
-    seen : ask for grids that see every region (see `SEEN`), and not just find some pixel of it.
+    seen : ask for grids that see every region (see `SEEN_SHARE`), and not just find some pixel of it.
     """
     fit = []
     for m in study.measurements:
         f = (m.figures or {}).get(count)
         if m.method == method and m.grid is not None and f is not None:
-            found = f.faintest is not None and f.faintest[0] >= SEEN if seen else f.missed == 0
+            found = f.faintest is not None and f.faintest[0] >= SEEN_SHARE if seen else f.missed == 0
             fit += [m.grid] if found else []
     return min(fit, default=None)
 

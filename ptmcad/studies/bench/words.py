@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from ptmcad.studies.bench.methods import TITLES, Method
 from ptmcad.studies.bench.study import (
-    SEEN,
+    SEEN_SHARE,
     Figures,
     Measurement,
     Study,
@@ -34,7 +34,7 @@ def sentences(study: Study) -> tuple[str, ...]:
             upto = f"none up to {measured[-1]} x {measured[-1]}"
             found.append(
                 f"Regions by {name}: the smallest grid with a pixel in each is {_grid(first, upto)}; with at least "
-                f"{SEEN:.0%} of each, {_grid(whole, upto)}."
+                f"{SEEN_SHARE:.0%} of each, {_grid(whole, upto)}."
             )
     ours, theirs = _fastest_exact(study), _at(study, 400)
     if ours and theirs and ours.seconds and theirs.seconds:

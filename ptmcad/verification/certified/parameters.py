@@ -121,10 +121,10 @@ def _equal(one: Expression, two: Expression) -> bool:
 
 
 def _over(expression: Expression, x: arb, y: arb) -> arb:
-    below = _sum(expression.denominator, x, y)
-    if below.contains(0):
+    denominator = _sum(expression.denominator, x, y)
+    if denominator.contains(0):
         raise Unproved("a parameter may have a pole")
-    return _sum(expression.numerator, x, y) / below
+    return _sum(expression.numerator, x, y) / denominator
 
 
 def _sum(terms: Sequence[tuple[int, int, Fraction]], x: arb, y: arb) -> arb:
