@@ -286,9 +286,9 @@ def test_compiling_is_no_part_of_the_time_limit(
     # the library loads once more, which takes no time outside of this test
     assert 2600 <= engine["deadline"] - counted <= 2600 + taken
     watch = _Watch(0, 0, 0, ())
-    watch.told[Topic.DEADLINE] = [repr(stopped), ""]
+    watch.reports[Topic.DEADLINE] = [repr(stopped), ""]
     assert watch._deadline() is None
-    watch.told[Topic.DEADLINE] = [repr(again), "600 s"]
+    watch.reports[Topic.DEADLINE] = [repr(again), "600 s"]
     assert watch._deadline() == again + OVERRUN_SECONDS
 
 

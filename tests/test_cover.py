@@ -43,7 +43,7 @@ def covers(draw: st.DrawFn) -> Cover:
 class Flood:
     """Pixel (2i+1, 2j+1) is a lattice square, pixels with an even coordinate are lines and points between them.
 
-    ``closed`` tells what lies in a rectangle; ``label`` numbers the connected parts of both kinds, -1 on the rim.
+    ``closed`` shows what lies in a rectangle; ``label`` numbers the connected parts of both kinds, -1 on the rim.
     """
 
     closed: NDArray[np.bool_]

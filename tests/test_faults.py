@@ -40,7 +40,7 @@ PARTIAL = json.dumps({"status": "partial", "stage": "variety"})
 linux = pytest.mark.skipif(sys.platform != "linux", reason="counts on Linux's signals for pipes, or on its limits")
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="without fork the command line is not watched")
 
-# A command line whose engine hands over a partial result, tells the test that it is there, and then does `work`.
+# A command line whose engine hands over a partial result, informs the test that it is there, and then does `work`.
 STAND_IN = """
 import os, signal, sys, time, types
 signal.signal(signal.SIGINT, lambda *_: os._exit(130))

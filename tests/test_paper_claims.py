@@ -492,7 +492,7 @@ def test_stable_and_tense_by_difference_quotients(design: tuple[str, ...]) -> No
 
 
 def test_real_roots_by_complex_roots() -> None:
-    """5.2-real: all complex roots, of which real ones are told by their enclosures; no root isolation on the line."""
+    """5.2-real: all complex roots, real ones recognised by their enclosures; no root isolation on the line."""
     from ptmcad.algebra.polynomials import coefficients_in
     from ptmcad.algebra.resultants import resultant
 

@@ -331,7 +331,7 @@ def test_a_child_brings_its_figures_back() -> None:
     assert found[0].seconds >= sum(stages.values()) > 0
 
 
-@pytest.mark.skipif(not measurement._HIGH_WATER.exists(), reason="only Linux tells the peak of a forked child alone")
+@pytest.mark.skipif(not measurement._HIGH_WATER.exists(), reason="only Linux shows the peak of a forked child alone")
 def test_memory_is_what_the_task_takes_and_not_what_its_parent_has() -> None:
     ballast = bytes(80 << 20) + bytes(1)  # the sum is written, which makes its pages resident
 

@@ -4,7 +4,7 @@ Guarantee: exact. Isolation finds every root in the open interval; isolating int
 and contain one root each, an interval of length zero being the root itself.
 
 Intervals are bisected; where several bisections in a row have not parted some roots, Newton's method is run on to where
-their cluster may be, Taylor coefficients tell how long it may be, and Descartes' rule whether it is. Where the roots
+their cluster may be, Taylor coefficients show how long it may be, and Descartes' rule whether it is. Where the roots
 keep to one end of the interval, but too near to others for that, steps towards the end get longer while they are right.
 So the steps that a cluster takes grow with the logarithm of its number of leading digits, not with that number.
 
@@ -161,7 +161,7 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
             found.append((low + width * middle, low + width * middle))
         stack.append(_Part(half, left, piece, bound, unchanged, min(run, 0) - 1, speed))
         stack.append(_Part(other, middle, piece, bound, unchanged, max(run, 0) + 1, speed))
-    return tuple(_tidy(p, left, right) for left, right in sorted(found))
+    return tuple(_normalised(p, left, right) for left, right in sorted(found))
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +191,7 @@ def _cluster(q: fmpz_poly, bound: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
     """A much shorter interval in (0, 1) which holds all roots of q there: q on it, its start and its width.
 
     None when that is not proved. It is when Descartes' bound for the interval is that for (0, 1), as the sum of the
-    bounds for disjoint parts never exceeds the bound for the whole. Where the interval may be is told by Newton's
+    bounds for disjoint parts never exceeds the bound for the whole. Where the interval may be is found by Newton's
     method, to which roots that lie together look like a multiple one, from the left end as from the right; how long,
     by the Taylor coefficients there, whose first ones are those of a polynomial with about these roots only.
     """
@@ -247,7 +247,7 @@ def _root_bound(p: fmpz_poly) -> fmpq:
     return fmpq(2) ** (1 + bits)
 
 
-def _tidy(p: fmpz_poly, low: fmpq, high: fmpq) -> RealRoot:
+def _normalised(p: fmpz_poly, low: fmpq, high: fmpq) -> RealRoot:
     """The isolating interval with ends that are no roots, so that signs at its ends differ."""
     if low == high:
         return RealRoot(p, low, high)

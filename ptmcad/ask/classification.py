@@ -47,7 +47,7 @@ def classify(
     Parameters
     ----------
     engine : ``"exact"``, ``"certified"``, or ``"auto"``: certified where springs have a free length, else exact.
-    count : which count tells regions apart; the slice's own when None.
+    count : which count distinguishes regions; the slice's own when None.
     timeout : seconds after which `LimitReached` is raised; loading the certified engine, and compiling it in the first
         run on a machine, is no part of them.
     tolerance : the certified engine stops when at most this share of the window's area is undetermined; the exact

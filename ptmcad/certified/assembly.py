@@ -109,7 +109,7 @@ class Assembler:
 
 
 def _key(count: PointCount, which: Count) -> object:
-    """What tells two cells apart."""
+    """What distinguishes two cells."""
     if which is Count.STABLE:
         return count.stable
     if which is Count.TOTAL:

@@ -88,8 +88,8 @@ def _folds(slice: Slice, keep: frozenset[str], *, stable: bool) -> Iterator[Curv
     m = slice_mechanism(graph, slice, factored=factored)
     there = m.at_equilibrium
     short = SHORT_LENGTH * parameter_formulas(graph, slice)["L1"]
-    # unloaded, a stable configuration with spring 3 short is told from the multiples without phi
-    apart = m.unit is not None and not (stable and m.unloaded)
+    # unloaded, a stable configuration with spring 3 short is distinguished from the multiples without phi
+    split = m.unit is not None and not (stable and m.unloaded)
     e1, e2 = m.equilibrium
     balance, singular = m.unloaded or (e2, m.hessian.determinant)
     yield Curve(
@@ -103,11 +103,11 @@ def _folds(slice: Slice, keep: frozenset[str], *, stable: bool) -> Iterator[Curv
                 [e2, *m.dependent, *_present(m.unit)],
                 [there.determinant, m.turned, *([] if stable else [there.levelled])],
             ),
-            [*([m.lengths[2] - short] if apart else []), *(_semidefinite(m) if stable else [])],
+            [*([m.lengths[2] - short] if split else []), *(_semidefinite(m) if stable else [])],
         ),
         (TORUS, TORUS),
     )
-    if not apart:
+    if not split:
         return
     graph = Graph()
     m = slice_mechanism(graph, slice, phi=True, factored=factored)

@@ -225,12 +225,12 @@ class _Run:
         if _overlap(cover) > OVERLAP_RATIO:
             cover = simplified(cover, COMPILED)
         times = self.seconds | {"total": start - self.pace.started}
-        result = self.assembler.map(cover, status, times, self._hurry)
+        result = self.assembler.map(cover, status, times, self._must_hand_over)
         self.seconds["regions"] += self.clock() - start
         self.pace.map.record(boxes, self.clock() - start)
         return result
 
-    def _hurry(self) -> bool:
+    def _must_hand_over(self) -> bool:
         """Whether there is only time left to put a map into other hands."""
         return self.pace.left() < SAFETY * self.pace.text.of(self.boxes())
 

@@ -1,7 +1,7 @@
 """The values along a line of a slice at which counts change, enclosed, and the counts between them, proved.
 
 Guarantee: on each interval of the result the numbers of minima, saddles, maxima and cones are constant. What was not
-decided lies in one of the gaps between them; a gap that is `proved` holds nothing but critical values that were told.
+decided lies in one of the gaps between them; a gap that is `proved` holds nothing but isolated critical values.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) 
             continue
         for box in left:
             yield Gap(Fraction(float(box[varying])), Fraction(float(box[variables + varying])), (curve.name,), False)
-        # ``narrow`` was contracted with the equations alone; its number can be told to any precision
+        # ``narrow`` was contracted with the equations alone; its number can be enclosed to any precision
         for row in narrow if len(unique) else ():
             with ctx.workprec(bits):
                 box = _balls(row, varying, value)

@@ -130,7 +130,7 @@ class PointCounter:
         return PointCount(len(zeros), len(minima), None, index, peaks.count, solutions, True)
 
     def zeros(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> list[_Zero] | None:
-        """The equilibria that ``count`` needs, each once; None when they cannot be told."""
+        """The equilibria that ``count`` needs, each once; None when they cannot be decided."""
         only_minima = count in (Count.STABLE, Count.ADMISSIBLE)
         written, creases = self.equilibria_at(x, y), self._creases(x, y)
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
@@ -172,7 +172,7 @@ def point_counter(slice: Slice) -> PointCounter:
 
 
 def _off_creases(zeros: Sequence[_Zero], creases: tuple[bool, bool]) -> list[_Zero] | None:
-    """The zeros at which the formulas for rho = L2, rho = L1 hold; None when that cannot be told for some."""
+    """The zeros at which the formulas for rho = L2, rho = L1 hold; None when that cannot be decided for some."""
     kept = []
     for zero in zeros:
         inside = True
@@ -293,7 +293,7 @@ def _balls(x: Fraction, y: Fraction, box: Boxes, precision: int) -> Box:
 
 
 def _distinct_balls(found: Sequence[Isolated], precision: int) -> list[Isolated] | None:
-    """Each zero once, modulo full turns; None when it cannot be told whether two are the same."""
+    """Each zero once, modulo full turns; None when it cannot be decided whether two are the same."""
     kept: list[Isolated] = []
     with ctx.workprec(precision):
         turn = 2 * arb.pi()

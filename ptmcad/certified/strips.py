@@ -178,7 +178,7 @@ def pieces(strips: Strips, area: float) -> Boxes:
             low, high = multiply(strip[_Q], strip[_Q + 1], down(start - strip[_MU]), up(end - strip[_MU]))
             low = down(strip[_MV] + down(strip[_C] + low))
             high = up(strip[_MV] + up(strip[_C + 1] + high))
-            # a number that is not one, from an overflow, tells nothing
+            # a number that is not one, from an overflow, says nothing
             low = low if low > strip[v] else strip[v]
             high = high if high < strip[2 + v] else strip[2 + v]
             if low <= high:

@@ -117,7 +117,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
 
 
 def _exhausted() -> int:
-    """Tell that memory has run out, and return the exit status."""
+    """Report that memory has run out, and return the exit status."""
     send(Topic.EXHAUSTED)
     if not watched():  # otherwise the other process says so, and saves what there is
         click.echo("stopped: memory ran out", err=True)

@@ -238,7 +238,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
 
 @click.command("classify")
 @slice_options
-@click.option("--count", type=click.Choice([c.value for c in Count]), help="What tells two regions apart.")
+@click.option("--count", type=click.Choice([c.value for c in Count]), help="What distinguishes two regions.")
 @click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
 @click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="json,png,svg",

@@ -23,7 +23,7 @@ FIELDS = ("status", "region", "cell", "total", "stable", "index")
 
 
 def fields_of(result: RegionMap) -> tuple[str, ...]:
-    """What is told of a point: in a certified map also how many stable equilibria are admissible."""
+    """What is reported of a point: in a certified map also how many stable equilibria are admissible."""
     return FIELDS if result.cover is None else (*FIELDS, "admissible")
 
 
@@ -145,7 +145,7 @@ def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str]) 
 def command(
     *, result: Path, at: str | None, table: Path | None, timeout: float | None, max_memory: Bound | None
 ) -> None:
-    """Tell in which cell and region of RESULT a rational point lies, and the number of equilibria there.
+    """Report in which cell and region of RESULT a rational point lies, and the number of equilibria there.
 
     The answer is exact, however near the point is to a boundary: "on the variety" exactly on a curve, "outside the
     window" otherwise outside. In a certified map a point of its undetermined part is "undecided". Numbers such as 7/10,

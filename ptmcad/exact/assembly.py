@@ -112,7 +112,7 @@ def with_areas(counted: RegionMap, areas: Sequence[tuple[Fraction, Fraction]], b
 
 
 def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
-    """The count by which regions are told apart."""
+    """The count by which regions are distinguished."""
     if count is Count.STABLE:
         return (counts.stable,)
     return (counts.total,) if count is Count.TOTAL else counts.index

@@ -137,8 +137,8 @@ def bounded(bound: Bound) -> Iterator[None]:
 def loading(what: str) -> Iterator[None]:
     """Load libraries inside, without the bound, which holds again afterwards.
 
-    The watching process is told, so that it knows that a failure here under a low limit of the caller's, which cannot
-    be put off, is that limit's.
+    The watching process is informed: so it knows that a failure here under a low limit of the caller's, which cannot be
+    put off, is that limit's.
 
     Raises
     ------

@@ -4,8 +4,8 @@ Guarantee: every file under its own name is whole, and the files of one run repl
 `ptmcad.process.commit` says. Nothing is put into place before everything is written and on disk. Whatever stops the
 writing (an error, Ctrl-C, a signal that raises) leaves no temporary file; a process that is killed outright may leave
 hidden ``.NAME.*.tmp.*`` and ``.NAME.*.old.*`` files and nothing else, and the next `check_writable` for the same name
-removes them. Files of live processes are told by the lock that these hold. A result that a limit has stopped replaces
-no complete one.
+removes them. Files of live processes are recognised by the lock that these hold. A result that a limit has stopped
+replaces no complete one.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
     _check_kinds(folder, names)
     try:
         with suppress(BlockingIOError), locked(folder, LOCK_PATIENCE) as alone:
-            if alone:  # otherwise what is left of a dead process cannot be told from what a live one uses
+            if alone:  # otherwise what is left of a dead process cannot be distinguished from what a live one uses
                 settle(folder)
                 _check_free(folder, names)
                 _remove_stale(folder, (*names, _PROBE))

@@ -33,7 +33,7 @@ def unstorable(data: Any) -> str | None:
 
 
 class Count(Enum):
-    """Which count tells two regions apart."""
+    """Which count distinguishes two regions."""
 
     STABLE = "stable"
     TOTAL = "total"
@@ -63,7 +63,7 @@ class Slice:
     parameters : every parameter of the mechanism as an `Expression` (a rational function in the two axes, exponent
         pairs in the order of ``axes``). An axis that is itself a parameter maps to itself. The free lengths are among
         them unless all of them are zero everywhere.
-    count : which count tells two regions apart.
+    count : which count distinguishes two regions.
     title : the picture's title, the name when empty.
     reference : published answers, as read from the record; never used by the computation.
     text : each parameter as the user wrote it, for reports; and any of k, l0, l0_1, l0_2 and l0_3 that such a text

@@ -89,7 +89,7 @@ def polynomial_text(polynomial: PlanePolynomial, names: tuple[str, str], style: 
 
     Parameters
     ----------
-    names : of the two axes; `symbols` tells how they are spelled.
+    names : of the two axes; `symbols` shows how they are spelled.
     style : a `Style` or its value, such as ``"maple"``.
 
     Raises

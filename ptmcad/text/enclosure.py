@@ -73,7 +73,7 @@ class Enclosure:
         Raises
         ------
         ValueError
-            When the enclosure is too wide; `settles` tells it before.
+            When the enclosure is too wide; `settles` says so before.
         """
         if not self.settles(digits):
             raise ValueError(f"the enclosure does not determine {digits} digits")

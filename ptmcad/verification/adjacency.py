@@ -34,7 +34,7 @@ from ptmcad.verification.claims import Claims, is_root, short, side
 from ptmcad.verification.derivation import rational
 from ptmcad.verification.report import Violation
 from ptmcad.verification.structure import inside_stack, points_over
-from ptmcad.verification.sturm import points_apart, roots_between
+from ptmcad.verification.sturm import roots_between, separated_points
 
 
 def check_adjacencies(claims: Claims) -> str:
@@ -199,7 +199,7 @@ def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[in
     """Try a free segment in each interval between the points of the curves over a critical value."""
     value = claims.result.critical_values[s]
     left, right = claims.result.stacks[s], claims.result.stacks[s + 1]
-    for v in points_apart(_points(claims, value), bottom, top):
+    for v in separated_points(_points(claims, value), bottom, top):
         low, high = rational(left.sample), rational(right.sample)
         while claims.free(low, high, v) is not None:
             low, high = _closer(low, high, value)

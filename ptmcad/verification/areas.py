@@ -71,7 +71,7 @@ def check_areas(claims: Claims) -> str:
     strip = rational(scale) / (16 * len(result.stacks))
     unconfirmed = "the precision did not suffice to confirm the areas"
     degrees: tuple[int, ...] = (2,)
-    # of the narrowest bounds' width: how far inside of them an area can be told to be
+    # of the narrowest bounds' width: how far inside of them an area can be proved to be
     margin = fmpq(1, 64)
     for _ in range(ATTEMPTS):
         with ctx.workprec(bits):

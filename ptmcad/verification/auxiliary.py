@@ -27,7 +27,7 @@ from ptmcad.verification.report import Violation
 
 POINTS, BITS = 12, 48
 MIN_CERTAIN_PART = 2**16
-"""A value's part that it shares with no other one tells its multiplicity when it is larger than this."""
+"""A value's part that it shares with no other one shows its multiplicity when it is larger than this."""
 _SAVINGS = {"sign-curve": "the norm of H11", "hermite-matrix": "the Hermite matrix's determinant"}
 
 Values = tuple[Fraction, tuple[int, ...]]
@@ -89,12 +89,14 @@ def _function(name: str, fibre: Fibre, monomials: Sequence[Monomial]) -> fmpq:
 
 def _multiplicities(values: Sequence[Values], number: int) -> list[int]:
     """How often each component divides a function, negative for poles: what most points tell."""
-    told = [Counter(e for value, at in values if (e := _multiplicity(value, at, k)) is not None) for k in range(number)]
-    return [counter.most_common(1)[0][0] if counter else 0 for counter in told]
+    votes = [
+        Counter(e for value, at in values if (e := _multiplicity(value, at, k)) is not None) for k in range(number)
+    ]
+    return [counter.most_common(1)[0][0] if counter else 0 for counter in votes]
 
 
 def _multiplicity(value: Fraction, at: Sequence[int], k: int) -> int | None:
-    """What one point tells of it: how often the primes of the component's value alone divide the function's.
+    """What one point shows of it: how often the primes of the component's value alone divide the function's.
 
     Small primes are left out: they may divide the constant, by which the function differs from a product of components.
     """

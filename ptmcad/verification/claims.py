@@ -196,7 +196,7 @@ def bracket(value: CriticalValue, width: fmpq) -> tuple[fmpq, fmpq]:
         here = p(middle)
         if here == 0:
             return middle, middle
-        # the only root may have even multiplicity; then the ends do not tell on which side it lies
+        # the only root may have even multiplicity; then the ends do not show on which side it lies
         right = (here > 0) == (low_value > 0) if low_value * p(high) < 0 else side(middle, value) < 0
         low, high = (middle, high) if right else (low, middle)
     return low, high

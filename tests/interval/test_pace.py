@@ -18,7 +18,7 @@ from ptmcad.errors import LimitReached
 
 
 class Clock:
-    """A clock that moves when it is told to, and a millisecond at each look, as time does."""
+    """A clock that moves when it is made to, and a millisecond at each look, as time does."""
 
     def __init__(self) -> None:
         self.now = 1000.0

@@ -50,7 +50,7 @@ class _Effort:
 class _Panel:
     """A part of a wall that separates region ``below`` from region ``above``, with the enclosure of its integral.
 
-    ``smooth`` tells whether the branch was enclosed by its Taylor series or by arcs; ``singular`` is not zero when that
+    ``smooth`` shows whether the branch was enclosed by its Taylor series or by arcs; ``singular`` is not zero when that
     is not even tried because the branch seems to turn at the left (negative) or right (positive) end, and counts how
     often it seemed so. Neither affects the guarantee.
     """

@@ -1,7 +1,7 @@
 """Walls as chains of chords, each with a proved distance that the wall keeps to it.
 
-Guarantee: over its part of the base each wall stays within `Chord.apart` of its chord, measured along the fibre; what
-lies over no chord is a part of the base of at most the width that was asked for.
+Guarantee: over its part of the base each wall stays within `Chord.distance` of its chord, measured along the fibre;
+what lies over no chord is a part of the base of at most the width that was asked for.
 
 On a panel that holds no critical value a wall is the graph of a function with two derivatives. If its second derivative
 is at most K in modulus there, a panel of width w has the graph within K w^2 / 8 of the chord between its ends;
@@ -45,14 +45,14 @@ class Chord:
     ----------
     left, right : along the base.
     at_left, at_right : along the fibre.
-    apart : the wall's largest distance, along the fibre.
+    distance : the wall's largest distance, along the fibre.
     """
 
     left: Fraction
     right: Fraction
     at_left: Fraction
     at_right: Fraction
-    apart: Fraction
+    distance: Fraction
 
 
 def chords(
@@ -61,7 +61,7 @@ def chords(
     span: tuple[Fraction, Fraction],
     base: Interval,
     fibre: Interval,
-    apart: Fraction,
+    max_distance: Fraction,
     narrowest: Fraction,
     check: Callable[[], None] = lambda: None,
 ) -> tuple[Chord, ...]:
@@ -70,7 +70,7 @@ def chords(
     Parameters
     ----------
     span : where, as shares of the base; no critical value lies in it, its ends included.
-    apart : the largest distance wanted, as a share of the fibre; it may be exceeded on panels where the wall is shut in
+    max_distance : the largest distance wanted, as a share of the fibre; exceeded perhaps where the wall is enclosed
         between two heights, see `FLAT` and `LITTLE`.
     narrowest : panels of at most this share of the base are not halved. Where nothing is proved on one, the distance to
         its chord is `UNPROVED`, which always holds.
@@ -94,7 +94,7 @@ def chords(
         left, right = waiting.pop()
         middle = (left + right) / 2
         distance = _distance(curve, root, left, right, base, fibre)
-        enough = distance is not None and distance <= apart
+        enough = distance is not None and distance <= max_distance
         if distance is None and right - left <= SHORT:
             distance = _between_heights(curve, (left, right), (place(left), place(right)), base, fibre)
             enough = distance is not None and distance <= FLAT and distance * (right - left) <= LITTLE

@@ -156,7 +156,7 @@ def first_minor(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Un
     Raises
     ------
     DimensionError
-        When the system does not have two angles: then its sign does not tell minima from maxima.
+        When the system does not have two angles: then its sign does not distinguish minima from maxima.
     """
     require_two_angles(system, "the curve on which minima and maxima could change places")
     return _without_denominators(_substitute(system, system.hessian[0][0], parameters))

@@ -291,7 +291,7 @@ def _rational_above(value: arb) -> fmpq:
 
 
 def limit(branch: Branch, strip: Strip, end: fmpq, width: fmpq) -> End | None:
-    """The limit of a branch at a rational end of its strip; None when it could not be told from other points."""
+    """The limit of a branch at a rational end of its strip; None when it could not be separated from other points."""
     if branch.curve is None:
         return to_fraction(branch.edge)
     margin = strip.fibre[1] - strip.fibre[0]
@@ -328,7 +328,7 @@ def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End
             third = (rises[0] - rises[1]) / 3
             slope = simplest_between(*sorted((rises[1] + third, rises[0] - third)))
             if all(
-                _keeps_off(branch, strip, end, limit, slope, direction * length, side)
+                _avoids_level(branch, strip, end, limit, slope, direction * length, side)
                 for branch, limit, side in zip((strip.low, strip.high), limits, (1, -1), strict=True)
             ):
                 return length
@@ -336,7 +336,7 @@ def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End
     return None
 
 
-def _keeps_off(branch: Branch, strip: Strip, end: fmpq, limit: End, slope: fmpq, length: fmpq, side: int) -> bool:
+def _avoids_level(branch: Branch, strip: Strip, end: fmpq, limit: End, slope: fmpq, length: fmpq, side: int) -> bool:
     """Whether a branch is proved to stay on one side of the chord from its limit."""
     start = _bounds(limit)
     tip = at_abscissa(branch, end + length, strip.fibre, abs(length) / 2**60)

@@ -95,7 +95,7 @@ def slice_from_options(
     slice : ``"X,Y"``, the two axes, the horizontal one first.
     sets : texts ``NAME=VALUE``.
     ranges : texts ``NAME=LO:HI``, for axes.
-    count : which count tells two regions apart.
+    count : which count distinguishes two regions.
 
     Raises
     ------

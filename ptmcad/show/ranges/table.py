@@ -21,7 +21,7 @@ from ptmcad.text.numerals import shortest_text
 from ptmcad.text.plane import PlanePolynomial
 
 MAX_POLYNOMIAL = 60
-"""Characters of a polynomial; of longer ones the degree is told."""
+"""Characters of a polynomial; of longer ones the degree is reported."""
 _ANGLE_DIGITS = 8
 
 

@@ -3,7 +3,7 @@
 Guarantee: every equilibrium has a panel, with its kind and its energy, of which every digit shown is certified; the
 figure's label holds a title and a description in words. `ptmcad.show.render.printing.save` writes it.
 
-Not guaranteed: anything that only the picture tells. It is drawn in floating point from the exact poses.
+Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact poses.
 """
 
 from __future__ import annotations

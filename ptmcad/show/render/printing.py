@@ -66,7 +66,7 @@ def save(figure: Figure, path: Path, *, dpi: int = 150) -> None:
 
     Parameters
     ----------
-    path : its suffix tells the format: png, svg or pdf.
+    path : its suffix gives the format: png, svg or pdf.
     dpi : resolution of a PNG.
 
     Raises

@@ -65,7 +65,7 @@ def _root(value: Fraction, up: bool) -> Fraction:
 def degrees(cosine: Bounds, sine: Bounds) -> Bounds | None:
     """The angle, in (-180, 180] up to its own width, whose cosine and sine lie between these bounds.
 
-    None when the bounds are too wide to tell, or no angle has such a cosine and sine nearby.
+    None when the bounds are too wide to decide, or no angle has such a cosine and sine nearby.
     """
     guess = Fraction(round(atan2(float(sum(sine)), float(sum(cosine))) * 2**60), 2**60)
     c, s = _cosine_sine(guess)

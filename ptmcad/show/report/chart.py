@@ -150,11 +150,11 @@ def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[La
 def _window_text(seen: Shapes) -> str:
     axes = seen.result.slice.axes
     ends = (seen.view.x, seen.view.y)
-    spans = (f"{a.name} from {_short(e[0])} to {_short(e[1])}" for a, e in zip(axes, ends, strict=True))
+    spans = (f"{a.name} from {_shortened(e[0])} to {_shortened(e[1])}" for a, e in zip(axes, ends, strict=True))
     return "Region map over " + " and ".join(spans)
 
 
-def _short(value: Fraction) -> str:
+def _shortened(value: Fraction) -> str:
     text = shortest_text(value)
     return text if len(text) <= 12 else f"{float(value):.6g}" if abs(value) < 10**300 else text[:12] + "…"
 
@@ -183,7 +183,7 @@ def _cells(seen: Shapes) -> Iterator[str]:
 def cell_text(result: RegionMap, number: int) -> str:
     """What a cell is, in words: its region, its counts, its sample."""
     cell = result.cells[number]
-    at = ", ".join(f"{name} = {_short(cell.sample[name])}" for name in cell.sample.names)
+    at = ", ".join(f"{name} = {_shortened(cell.sample[name])}" for name in cell.sample.names)
     return f"Cell {number} of region {cell.region}: {counts_text(cell)}; sample {at}"
 
 

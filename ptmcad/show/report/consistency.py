@@ -54,7 +54,7 @@ def check_numbers(result: RegionMap) -> None:
         region = result.regions[cell.region]
         if n not in region.cells:
             raise _fault(f"cell {n} is in region {cell.region}, which does not have it")
-        for name in _told_by(result.slice.count):
+        for name in _counts_known_from(result.slice.count):
             if getattr(cell, name) != getattr(region, name):
                 raise _fault(f"cell {n} and its region {cell.region} differ in their counts")
         if not all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, cell.sample, strict=True)):
@@ -82,7 +82,7 @@ def _check_counts(part: Cell | Region, place: str) -> None:
         raise _fault(f"{place} has index {part.index}, {part.total} equilibria and {part.stable} stable ones")
 
 
-def _told_by(count: Count) -> tuple[str, ...]:
+def _counts_known_from(count: Count) -> tuple[str, ...]:
     """The counts that are the same in all cells of a region."""
     return {
         Count.STABLE: ("stable",),

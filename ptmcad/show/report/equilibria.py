@@ -48,7 +48,7 @@ Value = TypeVar("Value")
 
 
 def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
-    """All that the page tells and draws for a cell's sample: parameters, loads, potential and equilibria, as JSON data.
+    """All that the page shows and draws for a cell's sample: parameters, loads, potential and equilibria, as JSON data.
 
     In a certified map, whose unknowns are angles, poses and potential are left out.
 

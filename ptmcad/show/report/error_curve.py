@@ -1,7 +1,7 @@
 """The curve of error against run time, read from a measurement's file and drawn with logarithmic axes.
 
 Guarantee: a file that is not such a measurement is refused with the place of the fault; every point of it is drawn and
-told in the table.
+given in the table.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The page: the template filled with the map, its data and the sections.
 
-Guarantee: the policy in its head allows nothing but the page's own style sheet and script, told by their hashes; the
+Guarantee: the policy in its head allows nothing but the page's own style sheet and script, named by their hashes; the
 data cannot end the element it stands in. The same result gives the same bytes, timings apart.
 """
 
@@ -41,7 +41,7 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
 
     Parameters
     ----------
-    timings : whether run times are told; without them the text is the same for the same slice.
+    timings : whether run times are shown; without them the text is the same for the same slice.
     errors : the curve of error against time, if it was measured.
 
     Raises

@@ -20,10 +20,10 @@ from ptmcad.show.table import certified_digits
 from ptmcad.text.numerals import decimal, text_of
 
 _COUNTED = {
-    Count.STABLE: "regions are told apart by the number of stable equilibria",
-    Count.TOTAL: "regions are told apart by the number of equilibria",
-    Count.INDEX: "regions are told apart by the numbers of minima, saddles and maxima",
-    Count.ADMISSIBLE: "regions are told apart by the number of stable equilibria with every spring longer than its "
+    Count.STABLE: "regions are distinguished by the number of stable equilibria",
+    Count.TOTAL: "regions are distinguished by the number of equilibria",
+    Count.INDEX: "regions are distinguished by the numbers of minima, saddles and maxima",
+    Count.ADMISSIBLE: "regions are distinguished by the number of stable equilibria with every spring longer than its "
     "free length",
 }
 _STATUS = {

@@ -52,7 +52,7 @@ Progress = Callable[[str], None]
 
 
 def ablation(
-    records: Sequence[Path], rounds: int = 3, seed: int = 1, told: Progress = lambda _: None
+    records: Sequence[Path], rounds: int = 3, seed: int = 1, progress: Progress = lambda _: None
 ) -> dict[str, Any]:
     """The benchmark as JSON data.
 
@@ -61,7 +61,7 @@ def ablation(
     records : problem records; of those with free lengths only `CERTIFIED` are taken.
     rounds : runs of each variant of the exact engine, and of each whole process; certified variants run once.
     seed : of the order within a round.
-    told : told about each record.
+    progress : called with the name of each record.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def ablation(
         require_numba()
     rows, free = [], []
     for slice in slices.values():
-        told(slice.name)
+        progress(slice.name)
         if slice.has_free_lengths:
             if slice.name in CERTIFIED:
                 free += [_certified(slice, *part) for part in CERTIFIED[slice.name]]

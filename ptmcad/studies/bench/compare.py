@@ -105,7 +105,7 @@ def _worse(before: Measurement, after: Measurement) -> Iterator[Change]:
     old, new = before.figures or {}, after.figures or {}
     for count, f in old.items():
         if count not in new:
-            yield Change(*place, Verdict.LOST, f"{count}: no error is told any more")
+            yield Change(*place, Verdict.LOST, f"{count}: no error is reported any more")
             continue
         for name, a, b in _pairs(f, new[count]):
             if a != b:
@@ -140,8 +140,8 @@ def comparison_table(changes: tuple[Change, ...]) -> str:
     ]
     bad = [c for c in changes if c.verdict in BAD]
     tally = {v: sum(c.verdict is v for c in bad) for v in (Verdict.SLOWER, Verdict.WORSE, Verdict.LOST)}
-    told = ", ".join(f"{number} {verdict.value}" for verdict, number in tally.items() if number)
-    return "\n".join([*lines, told or "nothing became slower or worse beyond noise"])
+    summary = ", ".join(f"{number} {verdict.value}" for verdict, number in tally.items() if number)
+    return "\n".join([*lines, summary or "nothing became slower or worse beyond noise"])
 
 
 def _cells(change: Change) -> tuple[str, str, str]:

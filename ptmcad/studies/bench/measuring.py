@@ -94,7 +94,7 @@ def measure(
     time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
     quick : fewer and coarser settings.
     warm_up : run the certified engine once before, because the first run on a machine compiles.
-    report : told what is being done.
+    report : called with what is being done.
 
     Raises
     ------
@@ -170,7 +170,7 @@ def _begin(
 
 
 def _compile(started: Sequence[_Runs]) -> None:
-    """Run the certified engine's first job, if there is one: what is told is the time of every later run."""
+    """Run the certified engine's first job, if there is one: what is reported is the time of every later run."""
     for r in started:
         if r.job.method is Method.CERTIFIED:
             run(r.job.commands[0][0], timeout=300)

@@ -52,7 +52,7 @@ class Measurement:
     Attributes
     ----------
     seconds : of whole processes, start-up included; None when it was not run to its end.
-    computing : of the computation in them, where the process tells.
+    computing : of the computation in them, where the process reports them.
     peak : largest resident set in MiB.
     reason : why there are no times; empty when there are.
     note : what the figures rest on, where it is not a measurement of ours.
@@ -129,7 +129,7 @@ def _rounded(value: Fraction, up: bool) -> float:
 
 
 def main_figures(measurement: Measurement) -> Figures | None:
-    """The figures for the finest count that the method tells."""
+    """The figures for the finest count that the method gives."""
     found = measurement.figures or {}
     return next((found[count] for count in ("index", "total", "stable", "admissible") if count in found), None)
 

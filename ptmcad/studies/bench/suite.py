@@ -87,7 +87,7 @@ def measure(
     timeout : seconds after which a run is killed and the job given up.
     seed : of the order within a round.
     date : recorded as it is.
-    progress : told about each round.
+    progress : called before each round.
 
     Raises
     ------

@@ -35,8 +35,8 @@ def draw_stress(outcomes: Sequence[Outcome]) -> Figure:
         wrong = sum(not o.verdict.double_right for o in points)
         title = "Error of double precision against what is extreme"
         ours = sum(not o.verdict.right for o in points)
-        told = f"{len(points)} cases; the count of double precision is wrong in {wrong}, ptmcad's in {ours}."
-        figure.set_label(f"{title}\n{told}")
+        summary = f"{len(points)} cases; the count of double precision is wrong in {wrong}, ptmcad's in {ours}."
+        figure.set_label(f"{title}\n{summary}")
         figure.suptitle(title, fontsize=13)
         axes = [figure.add_subplot(rows, COLUMNS, k + 1) for k in range(len(families))]
         for k, (family, place) in enumerate(zip(families, axes, strict=True)):

@@ -99,7 +99,7 @@ def all_equilibria(values: Values, count: Count) -> tuple[Energy, list[Equilibri
     Raises
     ------
     Unproved
-        When they cannot be told even then.
+        When they cannot be decided even then.
     """
     if count not in MINIMA and (
         (values["rho"] == values["L2"] and values["l0_1"]) or (values["rho"] == values["L1"] and values["l0_2"])

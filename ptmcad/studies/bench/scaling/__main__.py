@@ -16,7 +16,7 @@ from ptmcad.studies.bench.scaling.table import to_markdown
 
 PICTURES = ("svg", "png")
 MIN_PICTURE_SIZES = 3
-"""Places along a family from which on a picture tells more than the table."""
+"""Places along a family from which on a picture shows more than the table."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -55,7 +55,7 @@ class Fit:
     Attributes
     ----------
     exponent, low, high : the slope, and its 5 % and 95 % bounds.
-    factor : c, of the law that the verdict tells.
+    factor : c, of the law that the verdict gives.
     determination : R^2 of the line.
     lower, upper : slopes over the two halves of the range of log x.
     first, last : the range of x.

@@ -43,7 +43,7 @@ def scaling(
     rounds : runs of each size, but of a family's heavy sizes.
     seed : of slices, of the order within a round, and of the fits' resampling.
     limit : wall seconds after which a run is given up; then this size and larger ones of its family are left out.
-    progress : told what runs.
+    progress : called with what runs.
 
     Returns
     -------
