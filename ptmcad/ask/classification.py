@@ -8,6 +8,7 @@ Only the engine that is used is loaded.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
@@ -18,7 +19,7 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.process.memory import check_room, loading
-from ptmcad.question.savings import kept, load_all
+from ptmcad.question.savings import load_all, switched_off
 from ptmcad.question.slice import Count, Slice, without_free_lengths
 from ptmcad.text.syntax import did_you_mean
 
@@ -37,10 +38,12 @@ def classify(
     area_tolerance: Fraction | float | str | None = None,
     jobs: int | None = None,
     progress: Progress | None = None,
-    keep: Iterable[str] = (),
+    without: Iterable[str] = (),
     partial: Callable[[RegionMap], None] | None = None,
     resume: RegionMap | None = None,
     areas: bool = True,
+    *,
+    keep: Iterable[str] | None = None,
 ) -> RegionMap:
     """The region map of a slice.
 
@@ -55,11 +58,12 @@ def classify(
     area_tolerance : largest relative width of each region's area bounds, 1e-4 when None; for the exact engine.
     jobs : number of threads of the certified engine, all processors when None; the exact engine uses one.
     progress : called as progress(stage, done, total).
-    keep : names of savings to switch off, of `ptmcad.question.savings`; ``"all"`` stands for all that the engine has.
+    without : names of savings to do without, of `ptmcad.question.savings`; ``"all"`` stands for all of the engine's.
     partial : called with the map after each stage that improves it.
     resume : a certified map of the same slice and count, stopped or not, from which to go on. Its cover is taken as
         it stands: what `ptmcad.verify` says of the result rests on it.
     areas : False leaves the regions' areas out (exact engine): of each is then known that it is at most the window's.
+    keep : the older name of ``without``.
 
     Raises
     ------
@@ -82,7 +86,12 @@ def classify(
     certified = is_certified(slice, engine)
     if not areas:
         _check_no_areas(certified, relative)
-    off = kept(keep, certified)
+    if keep is not None:
+        if without:
+            raise ConfigError("this is the older name of without: give one of them", key="keep")
+        warnings.warn("keep has a new name: without", DeprecationWarning, stacklevel=2)
+        without = keep
+    off = switched_off(without, certified)
     if certified:
         _check_certified(slice, relative, resume)
         prepare(slice, engine, progress, off)
@@ -112,7 +121,7 @@ def _check_no_areas(certified: bool, area_tolerance: Fraction | None) -> None:
 
 
 def prepare(
-    slice: Slice, engine: str = "auto", progress: Progress | None = None, keep: frozenset[str] = frozenset()
+    slice: Slice, engine: str = "auto", progress: Progress | None = None, without: frozenset[str] = frozenset()
 ) -> None:
     """Load what an engine needs, and compile it where this machine has not done so: no part of any time limit.
 
@@ -122,7 +131,7 @@ def prepare(
         Where the certified engine is wanted and numba is missing, or the memory limit leaves it no room.
     """
     if is_certified(slice, engine):
-        if "imports" in keep:
+        if "imports" in without:
             with loading("all that there is"):
                 load_all()
         load_certified(progress)
@@ -159,7 +168,7 @@ def _certified(
     deadline: float | None,
     jobs: int | None,
     progress: Progress | None,
-    keep: frozenset[str],
+    without: frozenset[str],
     partial: Callable[[RegionMap], None] | None,
     earlier: RegionMap | None,
 ) -> RegionMap:
@@ -179,7 +188,7 @@ def _certified(
             progress=progress,
             partial=None if partial is None else improved,
             resume=None if earlier is None else earlier.cover,
-            keep=keep,
+            without=without,
         )
     except LimitReached as stop:
         found = stop.partial

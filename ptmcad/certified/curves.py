@@ -52,38 +52,38 @@ class Curve:
         return np.concatenate([window[:, :2], low, window[:, 2:], high], axis=1)
 
 
-def curves(slice: Slice, count: Count, keep: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
+def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
     """The curves at which ``count`` may change; docs/free-lengths-curves.md proves that no other is needed.
 
     Parameters
     ----------
-    keep : names of savings to switch off, of `ptmcad.question.savings`.
+    without : names of savings to switch off, of `ptmcad.question.savings`.
     """
     scale = np.array(axis_weights(slice))
     return tuple(
         replace(curve, weights=np.concatenate([scale, np.ones(len(curve.ranges))]))
-        for curve in _CURVES[count](slice, keep)
+        for curve in _CURVES[count](slice, without)
     )
 
 
-def _stable(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
-    yield from _folds(slice, keep, stable="folds-of-saddles" not in keep)
-    if "cones-and-creases" in keep:
-        yield from _cone(slice, keep)
+def _stable(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
+    yield from _folds(slice, without, stable="folds-of-saddles" not in without)
+    if "cones-and-creases" in without:
+        yield from _cone(slice, without)
         yield from _creases(slice)
 
 
-def _all(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
-    yield from _folds(slice, keep, stable=False)
-    yield from _cone(slice, keep)
+def _all(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
+    yield from _folds(slice, without, stable=False)
+    yield from _cone(slice, without)
     yield from _creases(slice)
 
 
-def _folds(slice: Slice, keep: frozenset[str], *, stable: bool) -> Iterator[Curve]:
+def _folds(slice: Slice, without: frozenset[str], *, stable: bool) -> Iterator[Curve]:
     """Where D = 0; with spring 3 short and long apart, since D and the derivatives of E1, E2 have a pole at l3 = 0."""
     name = "fold of a stable equilibrium" if stable else "fold"
     reason = "a minimum meets a saddle: det H = 0 with nonnegative diagonal" if stable else "equilibria meet: det H = 0"
-    factored = "unloaded-factor" not in keep
+    factored = "unloaded-factor" not in without
     graph = Graph()
     m = slice_mechanism(graph, slice, factored=factored)
     there = m.at_equilibrium
@@ -99,7 +99,7 @@ def _folds(slice: Slice, keep: frozenset[str], *, stable: bool) -> Iterator[Curv
             [e1, balance, singular],
             (0, 1, 2, 3),
             _dependent(
-                keep,
+                without,
                 [e2, *m.dependent, *_present(m.unit)],
                 [there.determinant, m.turned, *([] if stable else [there.levelled])],
             ),
@@ -120,7 +120,7 @@ def _folds(slice: Slice, keep: frozenset[str], *, stable: bool) -> Iterator[Curv
             [*_present(m.aligned), *m.equilibrium, m.hessian.determinant_times_l3],
             (0, 1, 2, 3, 4),
             _dependent(
-                keep,
+                without,
                 [*m.dependent, *_present(m.unit)],
                 [there.determinant_times_l3, *([m.turned] if stable else [there.levelled])],
             ),
@@ -136,19 +136,19 @@ def _semidefinite(m: Mechanism) -> list[Formula]:
 
 
 def _dependent(
-    keep: frozenset[str], cheap: list[Formula], costly: list[Formula]
+    without: frozenset[str], cheap: list[Formula], costly: list[Formula]
 ) -> tuple[list[Formula], list[Formula]]:
     """Formulas that vanish where the equations do, unless they are not to be used."""
-    return ([], []) if "dependent-equations" in keep else (cheap, costly)
+    return ([], []) if "dependent-equations" in without else (cheap, costly)
 
 
-def _cone(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
+def _cone(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
     m = slice_mechanism(Graph(), slice, phi=True)
     if m.unit is not None:
         yield Curve(
             "cone",
             "an equilibrium is swallowed by the cone l3 = 0",
-            system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), _dependent(keep, [*m.dependent, m.unit], [])),
+            system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), _dependent(without, [*m.dependent, m.unit], [])),
             (TORUS, TORUS, PHI),
         )
 
@@ -169,8 +169,8 @@ def _creases(slice: Slice) -> Iterator[Curve]:
             )
 
 
-def _admissible(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
-    yield from _stable(slice, keep)
+def _admissible(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
+    yield from _stable(slice, without)
     m = slice_mechanism(Graph(), slice)
     for spring, (extent, free, vector) in enumerate(zip(m.lengths, m.free, m.vectors, strict=True), start=1):
         third, dependent = (vector[0], [vector[1]]) if free.value == 0 else (extent - free, [])
@@ -180,7 +180,7 @@ def _admissible(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
             system(
                 [*m.equilibrium, third],
                 (0, 1, 2, 3),
-                _dependent(keep, [*m.dependent, *dependent], []),
+                _dependent(without, [*m.dependent, *dependent], []),
                 [*_semidefinite(m), m.at_equilibrium.determinant, m.turned],
             ),
             (TORUS, TORUS),

@@ -80,7 +80,7 @@ class Options:
     jobs: int = 1
     progress: Progress | None = None
     partial: Callable[[RegionMap], None] | None = None
-    keep: frozenset[str] = frozenset()
+    without: frozenset[str] = frozenset()
 
 
 def certified_map(
@@ -92,7 +92,7 @@ def certified_map(
     progress: Progress | None = None,
     partial: Callable[[RegionMap], None] | None = None,
     resume: Cover | None = None,
-    keep: frozenset[str] = frozenset(),
+    without: frozenset[str] = frozenset(),
 ) -> RegionMap:
     """The region map of a slice by interval methods.
 
@@ -105,7 +105,7 @@ def certified_map(
     progress : called as progress(what, done, total).
     partial : called with maps on the way, each complete but for a larger undetermined area.
     resume : cover of an earlier map of the same slice and count: what was outside it stays decided.
-    keep : names of savings to switch off, of `ptmcad.question.savings`.
+    without : names of savings to switch off, of `ptmcad.question.savings`.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def certified_map(
             f"the certified engine computes in floats: an axis may reach {float(MAX_AXIS_END):g}, no more"
         )
     prove_slice(slice)
-    options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial, keep)
+    options = Options(tolerance or TOLERANCE, deadline, jobs or os.cpu_count() or 1, progress, partial, without)
     return _Run(slice, options, resume).run()
 
 
@@ -139,9 +139,9 @@ class _Run:
         horizontal, vertical = slice.axes
         self.lattice = Lattice(((horizontal.low, horizontal.high), (vertical.low, vertical.high)), steps)
         self.resumed = resume
-        wanted = curves(slice, slice.count, options.keep)
+        wanted = curves(slice, slice.count, options.without)
         self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, resume))
-        self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted, options.keep), _versions())
+        self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted, options.without), _versions())
         self.best: RegionMap | None = None
         """The map with the least undetermined area of those that were handed over."""
         self._thinned: Thinning | None = None

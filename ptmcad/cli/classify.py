@@ -30,7 +30,7 @@ from ptmcad.process.output import (
     write_files,
 )
 from ptmcad.question.config import slice_from_options
-from ptmcad.question.savings import check_names, kept
+from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import rational
 
@@ -57,7 +57,7 @@ class Request:
     resume: Any = None
     samples: bool = False
     timings: bool = True
-    keep: tuple[str, ...] = ()
+    without: tuple[str, ...] = ()
     areas: bool = True
     spent: float = 0.0
 
@@ -102,7 +102,7 @@ def classify_to_files(slice: Slice, request: Request) -> Any:
                 progress=progress,
                 partial=handed_over if watched() else None,
                 resume=request.resume,
-                keep=request.keep,
+                without=request.without,
                 areas=request.areas,
             )
         except LimitReached as stopped:
@@ -181,7 +181,7 @@ def announced(slice: Slice, request: Request) -> tuple[Any, ...]:
     from ptmcad.exact import plan
 
     certified = is_certified(slice, request.engine)
-    off = kept(request.keep, certified)
+    off = switched_off(request.without, certified)
     if certified:
         from ptmcad.certified.plan import beforehand
 
@@ -209,7 +209,7 @@ def _share(_context: click.Context, parameter: click.Parameter, value: str | Non
     return share
 
 
-def _kept(_context: click.Context, parameter: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
+def _names_of_savings(_context: click.Context, parameter: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
     try:
         check_names(names)
     except ConfigError as error:
@@ -244,8 +244,9 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="json,png,svg",
               show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
-@click.option("--keep", multiple=True, callback=_kept, metavar="NAME",
-              help="Switch off a saving: compute what would be left out; 'all' for every one. Repeatable.")  # fmt: skip
+@click.option("--without", multiple=True, callback=_names_of_savings, metavar="NAME",
+              help="Do without a saving, compute what it leaves out; 'all' for every one. Repeatable.")  # fmt: skip
+@click.option("--keep", multiple=True, callback=_names_of_savings, hidden=True)  # the older name of --without
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),
@@ -290,6 +291,7 @@ def command(
     area_tolerance: Fraction | None,
     samples: bool,
     no_timings: bool,
+    without: tuple[str, ...],
     keep: tuple[str, ...],
     no_areas: bool,
 ) -> None:
@@ -323,7 +325,7 @@ def command(
         area_tolerance=area_tolerance,
         samples=samples,
         timings=not no_timings,
-        keep=keep,
+        without=(*without, *keep),
         areas=not no_areas,
     )
     with limits(timeout, max_memory):

@@ -81,7 +81,7 @@ def exact_map(
     area_tolerance: Fraction = AREA_TOLERANCE,
     deadline: float | None = None,
     progress: Progress | None = None,
-    keep: frozenset[str] = frozenset(),
+    without: frozenset[str] = frozenset(),
     partial: Callable[[RegionMap], None] | None = None,
     areas: bool = True,
 ) -> RegionMap:
@@ -92,7 +92,7 @@ def exact_map(
     area_tolerance : largest relative width of each region's area bounds.
     deadline : reading of `time.perf_counter` after which `LimitReached` is raised.
     progress : called as progress(stage, done, total).
-    keep : names of savings to switch off, of `ptmcad.question.savings`.
+    without : names of savings to switch off, of `ptmcad.question.savings`.
     partial : called with the map after each stage that improves it, the complete one included.
     areas : whether to enclose the regions' areas; without, they are known only to be at most the window's.
 
@@ -110,7 +110,7 @@ def exact_map(
     clock = _Clock(progress, deadline, now, now, {})
     best: RegionMap | None = None
     try:
-        for reached in _stages(slice, area_tolerance if areas else None, clock, keep):
+        for reached in _stages(slice, area_tolerance if areas else None, clock, without):
             best = reached
             if partial is not None:
                 partial(reached)
@@ -120,12 +120,12 @@ def exact_map(
     return best
 
 
-def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVariety:
+def slice_variety(slice: Slice, without: frozenset[str] = frozenset()) -> SliceVariety:
     """The discriminant variety of a slice, the first stage of `exact_map` alone.
 
     Parameters
     ----------
-    keep : names of savings to switch off, of `ptmcad.question.savings`.
+    without : names of savings to switch off, of `ptmcad.question.savings`.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVari
     """
     without_free_lengths(slice.parameters, "the discriminant variety is")
     now = perf_counter()
-    first = next(_stages(slice, AREA_TOLERANCE, _Clock(None, None, now, now, {}), keep))
+    first = next(_stages(slice, AREA_TOLERANCE, _Clock(None, None, now, now, {}), without))
     system = system_of(slice.mechanism)
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     return SliceVariety(
@@ -148,7 +148,7 @@ def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVari
     )
 
 
-def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozenset[str]) -> Iterator[RegionMap]:
+def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, without: frozenset[str]) -> Iterator[RegionMap]:
     """The region map after the variety, after the counts, and complete; the first two are marked as partial.
 
     Parameters
@@ -162,12 +162,12 @@ def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozen
     clock.report("variety", 0, 1)
     try:
         variety = discriminant_variety(
-            system, parameters, (window[0], window[1]), domain_limits(system, parameters), keep
+            system, parameters, (window[0], window[1]), domain_limits(system, parameters), without
         )
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
         at = (simplest_between(*window[0]), simplest_between(*window[1]))
         raise type(error)(f"{error}; {_witness(slice, system, parameters, at)}") from error
-    base, curves, verticals, costs = _choose_base(variety.components, keep)
+    base, curves, verticals, costs = _choose_base(variety.components, without)
     started = RegionMap(
         slice=slice,
         status=Status.PARTIAL,
@@ -181,7 +181,7 @@ def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozen
         adjacencies=(),
         non_adjacencies=(),
         regions=(),
-        plan=plan_of(slice, variety.components, base, costs, keep, relative is not None),
+        plan=plan_of(slice, variety.components, base, costs, without, relative is not None),
         undetermined=Fraction(1),
         versions={
             "ptmcad": __version__,
@@ -195,7 +195,7 @@ def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozen
     clock.stage("variety")
 
     clock.report("projection", 0, 1)
-    projection = project(curves, list(verticals.values()), window[base], window[1 - base], clock.check, keep)
+    projection = project(curves, list(verticals.values()), window[base], window[1 - base], clock.check, without)
     clock.stage("projection")
     clock.report("stacks", 0, 1)
     avoided = avoided_by_samples(variety.components, base)
@@ -225,7 +225,7 @@ def _stages(slice: Slice, relative: Fraction | None, clock: _Clock, keep: frozen
         return
 
     clock.report("areas", 0, 1)
-    cells_alone = "equal-counts" in keep
+    cells_alone = "equal-counts" in without
     whole = (slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low)
     rows = [tuple(n if cells_alone else counted.cells[n].region for n in stack.cells) for stack in counted.stacks]
     bounds, bits = region_areas(stacks, rows, curves, window[base], window[1 - base], relative, clock.check)
@@ -271,12 +271,12 @@ def avoided_by_samples(components: Sequence[Component], base: int) -> Avoided:
 
 
 def _choose_base(
-    components: Sequence[Component], keep: frozenset[str]
+    components: Sequence[Component], without: frozenset[str]
 ) -> tuple[int, list[Curve], dict[int, UnivariatePolynomial], tuple[int, int]]:
     """The base axis of the cheaper decomposition, with the curves and lines as seen from it."""
     views = [_seen_from(components, base) for base in (0, 1)]
     costs = (predicted_cost(views[0][0]), predicted_cost(views[1][0]))
-    base = 1 if costs[1] < costs[0] and "axis-order" not in keep else 0
+    base = 1 if costs[1] < costs[0] and "axis-order" not in without else 0
     return base, *views[base], costs
 
 

@@ -22,7 +22,7 @@ from flint import fmpq
 from ptmcad.answer.regionmap import Kind
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.fibre import Fibre, Monomial, standard_monomials
-from ptmcad.verification.plan import kept
+from ptmcad.verification.plan import switched_off
 from ptmcad.verification.report import Violation
 
 POINTS, BITS = 12, 48
@@ -38,7 +38,7 @@ def check_auxiliary(claims: Claims, seed: str) -> str:
     """Auxiliary components against the functions that they are factors of."""
     components = claims.result.components
     auxiliary = [n for n, c in enumerate(components) if c.kind is Kind.AUXILIARY]
-    savings = [name for name in _SAVINGS if name in kept(claims.result)]
+    savings = [name for name in _SAVINGS if name in switched_off(claims.result)]
     if not savings:
         if auxiliary:
             raise Violation(f"component {auxiliary[0]} is auxiliary, but no saving was switched off that leaves it out")

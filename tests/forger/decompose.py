@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from flint import fmpq
 
-from forger.consistency import NO_AREAS, kept, settled, with_plan
+from forger.consistency import NO_AREAS, settled, switched_off, with_plan
 from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction
 from ptmcad.answer.regionmap import Component, RegionMap
 from ptmcad.errors import HypothesisError
@@ -26,15 +26,15 @@ from ptmcad.exact.engine import _seen_from, avoided_by_samples, count_at
 from ptmcad.exact.models import ParametricSystem, system_of
 
 
-def decomposed(r: RegionMap, components: Sequence[Component], keep: frozenset[str] | None = None) -> RegionMap:
+def decomposed(r: RegionMap, components: Sequence[Component], without: frozenset[str] | None = None) -> RegionMap:
     """The map with these components, over the same base, and with all that follows from them."""
     system = system_of(r.slice.mechanism)
     parameters = {name: from_expression(r.slice.parameters[name]) for name in system.ring.parameters}
     window = [(from_fraction(a.low), from_fraction(a.high)) for a in r.slice.axes]
-    base, keep = r.base, kept(r) if keep is None else keep
+    base, without = r.base, switched_off(r) if without is None else without
     curves, verticals = _seen_from(components, base)
-    started = with_plan(replace(r, components=tuple(components)), keep)
-    projection = project(curves, list(verticals.values()), window[base], window[1 - base], lambda: None, keep)
+    started = with_plan(replace(r, components=tuple(components)), without)
+    projection = project(curves, list(verticals.values()), window[base], window[1 - base], lambda: None, without)
     avoided = avoided_by_samples(components, base)
     stacks = lift(curves, projection.abscissae, window[base], window[1 - base], avoided)
     points = [(s.sample, height) if base == 0 else (height, s.sample) for s in stacks for height in s.heights]

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from flint import arb, arb_poly, ctx, fmpq
 
-from forger.consistency import drop, kept, put, swapped, with_plan
+from forger.consistency import drop, put, swapped, switched_off, with_plan
 from forger.maps import named
 from ptmcad.answer.regionmap import (
     HARMLESS,
@@ -134,7 +134,7 @@ def more_components(*more: Component) -> Change:
 
 
 def keeping(*savings: str) -> Change:
-    return lambda r: with_plan(r, kept(r) | set(savings))
+    return lambda r: with_plan(r, switched_off(r) | set(savings))
 
 
 def first(r: RegionMap, **what: Any) -> int:
@@ -406,7 +406,7 @@ def test_rejecting_branches(check: Check, name: str, change: Change, words: str)
 def test_what_was_kept_is_no_fault(check: Check, name: str) -> None:
     """A curve of the Hermite matrix alone is auxiliary, curves without points are used, where that was asked for."""
     r = the(name)
-    assert {*name.split("+")[1:]} - {"no-areas"} <= kept(r)
+    assert {*name.split("+")[1:]} - {"no-areas"} <= switched_off(r)
     check(Claims(r))
 
 

@@ -55,16 +55,16 @@ def project(
     base: Interval,
     fibre: Interval,
     check: Check = nothing,
-    keep: frozenset[str] = frozenset(),
+    without: frozenset[str] = frozenset(),
 ) -> Projection:
     """The projection of the curves (and of vertical lines, given by their polynomials in u) and its real roots.
 
     Parameters
     ----------
     check : called now and then; may raise to stop.
-    keep : names of savings to switch off: ``"even-powers"``.
+    without : names of savings to switch off: ``"even-powers"``.
     """
-    deflate = "even-powers" not in keep
+    deflate = "even-powers" not in without
     found: dict[tuple[int, ...], tuple[UnivariatePolynomial, str]] = {}
 
     def adopt(factors: list[UnivariatePolynomial], origin: str) -> None:
