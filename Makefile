@@ -39,7 +39,7 @@ $(VENV)/.installed-test: $(VENV)/.installed
 
 # atheris has wheels for some systems and versions of Python only; without it the campaign says so and goes on.
 $(VENV)/.installed-fuzz: $(VENV)/.installed-test
-	$(PIP) --only-binary atheris --editable '.[test,fuzz]' || echo "atheris can not be installed here, see above"
+	$(PIP) --only-binary atheris --editable '.[test,fuzz]' || echo "atheris cannot be installed here, see above"
 	@touch $@
 
 $(VENV)/.installed-check: $(VENV)/.installed-test
@@ -86,7 +86,7 @@ check: $(VENV)/.installed-check
 
 $(VENV)/.installed-bench: $(VENV)/.installed
 	$(PIP) --editable '.[bench]'
-	$(PIP) gcad || echo "gcad can not be installed here, see above: it is left out"
+	$(PIP) gcad || echo "gcad cannot be installed here, see above: it is left out"
 	@touch $@
 
 bench: $(VENV)/.installed-bench

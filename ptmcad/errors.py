@@ -16,18 +16,18 @@
 
 "Undecided" is not in this tree: it is a value (`ptmcad.answer.regionmap.Status.UNDECIDED`), never an exception.
 
-Guarantee: the text of every exception of the tree is one line of at most `LONGEST` characters that a terminal shows as
-they are, whatever the input that it quotes.
+Guarantee: the text of every exception of the tree is one line of at most `MAX_MESSAGE` characters that a terminal shows
+as they are, whatever the input that it quotes.
 """
 
 from __future__ import annotations
 
-LONGEST = 1000
+MAX_MESSAGE = 1000
 """Characters of a message."""
-_LONGEST_PLACE = 300
+_MAX_PLACE = 300
 
 
-def shown(text: str, most: int = LONGEST) -> str:
+def shown(text: str, most: int = MAX_MESSAGE) -> str:
     """A text of someone else's as it can be shown: what is not printable is escaped, what is too long is cut out.
 
     >>> print(shown("a\x1b[31m" + "b" * 100, most=30))
@@ -48,7 +48,7 @@ def shown(text: str, most: int = LONGEST) -> str:
 
 def shown_path(path: object) -> str:
     """A path as a terminal can show it; whole, because the next command may be given it."""
-    return shown(str(path), 5 * LONGEST)
+    return shown(str(path), 5 * MAX_MESSAGE)
 
 
 class PtmcadError(Exception):
@@ -78,10 +78,10 @@ class ConfigError(PtmcadError):
     def __str__(self) -> str:
         place = ""
         if self.file is not None:
-            file = shown(self.file, _LONGEST_PLACE)
+            file = shown(self.file, _MAX_PLACE)
             place = file if self.line is None else f"{file}:{self.line}"
         if self.key is not None:
-            key = shown(self.key, _LONGEST_PLACE)
+            key = shown(self.key, _MAX_PLACE)
             place = f"{place}: {key}" if place else key
         return shown(f"{place}: {self.message}" if place else self.message)
 

@@ -35,7 +35,7 @@ class Options:
         None.
     jobs : number of threads of the certified engine, all processors when None; the map does not depend on it.
     progress : called as progress(stage, done, total).
-    keep : names of savings to switch off, of `ptmcad.question.savings`.
+    without : names of savings to switch off, of `ptmcad.question.savings`.
     partial : called with the map after each stage that improves it.
     resume : a certified map of the same slice and count: what is outside its cover stays decided.
     areas : whether to enclose the regions' areas; without, they are known only to be at most the window's.
@@ -53,7 +53,7 @@ class Options:
     area_tolerance: Fraction | None = None
     jobs: int | None = None
     progress: Progress | None = None
-    keep: frozenset[str] = frozenset()
+    without: frozenset[str] = frozenset()
     partial: Callable[[RegionMap], None] | None = None
     resume: RegionMap | None = None
     areas: bool = True

@@ -124,7 +124,7 @@ def window_cad(result: RegionMap, *, full: bool = False) -> Decomposition:
 
     Parameters
     ----------
-    full : lift over sections of the x-axis too (much dearer: their abscissae are algebraic numbers).
+    full : lift over sections of the x-axis too (much more expensive: their abscissae are algebraic numbers).
     """
     used = [seen_from_base(c.polynomial, result.base) for c in result.components if not c.left_out]
     edges = [f"{_text(_edge(end, 0))} {sign} 0" for end, sign in _ends(_axis(result, 0))]
@@ -193,7 +193,7 @@ def compare(result: RegionMap, cad: Decomposition) -> Comparison:
     - QEPCAD has further sections (meetings of complex branches, leading coefficients, meetings outside the window).
       The stacks on both sides of such a section then belong to the same stack of the map, so that with stacks joined
       there, stacks and cells are equal in number. That no two branches meet over a further section is checked where
-      QEPCAD was told to lift over sections: it finds as many roots there as beside it.
+      QEPCAD was asked to lift over sections: it finds as many roots there as beside it.
     """
     numbers = {seen_from_base(c.polynomial, result.base): n for n, c in enumerate(result.components) if not c.left_out}
     known = set(cad.factors.values())

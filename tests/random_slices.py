@@ -216,7 +216,7 @@ def _flat(dice: random.Random, _number_: int) -> Draw:
 
 
 def _general(dice: random.Random, _number_: int) -> Draw:
-    """Three different springs and four loads: the dearest."""
+    """Three different springs and four loads: the most expensive."""
     axes = dice.choice([("rho", "F3"), ("F3", "F4"), ("rho", "F4"), ("F3x", "F4"), ("k1", "F3")])
     values = {name: _value(dice, name) for name in ("L1", "L2", "rho", "F3", "F4")}
     values |= {"F3x": Fraction(dice.choice([5, -3, 8])), "F4x": Fraction(dice.choice([-2, 4, 9]))}

@@ -149,14 +149,14 @@ def test_walls_that_leave_a_cusp_side_by_side_are_shut_in() -> None:
     for root, side in ((0, -1), (1, 1)):
         found = chords(source, root, span, unit, unit, Fraction(1, 2**18), Fraction(1, 2**24))
         assert len(found) < 2000
-        assert max(c.apart for c in found) <= FLAT
-        assert sum(c.apart * (c.right - c.left) for c in found) < Fraction(1, 2**17)
+        assert max(c.distance for c in found) <= FLAT
+        assert sum(c.distance * (c.right - c.left) for c in found) < Fraction(1, 2**17)
         for c in found:
             for part in (Fraction(1, 9), Fraction(1, 2), Fraction(8, 9)):
                 x = c.left + (c.right - c.left) * part
                 line = c.at_left + (c.at_right - c.at_left) * part
                 # the wall's v is 1/2 + side sqrt(u^7) / 2: both ends of the chord's band, squared exactly
-                ends = [2 * side * (line + s * c.apart - Fraction(1, 2)) for s in (-1, 1)]
+                ends = [2 * side * (line + s * c.distance - Fraction(1, 2)) for s in (-1, 1)]
                 low, high = min(ends), max(ends)
                 assert (low < 0 or low**2 <= x**7) and high > 0 and x**7 <= high**2
 
@@ -174,8 +174,8 @@ def test_chords_hold_their_walls() -> None:
             roots = [(r.middle - found.fibre[0]) / height for _, r in roots_over(found.curves, u, found.fibre)]
             nearest = min(abs(r - from_fraction(line)) for r in roots)
             # isolating intervals may be wide: refine by bisection on the curves' own sign change
-            if nearest > from_fraction(c.apart):
-                low, high = (found.fibre[0] + height * from_fraction(line + s * c.apart) for s in (-1, 1))
+            if nearest > from_fraction(c.distance):
+                low, high = (found.fibre[0] + height * from_fraction(line + s * c.distance) for s in (-1, 1))
                 assert any(_changes(source, u, low, high) for source in found.curves)
 
 
@@ -287,7 +287,7 @@ def test_companion_is_right_at_centres(name: str, n: int) -> None:
 
 
 def test_error_of_a_certified_map() -> None:
-    """Nothing but its cover is wrong, which is told exactly; a count that is changed shows with its cell's area."""
+    """Nothing but its cover is wrong, which is measured exactly; a count that is changed shows with its cell's area."""
     pytest.importorskip("numba")
     found, sides = exact("fig3")
     result = ptmcad.classify(found.result.slice, engine="certified", tolerance="1/5")

@@ -30,7 +30,7 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options
 from ptmcad.process.handover import Receiver, Topic, connect, disconnect
-from ptmcad.process.supervisor import LATE, _Watch
+from ptmcad.process.supervisor import OVERRUN_SECONDS, _Watch
 
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = json.loads((ROOT / "docs" / "region-map.schema.json").read_text(encoding="utf-8"))
@@ -288,10 +288,10 @@ def test_compiling_is_no_part_of_the_time_limit(
     # the library loads once more, which takes no time outside of this test
     assert 2600 <= engine["options"].deadline - counted <= 2600 + taken
     watch = _Watch(0, 0, 0, ())
-    watch.told[Topic.DEADLINE] = [repr(stopped), ""]
+    watch.reports[Topic.DEADLINE] = [repr(stopped), ""]
     assert watch._deadline() is None
-    watch.told[Topic.DEADLINE] = [repr(again), "600 s"]
-    assert watch._deadline() == again + LATE
+    watch.reports[Topic.DEADLINE] = [repr(again), "600 s"]
+    assert watch._deadline() == again + OVERRUN_SECONDS
 
 
 @forked

@@ -206,7 +206,7 @@ def test_locate_prints_what_is_admissible(tmp_path: Path, capsys: pytest.Capture
         ({"tolerance": "x"}, "tolerance", "'x' is not a number"),
         ({"tolerance": float("nan")}, "tolerance", "is not a number"),
         ({"area_tolerance": "1e-3"}, "area_tolerance", "give tolerance instead"),
-        ({"keep": frozenset(("axis-order",))}, "keep", "a saving of the exact engine"),
+        ({"without": frozenset(("axis-order",))}, "without", "a saving of the exact engine"),
         ({"count": "most"}, "count", "most"),
     ],
     ids=str,

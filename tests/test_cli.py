@@ -165,7 +165,7 @@ def test_the_folder_is_checked_before_the_computation(
 def test_a_folder_without_permission(tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
     try:
-        with pytest.raises(OutputError, match="can not be written to"):
+        with pytest.raises(OutputError, match="cannot be written to"):
             check_writable(tmp_path)
     finally:
         tmp_path.chmod(0o700)

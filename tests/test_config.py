@@ -122,7 +122,7 @@ BAD = [
     ("null", AXES + "parameters:\n  F3:", 3, "parameters.F3", "no value"),
     ("boolean", AXES + "parameters: {F3: yes}", 2, "parameters.F3", "yes-or-no"),
     ("list as value", AXES + "parameters: {F3: [1]}", 2, "parameters.F3", "expected a number"),
-    ("nan", AXES + "parameters: {F3: .nan}", 2, "parameters.F3", "can not be used"),
+    ("nan", AXES + "parameters: {F3: .nan}", 2, "parameters.F3", "cannot be used"),
     ("comma", AXES + "parameters:\n  F3: 0,5", 3, "parameters.F3", "decimal point"),
     ("huge exponent", AXES + "parameters: {F3: rho**1000000000}", 2, "parameters.F3", "at most 64"),
     ("negative free length", AXES + "parameters: {l0: -0.2}", 2, "parameters.l0", "must be not negative"),
@@ -151,18 +151,18 @@ BAD = [
     ("cancelled axis", AXES.replace("rho", "F") + "parameters: {F3: F-F}", 1, "axes.F", "not used"),
     ("axis k without use", "axes: {k: [0, 1], L2: [0, 2]}\nparameters: {k1: 1, k2: 1, k3: 1}", 1, "axes.k", "not used"),
     ("k without use", AXES + "parameters: {k: 1, k1: 1, k2: 1, k3: 1}", 2, "parameters.k", "no effect"),
-    ("bad axis name", "axes: {2x: [0, 2], L2: [0, 2]}", 1, "axes.2x", "can not name an axis"),
+    ("bad axis name", "axes: {2x: [0, 2], L2: [0, 2]}", 1, "axes.2x", "cannot name an axis"),
     ("range of three", "axes: {rho: [0, 1, 2], L2: [0, 2]}", 1, "axes.rho", "expected a range"),
     ("range with a name", "axes: {rho: [0, L2], L2: [0, 2]}", 1, "axes.rho", "not an expression in L2"),
     ("count", AXES + "count: all", 2, "count", "stable, total, index or admissible"),
     ("mechanism", AXES + "mechanism: {rods: 3}", 2, "mechanism", "unknown mechanism"),
-    ("name with a path", AXES + "name: ../x", 2, "name", "can not name a file"),
-    ("name that hides", AXES + "name: .x", 2, "name", "can not name a file"),
+    ("name with a path", AXES + "name: ../x", 2, "name", "cannot name a file"),
+    ("name that hides", AXES + "name: .x", 2, "name", "cannot name a file"),
     *(
-        (f"device {name}", f'{AXES}name: "{name}"', 2, "name", "can not name a file: Windows keeps")
+        (f"device {name}", f'{AXES}name: "{name}"', 2, "name", "cannot name a file: Windows keeps")
         for name in ("con", "NUL", "Com1", "aux", "LPT1.x", "lpt0", "PRN", "com³", "nul.tar.gz")
     ),
-    *((f"end of {name!r}", f'{AXES}name: "{name}"', 2, "name", "can not name a file") for name in ("a.", "a ", "con ")),
+    *((f"end of {name!r}", f'{AXES}name: "{name}"', 2, "name", "cannot name a file") for name in ("a.", "a ", "con ")),
     ("reference as text", AXES + "reference: text", 2, "reference", "expected a mapping"),
     ("parameters as a list", AXES + "parameters: [F3]", 2, "parameters", "expected a mapping"),
     ("anchor", AXES + "parameters: {F3: &a 1, F4: *a}", 2, "parameters.F3", "anchors"),
@@ -198,7 +198,7 @@ def test_files_that_are_no_records(tmp_path: Path) -> None:
         load(tmp_path / "missing.yaml")
     with pytest.raises(ConfigError, match="is a folder"):
         load(tmp_path)
-    with pytest.raises(ConfigError, match="can not be read"):
+    with pytest.raises(ConfigError, match="cannot be read"):
         load("a\0b")
     binary = tmp_path / "picture.yaml"
     binary.write_bytes(b"\x89PNG\r\n\x1a\n\xff\xfe")

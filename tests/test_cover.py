@@ -18,7 +18,7 @@ from ptmcad.cover import components, from_boxes, union_area
 from ptmcad.cover.borders import area_bounds
 from ptmcad.cover.filling import combined, filled, gathered, pockets, simplified
 from ptmcad.cover.outlines import outlines
-from ptmcad.cover.rectangles import MOST_STEPS, Cover, Rectangle
+from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
 from ptmcad.cover.samples import samples, simplest_between
 
 UNIT = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))
@@ -43,7 +43,7 @@ def covers(draw: st.DrawFn) -> Cover:
 class Flood:
     """Pixel (2i+1, 2j+1) is a lattice square, pixels with an even coordinate are lines and points between them.
 
-    ``closed`` tells what lies in a rectangle; ``label`` numbers the connected parts of both kinds, -1 on the rim.
+    ``closed`` shows what lies in a rectangle; ``label`` numbers the connected parts of both kinds, -1 on the rim.
     """
 
     closed: NDArray[np.bool_]
@@ -279,7 +279,7 @@ def test_two_rectangles_that_touch_in_a_corner_part_the_window() -> None:
     assert found.rectangles == ((0, 2, 2, 4), (2, 4, 0, 2))
 
 
-@pytest.mark.parametrize("steps", [1, 8, MOST_STEPS])
+@pytest.mark.parametrize("steps", [1, 8, MAX_STEPS])
 def test_an_empty_cover_leaves_the_whole_window(steps: int) -> None:
     found = components(Cover(steps, ()))
     assert found.areas == (steps**2,)
@@ -301,7 +301,7 @@ def test_what_is_no_rectangle_of_the_window_is_refused(rectangle: tuple[int, ...
         components(Cover(4, (rectangle,)))  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("steps", [0, 2 * MOST_STEPS])
+@pytest.mark.parametrize("steps", [0, 2 * MAX_STEPS])
 def test_a_lattice_without_steps_or_too_fine_is_refused(steps: int) -> None:
     with pytest.raises(ValueError, match="steps"):
         components(Cover(steps, ()))
@@ -327,7 +327,7 @@ ends = st.one_of(
 
 
 @settings(max_examples=300)
-@given(st.lists(st.tuples(ends, ends, ends, ends), max_size=6), st.sampled_from((1, 64, 2**24, MOST_STEPS)))
+@given(st.lists(st.tuples(ends, ends, ends, ends), max_size=6), st.sampled_from((1, 64, 2**24, MAX_STEPS)))
 def test_boxes_are_rounded_outward_by_less_than_two_steps(boxes: list[tuple[float, ...]], steps: int) -> None:
     for a, b, c, d in boxes:
         low, high = (min(a, b), min(c, d)), (max(a, b), max(c, d))
@@ -377,7 +377,7 @@ def test_the_simplest_fraction_has_the_least_denominator(a: Fraction, b: Fractio
 def test_two_hundred_thousand_overlapping_rectangles() -> None:
     """A chain of overlapping squares along a circle, on the finest lattice: two components, whose areas are known."""
     number, half = 200_000, 2**23
-    steps, radius = MOST_STEPS, MOST_STEPS // 4
+    steps, radius = MAX_STEPS, MAX_STEPS // 4
     angles = [2 * math.pi * k / number for k in range(number)]
     centres = [(steps // 2 + round(radius * math.cos(a)), steps // 2 + round(radius * math.sin(a))) for a in angles]
     found = components(Cover(steps, tuple(sorted({(x - half, x + half, y - half, y + half) for x, y in centres}))))

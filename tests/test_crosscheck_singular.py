@@ -14,7 +14,7 @@ from ptmcad.text.plane import PlanePolynomial
 
 pytestmark = needs_singular
 
-DEAR = {"stiffness"}
+EXPENSIVE = {"stiffness"}
 """Slices whose elimination takes longer than all the others together."""
 
 SINGULAR_EVERYWHERE = {
@@ -30,7 +30,7 @@ Where a rod has no length its angle drops out of the energy; and on fig. 2, wher
 the energy depends on th1 + th2 alone. Along such a line each equilibrium lies on a whole curve of equilibria.
 """
 
-ALL = [pytest.param(name, marks=pytest.mark.slow) if name in DEAR else name for name in SHIPPED]
+ALL = [pytest.param(name, marks=pytest.mark.slow) if name in EXPENSIVE else name for name in SHIPPED]
 
 
 def curves(components: tuple[Component, ...], kind: Kind) -> set[PlanePolynomial]:

@@ -84,7 +84,7 @@ def test_the_variety_is_general() -> None:
     assert {c.polynomial.text(("k", "F")) for c in found.components} == {"F"}
     assert {c.kind for c in found.components} == {Kind.BOUNDARY}  # there the equation vanishes identically
     with pytest.raises(DimensionError):
-        discriminant_variety(chain(1), ratios(), window, keep=frozenset({"sign-curve"}))
+        discriminant_variety(chain(1), ratios(), window, without=frozenset({"sign-curve"}))
 
 
 def test_the_variety_of_three_angles() -> None:

@@ -20,7 +20,7 @@ from ptmcad.errors import ConfigError, GeometryError, PtmcadError
 from ptmcad.exact.engine import exact_map
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.domain import prove, prove_slice, unproved
-from ptmcad.question.positivity import READING, decide
+from ptmcad.question.positivity import READING_WORK, decide
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import axis, parse
 
@@ -164,9 +164,9 @@ def test_a_reader_does_not_do_the_work_of_an_engine(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(definite, "negative_or_zero", undecided)
     decide.cache_clear()
     slice = slice_from_mapping(record(L1=SLOW_TO_DECIDE))
-    assert set(asked) == {READING}
+    assert set(asked) == {READING_WORK}
     f = from_terms(slice.parameters["L1"].numerator)[0]
-    assert READING < work(f, 0) < definite.MAX_WORK
+    assert READING_WORK < work(f, 0) < definite.MAX_WORK
     decide.cache_clear()
 
 

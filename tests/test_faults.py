@@ -29,7 +29,7 @@ import ptmcad
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.process.commit import recover
-from ptmcad.process.handover import Receiver, Topic, connect, disconnect, tell
+from ptmcad.process.handover import Receiver, Topic, connect, disconnect, send
 from ptmcad.process.memory import bound_of, default_bound
 from ptmcad.process.output import check_writable, save_stopped, text_writer, write_files
 
@@ -40,7 +40,7 @@ PARTIAL = json.dumps({"status": "partial", "stage": "variety"})
 linux = pytest.mark.skipif(sys.platform != "linux", reason="counts on Linux's signals for pipes, or on its limits")
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="without fork the command line is not watched")
 
-# A command line whose engine hands over a partial result, tells the test that it is there, and then does `work`.
+# A command line whose engine hands over a partial result, informs the test that it is there, and then does `work`.
 STAND_IN = """
 import os, signal, sys, time, types
 signal.signal(signal.SIGINT, lambda *_: os._exit(130))
@@ -846,7 +846,7 @@ def test_messages_arrive_whole_or_not_at_all(messages: list[tuple[Topic, list[st
         connect(file.fileno())
         try:
             for topic, texts in messages:
-                tell(topic, *texts)
+                send(topic, *texts)
         finally:
             disconnect()
         file.seek(0)

@@ -179,8 +179,8 @@ def test_formulas_of_the_fold_agree_with_the_energy() -> None:
         m = slice_mechanism(graph, slice_of("1/5", **LOADED))
         l1, l2, l3 = m.lengths
         d = m.hessian
-        tape = record([[*m.equilibrium, m.dependent[0], m.turn, d.p11, d.p22, d.determinant, d.blown_up / l3,
-                        d.levelled / (l1 * l2 * l3)]])  # fmt: skip
+        tape = record([[*m.equilibrium, m.dependent[0], m.turn, d.p11, d.p22, d.determinant,
+                        d.determinant_times_l3 / l3, d.levelled / (l1 * l2 * l3)]])  # fmt: skip
         low, high = np.empty(len(tape)), np.empty(len(tape))
         assert run(program(tape), z, z, low, high, 0, len(tape))
         det = np.linalg.det(h) / z[1]

@@ -25,9 +25,9 @@ from test_faults import FIG2, IN_C, PARTIAL, ROOT, Running, classified, linux
 from ptmcad.cli import run
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError, PictureError
-from ptmcad.process.memory import ROOM, Bound, bounded, check_room, loading
+from ptmcad.process.memory import MIN_ROOM, Bound, bounded, check_room, loading
 from ptmcad.process.output import text_writer
-from ptmcad.process.shortage import COMPUTING, IDLE, LITTLE, LOADING, Limit, Usage, Waiting, usage_of
+from ptmcad.process.shortage import COMPUTING, IDLE_SECONDS, LOADING, LOW_MEMORY, Limit, Usage, Waiting, usage_of
 from ptmcad.process.streams import quiet_stream
 
 pytestmark = linux
@@ -96,10 +96,10 @@ def test_a_failure_with_memory_left_is_shown(tmp_path: Path) -> None:
 def test_a_bound_that_the_libraries_exceed_is_refused() -> None:
     usage = usage_of(os.getpid())
     assert usage is not None
-    with bounded(Bound(usage.data + 4 * ROOM, "100M")):
+    with bounded(Bound(usage.data + 4 * MIN_ROOM, "100M")):
         check_room("the engine")
     before = resource.getrlimit(resource.RLIMIT_DATA)
-    with bounded(Bound(usage.data + ROOM // 2, "100M")):
+    with bounded(Bound(usage.data + MIN_ROOM // 2, "100M")):
         with loading("the engine"):
             assert resource.getrlimit(resource.RLIMIT_DATA) == before
         assert resource.getrlimit(resource.RLIMIT_DATA) != before
@@ -108,7 +108,7 @@ def test_a_bound_that_the_libraries_exceed_is_refused() -> None:
         ) as caught:
             check_room("the engine")
     least = int(re.findall("at least ([0-9]+)M", str(caught.value))[0])
-    assert usage.data + ROOM <= least * MIB < usage.data + ROOM + 8 * MIB
+    assert usage.data + MIN_ROOM <= least * MIB < usage.data + MIN_ROOM + 8 * MIB
 
 
 def test_a_library_that_says_it_lacks_memory() -> None:
@@ -139,7 +139,7 @@ def usage(user: float = 0.0, kernel: float = 0.0, data: int = 90 * MIB, resident
         ([usage(0, 0), usage(1, LOADING)], 100, True, True),
         ([usage(0, 0), usage(LOADING, 0)], 100, True, True),
         ([usage(0, 0), usage(1, LOADING - 2)], 100, True, False),  # not for long enough
-        ([usage(0, 0), usage(1, LOADING)], 90 + LITTLE // MIB, True, False),  # with room left
+        ([usage(0, 0), usage(1, LOADING)], 90 + LOW_MEMORY // MIB, True, False),  # with room left
         ([usage(0, 0), usage(4, 0), usage(8, 0, resident=51 * MIB)], 100, True, False),  # it goes on loading
         ([usage(0, 0), usage(1, COMPUTING)], 100, False, True),
         ([usage(0, 0), usage(1000, 1)], 100, False, False),  # it computes, in the memory that it has
@@ -158,7 +158,11 @@ def test_a_library_that_sleeps_for_ever() -> None:
     for loads in (True, False):
         waiting = Waiting()
         limits = (Limit(400 * MIB, True, "400M"), Limit(310 * MIB, True, "310M"))
-        assert [waiting.look(usage(), limits, loads, now) for now in (0.0, IDLE - 1, IDLE)] == [False, False, loads]
+        assert [waiting.look(usage(), limits, loads, now) for now in (0.0, IDLE_SECONDS - 1, IDLE_SECONDS)] == [
+            False,
+            False,
+            loads,
+        ]
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""Elements of real number fields: what a prime tells and what an expression encloses, against residues over Q."""
+"""Elements of real number fields: what a prime shows and what an expression encloses, against residues over Q."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ PACKAGE = Path(__file__).resolve().parents[1] / "ptmcad"
 FILES = sorted(p for p in PACKAGE.rglob("*") if p.suffix in {".py", ".js"} and p.parent.name != "mechanism")
 OWN = {*ptm().parameters, *ptm().unknowns, *ptm().points}
 VAGUE = {"k", "l0"}
-"""Also short names of other things: as identifiers they tell nothing, nor does k in a text."""
+"""Also short names of other things: as identifiers they say nothing, nor does k in a text."""
 TEXT = re.compile(r"(?<![\w.])(?:" + "|".join(sorted(OWN - {"k"})) + r")(?!\w)")
 
 

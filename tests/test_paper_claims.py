@@ -492,7 +492,7 @@ def test_stable_and_tense_by_difference_quotients(design: tuple[str, ...]) -> No
 
 
 def test_real_roots_by_complex_roots() -> None:
-    """5.2-real: all complex roots, of which real ones are told by their enclosures; no root isolation on the line."""
+    """5.2-real: all complex roots, real ones recognised by their enclosures; no root isolation on the line."""
     from ptmcad.algebra.polynomials import coefficients_in
     from ptmcad.algebra.resultants import resultant
 
@@ -582,7 +582,7 @@ def test_a_third_line_that_is_none_is_noticed(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_six_equilibria_would_not_refute(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A witness with six equilibria decides nothing: a lower bound can not confirm the claim either."""
+    """A witness with six equilibria decides nothing: a lower bound cannot confirm the claim either."""
     monkeypatch.setattr(extensions, "WITNESSES", (extensions.AT_ELIMINATED,))
     assert extensions.at_most_six().verdict is Verdict.UNDECIDED
 

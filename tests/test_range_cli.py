@@ -69,7 +69,7 @@ def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         ([FIG4, "--along", "rho"], "--at: the other axis, L2, has no value: add L2=VALUE"),
         (["--along", "rho"], "--at: give the values"),
         ([FIG4, "--along", "rho", "--at", "rho=1"], "has no value"),
-        ([FIG4, "--along", "rho", "--at", "L2=1,rho=1"], "rho is an axis and can not be fixed too"),
+        ([FIG4, "--along", "rho", "--at", "L2=1,rho=1"], "rho is an axis and cannot be fixed too"),
         ([FIG4, "--along", "rho", "--at", "L2"], "is not NAME=VALUE"),
         ([FIG4, "--along", "rho", "--at", "L2=1,F=2"], "'F' is neither an axis nor a parameter"),
         ([FIG4, "--along", "rho", "--at", "L2=0"], "infinitely many"),

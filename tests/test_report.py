@@ -1,4 +1,4 @@
-"""The HTML report without a browser: what is in it, what can not get into it, and that it can be posed again."""
+"""The HTML report without a browser: what is in it, what cannot get into it, and that it can be posed again."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def test_the_data_can_not_close_its_element() -> None:
 
 
 def test_the_same_result_gives_the_same_bytes(shipped: Shipped) -> None:
-    """Times apart, which are told only when asked for."""
+    """Times apart, which are reported only when asked for."""
     result = shipped("fig2")
     slower = replace(result, timings={"variety": 12.34567, "total": 99.0})
     assert page(result, timings=False) == page(slower, timings=False)

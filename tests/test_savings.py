@@ -46,7 +46,7 @@ from ptmcad.exact.cad.stacks import heights_between
 from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import on_slice
 from ptmcad.question.config import slice_from_mapping
-from ptmcad.question.savings import ALL, SAVINGS, Engine, kept
+from ptmcad.question.savings import ALL, SAVINGS, Engine, switched_off
 from ptmcad.question.slice import Slice
 from ptmcad.studies.bench import ablation
 from ptmcad.studies.bench.sameness import difference
@@ -64,21 +64,21 @@ def record(name: str) -> Slice:
 # ------------------------------------------------------------------------------------------------------ the same answer
 
 
-@pytest.mark.parametrize("keep", [*NAMES, ALL])
+@pytest.mark.parametrize("without", [*NAMES, ALL])
 @pytest.mark.parametrize("name", ["fig2", "fig3"])
-def test_without_a_saving_the_map_says_the_same(name: str, keep: str, shipped: Shipped) -> None:
-    result = ptmcad.classify(record(name), keep=[keep])
+def test_without_a_saving_the_map_says_the_same(name: str, without: str, shipped: Shipped) -> None:
+    result = ptmcad.classify(record(name), without=[without])
     assert difference(shipped(name), result) == ""
-    switched_off = {step.saving for step in result.plan if step.saving and step.done}
-    assert switched_off <= (kept([keep], certified=False) if keep == ALL else {keep})
+    done = {step.saving for step in result.plan if step.saving and step.done}
+    assert done <= (switched_off([without], certified=False) if without == ALL else {without})
     assert RegionMap.from_json(result.to_json()) == result
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("keep", [*NAMES, ALL])
+@pytest.mark.parametrize("without", [*NAMES, ALL])
 @pytest.mark.parametrize("path", EXACT, ids=lambda p: p.stem)
-def test_without_a_saving_every_shipped_map_says_the_same(path: Path, keep: str, shipped: Shipped) -> None:
-    result = ptmcad.classify(ptmcad.load(path), keep=[keep])
+def test_without_a_saving_every_shipped_map_says_the_same(path: Path, without: str, shipped: Shipped) -> None:
+    result = ptmcad.classify(ptmcad.load(path), without=[without])
     assert difference(shipped(path.stem), result) == ""
     assert ptmcad.verify(result).ok
 
@@ -87,7 +87,7 @@ def test_without_a_saving_every_shipped_map_says_the_same(path: Path, keep: str,
 @pytest.mark.parametrize("path", EXACT, ids=lambda p: p.stem)
 def test_the_first_axis_serves_as_well_when_the_axes_are_exchanged(path: Path) -> None:
     slice = ablation.exchanged(ptmcad.load(path))
-    assert difference(ptmcad.classify(slice), ptmcad.classify(slice, keep=["axis-order"])) == ""
+    assert difference(ptmcad.classify(slice), ptmcad.classify(slice, without=["axis-order"])) == ""
 
 
 SMALL = st.fractions(Fraction(1, 4), Fraction(2), max_denominator=6)
@@ -117,9 +117,9 @@ def both_ways(slice: Slice) -> None:
         result = ptmcad.classify(slice)
     except HypothesisError as refused:
         with pytest.raises(type(refused)):
-            ptmcad.classify(slice, keep=ALL)
+            ptmcad.classify(slice, without=ALL)
         return
-    assert difference(result, ptmcad.classify(slice, keep=ALL)) == ""
+    assert difference(result, ptmcad.classify(slice, without=ALL)) == ""
 
 
 @given(slices())
@@ -204,7 +204,7 @@ def test_multiplicity_of_a_factor() -> None:
 def test_real_curves_over_which_complex_solutions_are_lost_are_no_walls(number: int) -> None:
     slice = slice_from_mapping(drawn(number).record)
     result = ptmcad.classify(slice)
-    plain = ptmcad.classify(slice, keep=["infinity"])
+    plain = ptmcad.classify(slice, without=["infinity"])
     (harmless,) = (c for c in result.components if c.left_out == HARMLESS)
     assert next(c for c in plain.components if c.polynomial == harmless.polynomial).left_out == ""
     assert len(plain.cells) > len(result.cells)
@@ -233,7 +233,7 @@ def test_every_saving_is_in_the_plan_once(shipped: Shipped) -> None:
     made = [step.saving for step in result.plan if step.saving and not step.done]
     assert set(made) == {*NAMES, "imports"}
     assert not [step for step in result.plan if step.saving and step.done]
-    plain = ptmcad.classify(record("fig3"), keep=ALL)
+    plain = ptmcad.classify(record("fig3"), without=ALL)
     assert {step.saving for step in plain.plan if step.done and step.saving} == {*NAMES, "imports"}
     assert not [step for step in plain.plan if step.saving and not step.done]
     assert {c.left_out for c in plain.components} == {""}
@@ -257,7 +257,7 @@ def test_areas_that_nobody_asks_for(shipped: Shipped) -> None:
 
 def test_verify_checks_what_the_plan_says_was_kept(shipped: Shipped) -> None:
     honest = shipped("fig2")
-    plain = ptmcad.classify(record("fig2"), keep=ALL)
+    plain = ptmcad.classify(record("fig2"), without=ALL)
     assert ptmcad.verify(plain).ok
     for one, other in ((honest, plain), (plain, honest)):
         report = ptmcad.verify(replace(one, plan=other.plan))
@@ -279,21 +279,41 @@ def test_verify_checks_what_the_plan_says_was_kept(shipped: Shipped) -> None:
 )
 def test_names_that_no_saving_has_are_refused(names: tuple[str, ...] | str, part: str) -> None:
     with pytest.raises(ConfigError) as caught:
-        ptmcad.classify(record("fig2"), keep=names)
-    assert caught.value.key == "keep"
+        ptmcad.classify(record("fig2"), without=names)
+    assert caught.value.key == "without"
     assert part in caught.value.message
+
+
+def test_the_older_name_is_taken(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.warns(DeprecationWarning, match="without"):
+        older = ptmcad.classify(record("fig2"), areas=False, keep=["axis-order"])
+    assert older.plan == ptmcad.classify(record("fig2"), areas=False, without=["axis-order"]).plan
+    with pytest.raises(ConfigError, match="give one of them"):
+        ptmcad.classify(record("fig2"), without=["axis-order"], keep=["sign-curve"])
+
+    fig2 = str(ROOT / "configs" / "fig2.yaml")
+    command = ["classify", fig2, "--no-areas", "--format", "json", "--out", str(tmp_path), "--explain"]
+    assert run([*command, "--keep", "axis-order", "--without", "sign-curve"]) == 0
+    shown = capsys.readouterr().out
+    assert "(the first axis, as asked for)" in shown
+    assert "computed: projection of H11 = 0 (kept, as asked for)" in shown
+    assert run(["classify", "--help"]) == 0
+    page = capsys.readouterr().out
+    assert "--without NAME" in page and "--keep" not in page
 
 
 def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     fig2 = str(ROOT / "configs" / "fig2.yaml")
     common = ["classify", fig2, "--format", "json", "--out", str(tmp_path)]
+    assert run([*common, "--without", "infinty"]) == 2
+    assert "--without: 'infinty' is no saving; did you mean 'infinity'?" in capsys.readouterr().err
+    assert run([*common, "--without", "unloaded-factor"]) == 2
+    assert "saving of the certified engine" in capsys.readouterr().err
     assert run([*common, "--keep", "infinty"]) == 2
     assert "--keep: 'infinty' is no saving; did you mean 'infinity'?" in capsys.readouterr().err
-    assert run([*common, "--keep", "unloaded-factor"]) == 2
-    assert "saving of the certified engine" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
-    assert run([*common, "--explain", "--keep", "axis-order", "--keep", "sign-curve"]) == 0
+    assert run([*common, "--explain", "--without", "axis-order", "--without", "sign-curve"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "plan of fig2, exact engine, before it starts:"
     at = lines.index("decided on the way:")
@@ -313,9 +333,11 @@ def test_curves_of_the_certified_engine() -> None:
     pytest.importorskip("numba")
     from ptmcad.certified.curves import curves
 
-    def found(slice: Slice, *keep: str) -> dict[str, tuple[int, ...]]:
+    def found(slice: Slice, *without: str) -> dict[str, tuple[int, ...]]:
         """Names of the curves, with the number of formulas beside the equations that vanish."""
-        return {c.name: tuple(len(v) for v in c.system.vanishing) for c in curves(slice, slice.count, frozenset(keep))}
+        return {
+            c.name: tuple(len(v) for v in c.system.vanishing) for c in curves(slice, slice.count, frozenset(without))
+        }
 
     slice = record("free02")
     assert list(found(slice)) == ["fold of a stable equilibrium", "fold of a stable equilibrium, spring 3 short"]
@@ -330,17 +352,17 @@ def test_curves_of_the_certified_engine() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("keep", [*CERTIFIED, ALL])
-def test_certified_maps_without_a_saving_do_not_contradict(keep: str) -> None:
+@pytest.mark.parametrize("without", [*CERTIFIED, ALL])
+def test_certified_maps_without_a_saving_do_not_contradict(without: str) -> None:
     """A window that is easy, so that every variant decides most of it."""
     pytest.importorskip("numba")
     slice = ptmcad.slice_from_options(
         slice="rho,L2", ranges=["rho=1/2:1", "L2=3/2:2"], sets=["l0=1/5", "F3=-10", "F4=-10"]
     )
     result = ptmcad.classify(slice, tolerance="1/10", jobs=1)
-    plain = ptmcad.classify(slice, tolerance="1/2", jobs=1, keep=keep, timeout=200)
+    plain = ptmcad.classify(slice, tolerance="1/2", jobs=1, without=without, timeout=200)
     assert difference(result, plain) == ""
-    assert {step.saving for step in plain.plan if step.saving and step.done} <= kept([keep], certified=True)
+    assert {step.saving for step in plain.plan if step.saving and step.done} <= switched_off([without], certified=True)
     assert ptmcad.verify(plain).ok
 
 

@@ -331,7 +331,7 @@ def test_a_child_brings_its_figures_back() -> None:
     assert found[0].seconds >= sum(stages.values()) > 0
 
 
-@pytest.mark.skipif(not measurement._HIGH_WATER.exists(), reason="only Linux tells the peak of a forked child alone")
+@pytest.mark.skipif(not measurement._HIGH_WATER.exists(), reason="only Linux shows the peak of a forked child alone")
 def test_memory_is_what_the_task_takes_and_not_what_its_parent_has() -> None:
     ballast = bytes(80 << 20) + bytes(1)  # the sum is written, which makes its pages resident
 
@@ -530,5 +530,5 @@ def test_the_page_of_figures_is_made_from_the_stored_runs() -> None:
     for family in report["families"]:
         assert not family["reasons"]
         seen = {run.abscissa(family["against"], r) for r in family["runs"]}
-        for suffix in command.PICTURES if len(seen) >= command.FEWEST else ():
+        for suffix in command.PICTURES if len(seen) >= command.MIN_PICTURE_SIZES else ():
             assert STORED.with_name(f"scaling-{family['name']}.{suffix}").exists()

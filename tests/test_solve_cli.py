@@ -89,8 +89,8 @@ def test_special_points_are_answers(at: str, tmp_path: Path, capsys: pytest.Capt
         (["--at", "rho=1", "--digits", "0"], "'--digits'"),
         (["--at", "rho=1", "--digits", "1001"], "'--digits'"),
         (["--at", "rho=1", "--format", "gif"], "gif is not among table, json, png, svg, pdf"),
-        (["--at", "rho=1", "--format", "json", "--name", "../x"], "error: --name: '../x' can not name a file"),
-        (["--at", "rho=1", "--format", "json", "--name", "COM1"], "error: --name: 'COM1' can not name a file: Windows"),
+        (["--at", "rho=1", "--format", "json", "--name", "../x"], "error: --name: '../x' cannot name a file"),
+        (["--at", "rho=1", "--format", "json", "--name", "COM1"], "error: --name: 'COM1' cannot name a file: Windows"),
         (["missing.yaml", "--at", "rho=1"], "missing.yaml"),
         ([FIG4, "--at", "rho=1"], "error: --at: L2 is an axis of "),
         ([FIG3, "--at", "rho=1,F=L2"], "error: --at F: the value of this axis is a number"),
@@ -120,7 +120,7 @@ def test_an_unwritable_folder_is_told_before_anything_is_computed(
     (tmp_path / "file").write_text("here already")
     assert run(["solve", "--at", "rho=1", "--format", "table,json", "--out", str(tmp_path / "file")]) == 2
     captured = capsys.readouterr()
-    assert "can not be made" in captured.err
+    assert "cannot be made" in captured.err
     assert captured.out == ""
 
 

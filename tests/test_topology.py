@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
-from ptmcad.exact.cad.adjacency import Passage, cross
+from ptmcad.exact.cad.adjacency import Separator, cross
 from ptmcad.exact.cad.area import region_areas
 from ptmcad.exact.cad.curves import Curve, curve
 from ptmcad.exact.cad.projection import project
@@ -36,7 +36,7 @@ class Decomposition:
 
     curves: list[Curve]
     stacks: tuple[StackData, ...]
-    crossings: list[tuple[Passage, ...]]
+    crossings: list[tuple[Separator, ...]]
     pieces: list[tuple[int, ...]]
     base: tuple[fmpq, fmpq]
     fibre: tuple[fmpq, fmpq]
@@ -55,7 +55,7 @@ def decompose(polynomials: Sequence[fmpz_mpoly], window: Window, base: int) -> D
     lines = [coefficients_in(f, 1 - base)[0] for f in factors if f.degrees()[1 - base] == 0]
     projection = project(curves, lines, inner, outer)
     stacks = lift(curves, projection.abscissae, inner, outer)
-    crossings = [cross(curves, a, b, outer).passages for a, b in pairwise(stacks)]
+    crossings = [cross(curves, a, b, outer).separators for a, b in pairwise(stacks)]
     starts = [0]
     for stack in stacks:
         assert len(stack.heights) == len(stack.walls) + 1
@@ -66,7 +66,7 @@ def decompose(polynomials: Sequence[fmpz_mpoly], window: Window, base: int) -> D
         assert end.root is not None
         closed = any(same_up_to_sign(line, end.root.polynomial) for line in lines)
         for p in found:
-            check_passage(curves, p, stacks[s], stacks[s + 1])
+            check_separator(curves, p, stacks[s], stacks[s + 1])
             if not closed:
                 links.append(Link(starts[s] + p.left, starts[s + 1] + p.right, None))
     merged = merge([0] * starts[-1], links)
@@ -74,7 +74,7 @@ def decompose(polynomials: Sequence[fmpz_mpoly], window: Window, base: int) -> D
     return Decomposition(curves, stacks, crossings, pieces, inner, outer)
 
 
-def check_passage(curves: list[Curve], p: Passage, left: StackData, right: StackData) -> None:
+def check_separator(curves: list[Curve], p: Separator, left: StackData, right: StackData) -> None:
     """The witness is a segment that crosses the abscissa and meets no curve, at the levels that it claims."""
     end = left.right
     assert end.root is not None

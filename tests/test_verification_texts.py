@@ -242,10 +242,10 @@ FALSE = [
     ("$", "*(L1 + L2)^9*(L1 + L2)^9", "differs from the mechanism"),
     ("$", " + (k1 + k2 + k3 + F3 + F4)^6*(L1 + L2 + rho + F3x + F4x)^6", "a product of more than"),
     ("$", " + rho**2", "not a formula in the names"),
-    ("$", " + (", "can not be read"),
-    ("$", " + " + "(" * 2000 + "1" + ")" * 2000, "can not be read"),
-    ("$", " + " + "-" * 4000 + "rho", "can not be read|nested too deeply"),
-    ("$", " + rho" * 700, "differs from the mechanism's|nested too deeply|can not be read"),
+    ("$", " + (", "cannot be read"),
+    ("$", " + " + "(" * 2000 + "1" + ")" * 2000, "cannot be read"),
+    ("$", " + " + "-" * 4000 + "rho", "cannot be read|nested too deeply"),
+    ("$", " + rho" * 700, "differs from the mechanism's|nested too deeply|cannot be read"),
 ]
 
 

@@ -49,7 +49,7 @@ long_integers = st.builds(
     st.integers(),
     st.sampled_from([0, 3999, 4300, 9001]),
     st.integers(),
-)  # hypothesis itself can not print longer ones
+)  # hypothesis itself cannot print longer ones
 fractions = st.fractions() | st.builds(Fraction, long_integers, st.sampled_from([1, 7, 10**12, 10**4500 + 1]))
 
 

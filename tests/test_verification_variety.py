@@ -126,7 +126,7 @@ def test_exponents_are_those_of_the_construction(name: str, shipped: Shipped) ->
 
 
 def test_points_on_components_are_drawn_again(shipped: Shipped) -> None:
-    """Of the first point and all others with its abscissa nothing can be told."""
+    """Of the first point and all others with its abscissa nothing can be decided."""
     for bits in (variety.BITS, variety.FAR_BITS):
         x = Random(f"{bits} 0").getrandbits(bits) - 2 ** (bits - 1)
         components = (Component(PlanePolynomial.of(((1, 0, 1), (0, 0, -x))), Kind.CRITICAL),)

@@ -162,4 +162,4 @@ def _cell(text: str) -> str:
 def _check(schema: Schema) -> None:
     unknown = set(schema) - _KNOWN
     if unknown:
-        raise ValueError(f"the tables can not show {', '.join(sorted(unknown))}")
+        raise ValueError(f"the tables cannot show {', '.join(sorted(unknown))}")

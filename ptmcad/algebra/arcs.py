@@ -5,7 +5,7 @@ Guarantee: an enclosure that is returned contains the integral of the branch tha
 Over a panel without turning points a branch is a continuous graph. If it runs between z - d and z + d at one place of
 the panel, and the curve meets neither of these two arcs over the panel, then it runs between them everywhere. Nothing
 is asked of the other branches: many may lie in the same tube, at any distance from each other, where a Taylor series
-of one of them would need hundreds of bits to tell them apart.
+of one of them would need hundreds of bits to distinguish them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ptmcad.algebra.window import Interval
 NODES = (fmpq(-7, 8), fmpq(0), fmpq(7, 8))
 """Where the arc meets the branch, on the panel as [-1, 1]."""
 PROBE = fmpq(-1, 2)
-"""Where its distance from the branch is measured, which tells how wide the tube has to be about."""
+"""Where its distance from the branch is measured, which shows how wide the tube has to be about."""
 BITS = 7
 """The branch is isolated this much finer than the height is wanted."""
 TUBES = (2, 8, 64)

@@ -22,11 +22,11 @@ from flint import arb, arb_poly, arb_series, ctx, fmpq, fmpz_poly
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.algebra.window import Interval
 
-ENOUGH = 24
+DERIVATIVE_BITS = 24
 """Bits of the curve's derivative at the panel's middle that have to be right for the rest to make sense."""
-BETWEEN = 40
+SEPARATION_BITS = 40
 """Bits by which rounding has to be smaller than the distance to the next branch at the panel's middle."""
-ALONG = 10
+PANEL_SEPARATION_BITS = 10
 """The same along the panel."""
 
 
@@ -58,10 +58,10 @@ def branch_integral(
     root = refine(at_middle, (fibre[1] - fibre[0]) / 2 ** (ctx.prec // 3))
     origin = root.low
     local = local_coefficients(in_v, middle, radius, origin)
-    if local[1][0].rel_accuracy_bits() < ENOUGH:
+    if local[1][0].rel_accuracy_bits() < DERIVATIVE_BITS:
         raise PrecisionTooLow  # the root is simple, so the derivative is not zero
     steepness = abs(local[1][0])
-    if len(local) > 2 and not _noise(local[0]) * _norm(local[2]) * 2**BETWEEN < steepness * steepness:
+    if len(local) > 2 and not _noise(local[0]) * _norm(local[2]) * 2**SEPARATION_BITS < steepness * steepness:
         raise PrecisionTooLow  # rounding blurs the branch nearly as far as the next one
     series = _series(local, order)
     last, first = abs(series[order]).upper(), max((abs(c).upper() for c in series.coeffs()[1:]), default=arb(0))
@@ -69,7 +69,10 @@ def branch_integral(
         return None  # the series does not converge on this panel; trying on would only take time
     residual, slope = _along(local, series)
     # the series solves the equation to its order, so but for rounding the residual starts there
-    if len(local) > 2 and not _norm(residual.truncate(order + 1)) * _norm(local[2]) * 2**ALONG < steepness * steepness:
+    if (
+        len(local) > 2
+        and not _norm(residual.truncate(order + 1)) * _norm(local[2]) * 2**PANEL_SEPARATION_BITS < steepness * steepness
+    ):
         raise PrecisionTooLow
     scale = _inverse(slope, order)
     error = _norm(scale * residual).upper()

@@ -1,7 +1,7 @@
 """Whether a polynomial is negative, or zero, somewhere in an open rectangle: decided, not sampled.
 
 Guarantee: `PROVED` and a `Found` point are theorems. `OPEN` is returned only where the work would be more than was
-allowed, `Near` only where a zero over an irrational abscissa can not be told from an end of the fibre to `BITS` bits.
+allowed, `Near` only where a zero over an irrational abscissa cannot be separated from an end of the fibre.
 
 Why this decides. Write p as a constant times powers of different irreducible factors over Q. An irreducible f that
 changes sign does so across a curve; two factors meet in finitely many points; so p changes sign in the rectangle if and
@@ -54,7 +54,7 @@ MAX_WORK = 2 * 10**10
 BITS = 400
 """To which the distance of a polynomial from zero over a singular abscissa is looked at."""
 _HALVINGS, _SHOWN = 60, 40
-"""Parts of 2^-60 of a fibre are not halved any more; zeros are told to 2^-40 of it."""
+"""Parts of 2^-60 of a fibre are not halved any more; zeros are located to 2^-40 of it."""
 
 Point = tuple[fmpq, fmpq]
 

@@ -143,25 +143,25 @@ def univariate_representation(algebra: Fibre) -> UnivariateRepresentation | None
         for matrix, weight in zip(algebra.multiplication, weights, strict=True):
             form = form + matrix * fmpq(weight)
         # in integers over common denominators: reducing every fraction on the way would take most of the time
-        step, below = form.numer_denom()
+        step, denominator = form.numer_denom()
         characteristic = step.charpoly()
-        stretched = fmpz_poly([c * below**i for i, c in enumerate(characteristic.coeffs())])
+        stretched = fmpz_poly([c * denominator**i for i, c in enumerate(characteristic.coeffs())])
         minimal = stretched // stretched.content()
         if minimal.gcd(minimal.derivative()).degree() > 0:
             continue
-        row, below_row = _basis_traces(algebra)
+        row, row_denominator = _basis_traces(algebra)
         rows = [row]
         for _ in range(size - 1):
             rows.append(rows[-1] * step)
-        columns, below_columns = fmpq_mat(
+        columns, column_denominator = fmpq_mat(
             size, count, [m[i, 0] for i in range(size) for m in algebra.multiplication]
         ).numer_denom()
         traces = fmpz_mat(size, size, [x for r in rows for x in r.entries()]) * columns
         # rows of coefficients: the quotients of the characteristic polynomial by T, T^2, and so on
         hankel = fmpz_mat(size, size, [characteristic[i + j + 1] for i in range(size) for j in range(size)])
         totals = hankel * traces
-        scale = fmpq(1, below_row * below_columns)
-        powers = [below**i for i in range(size)]
+        scale = fmpq(1, row_denominator * column_denominator)
+        powers = [denominator**i for i in range(size)]
         coordinates = tuple(
             fmpq_poly(fmpz_poly([totals[i, k] * powers[i] for i in range(size)])) * scale for k in range(count)
         )
@@ -180,8 +180,8 @@ def _basis_traces(algebra: Fibre) -> tuple[fmpz_mat, fmpz]:
         step = algebra.multiplication[k]
         products[monomial] = products[rest] * step if any(rest) else step
     traces = [sum((m[i, i] for i in range(size)), fmpq(0)) for m in (products[b] for b in algebra.basis)]
-    row, below = fmpq_mat(1, size, traces).numer_denom()
-    return row, below
+    row, denominator = fmpq_mat(1, size, traces).numer_denom()
+    return row, denominator
 
 
 def coordinates_at(representation: UnivariateRepresentation, value: arb) -> list[arb] | None:

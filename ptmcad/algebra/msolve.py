@@ -83,6 +83,6 @@ def parsed(answer: str, variables: int) -> tuple[Box, ...]:
 
 
 def _number(text: str) -> Fraction:
-    above, _, below = text.partition("/")
-    base, _, exponent = below.strip().partition("^")
-    return Fraction(int(above), int(base or 1) ** int(exponent or 1))
+    numerator, _, denominator = text.partition("/")
+    base, _, exponent = denominator.strip().partition("^")
+    return Fraction(int(numerator), int(base or 1) ** int(exponent or 1))

@@ -49,10 +49,10 @@ class Modulus:
 
     def image_of(self, p: fmpq_poly) -> nmod_poly | None:
         """The residue of a polynomial modulo the prime, None where a denominator is a multiple of it."""
-        below = int(p.denom()) % PRIME
-        if self.image is None or below == 0:
+        denominator = int(p.denom()) % PRIME
+        if self.image is None or denominator == 0:
             return None
-        return nmod_poly(p.numer() * pow(below, -1, PRIME), PRIME) % self.image
+        return nmod_poly(p.numer() * pow(denominator, -1, PRIME), PRIME) % self.image
 
 
 class Residue:
@@ -267,10 +267,10 @@ def _factors(parts: Sequence[Residue], monomial: tuple[int, ...]) -> Iterator[Re
 
 def _modulo_prime(value: fmpq) -> int | None:
     """A rational number modulo `PRIME`, None when its denominator is a multiple of that."""
-    below = int(value.q) % PRIME
-    if below == 0:
+    denominator = int(value.q) % PRIME
+    if denominator == 0:
         return None
-    return int(value.p) % PRIME if below == 1 else int(value.p) * pow(below, -1, PRIME) % PRIME
+    return int(value.p) % PRIME if denominator == 1 else int(value.p) * pow(denominator, -1, PRIME) % PRIME
 
 
 def _inverse(p: fmpq_poly, modulus: Modulus) -> fmpq_poly:

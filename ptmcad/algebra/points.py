@@ -103,20 +103,23 @@ def _trace_polynomials(algebra: Fibre, matrix: fmpq_mat, radical: fmpz_poly) -> 
     the form) over the other points; the value of v at a point is the quotient of that by the first of them."""
     size, degree = algebra.dimension, radical.degree()
     # in integers over common denominators: reducing every fraction on the way would take most of the time
-    traces, below_traces = fmpq_mat(
+    traces, trace_denominator = fmpq_mat(
         1, size, [_trace(evaluate(algebra, {m: fmpq(1)})) for m in algebra.basis]
     ).numer_denom()
-    step, below_step = matrix.numer_denom()
+    step, step_denominator = matrix.numer_denom()
     one = fmpq_mat(size, 1, [fmpq(int(i == 0)) for i in range(size)])
     tails = [fmpz_poly([radical[degree - k + i] for i in range(k + 1)]) for k in range(degree)]
     result = []
     for column in (one, *(m * one for m in algebra.multiplication)):
-        vector, below = column.numer_denom()
-        total, factor = fmpz_poly([0]), below_step ** (degree - 1)
+        vector, denominator = column.numer_denom()
+        total, factor = fmpz_poly([0]), step_denominator ** (degree - 1)
         for j in range(degree):
             total += tails[degree - 1 - j] * ((traces * vector)[0, 0] * factor)
-            vector, factor = step * vector, factor // below_step
-        result.append(fmpq_poly(total) / fmpq(radical[degree] * below_traces * below * below_step ** (degree - 1)))
+            vector, factor = step * vector, factor // step_denominator
+        result.append(
+            fmpq_poly(total)
+            / fmpq(radical[degree] * trace_denominator * denominator * step_denominator ** (degree - 1))
+        )
     return result
 
 
@@ -127,8 +130,8 @@ def _trace(matrix: fmpq_mat) -> fmpq:
 def _coordinates(field: RealField, numerators: Sequence[fmpq_poly]) -> list[Residue]:
     """The unknowns at the points of one factor: quotients of the trace polynomials by the first of them."""
     first, *others = map(field.element, numerators)
-    below = first.inverse()  # it vanishes at no point of the fibre
-    return [(other * below).part for other in others]
+    inverse = first.inverse()  # it vanishes at no point of the fibre
+    return [(other * inverse).part for other in others]
 
 
 def _owns(factor: fmpz_poly, root: RealRoot) -> bool:

@@ -27,10 +27,10 @@ Ratio = tuple[fmpz_mpoly, fmpz_mpoly]
 """Numerator and nonzero denominator."""
 
 
-def ratio(above: fmpz_mpoly, below: fmpz_mpoly) -> Ratio:
-    """above/below in lowest terms."""
-    common = above.gcd(below)
-    return (above, below) if common.is_one() else (above / common, below / common)
+def ratio(numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> Ratio:
+    """numerator/denominator in lowest terms."""
+    common = numerator.gcd(denominator)
+    return (numerator, denominator) if common.is_one() else (numerator / common, denominator / common)
 
 
 def add_ratios(left: Ratio, right: Ratio) -> Ratio:
@@ -90,9 +90,9 @@ def from_terms(terms: Iterable[tuple[int, int, Fraction]]) -> tuple[fmpz_mpoly, 
 
 def from_expression(expression: Expression) -> Ratio:
     """An expression in the axes as a ratio of polynomials."""
-    above, scale_above = from_terms(expression.numerator)
-    below, scale_below = from_terms(expression.denominator)
-    return ratio(above * scale_below, below * scale_above)
+    numerator, numerator_scale = from_terms(expression.numerator)
+    denominator, denominator_scale = from_terms(expression.denominator)
+    return ratio(numerator * denominator_scale, denominator * numerator_scale)
 
 
 def to_plane(p: fmpz_mpoly) -> PlanePolynomial:

@@ -138,7 +138,7 @@ def element(algebra: QuotientAlgebra, p: UnknownPolynomial) -> Vector:
 
 def norm(algebra: QuotientAlgebra, p: UnknownPolynomial) -> Ratio:
     """The product of p over all complex solutions, as a rational function of the axes."""
-    return determinant([[ratio(c, below) for c in row] for row, below in multiples(algebra, p)])
+    return determinant([[ratio(c, denominator) for c in row] for row, denominator in multiples(algebra, p)])
 
 
 def multiples(algebra: QuotientAlgebra, p: UnknownPolynomial) -> tuple[Vector, ...]:
@@ -177,13 +177,13 @@ def bounded_away_from_zero(rows: Sequence[Vector], product: Ratio, factor: Coeff
     polynomial times a common denominator keeps a constant coefficient that does not vanish on the curve, and its roots
     stay away from 0 wherever that coefficient does.
     """
-    orders = [[_order(c, below, factor) for c in row] for row, below in rows]
+    orders = [[_order(c, denominator, factor) for c in row] for row, denominator in rows]
     return _least_assignment(orders) == _order(product[0], product[1], factor)
 
 
-def _order(above: Coefficient, below: Coefficient, factor: Coefficient) -> int | None:
+def _order(numerator: Coefficient, denominator: Coefficient, factor: Coefficient) -> int | None:
     """The order of the zero of a fraction along a curve, negative for a pole; None for the fraction 0."""
-    return None if above.is_zero() else multiplicity(above, factor) - multiplicity(below, factor)
+    return None if numerator.is_zero() else multiplicity(numerator, factor) - multiplicity(denominator, factor)
 
 
 def _least_assignment(orders: Sequence[Sequence[int | None]]) -> int:
@@ -275,8 +275,8 @@ def _trace_denominator(algebra: QuotientAlgebra, k: int, point: tuple[int, int])
     size = algebra.dimension
     entries = []
     for m in algebra.basis:
-        numerators, below = algebra.table[shifted(m, k)]
-        scale = below(*point)
+        numerators, denominator = algebra.table[shifted(m, k)]
+        scale = denominator(*point)
         entries += [fmpq(c(*point), scale) for c in numerators]
     matrix = fmpq_mat(size, size, entries)
     power, common = matrix, 1
@@ -307,9 +307,9 @@ def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:
         entries = []
         for numerators, denominator in row:
             total = (ZERO, ONE)
-            for c, (above, below) in zip(numerators, traces, strict=True):
+            for c, (trace, trace_denominator) in zip(numerators, traces, strict=True):
                 if not c.is_zero():
-                    total = add_ratios(total, ratio(c * above, denominator * below))
+                    total = add_ratios(total, ratio(c * trace, denominator * trace_denominator))
             entries.append(total)
         matrix.append(entries)
     return matrix
@@ -317,19 +317,19 @@ def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:
 
 def determinant(rows: list[list[Ratio]]) -> Ratio:
     """The determinant of a square matrix over Q(x, y): rows and columns made primitive, then Bareiss elimination."""
-    below = ONE
+    denominator = ONE
     matrix: list[list[Coefficient]] = []
     for row in rows:
         scale = lcm(d for _, d in row)
         matrix.append([n * (scale / d) for n, d in row])
-        below = below * scale
-    above = ONE
+        denominator = denominator * scale
+    numerator = ONE
     for j in range(len(matrix)):
         common = common_factor(line[j] for line in matrix)
         if common.is_zero():
             return ZERO, ONE
         if not common.is_one():
-            above = above * common
+            numerator = numerator * common
             for line in matrix:
                 line[j] = line[j] / common
     for i, line in enumerate(matrix):
@@ -337,9 +337,9 @@ def determinant(rows: list[list[Ratio]]) -> Ratio:
         if common.is_zero():
             return ZERO, ONE
         if not common.is_one():
-            above = above * common
+            numerator = numerator * common
             matrix[i] = [c / common for c in line]
-    return ratio(above * _bareiss(matrix), below)
+    return ratio(numerator * _bareiss(matrix), denominator)
 
 
 def _bareiss(matrix: list[list[Coefficient]]) -> Coefficient:

@@ -4,7 +4,7 @@ Guarantee: exact. Isolation finds every root in the open interval; isolating int
 and contain one root each, an interval of length zero being the root itself.
 
 Intervals are bisected; where several bisections in a row have not parted some roots, Newton's method is run on to where
-their cluster may be, Taylor coefficients tell how long it may be, and Descartes' rule whether it is. Where the roots
+their cluster may be, Taylor coefficients show how long it may be, and Descartes' rule whether it is. Where the roots
 keep to one end of the interval, but too near to others for that, steps towards the end get longer while they are right.
 So the steps that a cluster takes grow with the logarithm of its number of leading digits, not with that number.
 
@@ -20,17 +20,17 @@ from dataclasses import dataclass
 from flint import arb, arb_poly, ctx, fmpq, fmpz, fmpz_poly
 
 _SHIFT = fmpz_poly([1, 1])
-_TOGETHER = 3
+_CLUSTER_CUTS = 3
 """Cuts without a change of Descartes' bound after which the roots are taken for a cluster."""
-_COARSE = 8
+_CLUSTER_BITS = 8
 """Bits with which a cluster is looked for at first."""
-_ROOM = 4
+_CLUSTER_MARGIN = 4
 """How much longer than the estimate an interval around a cluster is: Descartes' rule sees complex roots in a lens."""
-_SHORT = fmpq(1, 16)
+_MAX_CLUSTER_RADIUS = fmpq(1, 16)
 """Half the length up to which such an interval is better than bisection."""
-_LONG = 1000
+_LONG_BITS = 1000
 """Bits of coefficients from which on values are not computed exactly where a ball will do."""
-_SLOWEST = 2
+_MIN_SPEED = 2
 """The first step towards an end is to the part 2^-4 of the interval; each further one is twice as many bits long."""
 
 
@@ -120,7 +120,7 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
     width = high - low
     found: list[tuple[fmpq, fmpq]] = []
     squarefree = False
-    stack = [_Part(_on_unit_interval(p, low, high), fmpq(0), fmpq(1), -1, 0, 0, _SLOWEST)]
+    stack = [_Part(_on_unit_interval(p, low, high), fmpq(0), fmpq(1), -1, 0, 0, _MIN_SPEED)]
     while stack:
         part = stack.pop()
         q, left, size = part.polynomial, part.left, part.width
@@ -132,19 +132,21 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
         if bound == 1:
             found.append((low + width * left, low + width * (left + size)))
             continue
-        unchanged, run, speed = (part.unchanged + 1, part.run, part.speed) if bound == part.bound else (0, 0, _SLOWEST)
-        if unchanged >= _TOGETHER:
+        unchanged, run, speed = (
+            (part.unchanged + 1, part.run, part.speed) if bound == part.bound else (0, 0, _MIN_SPEED)
+        )
+        if unchanged >= _CLUSTER_CUTS:
             if not squarefree and p.gcd(p.derivative()).degree() > 0:
                 raise ValueError(f"a polynomial of degree {p.degree()} is not squarefree")
             squarefree = True
             narrow = _cluster(q, bound)
             if narrow is not None:
                 unchanged, run = 0, 0
-            elif abs(run) >= _TOGETHER:
+            elif abs(run) >= _CLUSTER_CUTS:
                 narrow = _edge(q, bound, run > 0, 2**speed)
                 if narrow is not None:
                     speed += 1
-                elif speed > _SLOWEST:
+                elif speed > _MIN_SPEED:
                     speed -= 1
                 else:
                     run = 0
@@ -159,7 +161,7 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
             found.append((low + width * middle, low + width * middle))
         stack.append(_Part(half, left, piece, bound, unchanged, min(run, 0) - 1, speed))
         stack.append(_Part(other, middle, piece, bound, unchanged, max(run, 0) + 1, speed))
-    return tuple(_tidy(p, left, right) for left, right in sorted(found))
+    return tuple(_normalised(p, left, right) for left, right in sorted(found))
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,28 +191,28 @@ def _cluster(q: fmpz_poly, bound: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
     """A much shorter interval in (0, 1) which holds all roots of q there: q on it, its start and its width.
 
     None when that is not proved. It is when Descartes' bound for the interval is that for (0, 1), as the sum of the
-    bounds for disjoint parts never exceeds the bound for the whole. Where the interval may be is told by Newton's
+    bounds for disjoint parts never exceeds the bound for the whole. Where the interval may be is found by Newton's
     method, to which roots that lie together look like a multiple one, from the left end as from the right; how long,
     by the Taylor coefficients there, whose first ones are those of a polynomial with about these roots only.
     """
     slope = q.derivative()
     # in whole numbers: reducing fractions of thousands of bits would take most of the time
     values = [(q(end), slope(end)) for end in (0, 1)]
-    if any(value == 0 or below == 0 for value, below in values):
+    if any(value == 0 or derivative == 0 for value, derivative in values):
         return None
-    steps = [int((bound * value << _COARSE) // below) for value, below in values]
-    targets = -steps[0], 2**_COARSE - steps[1]
-    if abs(targets[0] - targets[1]) > 2**_COARSE // 4 or not -1 < targets[0] >> (_COARSE - 2) < 5:
+    steps = [int((bound * value << _CLUSTER_BITS) // derivative) for value, derivative in values]
+    targets = -steps[0], 2**_CLUSTER_BITS - steps[1]
+    if abs(targets[0] - targets[1]) > 2**_CLUSTER_BITS // 4 or not -1 < targets[0] >> (_CLUSTER_BITS - 2) < 5:
         return None
     last, centre = min((abs(step), target) for step, target in zip(steps, targets, strict=True))
-    bits, contracted = _COARSE, False
+    bits, contracted = _CLUSTER_BITS, False
     while True:
         at = fmpq(centre, 2**bits)
-        value, below = fmpq(q(at)), fmpq(slope(at))
-        if value == 0 or below == 0:
+        value, derivative = fmpq(q(at)), fmpq(slope(at))
+        if value == 0 or derivative == 0:
             break
-        more = 2 * (bits - last.bit_length()) + _COARSE
-        step = int((bound * value.p * below.q << more) // (value.q * below.p))
+        more = 2 * (bits - last.bit_length()) + _CLUSTER_BITS
+        step = int((bound * value.p * derivative.q << more) // (value.q * derivative.p))
         if 2 * abs(step) > last << (more - bits):
             break
         centre, last, bits, contracted = (centre << (more - bits)) - step, abs(step), more, True
@@ -218,8 +220,8 @@ def _cluster(q: fmpz_poly, bound: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
         return None
     centre, unit = at, fmpq(2) ** (last.bit_length() - bits)
     around = _on_unit_interval(q, centre, centre + unit)
-    radius = _ROOM * unit * _root_bound(fmpz_poly(around.coeffs()[: bound + 1]))
-    if radius > _SHORT:
+    radius = _CLUSTER_MARGIN * unit * _root_bound(fmpz_poly(around.coeffs()[: bound + 1]))
+    if radius > _MAX_CLUSTER_RADIUS:
         return None
     left, right = max(centre - radius, fmpq(0)), min(centre + radius, fmpq(1))
     return _holding(q, bound, left, right) if left < right else None
@@ -245,7 +247,7 @@ def _root_bound(p: fmpz_poly) -> fmpq:
     return fmpq(2) ** (1 + bits)
 
 
-def _tidy(p: fmpz_poly, low: fmpq, high: fmpq) -> RealRoot:
+def _normalised(p: fmpz_poly, low: fmpq, high: fmpq) -> RealRoot:
     """The isolating interval with ends that are no roots, so that signs at its ends differ."""
     if low == high:
         return RealRoot(p, low, high)
@@ -334,7 +336,7 @@ def _values(p: fmpz_poly, low: fmpq, high: fmpq, width: fmpq) -> Callable[[fmpq,
         return fmpq(p(at))
 
     bits = p.height_bits()
-    if bits < _LONG:
+    if bits < _LONG_BITS:
         return exact
     depth = int((max(abs(low), abs(high)) / width).ceil()).bit_length()
     precision = 3 * depth + 64
@@ -402,10 +404,10 @@ def simplest_between(low: fmpq, high: fmpq) -> fmpq:
     if high <= 0:
         return -simplest_between(-high, -low)
     # continued fraction descent in integers: no fraction has to be reduced on the way
-    above, below, upper, lower = int(low.p), int(low.q), int(high.p), int(high.q)
+    numerator, denominator, upper, lower = int(low.p), int(low.q), int(high.p), int(high.q)
     a, b, c, d = 1, 0, 0, 1
     while True:
-        whole, rest = divmod(above, below)
+        whole, rest = divmod(numerator, denominator)
         excess = upper - whole * lower
         if excess > lower:  # whole + 1 lies below the upper end
             return fmpq(a * (whole + 1) + b, c * (whole + 1) + d)
@@ -414,4 +416,4 @@ def simplest_between(low: fmpq, high: fmpq) -> fmpq:
             t = lower // excess + 1
             return fmpq(a * t + b, c * t + d)
         # both in (0, 1]; take reciprocals
-        above, below, upper, lower = lower, excess, below, rest
+        numerator, denominator, upper, lower = lower, excess, denominator, rest

@@ -28,7 +28,7 @@ from ptmcad.algebra.squared import squared_equations
 
 BITS = 400
 TOLERANCE = fmpq(1, 10**60)
-"""Radius of the balls; roots that are not told apart at it are unsettled."""
+"""Radius of the balls; roots that are not distinguished at it are unsettled."""
 
 Signs = tuple[int, int, int]
 
@@ -161,7 +161,7 @@ def _common_root(first: Sequence[acb], second: Sequence[acb]) -> acb | None:
         return None
     try:
         roots = acb_poly(first).roots(arb(TOLERANCE))
-    except ValueError:  # not told apart
+    except ValueError:  # not distinguished
         return None
     common = [t for t in roots if vanishes(second, t)]
     return common[0] if len(common) == 1 else None

@@ -16,9 +16,9 @@ Direction = tuple[int, int]
 """(dx, dy), not both zero: (1, 0) is horizontal, where the curve folds over the y-axis."""
 BITS = 400
 """Working precision of the balls."""
-NARROW = fmpq(1, 2**200)
+MAX_ROOT_WIDTH = fmpq(1, 2**200)
 """Length to which isolating intervals are shortened before balls are formed from them."""
-SHORTEST = fmpq(1, 2**40)
+MIN_PIECE = fmpq(1, 2**40)
 """Pieces of a segment that are shorter are not cut again."""
 
 
@@ -47,7 +47,7 @@ def may_be_tangent(p: Coefficient, direction: Direction, y: RealRoot, low: fmpq,
     False only with proof: the segment is covered by balls on each of which p, or its tangency polynomial, has no zero.
     """
     with ctx.workprec(BITS):
-        short = refine(y, NARROW)
+        short = refine(y, MAX_ROOT_WIDTH)
         height = arb(short.low).union(arb(short.high))
         both = [[_value(c, height) for c in coefficients_in(q, 0)] for q in (p, tangency(p, direction))]
         pieces = [(low, high)]
@@ -55,7 +55,7 @@ def may_be_tangent(p: Coefficient, direction: Direction, y: RealRoot, low: fmpq,
             a, b = pieces.pop()
             x = arb(a).union(arb(b))
             if all(_horner(coefficients, x).contains(0) for coefficients in both):
-                if b - a < SHORTEST:
+                if b - a < MIN_PIECE:
                     return True
                 pieces += [(a, (a + b) / 2), ((a + b) / 2, b)]
     return False

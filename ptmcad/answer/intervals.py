@@ -20,7 +20,7 @@ End = AlgebraicNumber | Fraction
 
 
 class Event(Enum):
-    """What happens to the numbers of equilibria at a critical value: which of them meet, only a path tells."""
+    """What happens to the numbers of equilibria at a critical value: which of them meet, only a path shows."""
 
     STABLE_PAIR = "one stable equilibrium and one saddle"
     UNSTABLE_PAIR = "one saddle and one maximum"

@@ -15,7 +15,7 @@ KEPT = "kept, as asked for"
 """The reason for a step that a saving would have left out."""
 
 
-def saving_step(name: str, keep: frozenset[str], what: str = "", why: str = "") -> PlanStep:
+def saving_step(name: str, without: frozenset[str], what: str = "", why: str = "") -> PlanStep:
     """The step of a saving that is made, unless it is switched off.
 
     Parameters
@@ -23,7 +23,7 @@ def saving_step(name: str, keep: frozenset[str], what: str = "", why: str = "") 
     what, why : in place of the saving's general words.
     """
     saving = BY_NAME[name]
-    return PlanStep(what or saving.what, name in keep, KEPT if name in keep else why or saving.why, name)
+    return PlanStep(what or saving.what, name in without, KEPT if name in without else why or saving.why, name)
 
 
 def zero_parameters(slice: Slice) -> list[str]:

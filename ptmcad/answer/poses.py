@@ -75,7 +75,7 @@ class Poses:
     parameters : every parameter of the mechanism to its value.
     equilibria : stable ones first, then by energy.
     status : EXACT; CERTIFIED with free lengths, none degenerate; ON_VARIETY when an equilibrium is degenerate;
-        UNDECIDED with no equilibria when there are infinitely many or they could not be told, as ``remark`` then says.
+        UNDECIDED with no equilibria when there are infinitely many or they could not be separated; see ``remark``.
     digits : significant digits that each enclosure settles.
     bits : the precision that was needed.
     """
@@ -107,4 +107,4 @@ class Poses:
 
 
 DIGITS = 12
-MOST_DIGITS = 1000
+MAX_DIGITS = 1000

@@ -88,7 +88,7 @@ class Component:
 
 @dataclass(frozen=True, slots=True)
 class CriticalValue:
-    """A critical value on the base axis: the only root of ``polynomial`` in [low, high]; ``origin`` tells whence.
+    """A critical value on the base axis: the only root of ``polynomial`` in [low, high]; ``origin``: where from.
 
     ``polynomial`` holds integer coefficients, constant term first.
     """

@@ -55,7 +55,7 @@ class WidthRow:
 @dataclass(frozen=True, slots=True)
 class OperationWidths:
     """The answer of ``--over``; ``maxima`` is empty when there is no operation range in the window, and has several
-    entries when places tie or could not be told apart."""
+    entries when places tie or could not be distinguished."""
 
     name: str
     along: Axis

@@ -8,6 +8,7 @@ Only the engine that is used is loaded.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
@@ -19,7 +20,7 @@ from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
-from ptmcad.question.savings import kept, load_all
+from ptmcad.question.savings import load_all, switched_off
 from ptmcad.question.slice import Count, Slice, without_free_lengths
 
 
@@ -32,17 +33,19 @@ def classify(
     area_tolerance: Fraction | float | str | None = None,
     jobs: int | None = None,
     progress: Progress | None = None,
-    keep: Iterable[str] = (),
+    without: Iterable[str] = (),
     partial: Callable[[RegionMap], None] | None = None,
     resume: RegionMap | None = None,
     areas: bool = True,
+    *,
+    keep: Iterable[str] | None = None,
 ) -> RegionMap:
     """The region map of a slice.
 
     Parameters
     ----------
     engine : ``"exact"``, ``"certified"``, or ``"auto"``: certified where springs have a free length, else exact.
-    count : which count tells regions apart; the slice's own when None.
+    count : which count distinguishes regions; the slice's own when None.
     timeout : seconds after which `LimitReached` is raised; loading the certified engine, and compiling it in the first
         run on a machine, is no part of them.
     tolerance : the certified engine stops when at most this share of the window's area is undetermined; the exact
@@ -50,11 +53,12 @@ def classify(
     area_tolerance : largest relative width of each region's area bounds, 1e-4 when None; for the exact engine.
     jobs : number of threads of the certified engine, all processors when None; the exact engine uses one.
     progress : called as progress(stage, done, total).
-    keep : names of savings to switch off, of `ptmcad.question.savings`; ``"all"`` stands for all that the engine has.
+    without : names of savings to do without, of `ptmcad.question.savings`; ``"all"`` stands for all of the engine's.
     partial : called with the map after each stage that improves it.
     resume : a certified map of the same slice and count, stopped or not, from which to go on. Its cover is taken as
         it stands: what `ptmcad.verify` says of the result rests on it.
     areas : False leaves the regions' areas out (exact engine): of each is then known that it is at most the window's.
+    keep : the older name of ``without``.
 
     Raises
     ------
@@ -66,6 +70,11 @@ def classify(
     LimitReached
         After ``timeout`` seconds, with what there is of the map as ``partial``.
     """
+    if keep is not None:
+        if without:
+            raise ConfigError("this is the older name of without: give one of them", key="keep")
+        warnings.warn("keep has a new name: without", DeprecationWarning, stacklevel=2)
+        without = keep
     options = Options(
         engine=engine,
         timeout=timeout,
@@ -73,7 +82,7 @@ def classify(
         area_tolerance=_share(area_tolerance, "area_tolerance"),
         jobs=jobs,
         progress=progress,
-        keep=frozenset((keep,) if isinstance(keep, str) else keep),
+        without=frozenset((without,) if isinstance(without, str) else without),
         partial=partial,
         resume=resume,
         areas=areas,
@@ -101,7 +110,7 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
     certified = is_certified(slice, options.engine)
     if not options.areas:
         _check_no_areas(certified, options)
-    options = replace(options, keep=kept(options.keep, certified))
+    options = replace(options, without=switched_off(options.without, certified))
     if certified:
         _check_certified(slice, options)
         prepare(slice, options)
@@ -116,7 +125,7 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
         raise ConfigError(f"{error.message}: choose certified or auto", key="engine") from error
     if options.resume is not None:
         raise ConfigError("only the certified engine can go on from an earlier map", key="resume")
-    if "imports" in options.keep:
+    if "imports" in options.without:
         load_all()
     from ptmcad.exact.engine import exact_map
 
@@ -139,7 +148,7 @@ def prepare(slice: Slice, options: Options) -> None:
         Where the certified engine is wanted and numba is missing, or the memory limit leaves it no room.
     """
     if is_certified(slice, options.engine):
-        if "imports" in options.keep:
+        if "imports" in options.without:
             with loading("all that there is"):
                 load_all()
         load_certified(options.progress)

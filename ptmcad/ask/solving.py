@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ptmcad.answer.poses import DIGITS, MOST_DIGITS, Poses
+from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
 from ptmcad.errors import ConfigError, shown
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import point_from_mapping
@@ -21,7 +21,7 @@ def solve(digits: int = DIGITS, **parameters: object) -> Poses:
 
     Parameters
     ----------
-    digits : significant digits that every number settles, 1 to `MOST_DIGITS`; more digits cost more time.
+    digits : significant digits that every number settles, 1 to `MAX_DIGITS`; more digits cost more time.
     parameters : by the names of a problem record (L1, L2, rho, k or k1, k2, k3, F3, F4, F3x, F4x, l0 or l0_1, l0_2,
         l0_3), with its defaults: lengths 1, stiffness 100, no load, free lengths 0. Text, int, Fraction or Decimal; no
         float.
@@ -31,8 +31,8 @@ def solve(digits: int = DIGITS, **parameters: object) -> Poses:
     ConfigError
         For a name or a value that is wrong, with the name.
     """
-    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
-        raise ConfigError(f"{shown(repr(digits), 60)} is not a number of digits from 1 to {MOST_DIGITS}", key="digits")
+    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MAX_DIGITS:
+        raise ConfigError(f"{shown(repr(digits), 60)} is not a number of digits from 1 to {MAX_DIGITS}", key="digits")
     return poses_at(point_from_mapping(parameters), digits)
 
 

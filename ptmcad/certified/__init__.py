@@ -1,4 +1,4 @@
-"""The second engine: certified enclosures of curves and counts by interval arithmetic, for what algebra can not reach.
+"""The second engine: certified enclosures of curves and counts by interval arithmetic, for what algebra cannot reach.
 
 Guarantee: nothing here imports from `ptmcad.algebra` or `ptmcad.exact.cad`, so that the two engines check each other.
 

@@ -1,4 +1,4 @@
-"""Isolated solutions in Arb's ball arithmetic: for what floats can not separate, and for any number of digits.
+"""Isolated solutions in Arb's ball arithmetic: for what floats cannot separate, and for any number of digits.
 
 Guarantee: as for `ptmcad.certified.isolation`, with the same lemmas but none of its code.
 """

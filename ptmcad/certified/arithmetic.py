@@ -17,7 +17,7 @@ TINY = 2.0**-1022
 """... or by less than this where results are subnormal."""
 SINE_ERROR = 2.0**-50
 """`sine_cosine` errs by less."""
-LARGEST_ANGLE = 60.0
+MAX_ANGLE = 60.0
 """Beyond it nothing is claimed of sine and cosine."""
 _HALF_PI_1 = float.fromhex("0x1.921fb54400000p+0")  # the first 33 bits of pi/2: products with small integers are exact
 _HALF_PI_2 = float.fromhex("0x1.0b4611a600000p-34")  # the next 33
@@ -87,7 +87,7 @@ def reciprocal(c: float, d: float) -> tuple[float, float]:
 
 @compiled
 def sine_cosine(x: float) -> tuple[float, float]:
-    """sin x and cos x for |x| <= LARGEST_ANGLE, within SINE_ERROR: less quarter turns, then Taylor's polynomials."""
+    """sin x and cos x for |x| <= MAX_ANGLE, within SINE_ERROR: less quarter turns, then Taylor's polynomials."""
     turns = floor(x * _INVERSE + 0.5)
     r = ((x - turns * _HALF_PI_1) - turns * _HALF_PI_2) - turns * _HALF_PI_3
     z = r * r
@@ -110,7 +110,7 @@ def sine_cosine(x: float) -> tuple[float, float]:
 @compiled
 def sine(a: float, b: float, quarter: int) -> tuple[float, float]:
     """sin [a, b] when ``quarter`` is 0, cos [a, b] when it is 1."""
-    if not (b - a < 6.28 and a > -LARGEST_ANGLE and b < LARGEST_ANGLE):
+    if not (b - a < 6.28 and a > -MAX_ANGLE and b < MAX_ANGLE):
         return -1.0, 1.0
     sine_a, cosine_a = sine_cosine(a)
     sine_b, cosine_b = sine_cosine(b)

@@ -23,9 +23,9 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.samples import samples
 from ptmcad.question.slice import Count, Point, Slice
 
-MOST_COUNTED = 500
+MAX_COUNTED = 500
 """Components whose counts are computed; smaller ones are undetermined."""
-POCKET = Fraction(1, 4000)
+POCKET_SHARE = Fraction(1, 4000)
 """Share of the window, or a tenth of the cover's if that is less: smaller components with the counts of a larger one
 beside them are taken for artefacts. So a region that is there in truth appears as the cover shrinks."""
 
@@ -50,7 +50,7 @@ class Assembler:
             ones, stay undetermined.
         """
         complement = components(cover, COMPILED)
-        pocket = min(POCKET * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
+        pocket = min(POCKET_SHARE * cover.steps**2, Fraction(sum(complement.cluster_areas), 10))
         counted = self._counts(complement, pocket, late)
         kept = [n for n in counted if not _is_pocket(n, pocket, complement, counted, self.slice.count)]
         known = frozenset(kept)
@@ -95,7 +95,7 @@ class Assembler:
         horizontal, vertical = self.slice.axes
         window = ((horizontal.low, horizontal.high), (vertical.low, vertical.high))
         counted = {}
-        for n in range(min(len(complement.areas), MOST_COUNTED)):
+        for n in range(min(len(complement.areas), MAX_COUNTED)):
             if n > 0 and late():
                 break
             large = complement.areas[n] >= pocket
@@ -109,7 +109,7 @@ class Assembler:
 
 
 def _key(count: PointCount, which: Count) -> object:
-    """What tells two cells apart."""
+    """What distinguishes two cells."""
     if which is Count.STABLE:
         return count.stable
     if which is Count.TOTAL:

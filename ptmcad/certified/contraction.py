@@ -21,7 +21,7 @@ from ptmcad.certified.system import Arguments
 Floats = NDArray[np.float64]
 Workspace = tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats, Floats, Floats, Floats, Floats]
 SWEEPS = 10
-WORTHWHILE = 0.8
+SWEEP_SHRINKAGE = 0.8
 """Another sweep follows as long as some width shrinks below this part of itself."""
 
 
@@ -209,4 +209,4 @@ def solve_row(system: Arguments, i: int, pivot: int, box_low: Floats, box_high: 
     box_high[x] = min(box_high[x], v)
     if box_low[x] > box_high[x]:
         return -1
-    return 1 if box_high[x] - box_low[x] < WORTHWHILE * before else 0
+    return 1 if box_high[x] - box_low[x] < SWEEP_SHRINKAGE * before else 0

@@ -24,7 +24,7 @@ from ptmcad.cover.rectangles import Cover, Window
 BATCH = 4096
 SLACK = 0.9
 """Pieces are made so thin that their areas sum up to this part of what may be left undetermined."""
-WORTHWHILE = 0.5
+CUT_COVERAGE = 0.5
 """A strip is cut if its finest pieces cover less than this part of its rectangle."""
 HALVINGS = 200
 """Of the area by which a piece may be larger than its strip, at most; below, floats are exhausted."""
@@ -104,7 +104,7 @@ def thinning(enclosures: Sequence[Enclosure], lattice: Lattice, jobs: int) -> Th
             for start in range(0, len(boxes), BATCH)
         ]
         together = np.concatenate([NONE, *(future.result() for future in found)])
-    worthwhile = areas_of_pieces(together, 0.0) < WORTHWHILE * areas_of_pieces(together, inf)
+    worthwhile = areas_of_pieces(together, 0.0) < CUT_COVERAGE * areas_of_pieces(together, inf)
     whole = together[~worthwhile]
     (left, right), (bottom, top) = lattice.window
     squares = union_area(combined(lattice.cover(pieces(whole, inf))), COMPILED)

@@ -52,44 +52,44 @@ class Curve:
         return np.concatenate([window[:, :2], low, window[:, 2:], high], axis=1)
 
 
-def curves(slice: Slice, count: Count, keep: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
+def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
     """The curves at which ``count`` may change; docs/free-lengths-curves.md proves that no other is needed.
 
     Parameters
     ----------
-    keep : names of savings to switch off, of `ptmcad.question.savings`.
+    without : names of savings to switch off, of `ptmcad.question.savings`.
     """
     scale = np.array(axis_weights(slice))
     return tuple(
         replace(curve, weights=np.concatenate([scale, np.ones(len(curve.ranges))]))
-        for curve in _CURVES[count](slice, keep)
+        for curve in _CURVES[count](slice, without)
     )
 
 
-def _stable(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
-    yield from _folds(slice, keep, stable="folds-of-saddles" not in keep)
-    if "cones-and-creases" in keep:
-        yield from _cone(slice, keep)
+def _stable(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
+    yield from _folds(slice, without, stable="folds-of-saddles" not in without)
+    if "cones-and-creases" in without:
+        yield from _cone(slice, without)
         yield from _creases(slice)
 
 
-def _all(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
-    yield from _folds(slice, keep, stable=False)
-    yield from _cone(slice, keep)
+def _all(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
+    yield from _folds(slice, without, stable=False)
+    yield from _cone(slice, without)
     yield from _creases(slice)
 
 
-def _folds(slice: Slice, keep: frozenset[str], *, stable: bool) -> Iterator[Curve]:
+def _folds(slice: Slice, without: frozenset[str], *, stable: bool) -> Iterator[Curve]:
     """Where D = 0; with spring 3 short and long apart, since D and the derivatives of E1, E2 have a pole at l3 = 0."""
     name = "fold of a stable equilibrium" if stable else "fold"
     reason = "a minimum meets a saddle: det H = 0 with nonnegative diagonal" if stable else "equilibria meet: det H = 0"
-    factored = "unloaded-factor" not in keep
+    factored = "unloaded-factor" not in without
     graph = Graph()
     m = slice_mechanism(graph, slice, factored=factored)
     there = m.at_equilibrium
-    short = SHORT * parameter_formulas(graph, slice)["L1"]
-    # unloaded, a stable configuration with spring 3 short is told from the multiples without phi
-    apart = m.unit is not None and not (stable and m.unloaded)
+    short = SHORT_LENGTH * parameter_formulas(graph, slice)["L1"]
+    # unloaded, a stable configuration with spring 3 short is distinguished from the multiples without phi
+    split = m.unit is not None and not (stable and m.unloaded)
     e1, e2 = m.equilibrium
     balance, singular = m.unloaded or (e2, m.hessian.determinant)
     yield Curve(
@@ -99,30 +99,30 @@ def _folds(slice: Slice, keep: frozenset[str], *, stable: bool) -> Iterator[Curv
             [e1, balance, singular],
             (0, 1, 2, 3),
             _dependent(
-                keep,
+                without,
                 [e2, *m.dependent, *_present(m.unit)],
                 [there.determinant, m.turned, *([] if stable else [there.levelled])],
             ),
-            [*([m.lengths[2] - short] if apart else []), *(_semidefinite(m) if stable else [])],
+            [*([m.lengths[2] - short] if split else []), *(_semidefinite(m) if stable else [])],
         ),
         (TORUS, TORUS),
     )
-    if not apart:
+    if not split:
         return
     graph = Graph()
     m = slice_mechanism(graph, slice, phi=True, factored=factored)
     there = m.at_equilibrium
-    short = SHORT * parameter_formulas(graph, slice)["L1"]
+    short = SHORT_LENGTH * parameter_formulas(graph, slice)["L1"]
     yield Curve(
         f"{name}, spring 3 short",
-        f"{reason}; l3 is at most {SHORT} L1",
+        f"{reason}; l3 is at most {SHORT_LENGTH} L1",
         system(
-            [*_present(m.aligned), *m.equilibrium, m.hessian.blown_up],
+            [*_present(m.aligned), *m.equilibrium, m.hessian.determinant_times_l3],
             (0, 1, 2, 3, 4),
             _dependent(
-                keep,
+                without,
                 [*m.dependent, *_present(m.unit)],
-                [there.blown_up, *([m.turned] if stable else [there.levelled])],
+                [there.determinant_times_l3, *([m.turned] if stable else [there.levelled])],
             ),
             [m.lengths[2], short - length(*m.vectors[2]), *(_semidefinite(m) if stable else [])],
         ),
@@ -136,19 +136,19 @@ def _semidefinite(m: Mechanism) -> list[Formula]:
 
 
 def _dependent(
-    keep: frozenset[str], cheap: list[Formula], costly: list[Formula]
+    without: frozenset[str], cheap: list[Formula], costly: list[Formula]
 ) -> tuple[list[Formula], list[Formula]]:
     """Formulas that vanish where the equations do, unless they are not to be used."""
-    return ([], []) if "dependent-equations" in keep else (cheap, costly)
+    return ([], []) if "dependent-equations" in without else (cheap, costly)
 
 
-def _cone(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
+def _cone(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
     m = slice_mechanism(Graph(), slice, phi=True)
     if m.unit is not None:
         yield Curve(
             "cone",
             "an equilibrium is swallowed by the cone l3 = 0",
-            system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), _dependent(keep, [*m.dependent, m.unit], [])),
+            system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), _dependent(without, [*m.dependent, m.unit], [])),
             (TORUS, TORUS, PHI),
         )
 
@@ -169,8 +169,8 @@ def _creases(slice: Slice) -> Iterator[Curve]:
             )
 
 
-def _admissible(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
-    yield from _stable(slice, keep)
+def _admissible(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
+    yield from _stable(slice, without)
     m = slice_mechanism(Graph(), slice)
     for spring, (extent, free, vector) in enumerate(zip(m.lengths, m.free, m.vectors, strict=True), start=1):
         third, dependent = (vector[0], [vector[1]]) if free.value == 0 else (extent - free, [])
@@ -180,7 +180,7 @@ def _admissible(slice: Slice, keep: frozenset[str]) -> Iterator[Curve]:
             system(
                 [*m.equilibrium, third],
                 (0, 1, 2, 3),
-                _dependent(keep, [*m.dependent, *dependent], []),
+                _dependent(without, [*m.dependent, *dependent], []),
                 [*_semidefinite(m), m.at_equilibrium.determinant, m.turned],
             ),
             (TORUS, TORUS),
@@ -191,7 +191,7 @@ def _present(formula: Formula | None) -> list[Formula]:
     return [] if formula is None else [formula]
 
 
-SHORT = Fraction(1, 8)
+SHORT_LENGTH = Fraction(1, 8)
 """Below this length of spring 3, as a part of L1, its direction is a variable of its own."""
 _CURVES: dict[Count, Callable[[Slice, frozenset[str]], Iterator[Curve]]] = {
     Count.STABLE: _stable,

@@ -18,7 +18,7 @@ _TURN_ERROR = 1e-14
 
 
 def distinct(unique: Boxes, narrow: Boxes, first: int) -> NDArray[np.int64] | None:
-    """Rows of zeros that are all different; every zero is one of them. None when some pair can not be told.
+    """Rows of zeros that are all different; every zero is one of them. None when this cannot be decided for some pair.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def _distinct(unique: Boxes, narrow: Boxes, first: int, kept: NDArray[np.int64])
 def _relation(unique: Boxes, narrow: Boxes, first: int, i: int, j: int) -> int:
     """1 when zero i, moved by full turns, lies in the box in which zero j is the only one; 0 different; -1 unknown."""
     variables = unique.shape[1] // 2
-    inside, apart = True, False
+    inside, separate = True, False
     for k in range(first, variables):
         low, high = narrow[i, k], narrow[i, variables + k]
         if not high - low < 0.5 or not narrow[j, variables + k] - narrow[j, k] < 0.5:
@@ -64,5 +64,5 @@ def _relation(unique: Boxes, narrow: Boxes, first: int, i: int, j: int) -> int:
         error = 0.0 if turns == 0 else _TURN_ERROR
         low, high = low + turns * _TURN - error, high + turns * _TURN + error
         inside = inside and unique[j, k] <= low and high <= unique[j, variables + k]
-        apart = apart or high < narrow[j, k] or low > narrow[j, variables + k]
-    return 1 if inside else (0 if apart else -1)
+        separate = separate or high < narrow[j, k] or low > narrow[j, variables + k]
+    return 1 if inside else (0 if separate else -1)

@@ -31,7 +31,7 @@ from ptmcad.certified.tape import enclosing_floats
 from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import union_area
 from ptmcad.cover.filling import combined, gathered, simplified
-from ptmcad.cover.rectangles import MOST_STEPS, Cover, Rectangle
+from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
 from ptmcad.cover.subdivision import rectangle_array
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import DEFAULTS, Options
@@ -41,32 +41,32 @@ from ptmcad.version import __version__
 
 TOLERANCE = Fraction(1, 1000)
 """Of the window's area, left undetermined unless another number is asked for."""
-TILES = 8
+START_TILES = 8
 """Rectangles along each axis that the search begins with."""
-MOST_TILES = 1000
+MAX_TILES = 1000
 """... or with at most, when it goes on from a cover that is small: every one of them costs a search of all angles."""
 FIRST_LEVEL, LAST_LEVEL = 4, 40
 """At level n, boxes are bisected until their projection has at most 4^-n of the window's area."""
-LARGEST = Fraction(10**100)
+MAX_AXIS_END = Fraction(10**100)
 """Ends of axes; areas and squares of such numbers are floats still."""
-MOST_BOXES = 6_000_000
-MOST_RECTANGLES = 3_000_000
+MAX_BOXES = 6_000_000
+MAX_RECTANGLES = 3_000_000
 """In a cover made of strips: its JSON has some 40 bytes for each, and Python some 200."""
-OVERLAPPING = 3
+OVERLAP_RATIO = 3
 """Where rectangles have this times the area of their union it pays to look for fewer that cover the same."""
-WITHIN = 100
+STRIP_TRIAL_RATIO = 100
 """Strips are tried as soon as the boxes leave at most so many times the tolerance undetermined."""
-ENOUGH = 0.5
+STRIP_TARGET_SHARE = 0.5
 """... and used as soon as the finest ones would leave less than this part of it."""
-FIRST = Fraction(97, 100)
+FIRST_MAP_SHARE = Fraction(97, 100)
 """... and the first one when they have left this part; at the end of the first level there is one in any case."""
-COARSE = Fraction(1, 4)
+COARSE_SHARE = Fraction(1, 4)
 """While the boxes have more of the window, maps on the way do without strips, which would gain little."""
-SECONDS = 3e-5
+SECONDS_PER_RECTANGLE = 3e-5
 """That a map takes for each rectangle, with its JSON: less, on most machines."""
-FALL = Fraction(9, 10)
+MAP_SHRINK_RATIO = Fraction(9, 10)
 """A map on the way is worth making when the boxes' share is at most this part of what it was at the last one."""
-STEPS = 2**24
+LATTICE_STEPS = 2**24
 """Lattice steps of a cover along each axis; more for a tolerance below 1e-5."""
 
 
@@ -85,8 +85,10 @@ def certified_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
     LimitReached
         At the deadline, or when doubles are exhausted, with the map so far as ``partial``.
     """
-    if any(max(abs(axis.low), abs(axis.high)) > LARGEST for axis in slice.axes):
-        raise ConfigError(f"the certified engine computes in floats: an axis may reach {float(LARGEST):g}, no more")
+    if any(max(abs(axis.low), abs(axis.high)) > MAX_AXIS_END for axis in slice.axes):
+        raise ConfigError(
+            f"the certified engine computes in floats: an axis may reach {float(MAX_AXIS_END):g}, no more"
+        )
     prove_slice(slice)
     return _Run(slice, options).run()
 
@@ -103,15 +105,15 @@ class _Run:
         self.jobs = options.jobs or os.cpu_count() or 1
         self.seconds = {"plan": 0.0, "curves": 0.0, "regions": 0.0}
         self.area = float((slice.axes[0].high - slice.axes[0].low) * (slice.axes[1].high - slice.axes[1].low))
-        steps = STEPS
-        while steps * self.tolerance < 64 and steps < MOST_STEPS:
+        steps = LATTICE_STEPS
+        while steps * self.tolerance < 64 and steps < MAX_STEPS:
             steps *= 2
         horizontal, vertical = slice.axes
         self.lattice = Lattice(((horizontal.low, horizontal.high), (vertical.low, vertical.high)), steps)
         self.resumed = None if options.resume is None else options.resume.cover
-        wanted = curves(slice, slice.count, options.keep)
+        wanted = curves(slice, slice.count, options.without)
         self.enclosures: list[Enclosure] = begin(wanted, _rectangles(slice, self.resumed))
-        self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted, options.keep), _versions())
+        self.assembler = Assembler(slice, point_counter(slice), plan_of(slice, wanted, options.without), _versions())
         self.best: RegionMap | None = None
         """The map with the least undetermined area of those that were handed over."""
         self._thinned: Thinning | None = None
@@ -145,12 +147,12 @@ class _Run:
                 undetermined = result.undetermined
                 if undetermined <= tolerance:
                     return result
-            strips_wanted = self._thinned is None and undetermined <= COARSE
+            strips_wanted = self._thinned is None and undetermined <= COARSE_SHARE
             if self.options.partial is not None and (
                 self.best is None or self.pace.due(self.boxes(), thinned=strips_wanted)
             ):
                 self._hand_over(undetermined)
-            if self.boxes() > MOST_BOXES:
+            if self.boxes() > MAX_BOXES:
                 break
         return self._stopped(f"the search ended at {self.boxes():,} boxes")
 
@@ -161,12 +163,12 @@ class _Run:
     def thin_cover(self, undetermined: Fraction) -> Cover | None:
         """A cover of strips that are thin enough for the tolerance, if they can be, in the time that there is."""
         allowed = self.tolerance
-        if undetermined > WITHIN * allowed or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes()):
+        if undetermined > STRIP_TRIAL_RATIO * allowed or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes()):
             return None
         start = self.clock()
         strips = self._strips()
         target = float(allowed) * self.area
-        enough = strips.least() <= ENOUGH * target and strips.number(target) <= MOST_RECTANGLES
+        enough = strips.least() <= STRIP_TARGET_SHARE * target and strips.number(target) <= MAX_RECTANGLES
         cover = strips.cover(target) if enough else None
         self.seconds["curves"] += self.clock() - start
         return cover
@@ -180,9 +182,9 @@ class _Run:
         if self.best is not None and self.pace.cost(boxes) > self.pace.left():
             return self.best
         strips = self._strips()
-        most = min(4 * len(strips.thin), MOST_RECTANGLES)
+        most = min(4 * len(strips.thin), MAX_RECTANGLES)
         if self.pace.deadline is not None:
-            most = min(most, max(0, int(self.pace.left() / (SAFETY * SECONDS))))
+            most = min(most, max(0, int(self.pace.left() / (SAFETY * SECONDS_PER_RECTANGLE))))
         cover, known = strips.cover(1.5 * strips.least(), most), self.resumed
         if known is not None and _share(known) < _share(cover):
             cover = known
@@ -192,15 +194,15 @@ class _Run:
     def map(self, cover: Cover, status: Status) -> RegionMap:
         """The map of a cover; what is not counted when the time is over is undetermined."""
         start, boxes = self.clock(), self.boxes()
-        if _overlap(cover) > OVERLAPPING:
+        if _overlap(cover) > OVERLAP_RATIO:
             cover = simplified(cover, COMPILED)
         times = self.seconds | {"total": start - self.pace.started}
-        result = self.assembler.map(cover, status, times, self._hurry)
+        result = self.assembler.map(cover, status, times, self._must_hand_over)
         self.seconds["regions"] += self.clock() - start
         self.pace.map.record(boxes, self.clock() - start)
         return result
 
-    def _hurry(self) -> bool:
+    def _must_hand_over(self) -> bool:
         """Whether there is only time left to put a map into other hands."""
         return self.pace.left() < SAFETY * self.pace.text.of(self.boxes())
 
@@ -230,7 +232,7 @@ class _Run:
             self._thinned = None
             enclosed = _share(self._box_cover())
             self.pace.looked(self.clock() - start)
-            if enclosed <= (FIRST if self.best is None else FALL * self.enclosed):
+            if enclosed <= (FIRST_MAP_SHARE if self.best is None else MAP_SHRINK_RATIO * self.enclosed):
                 self._hand_over(enclosed)
             self.pace.resumed()
         return False
@@ -243,7 +245,7 @@ class _Run:
         enclosed : the boxes' share of the window.
         """
         start = self.clock()
-        found = self.partial() if enclosed <= COARSE else self.map(self._box_cover(), Status.PARTIAL)
+        found = self.partial() if enclosed <= COARSE_SHARE else self.map(self._box_cover(), Status.PARTIAL)
         self.enclosed = min(enclosed, self.enclosed)
         least = Fraction(1) if self.best is None else self.best.undetermined
         if found.undetermined < least and self.options.partial is not None:
@@ -286,9 +288,12 @@ class _Run:
 def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
     """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards."""
     if resume is None:
-        steps, rectangles = TILES, tuple(sorted(_tiles(), key=lambda tile: _ease(slice, tile), reverse=True))
+        steps, rectangles = (
+            START_TILES,
+            tuple(sorted(_tiles(), key=lambda tile: _distance_from_degeneracy(slice, tile), reverse=True)),
+        )
     else:
-        most = min(Fraction(MOST_TILES), TILES**2 / max(_share(resume), Fraction(1, MOST_TILES)))
+        most = min(Fraction(MAX_TILES), START_TILES**2 / max(_share(resume), Fraction(1, MAX_TILES)))
         steps, rectangles = resume.steps, gathered(resume, int(most)).rectangles
     horizontal, vertical = slice.axes
 
@@ -308,14 +313,14 @@ def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
 
 
 def _tiles() -> Iterator[Rectangle]:
-    return ((i, i + 1, j, j + 1) for i in range(TILES) for j in range(TILES))
+    return ((i, i + 1, j, j + 1) for i in range(START_TILES) for j in range(START_TILES))
 
 
-def _ease(slice: Slice, tile: Rectangle) -> Fraction:
+def _distance_from_degeneracy(slice: Slice, tile: Rectangle) -> Fraction:
     """Small where the search takes long, which is best begun first: for small rho and bars of equal length."""
     left, _, bottom, _ = tile
     x, y = (
-        axis.low + (axis.high - axis.low) * Fraction(2 * step + 1, 2 * TILES)
+        axis.low + (axis.high - axis.low) * Fraction(2 * step + 1, 2 * START_TILES)
         for axis, step in zip(slice.axes, (left, bottom), strict=True)
     )
     rho, bar1, bar2 = (slice.parameters[name].evaluate(x, y) for name in ("rho", "L1", "L2"))

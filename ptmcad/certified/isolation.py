@@ -21,7 +21,7 @@ from ptmcad.certified.evaluation import run
 from ptmcad.certified.search import CUT, Boxes
 from ptmcad.certified.system import Arguments
 
-NARROW = 1e-2
+MAX_PROOF_WIDTH = 1e-2
 """Boxes at most this wide are tried for a proof of existence."""
 INFLATION = 1e-5
 """The first attempt widens a box by this much on each side; each further one by 1/8 of the last."""
@@ -142,7 +142,7 @@ def isolate(
             size = (high[x] - low[x]) * weights[x]
             if size > width:
                 widest, width = x, size
-        if width <= NARROW:
+        if width <= MAX_PROOF_WIDTH:
             inflation, proved = INFLATION, False
             for _ in range(ATTEMPTS):
                 wide_low[:], wide_high[:] = low, high

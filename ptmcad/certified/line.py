@@ -1,7 +1,7 @@
 """The values along a line of a slice at which counts change, enclosed, and the counts between them, proved.
 
 Guarantee: on each interval of the result the numbers of minima, saddles, maxima and cones are constant. What was not
-decided lies in one of the gaps between them; a gap that is `proved` holds nothing but critical values that were told.
+decided lies in one of the gaps between them; a gap that is `proved` holds nothing but isolated critical values.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from ptmcad.certified.system import System
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.question.slice import Count, Slice
 
-FINEST = 1e-8
-BUDGET, OPEN = 20_000, 400
+MIN_BOX_WIDTH = 1e-8
+BUDGET, MAX_OPEN_BOXES = 20_000, 400
 """Boxes to treat, and boxes to leave open, before a part of the line is halved."""
-MOST = 600_000
+MAX_BOXES = 600_000
 """Boxes for one curve after which nothing is halved any more."""
-PARTS = 16
-SMALLEST = Fraction(1, 2**16)
+START_PARTS = 16
+MIN_PART = Fraction(1, 2**16)
 """Parts of the line of this share are not halved."""
 
 
@@ -90,9 +90,9 @@ def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) 
     system = _on_line(curve.system, varying)
     equations = replace(system, vanishing=(_NONE, _NONE, _NONE), nonnegative=_NONE)
     axis = slice.axes[varying]
-    step = (axis.high - axis.low) / PARTS
-    waiting = [(axis.low + k * step, axis.low + (k + 1) * step) for k in range(PARTS)]
-    smallest = (axis.high - axis.low) * SMALLEST
+    step = (axis.high - axis.low) / START_PARTS
+    waiting = [(axis.low + k * step, axis.low + (k + 1) * step) for k in range(START_PARTS)]
+    smallest = (axis.high - axis.low) * MIN_PART
     total = 0
     while waiting:
         low, high = waiting.pop()
@@ -100,16 +100,16 @@ def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) 
         ranges = (along, fixed) if varying == 0 else (fixed, along)
         start = curve.start(np.array([[ranges[0][0], ranges[1][0], ranges[0][1], ranges[1][1]]]))
         arguments = system.arguments(), equations.arguments(), start
-        unique, narrow, left, used = isolate(*arguments, FINEST, BUDGET, OPEN, curve.importance())
+        unique, narrow, left, used = isolate(*arguments, MIN_BOX_WIDTH, BUDGET, MAX_OPEN_BOXES, curve.importance())
         variables = start.shape[1] // 2
         total += used
-        if (used >= BUDGET or len(left) > OPEN) and high - low > smallest and total < MOST:
+        if (used >= BUDGET or len(left) > MAX_OPEN_BOXES) and high - low > smallest and total < MAX_BOXES:
             middle = (low + high) / 2
             waiting += [(low, middle), (middle, high)]
             continue
         for box in left:
             yield Gap(Fraction(float(box[varying])), Fraction(float(box[variables + varying])), (curve.name,), False)
-        # ``narrow`` was contracted with the equations alone; its number can be told to any precision
+        # ``narrow`` was contracted with the equations alone; its number can be enclosed to any precision
         for row in narrow if len(unique) else ():
             with ctx.workprec(bits):
                 box = _balls(row, varying, value)

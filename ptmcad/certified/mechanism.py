@@ -41,7 +41,7 @@ class Hessian:
     p22: Formula
     q: Formula
     determinant: Formula
-    blown_up: Formula
+    determinant_times_l3: Formula
     """l3 D: finite also where spring 3 has no length."""
     levelled: Formula
     """l1 l2 l3 D: finite everywhere."""
@@ -110,7 +110,7 @@ def mechanism(
 
     ``positive_base`` says that rho is zero nowhere in the open window.
 
-    ``creases`` tells whether rho = L2, so that d1 = 2 L2 sin(th2/2) (sin(th2/2), cos(th2/2)), and whether rho = L1, so
+    ``creases`` shows whether rho = L2, so that d1 = 2 L2 sin(th2/2) (sin(th2/2), cos(th2/2)), and whether rho = L1, so
     that d2 = 2 L1 sin(th1/2) (sin(th1/2), -cos(th1/2)). The formulas then hold for 0 < th2 < 2 pi, or 0 < th1 < 2 pi.
     """
     p1, p2, rho = values["L1"], values["L2"], values["rho"]

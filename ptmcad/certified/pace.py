@@ -1,7 +1,7 @@
 """The pace of a search: when it hands over a map on the way, and when it ends so that the last map is made in time.
 
-Guarantee: maps on the way take at most `SHARE` of the time and `ALLOWANCE` seconds, as far as what a map takes is
-foreseen; the search is asked to end while `SAFETY` times what the last map is foreseen to take is left.
+Guarantee: maps on the way take at most `MAP_TIME_SHARE` of the time and `ALLOWANCE` seconds, as far as what a map
+takes is foreseen; the search is asked to end while `SAFETY` times what the last map is foreseen to take is left.
 
 Nothing here decides what is in a map: only when it is made.
 """
@@ -13,18 +13,18 @@ from dataclasses import dataclass, field
 from math import inf
 from time import perf_counter, process_time
 
-SHARE = 0.06
+MAP_TIME_SHARE = 0.06
 """Of the time, spent on maps on the way."""
 ALLOWANCE = 1.5
 """Seconds for the first of them, whose worth is largest."""
 SAFETY = 2.0
-SHORTEST = 1.0
+MIN_RESERVE = 1.0
 """Seconds kept for the last map in any case, of a processor that does nothing else ..."""
-PART = 0.02
+RESERVE_SHARE = 0.02
 """... or this part of the time that there is in all, if that is more."""
-LARGEST_PART = 1 / 3
+MAX_RESERVE_SHARE = 1 / 3
 """Of the time in all, kept for the last map on a busy machine while it is not known what a map takes."""
-MANY = 4000
+MIN_TIMED_BOXES = 4000
 """Of fewer boxes the time says nothing about what each of them takes."""
 
 
@@ -42,7 +42,7 @@ class Cost:
 
     def of(self, boxes: int) -> float:
         """The seconds that the work on so many boxes will take: with more boxes more, with fewer no less."""
-        foreseen = (seconds * max(1.0, boxes / max(known, MANY)) for known, seconds in self.known)
+        foreseen = (seconds * max(1.0, boxes / max(known, MIN_TIMED_BOXES)) for known, seconds in self.known)
         return max(foreseen, default=self.each * boxes)
 
 
@@ -83,8 +83,8 @@ class Pace:
         """Seconds to keep for the last map, of so many boxes."""
         total = 0.0 if self.deadline is None else self.deadline - self.started
         busy = max(1.0, (self.clock() - self.started) / max(self.work() - self._worked, 0.01))
-        unknown = min(busy * SHORTEST, max(SHORTEST, LARGEST_PART * total))
-        return max(unknown, PART * total, SAFETY * self.cost(boxes)) + self._longest
+        unknown = min(busy * MIN_RESERVE, max(MIN_RESERVE, MAX_RESERVE_SHARE * total))
+        return max(unknown, RESERVE_SHARE * total, SAFETY * self.cost(boxes)) + self._longest
 
     def cost(self, boxes: int) -> float:
         """Seconds for a map of what so many boxes leave."""
@@ -106,12 +106,12 @@ class Pace:
     def looked(self, seconds: float) -> None:
         """It took so many seconds to see whether a map on the way is worth while: that is not done all the time."""
         self.spent += seconds
-        self._look_at = self.clock() + seconds / (SHARE / 2)
+        self._look_at = self.clock() + seconds / (MAP_TIME_SHARE / 2)
 
     def due(self, boxes: int, *, thinned: bool = True) -> bool:
         """Whether there is time for a map on the way, without strips if they are not wanted or known."""
         if self.clock() < self._look_at:
             return False
         cost = self.cost(boxes) - (0.0 if thinned else self.thin.of(boxes))
-        affordable = self.spent + cost <= ALLOWANCE + SHARE * (self.clock() - self.started)
+        affordable = self.spent + cost <= ALLOWANCE + MAP_TIME_SHARE * (self.clock() - self.started)
         return affordable and cost + self.last(boxes) < self.left()

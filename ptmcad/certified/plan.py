@@ -11,18 +11,18 @@ from ptmcad.certified.parameters import positive_base
 from ptmcad.question.slice import FREE_LENGTHS, Count, Slice
 
 
-def beforehand(slice: Slice, keep: frozenset[str]) -> tuple[PlanStep, ...]:
+def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
     """What is known of the plan before anything is computed."""
     absent = [name for name in FREE_LENGTHS if name not in slice.parameters or not slice.parameters[name].numerator]
     zero = [name for name in zero_parameters(slice) if name not in FREE_LENGTHS]
-    steps = [saving_step("imports", keep, "imports of matplotlib and sympy")]
+    steps = [saving_step("imports", without, "imports of matplotlib and sympy")]
     steps += zero_terms([*zero, *absent])
     steps.append(PlanStep("discriminant variety", False, "its degree is out of reach when springs have free lengths"))
     if slice.count in (Count.STABLE, Count.ADMISSIBLE):
-        steps += [saving_step("folds-of-saddles", keep), saving_step("cones-and-creases", keep)]
-    steps.append(saving_step("dependent-equations", keep))
+        steps += [saving_step("folds-of-saddles", without), saving_step("cones-and-creases", without)]
+    steps.append(saving_step("dependent-equations", without))
     if unloaded(slice):
-        steps.append(saving_step("unloaded-factor", keep))
+        steps.append(saving_step("unloaded-factor", without))
     return tuple(steps)
 
 

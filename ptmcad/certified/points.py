@@ -35,12 +35,12 @@ CREASED_END = (Fraction(6.283185307179586), Fraction(6.283185307179587))
 """Below and above a full turn."""
 EQUAL = np.ones(4)
 """Weights of the variables' widths."""
-QUICK = 6_000
+QUICK_BUDGET = 6_000
 BUDGET = 60_000
 """Boxes in floating point for one point."""
-FINEST = (1e-8, 1e-4)
+MIN_BOX_WIDTHS = (1e-8, 1e-4)
 """Boxes this narrow are left to Arb; the second number counts where the first leaves too many, next to a fold."""
-OPEN = 40
+MAX_OPEN_BOXES = 40
 """Boxes that floating point may leave to Arb."""
 PRECISIONS = (128, 320)
 ARB_BUDGET = 800
@@ -130,17 +130,17 @@ class PointCounter:
         return PointCount(len(zeros), len(minima), None, index, peaks.count, solutions, True)
 
     def zeros(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> list[_Zero] | None:
-        """The equilibria that ``count`` needs, each once; None when they can not be told."""
+        """The equilibria that ``count`` needs, each once; None when they cannot be decided."""
         only_minima = count in (Count.STABLE, Count.ADMISSIBLE)
         written, creases = self.equilibria_at(x, y), self._creases(x, y)
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
         second, first = (CREASED if crease else TURN for crease in creases)
         start = np.array([[x_low, y_low, first[0], second[0], x_high, y_high, first[1], second[1]]])
         system, equations = (written.minima if only_minima else written.all).arguments(), written.equations.arguments()
-        for finest in FINEST:
-            budget = BUDGET if thorough else QUICK
-            unique, narrow, left, used = isolate(system, equations, start, finest, budget, OPEN, EQUAL)
-            if used < budget and len(left) <= OPEN:
+        for finest in MIN_BOX_WIDTHS:
+            budget = BUDGET if thorough else QUICK_BUDGET
+            unique, narrow, left, used = isolate(system, equations, start, finest, budget, MAX_OPEN_BOXES, EQUAL)
+            if used < budget and len(left) <= MAX_OPEN_BOXES:
                 break
             if not thorough:
                 return None
@@ -172,7 +172,7 @@ def point_counter(slice: Slice) -> PointCounter:
 
 
 def _off_creases(zeros: Sequence[_Zero], creases: tuple[bool, bool]) -> list[_Zero] | None:
-    """The zeros at which the formulas for rho = L2, rho = L1 hold; None when that can not be told for some."""
+    """The zeros at which the formulas for rho = L2, rho = L1 hold; None when that cannot be decided for some."""
     kept = []
     for zero in zeros:
         inside = True
@@ -293,7 +293,7 @@ def _balls(x: Fraction, y: Fraction, box: Boxes, precision: int) -> Box:
 
 
 def _distinct_balls(found: Sequence[Isolated], precision: int) -> list[Isolated] | None:
-    """Each zero once, modulo full turns; None when it can not be told whether two are the same."""
+    """Each zero once, modulo full turns; None when it cannot be decided whether two are the same."""
     kept: list[Isolated] = []
     with ctx.workprec(precision):
         turn = 2 * arb.pi()

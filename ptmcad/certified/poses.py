@@ -2,7 +2,7 @@
 
 Guarantee: all equilibria are there, each proved; every number settles the digits asked for. A pose is called flat, and
 its numbers are exact, only when the flat configuration itself is an equilibrium, exactly, and lies in the box in which
-the pose is the only one. What could not be told makes the whole answer UNDECIDED.
+the pose is the only one. What could not be decided makes the whole answer UNDECIDED.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ from ptmcad.text.expressions import axis
 
 MECHANISM = ptm()
 MORE_BITS = 3000
-"""A number that so many bits beyond the digits asked for do not tell from zero stays undecided."""
+"""A number that so many bits beyond the digits asked for do not distinguish from zero stays undecided."""
 NOT_TOLD = (
-    "the equilibria could not be told apart: there are infinitely many, one is nearly degenerate, or a spring has "
+    "the equilibria could not be distinguished: there are infinitely many, one is nearly degenerate, or a spring has "
     "nearly no length there"
 )
 _PEAKS = {
     1: "the energy has a peak where spring A3A4 has no length too",
     2: "the energy has two peaks where spring A3A4 has no length too",
 }
-ZERO = "a number of an equilibrium could not be told from zero"
+ZERO = "a number of an equilibrium could not be distinguished from zero"
 
 
 def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
@@ -81,7 +81,7 @@ def _point_slice(parameters: Mapping[str, Fraction]) -> Slice:
 
 
 def _ordered(poses: Sequence[Pose]) -> list[Pose]:
-    """Stable ones first, then by energy; of energies not told apart the pose with larger angles comes first."""
+    """Stable ones first, then by energy; where energies are not separated, larger angles come first."""
     by_energy = sorted(poses, key=lambda pose: pose.energy.center)
     groups: list[list[Pose]] = []
     for pose in by_energy:
@@ -180,8 +180,8 @@ def _numbers(parameters: Mapping[str, Fraction], box: Box, flat: tuple[int, int]
     trace, spread = numbers.pop("trace"), numbers.pop("spread")
     root = _Number(spread.ball.sqrt() if spread.ball > 0 else spread.ball.nonnegative_part().sqrt())
     if spread.exact is not None:
-        above, below = isqrt(spread.exact.numerator), isqrt(spread.exact.denominator)
-        whole = Fraction(above, below)
+        numerator, denominator = isqrt(spread.exact.numerator), isqrt(spread.exact.denominator)
+        whole = Fraction(numerator, denominator)
         root = _Number(_arb(spread.exact).sqrt(), whole if whole * whole == spread.exact else None)
     for name, sign in (("low", -1), ("high", 1)):
         half_sum = (trace.ball + sign * root.ball) / 2

@@ -43,15 +43,15 @@ def _factor(tree: Tree) -> str:
     return f"({to_text(tree)})" if isinstance(tree, Chain | Negative) else to_text(tree)
 
 
-def plan_of(slice: Slice, curves: Sequence[Curve], keep: frozenset[str] = frozenset()) -> tuple[PlanStep, ...]:
+def plan_of(slice: Slice, curves: Sequence[Curve], without: frozenset[str] = frozenset()) -> tuple[PlanStep, ...]:
     """What the certified engine does for a slice and what it leaves out.
 
     Parameters
     ----------
-    keep : savings that were switched off.
+    without : savings that were switched off.
     """
     return (
-        *beforehand(slice, keep),
+        *beforehand(slice, without),
         *(
             PlanStep(curve.name, True, f"enclosed by branch and prune in {len(curve.system.unknowns)} unknowns")
             for curve in curves

@@ -33,8 +33,8 @@ Strips = NDArray[np.float64]
 the other one, u, is known, or -1 where neither is; mu, mv; enclosures of c and q in v = mv + c + q (u - mu)."""
 NONE: Strips = np.empty((0, 11))
 _V, _MU, _MV, _C, _Q = 4, 5, 6, 7, 9
-MOST_PIECES = 256
-FINEST = 0.25
+MAX_PIECES = 256
+MIN_PIECE_RISE = 0.25
 """A piece need not rise less along its strip than this part of the strip's thickness."""
 
 
@@ -125,10 +125,10 @@ def _number_of_pieces(strip: NDArray[np.float64], area: float) -> int:
     slope = 0.5 * abs(strip[_Q] + strip[_Q + 1])
     thickness = (strip[_C + 1] - strip[_C]) + (strip[_Q + 1] - strip[_Q]) * along
     rise = along * slope
-    wanted: float = min(sqrt(along * rise / area) if area > 0 else inf, rise / (FINEST * thickness + 1e-300))
+    wanted: float = min(sqrt(along * rise / area) if area > 0 else inf, rise / (MIN_PIECE_RISE * thickness + 1e-300))
     if thickness > strip[2 + v] - strip[v]:
         return 1
-    return ceil(min(max(wanted, 1.0), float(MOST_PIECES)))
+    return ceil(min(max(wanted, 1.0), float(MAX_PIECES)))
 
 
 @compiled
@@ -178,7 +178,7 @@ def pieces(strips: Strips, area: float) -> Boxes:
             low, high = multiply(strip[_Q], strip[_Q + 1], down(start - strip[_MU]), up(end - strip[_MU]))
             low = down(strip[_MV] + down(strip[_C] + low))
             high = up(strip[_MV] + up(strip[_C + 1] + high))
-            # a number that is not one, from an overflow, tells nothing
+            # a number that is not one, from an overflow, says nothing
             low = low if low > strip[v] else strip[v]
             high = high if high < strip[2 + v] else strip[2 + v]
             if low <= high:

@@ -21,7 +21,7 @@ from typing import NoReturn
 import click
 
 from ptmcad.errors import LimitReached, PtmcadError, shown
-from ptmcad.process.handover import Topic, tell, watched
+from ptmcad.process.handover import Topic, send, watched
 from ptmcad.version import __version__
 
 COMMANDS = {
@@ -37,7 +37,7 @@ COMMANDS = {
     "variety": "ptmcad.cli.variety",
     "verify": "ptmcad.cli.verify",
 }
-MOST_ARGUMENTS = 10_000
+MAX_ARGUMENTS = 10_000
 """The parser's time is quadratic in their number."""
 
 
@@ -94,8 +94,8 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
     given = len(sys.argv) - 1 if arguments is None else len(arguments)
-    if given > MOST_ARGUMENTS:
-        click.echo(f"error: {given} arguments are given, more than {MOST_ARGUMENTS}: write a problem record", err=True)
+    if given > MAX_ARGUMENTS:
+        click.echo(f"error: {given} arguments are given, more than {MAX_ARGUMENTS}: write a problem record", err=True)
         return 2
     try:
         status = group.main(args=arguments, prog_name="ptmcad", standalone_mode=False)
@@ -125,8 +125,8 @@ def run(arguments: Sequence[str] | None = None) -> int:
 
 
 def _exhausted() -> int:
-    """Tell that memory has run out, and return the exit status."""
-    tell(Topic.EXHAUSTED)
+    """Report that memory has run out, and return the exit status."""
+    send(Topic.EXHAUSTED)
     if not watched():  # otherwise the other process says so, and saves what there is
         click.echo("stopped: memory ran out", err=True)
     return 3

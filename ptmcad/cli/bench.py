@@ -35,7 +35,7 @@ def _seconds(_context: click.Context, parameter: click.Parameter, value: float) 
 @click.option("--seed", type=click.IntRange(0, 2**31), default=1, show_default=True,
               help="Of the order of the methods, and of the starting points of scipy.")  # fmt: skip
 @click.option("--time-limit", type=float, default=60.0, show_default=True, callback=_seconds, metavar="S",
-              help="Seconds for each method on each slice; what does not fit is left out, and told.")  # fmt: skip
+              help="Seconds for each method on each slice; what does not fit is left out, and reported.")  # fmt: skip
 @click.option("--quick", is_flag=True, help="Fewer and coarser settings.")
 @click.option("--page", is_flag=True, help="Write error-time.md too, a page of all studies in the folder.")
 def command(

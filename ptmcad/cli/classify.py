@@ -20,7 +20,7 @@ from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.errors import ConfigError, ExpressionError, LimitReached
 from ptmcad.options import Options
-from ptmcad.process.handover import Topic, tell, watched
+from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.output import (
     Writer,
     check_writable,
@@ -30,12 +30,12 @@ from ptmcad.process.output import (
     where_saved,
     write_files,
 )
-from ptmcad.question.savings import check_names, kept
+from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import rational
 
 FORMATS = ("json", "png", "svg", "pdf")
-SHORTEST = 0.01
+MIN_SECONDS = 0.01
 """Seconds that are left in any case, so that the result from which to go on is handed on."""
 
 
@@ -60,6 +60,7 @@ def _wanted(
     jobs: int | None,
     tolerance: Fraction | None,
     area_tolerance: Fraction | None,
+    without: tuple[str, ...],
     keep: tuple[str, ...],
     no_areas: bool,
 ) -> Options:
@@ -68,7 +69,7 @@ def _wanted(
         jobs=jobs,
         tolerance=tolerance,
         area_tolerance=area_tolerance,
-        keep=frozenset(keep),
+        without=frozenset((*without, *keep)),
         areas=not no_areas,
     )
 
@@ -94,7 +95,7 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
     target = output.out / f"{slice.name}.json"
     beside = tuple(f"{slice.name}.{suffix}" for suffix in output.formats if suffix != "json")
     if "json" in output.formats:
-        tell(Topic.TARGET, str(target), *beside)
+        send(Topic.TARGET, str(target), *beside)
 
     def handed_over(result: Any) -> None:
         _hand_over(output, result)
@@ -104,10 +105,10 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
         with clock_stopped(options.timeout, spent):  # the time that the import takes is not the computation's
             from ptmcad.ask.classification import prepare, region_map
 
-            _tell_why_none(slice, options, output, "the engine was still being loaded or compiled")
+            _report_why_none(slice, options, output, "the engine was still being loaded or compiled")
             prepare(slice, options)
-        _tell_why_none(slice, options, output, "the first level of the search was not done")
-        left = None if options.timeout is None else max(options.timeout - spent, SHORTEST)
+        _report_why_none(slice, options, output, "the first level of the search was not done")
+        left = None if options.timeout is None else max(options.timeout - spent, MIN_SECONDS)
         try:
             result = region_map(slice, replace(options, timeout=left))
         except LimitReached as stopped:
@@ -122,13 +123,13 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
     return result
 
 
-def _tell_why_none(slice: Slice, options: Options, output: Output, reason: str) -> None:
+def _report_why_none(slice: Slice, options: Options, output: Output, reason: str) -> None:
     """Say why there is no map yet to the process that watches, when maps of this engine can be gone on from."""
     from ptmcad.ask.engines import is_certified
 
     if "json" in output.formats and is_certified(slice, options.engine):
         kept = "; the map to go on from is as it was" if options.resume is not None else ""
-        tell(Topic.RESUMABLE, f"{reason}{kept}")
+        send(Topic.RESUMABLE, f"{reason}{kept}")
 
 
 def _hand_over(output: Output, result: Any) -> str:
@@ -137,7 +138,7 @@ def _hand_over(output: Output, result: Any) -> str:
     if "json" in output.formats:
         state = "partial" if result.status.value == "partial" else "complete"
         open_share = "" if result.cover is None else f", {_percent(result.undetermined)} of it undetermined,"
-        tell(Topic.RESULT, state, text, open_share)
+        send(Topic.RESULT, state, text, open_share)
     return text
 
 
@@ -182,7 +183,7 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
     from ptmcad.exact import plan
 
     certified = is_certified(slice, options.engine)
-    off = kept(options.keep, certified)
+    off = switched_off(options.without, certified)
     if certified:
         from ptmcad.certified.plan import beforehand
 
@@ -210,7 +211,7 @@ def _share(_context: click.Context, parameter: click.Parameter, value: str | Non
     return share
 
 
-def _kept(_context: click.Context, parameter: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
+def _names_of_savings(_context: click.Context, parameter: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
     try:
         check_names(names)
     except ConfigError as error:
@@ -239,14 +240,15 @@ def _resumed(slice: Slice, path: Path) -> Any:
 
 @click.command("classify")
 @slice_options
-@click.option("--count", type=click.Choice([c.value for c in Count]), help="What tells two regions apart.")
+@click.option("--count", type=click.Choice([c.value for c in Count]), help="What distinguishes two regions.")
 @click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
 @click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="json,png,svg",
               show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
-@click.option("--keep", multiple=True, callback=_kept, metavar="NAME",
-              help="Switch off a saving: compute what would be left out; 'all' for every one. Repeatable.")  # fmt: skip
+@click.option("--without", multiple=True, callback=_names_of_savings, metavar="NAME",
+              help="Do without a saving, compute what it leaves out; 'all' for every one. Repeatable.")  # fmt: skip
+@click.option("--keep", multiple=True, callback=_names_of_savings, hidden=True)  # the older name of --without
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),
@@ -300,7 +302,7 @@ def command(
     with held(limits):
         if resume is not None:
             if "json" in output.formats:
-                tell(Topic.RESUMABLE, "the map to go on from was still being checked; it is as it was")
+                send(Topic.RESUMABLE, "the map to go on from was still being checked; it is as it was")
             begun = time.monotonic()
             earlier = _resumed(slice, resume)  # of many rectangles that takes a while, which is part of the limit
             options, spent = replace(options, resume=earlier), time.monotonic() - begun

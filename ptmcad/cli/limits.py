@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 import click
 
 from ptmcad.cli.gathering import gathered
-from ptmcad.process.handover import Topic, tell, watched
+from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.memory import Bound, bound_of, bounded, default_bound
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -53,30 +53,30 @@ def limit_options(command: F) -> F:
                              "machine, is no part of them.")(command)  # fmt: skip
 
 
-def tell_deadline(timeout: float | None, spent: float = 0.0) -> None:
+def report_deadline(timeout: float | None, spent: float = 0.0) -> None:
     """The time limit starts now, or started so many seconds ago."""
     if timeout is not None:
-        tell(Topic.DEADLINE, repr(time.monotonic() + timeout - spent), f"{timeout:g} s")
+        send(Topic.DEADLINE, repr(time.monotonic() + timeout - spent), f"{timeout:g} s")
 
 
 @contextmanager
 def clock_stopped(timeout: float | None, spent: float = 0.0) -> Iterator[None]:
     """The time limit does not run inside; it starts at the end, or has started so many seconds before."""
     if timeout is not None:
-        tell(Topic.DEADLINE, repr(math.inf), "")
+        send(Topic.DEADLINE, repr(math.inf), "")
     yield
-    tell_deadline(timeout, spent)
+    report_deadline(timeout, spent)
 
 
 @contextmanager
 def held(limits: Limits) -> Iterator[None]:
     """Set the limits for what is done inside."""
-    tell_deadline(limits.timeout)
+    report_deadline(limits.timeout)
     bound = limits.max_memory or (default_bound() if watched() else None)
     if bound is not None:
-        tell(Topic.MEMORY, str(bound.size), bound.text, "default" if limits.max_memory is None else "asked")
+        send(Topic.MEMORY, str(bound.size), bound.text, "default" if limits.max_memory is None else "asked")
         # numpy's linear algebra, which nothing here uses, would reserve memory for every processor of the machine
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    tell(Topic.LOADING, "")  # the program itself is there
+    send(Topic.LOADING, "")  # the program itself is there
     with nullcontext() if bound is None else bounded(bound):
         yield

@@ -16,13 +16,13 @@ from ptmcad.errors import ConfigError, shown
 from ptmcad.process.streams import reader_left
 from ptmcad.text.textfile import lines_of
 
-LONGEST_ROW = 100_000
+MAX_ROW = 100_000
 """Characters of a row of points, which may go over several lines."""
 FIELDS = ("status", "region", "cell", "total", "stable", "index")
 
 
 def fields_of(result: RegionMap) -> tuple[str, ...]:
-    """What is told of a point: in a certified map also how many stable equilibria are admissible."""
+    """What is reported of a point: in a certified map also how many stable equilibria are admissible."""
     return FIELDS if result.cover is None else (*FIELDS, "admissible")
 
 
@@ -65,8 +65,8 @@ def rows_of(path: Path, result: RegionMap) -> Iterator[dict[str, str]]:
     Raises
     ------
     ConfigError
-        When the file can not be read, an axis has no column, two columns or no value, or a row is longer than
-        `LONGEST_ROW`.
+        When the file cannot be read, an axis has no column, two columns or no value, or a row is longer than
+        `MAX_ROW`.
     """
     names = result.slice.axis_names
     lines = _Lines(path)
@@ -95,7 +95,7 @@ class _Lines:
 
     def __init__(self, path: Path):
         self.path = path
-        self.lines = lines_of(path, LONGEST_ROW, "a CSV file of points")
+        self.lines = lines_of(path, MAX_ROW, "a CSV file of points")
         self.number = 0
         self.row = 0
 
@@ -106,8 +106,8 @@ class _Lines:
         line = next(self.lines)
         self.number += 1
         self.row += len(line)
-        if line.strip() and self.row > LONGEST_ROW:
-            raise ConfigError(f"the row that ends here has more than {LONGEST_ROW} characters: is a quotation mark "
+        if line.strip() and self.row > MAX_ROW:
+            raise ConfigError(f"the row that ends here has more than {MAX_ROW} characters: is a quotation mark "
                               "missing?", file=str(self.path), line=self.number)  # fmt: skip
         return line
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.limits import Limits, held, limit_options, tell_deadline
+from ptmcad.cli.limits import Limits, held, limit_options, report_deadline
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import shown_path
 from ptmcad.process.output import check_writable
@@ -32,7 +32,7 @@ def command(*, out: Path, limits: Limits) -> int:
         from ptmcad.studies.paper.claim import Verdict
         from ptmcad.studies.paper.reproduce import reproduce
 
-        tell_deadline(limits.timeout)  # anew: the time that the import took is not the computation's
+        report_deadline(limits.timeout)  # anew: the time that the import took is not the computation's
         with ProgressBar() as progress:
             found = reproduce(out, progress)
         click.echo(found.table())

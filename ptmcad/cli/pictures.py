@@ -46,7 +46,7 @@ def write_result(folder: Path, writers: Mapping[str, Writer], name: str, text: s
     PictureError
         After the JSON has been saved.
     OutputError
-        When a file can not be written.
+        When a file cannot be written.
     """
     try:
         return write_files(folder, writers)

@@ -10,7 +10,7 @@ import sys
 import time
 from types import TracebackType
 
-from ptmcad.process.handover import Topic, tell
+from ptmcad.process.handover import Topic, send
 
 PATIENCE = 1.0
 _INTERVAL = 0.1
@@ -35,7 +35,7 @@ class ProgressBar:
         filled = _WIDTH * min(done, total) // total if total > 0 else 0
         bar = "#" * filled + "." * (_WIDTH - filled)
         if not self.shown:
-            tell(Topic.PROGRESS)  # this process may not live to clear the line
+            send(Topic.PROGRESS)  # this process may not live to clear the line
         where = stage if stage.endswith("%") else f"{stage} {done}/{total}"
         sys.stderr.write(f"\r\x1b[K[{bar}] {where}, {now - self.start:.0f} s")
         sys.stderr.flush()

@@ -127,7 +127,7 @@ def answer(slice: Slice, request: Request) -> Answer:
     if request.critical:
         raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
     if request.over:
-        refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not tell what to leave out
+        refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
     texts, parts = [slice.heading], {}
     pictures: dict[str, Callable[[Path], None]] = {}
     if request.at:
@@ -226,9 +226,9 @@ def command(
     """Find the intervals of constant count along one axis; the operation range is where two equilibria are stable.
 
     Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. With free lengths
-    they are enclosed by interval arithmetic, and what could not be decided is told. All digits of the
+    they are enclosed by interval arithmetic, and what could not be decided is reported. All digits of the
     tables are right. With --over the widest operation range is found and proved; with --path stable poses are followed
-    until they vanish, and the pose to which the mechanism snaps is told.
+    until they vanish, and the pose to which the mechanism snaps is reported.
 
     \b
     Examples:

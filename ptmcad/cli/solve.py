@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from ptmcad.answer.poses import MOST_DIGITS, Poses
+from ptmcad.answer.poses import MAX_DIGITS, Poses
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
@@ -36,7 +36,7 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
     Raises
     ------
     OutputError
-        When a file can not be written.
+        When a file cannot be written.
     """
     writers: dict[str, Writer] = {}
     for file in names:
@@ -66,7 +66,7 @@ def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
 @click.argument("config", required=False, type=click.Path(path_type=Path))
 @click.option("--at", "at", metavar="NAME=VALUE,...", help="The point: parameters, or axes of CONFIG, exact numbers.")
 @click.option("--set", "sets", multiple=True, metavar="NAME=VALUE", help="Fix one more parameter.")
-@click.option("--digits", type=click.IntRange(1, MOST_DIGITS), default=DIGITS, show_default=True, metavar="N",
+@click.option("--digits", type=click.IntRange(1, MAX_DIGITS), default=DIGITS, show_default=True, metavar="N",
               help="Significant digits, all of them right.")  # fmt: skip
 @click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="table", show_default=True,
               metavar="LIST", help=f"What to make, of {', '.join(FORMATS)}; the table is printed.")  # fmt: skip

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 FORMATS = ("table", "json", "csv", "md", "png", "svg")
 NAME = "stress"
-GRACE = 60.0
+GRACE_SECONDS = 60.0
 """Seconds after the time limit for the case that is being run, before the process is ended from outside."""
 
 
@@ -33,7 +33,7 @@ def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> None:
     Raises
     ------
     OutputError
-        When a file can not be written.
+        When a file cannot be written.
     """
     from ptmcad.studies.stress.report import markdown, to_csv, to_json
 
@@ -105,7 +105,7 @@ def command(
     from ptmcad.studies.stress.named import chosen  # the cases' numbers need no library
 
     timeout = limits.timeout
-    limit = None if timeout is None else timeout + GRACE
+    limit = None if timeout is None else timeout + GRACE_SECONDS
     with held(replace(limits, timeout=limit)):
         cases = _cases(names, number, seed, everything=only_list)
         if only_list:

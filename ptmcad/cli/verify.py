@@ -21,7 +21,7 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
     """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
 
     Prints what was checked, and how. The exit status is 0 when every check passed, 1 when one failed (the first
-    violated claim is printed with a witness), 2 when the file can not be read, 3 when a limit was reached before that.
+    violated claim is printed with a witness), 2 when the file cannot be read, 3 when a limit was reached before that.
 
     \b
     Example:

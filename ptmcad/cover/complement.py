@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.cover.graph import Touching, connected, touching
-from ptmcad.cover.rectangles import MOST_STEPS, Cover, Rectangle
+from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
 from ptmcad.cover.subdivision import COVERED, CUT, FREE, Subdivision, rectangle_array, subdivide
 
 Integers = NDArray[np.int64]
@@ -53,7 +53,7 @@ class Components:
     Attributes
     ----------
     areas : of the components, in squares of a lattice step.
-    rectangles : for each component an open rectangle inside of it that can not be made longer on any side: the part
+    rectangles : for each component an open rectangle inside of it that cannot be made longer on any side: the part
         of the subdivision with the longest smaller side, grown.
     cluster_areas : areas of the unions of the clusters' rectangles.
     cluster_of : for each rectangle of the cover the number of its cluster.
@@ -173,7 +173,7 @@ def _numbered(
 def _bounding_boxes(leaves: Integers, group: Integers, groups: int) -> Integers:
     """The smallest rectangle around the leaves of each group."""
     boxes = np.empty((groups, 4), dtype=np.int64)
-    for k, (extreme, start) in enumerate(((np.minimum, MOST_STEPS), (np.maximum, 0)) * 2):
+    for k, (extreme, start) in enumerate(((np.minimum, MAX_STEPS), (np.maximum, 0)) * 2):
         boxes[:, k] = start
         extreme.at(boxes[:, k], group, leaves[:, k])
     return boxes

@@ -72,8 +72,8 @@ def connected(number: int, first: Integers, second: Integers) -> Integers:
     label = np.arange(number)
     while len(first):
         a, b = label[first], label[second]
-        apart = a != b
-        first, second, a, b = first[apart], second[apart], a[apart], b[apart]
+        separate = a != b
+        first, second, a, b = first[separate], second[separate], a[separate], b[separate]
         # labels are roots here: every root takes the smallest of its neighbours' roots, if that is smaller
         np.minimum.at(label, np.maximum(a, b), np.minimum(a, b))
         while True:

@@ -12,7 +12,7 @@ Rectangle = tuple[int, int, int, int]
 """left, right, bottom, top in lattice steps from the window's lower left corner; closed; 0 <= left < right <= steps."""
 Window = tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
 """Low and high end of both axes."""
-MOST_STEPS = 2**40
+MAX_STEPS = 2**40
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class Cover:
 
     Attributes
     ----------
-    steps : number of equal lattice steps along each axis of the window, a power of two, at most `MOST_STEPS`.
+    steps : number of equal lattice steps along each axis of the window, a power of two, at most `MAX_STEPS`.
     """
 
     steps: int

@@ -12,13 +12,13 @@ from math import isinf
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.cover.rectangles import MOST_STEPS, Cover, Window
+from ptmcad.cover.rectangles import MAX_STEPS, Cover, Window
 
 Integers = NDArray[np.int64]
 Floats = NDArray[np.float64]
 _ERROR = 2.0**-50
 """Eight units of rounding: bound of the estimate's error, relative to the sizes of what is subtracted ..."""
-_LEAST_ERROR = 2.0**-60
+_MIN_ERROR = 2.0**-60
 """... and where the window's end is subnormal."""
 _USUAL = 10**250
 """Beyond it estimates could overflow."""
@@ -40,8 +40,8 @@ def from_boxes(window: Window, low: Floats, high: Floats, steps: int) -> Cover:
     ---------
     Every point of the open window that lies in a closed box lies in a rectangle.
     """
-    if not 0 < steps <= MOST_STEPS:
-        raise ValueError(f"a cover's lattice has 1 to {MOST_STEPS} steps, not {steps}")
+    if not 0 < steps <= MAX_STEPS:
+        raise ValueError(f"a cover's lattice has 1 to {MAX_STEPS} steps, not {steps}")
     low, high = np.asarray(low, dtype=np.float64).reshape(-1, 2), np.asarray(high, dtype=np.float64).reshape(-1, 2)
     if not (low <= high).all():
         raise ValueError("a box has a low end that is not at most its high end")
@@ -69,7 +69,7 @@ def cover_of(array: Integers, steps: int) -> Cover:
 def rounded_down(values: Floats, low: Fraction, high: Fraction, steps: int) -> Integers:
     """floor((value - low) steps / (high - low)), but -1 and steps stand for all that is outside.
 
-    A value that is so near above a line of the lattice that floats can not tell gets the step below that line.
+    A value that is so near above a line of the lattice that floats cannot tell gets the step below that line.
     """
     width = high - low
     if max(abs(low), 1 / width, width) > _USUAL:
@@ -77,7 +77,7 @@ def rounded_down(values: Floats, low: Fraction, high: Fraction, steps: int) -> I
     start, scale = float(low), float(steps / width)
     with np.errstate(over="ignore", invalid="ignore"):
         estimate = (values - start) * scale
-        margin = (np.abs(values) + abs(start)) * scale * _ERROR + _LEAST_ERROR
+        margin = (np.abs(values) + abs(start)) * scale * _ERROR + _MIN_ERROR
         below = np.clip(np.floor(estimate - margin), -1, steps)
     unsure = np.isnan(below)
     result = np.where(unsure, 0.0, below).astype(np.int64)

@@ -1,7 +1,7 @@
 """A subdivision of the window into cells that are each covered by one rectangle or meet the interior of none.
 
 Guarantee: the leaves tile the window, and every leaf is of one of the two kinds, exactly. All coordinates are 64 bit
-integers of at most `ptmcad.cover.rectangles.MOST_STEPS`, whose sums and doubles do not overflow.
+integers of at most `ptmcad.cover.rectangles.MAX_STEPS`, whose sums and doubles do not overflow.
 
 The window is cut in two at an edge of a rectangle, and so are the parts, as long as a rectangle meets a part without
 covering it. The edge next to the middle is taken, so that the depth is near the logarithm of the number of rectangles.
@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.cover.rectangles import MOST_STEPS, Cover
+from ptmcad.cover.rectangles import MAX_STEPS, Cover
 
 Integers = NDArray[np.int64]
 FREE, COVERED, CUT = 0, 1, 2
@@ -101,8 +101,8 @@ def rectangle_array(cover: Cover) -> Integers:
         When a rectangle is not one, or the lattice is too fine.
     """
     steps = cover.steps
-    if not 0 < steps <= MOST_STEPS:
-        raise ValueError(f"a cover's lattice has 1 to {MOST_STEPS} steps, not {steps}")
+    if not 0 < steps <= MAX_STEPS:
+        raise ValueError(f"a cover's lattice has 1 to {MAX_STEPS} steps, not {steps}")
     try:
         array = np.array(cover.rectangles, dtype=np.int64).reshape(-1, 4)
     except (OverflowError, ValueError) as error:

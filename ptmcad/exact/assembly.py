@@ -19,7 +19,6 @@ from ptmcad.answer.regionmap import (
     CriticalValue,
     Merge,
     NonAdjacency,
-    Reason,
     Region,
     RegionMap,
     Solution,
@@ -81,7 +80,7 @@ def assemble(
         adjacencies=adjacencies,
         non_adjacencies=() if cells is None else _non_adjacencies(cells.stacks.stacks, cells.neighbours.crossings),
         regions=() if cells is None else _regions(cells, samples, areas, problem.area),
-        plan=plan_of(problem.slice, variety.components, variety.base, variety.costs, options.keep, options.areas),
+        plan=plan_of(problem.slice, variety.components, variety.base, variety.costs, options.without, options.areas),
         undetermined=Fraction(1 if cells is None else 0),
         versions=versions(),
         precision=precision,
@@ -132,13 +131,13 @@ def _non_adjacencies(stacks: Sequence[StackData], crossings: Sequence[Crossing])
         found += [
             NonAdjacency(
                 critical_value=s,
-                left=tuple(range(first + slot.left[0], first + slot.left[1] + 1)),
-                right=tuple(range(following + slot.right[0], following + slot.right[1] + 1)),
-                below=None if slot.below is None else segment_of(slot.below),
-                above=None if slot.above is None else segment_of(slot.above),
-                reason=Reason(slot.closing.value),
+                left=tuple(range(first + gap.left[0], first + gap.left[1] + 1)),
+                right=tuple(range(following + gap.right[0], following + gap.right[1] + 1)),
+                below=None if gap.below is None else segment_of(gap.below),
+                above=None if gap.above is None else segment_of(gap.above),
+                reason=gap.reason,
             )
-            for slot in crossing.slots
+            for gap in crossing.gaps
         ]
         first = following
     return tuple(found)

@@ -165,7 +165,7 @@ def equilibria(system: ParametricSystem, values: Mapping[str, fmpq]) -> Equilibr
 def _enclosed(
     point: PointSystem, representation: UnivariateRepresentation, roots: Sequence[RealRoot], bits: int
 ) -> tuple[Equilibrium, ...] | None:
-    """The solutions at these roots in disjoint boxes; None when the precision is too low to tell all signs."""
+    """The solutions at these roots in disjoint boxes; None when the precision is too low to decide all signs."""
     found: list[Equilibrium] = []
     with ctx.workprec(bits):
         for root in roots:
@@ -178,11 +178,11 @@ def _enclosed(
             if negative is None or box is None:
                 return None
             found.append(Equilibrium(*box, negative))
-    apart = all(
+    disjoint = all(
         any(abs(x - y) > a.radius + b.radius for x, y in zip(a.center, b.center, strict=True))
         for a, b in combinations(found, 2)
     )
-    return tuple(found) if apart else None
+    return tuple(found) if disjoint else None
 
 
 def _negative_eigenvalues(point: PointSystem, unknowns: list[arb]) -> int | None:

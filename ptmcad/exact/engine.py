@@ -99,13 +99,13 @@ def exact_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
 
 def _stages(problem: SliceProblem, options: Options, clock: _Clock) -> Iterator[Reached]:
     """What there is after the variety, after the counts, and with areas if they are asked for."""
-    keep = options.keep
+    without = options.without
     clock.report("variety")
-    variety = variety_of(problem, keep)
+    variety = variety_of(problem, without)
     yield Reached(variety)
     clock.stage("variety")
     clock.report("projection")
-    projection = projection_of(problem, variety, keep, clock.check)
+    projection = projection_of(problem, variety, without, clock.check)
     clock.stage("projection")
     clock.report("stacks")
     stacks = stacks_of(problem, variety, projection)
@@ -118,17 +118,17 @@ def _stages(problem: SliceProblem, options: Options, clock: _Clock) -> Iterator[
     clock.stage("adjacency")
     if options.areas:
         clock.report("areas")
-        areas = areas_of(problem, variety, cells, options.area_tolerance or AREA_TOLERANCE, keep, clock.check)
+        areas = areas_of(problem, variety, cells, options.area_tolerance or AREA_TOLERANCE, without, clock.check)
         clock.stage("areas")
         yield Reached(variety, cells, areas)
 
 
-def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVariety:
+def slice_variety(slice: Slice, without: frozenset[str] = frozenset()) -> SliceVariety:
     """The discriminant variety of a slice, the first stage of `exact_map` alone.
 
     Parameters
     ----------
-    keep : names of savings to switch off, of `ptmcad.question.savings`.
+    without : names of savings to switch off, of `ptmcad.question.savings`.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def slice_variety(slice: Slice, keep: frozenset[str] = frozenset()) -> SliceVari
     without_free_lengths(slice.parameters, "the discriminant variety is")
     prove_slice(slice)
     problem = problem_of(slice)
-    variety = variety_of(problem, keep)
+    variety = variety_of(problem, without)
     return SliceVariety(
         slice,
         variety.components,

@@ -17,7 +17,7 @@ LATER = ("infinity", "no-real-points", "axis-order", "even-powers")
 """Savings of which nothing can be said before the curves are known."""
 
 
-def beforehand(slice: Slice, keep: frozenset[str], areas: bool = True) -> tuple[PlanStep, ...]:
+def beforehand(slice: Slice, without: frozenset[str], areas: bool = True) -> tuple[PlanStep, ...]:
     """What is known of the plan before anything is computed.
 
     Parameters
@@ -25,11 +25,11 @@ def beforehand(slice: Slice, keep: frozenset[str], areas: bool = True) -> tuple[
     areas : whether they are asked for.
     """
     return (
-        saving_step("imports", keep),
+        saving_step("imports", without),
         *zero_terms(zero_parameters(slice)),
-        saving_step("sign-curve", keep),
-        saving_step("hermite-matrix", keep),
-        saving_step("equal-counts", keep) if areas else PlanStep("areas of the regions", False, "not asked for"),
+        saving_step("sign-curve", without),
+        saving_step("hermite-matrix", without),
+        saving_step("equal-counts", without) if areas else PlanStep("areas of the regions", False, "not asked for"),
     )
 
 
@@ -38,7 +38,7 @@ def plan_of(
     components: Sequence[Component],
     base: int,
     costs: tuple[int, int],
-    keep: frozenset[str],
+    without: frozenset[str],
     areas: bool = True,
 ) -> tuple[PlanStep, ...]:
     """The steps of the exact engine for a slice.
@@ -47,20 +47,20 @@ def plan_of(
     ----------
     base : number of the base axis.
     costs : predicted costs of the two axis orders.
-    keep : savings that were switched off.
+    without : savings that were switched off.
     areas : whether they are asked for.
     """
-    steps = list(beforehand(slice, keep, areas))
-    steps.append(saving_step("infinity", keep))
-    if "no-real-points" in keep:
-        steps.append(saving_step("no-real-points", keep))
+    steps = list(beforehand(slice, without, areas))
+    steps.append(saving_step("infinity", without))
+    if "no-real-points" in without:
+        steps.append(saving_step("no-real-points", without))
     for c in components:
         what = f"{c.kind.value} component {_short(c, slice.axis_names)}"
         steps.append(PlanStep(what, not c.left_out, c.left_out or f"degrees {c.polynomial.degrees}", _saving_of(c)))
-    steps += _axis_order(slice.axis_names, base, costs, keep)
+    steps += _axis_order(slice.axis_names, base, costs, without)
     powers = ", ".join(_even_powers(components, slice.axis_names))
     if powers:
-        steps.append(saving_step("even-powers", keep, why=f"computed in the power, where only such occur: {powers}"))
+        steps.append(saving_step("even-powers", without, why=f"computed in the power, where only such occur: {powers}"))
     return tuple(steps)
 
 
@@ -70,8 +70,10 @@ def _saving_of(c: Component) -> str:
     return "infinity" if c.left_out == HARMLESS else "no-real-points"
 
 
-def _axis_order(names: tuple[str, str], base: int, costs: tuple[int, int], keep: frozenset[str]) -> Iterator[PlanStep]:
-    if "axis-order" in keep:
+def _axis_order(
+    names: tuple[str, str], base: int, costs: tuple[int, int], without: frozenset[str]
+) -> Iterator[PlanStep]:
+    if "axis-order" in without:
         yield PlanStep(f"decomposition over {names[base]}", True, "the first axis, as asked for", "axis-order")
         return
     if costs[0] == costs[1]:
@@ -79,7 +81,7 @@ def _axis_order(names: tuple[str, str], base: int, costs: tuple[int, int], keep:
     else:
         reason = f"predicted cost {min(costs):.3g} against {max(costs):.3g}"
     yield PlanStep(f"decomposition over {names[base]}", True, reason)
-    yield saving_step("axis-order", keep, f"decomposition over {names[1 - base]}")
+    yield saving_step("axis-order", without, f"decomposition over {names[1 - base]}")
 
 
 def _even_powers(components: Sequence[Component], names: tuple[str, str]) -> Iterator[str]:

@@ -25,7 +25,7 @@ def merge(keys: Sequence[Hashable], links: Sequence[Link]) -> tuple[int, ...]:
 
     Parameters
     ----------
-    keys : the count by which regions are told apart, for each cell.
+    keys : the count by which regions are distinguished, for each cell.
 
     Raises
     ------

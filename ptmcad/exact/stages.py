@@ -30,7 +30,7 @@ from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
-from ptmcad.exact.cad.adjacency import Crossing, Passage, cross
+from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
 from ptmcad.exact.cad.area import region_areas
 from ptmcad.exact.cad.curves import Curve, curve
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
@@ -300,14 +300,14 @@ def _adjacencies(
             yield link(first + level, first + level + 1, wall.component, None)
         following = first + len(stack.heights)
         if s < len(crossings):
-            for p in crossings[s].passages:
+            for p in crossings[s].separators:
                 yield link(first + p.left, following + p.right, across[s], segment_of(p))
         first = following
 
 
-def segment_of(passage: Passage) -> Segment:
-    """The open segment that proves a passage."""
-    return (to_fraction(passage.low), to_fraction(passage.high), to_fraction(passage.height))
+def segment_of(separator: Separator) -> Segment:
+    """The open segment that proves a separator."""
+    return (to_fraction(separator.low), to_fraction(separator.high), to_fraction(separator.height))
 
 
 def areas_of(

@@ -25,7 +25,7 @@ from ptmcad.text.balls import enclosed
 from ptmcad.text.enclosure import Enclosure
 
 _Ring = TypeVar("_Ring", fmpq, nmod)
-MOST_BITS = 2**22
+MAX_BITS = 2**22
 """Parameters of a thousand digits need a hundredth of them: a number that is still open is rational unnoticed."""
 _ORDERS = range(3, 43)
 """Orders of roots of unity: a field of degree d has cosines of those with totient at most 2d, and d is at most 6."""
@@ -129,7 +129,7 @@ def pose_of(model: Model, state: State, digits: int) -> tuple[Pose, int]:
     Raises
     ------
     ArithmeticError
-        When `MOST_BITS` do not settle a number, which would be a fault of this program.
+        When `MAX_BITS` do not settle a number, which would be a fault of this program.
     """
     bits = 64 + 4 * digits
     settled: list[Enclosure | None] = []
@@ -145,7 +145,7 @@ def pose_of(model: Model, state: State, digits: int) -> tuple[Pose, int]:
         if len(numbers) == len(settled):
             return _assembled(model, state, iter(numbers)), bits
         bits *= 2
-        if bits > MOST_BITS:
+        if bits > MAX_BITS:
             raise ArithmeticError(
                 f"{len(settled) - len(numbers)} numbers of a pose are not settled by {bits // 2} bits"
             )
@@ -210,8 +210,8 @@ def _chebyshev(order: int, cosine: Element) -> Element:
 def _square_root(square: _Number) -> _Number:
     if square.exact is None:
         return _Number(None, square.ball.sqrt())
-    above, below = isqrt(square.exact.numerator), isqrt(square.exact.denominator)
-    root = Fraction(above, below)
+    numerator, denominator = isqrt(square.exact.numerator), isqrt(square.exact.denominator)
+    root = Fraction(numerator, denominator)
     return _Number(root if root * root == square.exact else None, _arb(square.exact).sqrt())
 
 
@@ -249,9 +249,9 @@ def _eigenvalues(trace: _Number, spread: _Number, rational: Fraction | None) -> 
     if trace.exact is not None and root.exact is not None:
         return _Number((trace.exact - root.exact) / 2, balls[0]), _Number((trace.exact + root.exact) / 2, balls[1])
     if rational is not None:
-        if (above := 2 * _arb(rational) - trace.ball) > 0:
+        if (excess := 2 * _arb(rational) - trace.ball) > 0:
             return _Number(None, balls[0]), _Number(rational, balls[1])
-        if above < 0:
+        if excess < 0:
             return _Number(rational, balls[0]), _Number(None, balls[1])
         return _Number(None, arb.nan()), _Number(None, arb.nan())
     return _Number(None, balls[0]), _Number(None, balls[1])

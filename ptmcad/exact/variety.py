@@ -54,7 +54,7 @@ def discriminant_variety(
     parameters: Mapping[str, Ratio],
     window: tuple[Interval, Interval],
     limits: Sequence[Coefficient] = (),
-    keep: frozenset[str] = frozenset(),
+    without: frozenset[str] = frozenset(),
 ) -> DiscriminantVariety:
     """The discriminant variety of a slice over a window.
 
@@ -63,7 +63,7 @@ def discriminant_variety(
     parameters : each parameter as a ratio of polynomials in Z[x, y].
     window : the ranges of x and y.
     limits : further polynomials whose zeros bound the slice's domain (lengths and stiffnesses that vanish).
-    keep : names of savings to switch off, of `ptmcad.question.savings`.
+    without : names of savings to switch off, of `ptmcad.question.savings`.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def discriminant_variety(
     equations = on_slice(system, parameters)
     algebra = _algebra(equations)
     rows = multiples(algebra, equations.jacobian)
-    jacobian_norm = determinant([[ratio(c, below) for c in row] for row, below in rows])
+    jacobian_norm = determinant([[ratio(c, denominator) for c in row] for row, denominator in rows])
     if jacobian_norm[0].is_zero():
         raise DegenerateSliceError(
             "the slice lies inside the discriminant variety: at every point of it some equilibrium has a singular "
@@ -90,13 +90,13 @@ def discriminant_variety(
                 found[polynomial] = Component(polynomial, kind, left_out or outside(factor))
 
     def outside(factor: Coefficient) -> str:
-        return NO_POINT if "no-real-points" not in keep and nowhere_zero(factor, *window) else ""
+        return NO_POINT if "no-real-points" not in without and nowhere_zero(factor, *window) else ""
 
     for polynomial in (*equations.boundary, *limits):
         adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
     adopt(irreducible_factors(jacobian_norm[0]), Kind.CRITICAL)
     suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in found]
-    if "infinity" in keep:
+    if "infinity" in without:
         adopt(_with_poles(algebra, suspects, equations.unknowns), Kind.INFINITY)
     else:
         hidden = [f for f in suspects if outside(f)]
@@ -108,9 +108,9 @@ def discriminant_variety(
         seen = poles_at_points(algebra, doubtful, equations.unknowns)
         adopt(seen, Kind.INFINITY)
         adopt(_with_poles(algebra, [f for f in doubtful if f not in seen], equations.unknowns), Kind.INFINITY)
-    if "sign-curve" in keep:
+    if "sign-curve" in without:
         adopt(irreducible_factors(norm(algebra, first_minor(system, parameters))[0]), Kind.AUXILIARY)
-    if "hermite-matrix" in keep:
+    if "hermite-matrix" in without:
         for part in determinant(trace_form(algebra)):
             adopt(irreducible_factors(part), Kind.AUXILIARY)
     order = {Kind.CRITICAL: 0, Kind.INFINITY: 1, Kind.BOUNDARY: 2, Kind.AUXILIARY: 3}

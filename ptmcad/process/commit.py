@@ -8,7 +8,7 @@ voucher is the old one or the new one, and the others are of the same set or mis
 `finish` and `recover` complete the set, or restore the older one, from any state in which a process, or a recovery, was
 killed. An error restores the older set. When that fails too, the journal stays, and the message says so.
 
-The states are told apart by which hidden names exist. For every file the journal names the target, the new file's
+The states are distinguished by which hidden names exist. For every file the journal names the target, the new file's
 hidden name, and a hidden name for the old file. Forward: hide the old pictures, keep the old voucher under a second
 name, rename the new voucher, rename the new pictures, remove the journal. Back: hide the new pictures, rename the old
 voucher, rename the old pictures, remove the journal. The journal's suffix says the direction. Either can be begun again
@@ -16,7 +16,7 @@ after any of its steps, and back after any step of forward.
 
 Not guaranteed: the order of the steps on disk when the machine loses power; that the voucher is there at every moment
 on file systems without hard links, where it is missing between two renames; recovery by another process on file systems
-without locks, where what is left of a dead process cannot be told from what a live one uses.
+without locks, where what is left of a dead process cannot be distinguished from what a live one uses.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ptmcad.errors import OutputError
-from ptmcad.process.handover import Topic, tell, undisturbed
+from ptmcad.process.handover import Topic, send, undisturbed
 from ptmcad.process.journal import REDO, UNDO, Journal, Move, as_text, hidden, journals, read_journal
 
 if sys.platform != "win32":
@@ -101,7 +101,7 @@ def _lock(descriptor: int, folder: Path, patience: float | None) -> bool:
                 time.sleep(_PAUSE)
             elif patience is None:
                 silent = False
-                tell(Topic.WAITING, str(folder))
+                send(Topic.WAITING, str(folder))
             else:
                 raise
         except OSError:  # a file system without locks
@@ -125,16 +125,16 @@ def put_into_place(files: Mapping[Path, Path]) -> None:
     *others, (voucher, new) = files.items()
     journal = voucher.with_name(f".{voucher.stem}.{os.urandom(4).hex()}{REDO}")
     with undisturbed():
-        tell(Topic.RENAMES, str(journal), str(voucher), identity(new))
+        send(Topic.RENAMES, str(journal), str(voucher), identity(new))
         if not others:  # one step, which needs no journal
-            with _as_they_were(voucher):
+            with _as_output_error(voucher):
                 disk.replace(new, voucher)
             return
         moves = tuple(
             Move(target, source, hidden(target, "old") if os.path.lexists(target) else None)
             for target, source in files.items()
         )
-        with _as_they_were(voucher):
+        with _as_output_error(voucher):
             for target in files:
                 if target.is_dir() and not target.is_symlink():
                     raise IsADirectoryError(None, "Is a directory", str(target))
@@ -200,7 +200,7 @@ def discard(paths: Iterable[Path]) -> None:
 
 
 def identity(path: Path) -> str:
-    """What tells a file from all others wherever it is renamed to; empty when there is none."""
+    """What distinguishes a file from all others wherever it is renamed to; empty when there is none."""
     try:
         found = os.lstat(path)
     except OSError:
@@ -214,11 +214,11 @@ def reason(error: OSError | ValueError) -> str:
 
 
 @contextmanager
-def _as_they_were(voucher: Path) -> Iterator[None]:
+def _as_output_error(voucher: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise OutputError(f"{_place(error, voucher)} can not be written: {reason(error)}; {UNCHANGED}") from error
+        raise OutputError(f"{_place(error, voucher)} cannot be written: {reason(error)}; {UNCHANGED}") from error
 
 
 def _place(error: OSError, default: Path) -> str:
@@ -240,18 +240,18 @@ def _carry_out(journal: Journal) -> None:
             _back(journal)
         except OSError as error:
             place = _place(error, journal.moves[-1].target)
-            raise OutputError(f"{place} can not be put back: {reason(error)}; {UNFINISHED}") from error
+            raise OutputError(f"{place} cannot be put back: {reason(error)}; {UNFINISHED}") from error
         return
     try:
         _forward(journal.moves)
     except OSError as error:
-        text = f"{_place(error, journal.moves[-1].target)} can not be written: {reason(error)}"
+        text = f"{_place(error, journal.moves[-1].target)} cannot be written: {reason(error)}"
         undo = Journal(journal.path.with_suffix(UNDO), journal.moves)
         try:
             disk.replace(journal.path, undo.path)
             _back(undo)
         except OSError as again:
-            text += f", and earlier files can not be put back: {reason(again)}; {UNFINISHED}"
+            text += f", and earlier files cannot be put back: {reason(again)}; {UNFINISHED}"
             raise OutputError(text) from error
         raise OutputError(f"{text}; {UNCHANGED}") from error
     with suppress(OSError):  # everything is in place; what stays is hidden, without effect, and removed by a later run
@@ -320,7 +320,7 @@ def _write(journal: Path, moves: tuple[Move, ...]) -> None:
     """Put the journal into place, whole and on disk."""
     temporary = hidden(moves[-1].target.with_suffix(REDO))
     olds = [str(move.old) for move in moves if move.old is not None]
-    tell(Topic.TEMPORARY, str(temporary), *olds)
+    send(Topic.TEMPORARY, str(temporary), *olds)
     try:
         with temporary.open("x", encoding="utf-8") as stream:
             stream.write(as_text(moves))
@@ -334,5 +334,5 @@ def _write(journal: Path, moves: tuple[Move, ...]) -> None:
 
 
 def _is_ours(path: Path) -> bool:
-    """Whether this user has made it: nobody else tells this program what to rename."""
+    """Whether this user has made it: nobody else instructs this program what to rename."""
     return sys.platform == "win32" or os.lstat(path).st_uid == os.geteuid()

@@ -1,4 +1,4 @@
-"""What a computing process tells the process that watches it: messages through a pipe, one way.
+"""What a computing process reports to the process that watches it: messages through a pipe, one way.
 
 Guarantee: a message is received whole or not at all, also from a process that is killed while it sends. In a process
 that nobody watches every function here does nothing.
@@ -40,21 +40,21 @@ class _Sender:
 
 
 def connect(pipe: int) -> None:
-    """Send what this process has to tell into a pipe from now on."""
+    """Send messages of this process into a pipe from now on."""
     _Sender.pipe = pipe
 
 
 def disconnect() -> None:
-    """Tell nothing any more."""
+    """Send nothing any more."""
     _Sender.pipe = None
 
 
 def watched() -> bool:
-    """Whether another process watches this one, and will act when it can not."""
+    """Whether another process watches this one, and will act when it cannot."""
     return _Sender.pipe is not None
 
 
-def tell(topic: Topic, *texts: str) -> None:
+def send(topic: Topic, *texts: str) -> None:
     """Send a message."""
     if _Sender.pipe is None:
         return
@@ -93,7 +93,7 @@ class Receiver:
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """A few steps between which no signal gets in, except one that can not be blocked."""
+    """A few steps between which no signal gets in, except one that cannot be blocked."""
     mask: Callable[..., set[int]] | None = getattr(signal, "pthread_sigmask", None)
     if mask is None:
         yield

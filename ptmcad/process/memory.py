@@ -18,16 +18,16 @@ from fractions import Fraction
 from pathlib import Path
 
 from ptmcad.errors import ConfigError
-from ptmcad.process.handover import Topic, tell
-from ptmcad.process.shortage import SMALL, caller_limits, in_units, speaks_of_memory, usage_of
+from ptmcad.process.handover import Topic, send
+from ptmcad.process.shortage import LOW_LIMIT, caller_limits, in_units, speaks_of_memory, usage_of
 
-SHARE = Fraction(9, 10)
+DEFAULT_SHARE = Fraction(9, 10)
 """The part of the machine's memory that is the bound where none is asked for."""
 
-LEAST = 64 << 20
+MIN_BOUND = 64 << 20
 """The exact engine's libraries alone need about half of this."""
 
-ROOM = 32 << 20
+MIN_ROOM = 32 << 20
 """What there must be beside the libraries once they are loaded, for anything to be computed or drawn."""
 
 _SIZE = re.compile(r"([0-9]{1,12}(?:\.[0-9]{1,12})?)\s*([KMGT])(?:I?B)?", re.IGNORECASE)
@@ -62,8 +62,8 @@ def bound_of(text: str) -> Bound:
     if match is None:
         raise ConfigError(f"'{shown}' is not a size: write a number and a unit, such as 500M or 2G", key="--max-memory")
     size = int(Fraction(match[1]) * _UNITS[match[2].upper()])
-    if size < LEAST:
-        raise ConfigError(f"{shown} is too little to start with: at least {LEAST >> 20}M", key="--max-memory")
+    if size < MIN_BOUND:
+        raise ConfigError(f"{shown} is too little to start with: at least {MIN_BOUND >> 20}M", key="--max-memory")
     if size >= 1 << 60:
         raise ConfigError(f"{shown} is more than any machine has", key="--max-memory")
     return Bound(size, text.strip())
@@ -82,7 +82,7 @@ def default_bound() -> Bound | None:
     if not sizes or min(sizes)[0] <= 0:
         return None
     least, whose = min(sizes)
-    size = int(least * SHARE)
+    size = int(least * DEFAULT_SHARE)
     return Bound(size, f"{size / (1 << 30):.3g}G, nine tenths of this {whose}'s (--max-memory sets another),")
 
 
@@ -120,7 +120,7 @@ def bounded(bound: Bound) -> Iterator[None]:
     try:
         import resource
     except ImportError as error:
-        raise ConfigError("this system can not bound a process's memory", key="--max-memory") from error
+        raise ConfigError("this system cannot bound a process's memory", key="--max-memory") from error
     soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
     sizes = [bound.size, *(limit for limit in (soft, hard) if limit != resource.RLIM_INFINITY)]
     resource.setrlimit(resource.RLIMIT_DATA, (min(sizes), hard))
@@ -137,26 +137,26 @@ def bounded(bound: Bound) -> Iterator[None]:
 def loading(what: str) -> Iterator[None]:
     """Load libraries inside, without the bound, which holds again afterwards.
 
-    The watching process is told, so that it knows that a failure here under a low limit of the caller's, which can not
-    be put off, is that limit's.
+    The watching process is informed: so it knows that a failure here under a low limit of the caller's, which cannot be
+    put off, is that limit's.
 
     Raises
     ------
     MemoryError
-        When a library says that it can not be loaded for lack of memory, whatever it raises, or just that it can not be
+        When a library says that it cannot be loaded for lack of memory, whatever it raises, or just that it cannot be
         loaded, under a small limit of the caller's.
     """
-    tell(Topic.LOADING, what)
+    send(Topic.LOADING, what)
     try:
         with _without_bound():
             yield
     except (ImportError, OSError) as error:
         missing = isinstance(error, ModuleNotFoundError)
-        small = any(limit.size < SMALL for limit in caller_limits())  # of which many loaders say nothing, as LLVM's
+        small = any(limit.size < LOW_LIMIT for limit in caller_limits())  # of which many loaders say nothing, as LLVM's
         if speaks_of_memory(str(error)) or (small and not missing):
             raise MemoryError(str(error)) from error
         raise
-    tell(Topic.LOADING, "")
+    send(Topic.LOADING, "")
 
 
 @contextmanager
@@ -174,7 +174,7 @@ def _without_bound() -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_DATA, kept)
 
 
-def missing_room(room: int = ROOM) -> int | None:
+def missing_room(room: int = MIN_ROOM) -> int | None:
     """The least bound that would do, in bytes, if the libraries that are loaded by now leave less room; else None."""
     bound, usage = _InForce.bound, usage_of(os.getpid())
     if bound is None or usage is None or usage.data + room <= bound.size:
@@ -193,7 +193,7 @@ def check_room(what: str) -> None:
     least = missing_room()
     if least is not None and _InForce.bound is not None:
         raise ConfigError(
-            f"{_InForce.bound.text} is too little for {what}, which has {in_units(least - ROOM)} when its libraries "
-            f"are loaded: at least {-(-least // (1 << 20))}M",
+            f"{_InForce.bound.text} is too little for {what}, which has {in_units(least - MIN_ROOM)} when its "
+            f"libraries are loaded: at least {-(-least // (1 << 20))}M",
             key="--max-memory",
         )

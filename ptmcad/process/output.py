@@ -4,8 +4,8 @@ Guarantee: every file under its own name is whole, and the files of one run repl
 `ptmcad.process.commit` says. Nothing is put into place before everything is written and on disk. Whatever stops the
 writing (an error, Ctrl-C, a signal that raises) leaves no temporary file; a process that is killed outright may leave
 hidden ``.NAME.*.tmp.*`` and ``.NAME.*.old.*`` files and nothing else, and the next `check_writable` for the same name
-removes them. Files of live processes are told by the lock that these hold. A result that a limit has stopped replaces
-no complete one.
+removes them. Files of live processes are recognised by the lock that these hold. A result that a limit has stopped
+replaces no complete one.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.process.commit import UNCHANGED, discard, identity, locked, put_into_place, reason, settle
-from ptmcad.process.handover import Topic, tell, undisturbed
+from ptmcad.process.handover import Topic, send, undisturbed
 from ptmcad.process.journal import HIDDEN, REDO, hidden, journals
 from ptmcad.text.textfile import read_text
 
@@ -63,11 +63,11 @@ def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        raise OutputError(f"the folder {folder} can not be made: {reason(error)}; choose another with --out") from error
+        raise OutputError(f"the folder {folder} cannot be made: {reason(error)}; choose another with --out") from error
     _check_kinds(folder, names)
     try:
         with suppress(BlockingIOError), locked(folder, LOCK_PATIENCE) as alone:
-            if alone:  # otherwise what is left of a dead process cannot be told from what a live one uses
+            if alone:  # otherwise what is left of a dead process cannot be distinguished from what a live one uses
                 settle(folder)
                 _check_free(folder, names)
                 _remove_stale(folder, (*names, _PROBE))
@@ -80,7 +80,7 @@ def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
                 os.close(lock)
     except OSError as error:
         raise OutputError(
-            f"the folder {folder} can not be written to: {reason(error)}; choose another with --out"
+            f"the folder {folder} cannot be written to: {reason(error)}; choose another with --out"
         ) from error
 
 
@@ -120,7 +120,7 @@ def write_files(folder: Path, writers: Mapping[str, Writer]) -> tuple[Path, ...]
     Raises
     ------
     OutputError
-        If a file can not be written or renamed.
+        If a file cannot be written or renamed.
     """
     return _write(folder, writers, _under_own_names)
 
@@ -150,7 +150,7 @@ def _write(folder: Path, writers: Mapping[str, Writer], place: Placing) -> tuple
             _flush_to_disk(temporary)
         return place(folder, temporaries)
     except OSError as error:
-        raise OutputError(f"{current} can not be written: {reason(error)}; {UNCHANGED}") from error
+        raise OutputError(f"{current} cannot be written: {reason(error)}; {UNCHANGED}") from error
     finally:
         try:
             with suppress(OSError):  # hidden, and removed by a later run; there is a result or another error to report
@@ -193,7 +193,7 @@ def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterab
     Raises
     ------
     OutputError
-        If the file can not be written.
+        If the file cannot be written.
     """
     label = "complete" if whole else "partial"
     further = chain([label], (f"{label}-{number}" for number in count(2)))
@@ -219,7 +219,7 @@ def save_stopped(target: Path, text: str, *, whole: bool = False, beside: Iterab
 
 def _put_at_new_name(temporary: Path, names: Iterable[Path]) -> Path:
     for name in names:
-        tell(Topic.RENAMES, "", str(name), identity(temporary))
+        send(Topic.RENAMES, "", str(name), identity(temporary))
         try:
             with undisturbed():
                 os.link(temporary, name)
@@ -314,7 +314,7 @@ def _create(target: Path) -> tuple[Path, int]:
     """
     while True:
         path = hidden(target)
-        tell(Topic.TEMPORARY, str(path))
+        send(Topic.TEMPORARY, str(path))
         descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
         if sys.platform == "win32" or _locked(descriptor):
             return path, descriptor

@@ -3,7 +3,7 @@
 Some libraries do not fail when an allocation does: OpenBLAS tries again and again, for ever, in the process that loads
 it. Such a process computes nothing, but it is busy, so that no limit on time ends it soon.
 
-Guarantee: a process is taken to wait for memory only when a limit leaves it less than `LITTLE`, its memory has not
+Guarantee: a process is taken to wait for memory only when a limit leaves it less than `LOW_MEMORY`, its memory has not
 changed by a page during seconds of its own processor time, and it is loading libraries or spends that time in the
 kernel. What computes with little room, however long, is none such: arithmetic is no work for the kernel.
 
@@ -16,13 +16,13 @@ import os
 import sys
 from typing import NamedTuple
 
-LITTLE = 64 << 20
+LOW_MEMORY = 64 << 20
 """Bytes: what OpenBLAS asks for at once, for each thread, is half of this."""
-SMALL = 1 << 30
+LOW_LIMIT = 1 << 30
 """Below so many bytes a memory limit may keep the libraries from being loaded."""
 LOADING, COMPUTING = 5.0, 10.0
 """Seconds of processor time without any change, while libraries are loaded and later."""
-IDLE = 30.0
+IDLE_SECONDS = 30.0
 """Seconds without any change and without processor time, while libraries are loaded."""
 KERNEL_SHARE = 0.25
 """Of the processor time, when nothing is being loaded: of a process that asks for memory in vain it is most."""
@@ -138,10 +138,10 @@ class Waiting:
         self.most = usage._replace(data=max(most.data, usage.data), space=max(most.space, usage.space))
         if self._same is None or self._same[:3] != usage[:3]:
             self._same, self._since = usage, now
-        if not any(limit.room(usage) < LITTLE for limit in limits):
+        if not any(limit.room(usage) < LOW_MEMORY for limit in limits):
             return False
         kernel = usage.kernel - self._same.kernel
         busy = usage.user - self._same.user + kernel
         if loading:
-            return busy >= LOADING or (busy == 0 and now - self._since >= IDLE)
+            return busy >= LOADING or (busy == 0 and now - self._since >= IDLE_SECONDS)
         return busy >= COMPUTING and kernel >= KERNEL_SHARE * busy

@@ -1,8 +1,8 @@
 """A standard stream whose reader may leave, as in ``ptmcad locate ... | head``.
 
 Guarantee: once the reader of the pipe has gone, what is written is dropped and nothing fails. Every other failure, such
-as a full disk, is raised as for any file, unless the stream is the one for messages: there is no third place to tell
-that they can not be told, so there they are dropped. A descriptor that its owner has made non-blocking is waited for.
+as a full disk, is raised as for any file, unless the stream is the one for messages: there is no third place to report
+that, so there they are dropped. A descriptor that its owner has made non-blocking is waited for.
 """
 
 import io

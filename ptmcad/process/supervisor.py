@@ -4,9 +4,9 @@ C code that runs for minutes never returns to the interpreter, and may abort: ne
 can stop or save anything there. So the computation runs in a forked child, and the parent, which only waits, acts.
 
 Guarantee: a signal, or the time limit, ends the child within a second whatever it does: it is asked to leave first and
-killed after `GRACE`. A library that waits for memory in vain (`ptmcad.process.shortage`) is ended after some seconds.
+killed after `GRACE_SECONDS`. A library that waits for memory in vain (`ptmcad.process.shortage`) is ended in seconds.
 What the caller has made of signals, masks and standard streams is no obstacle. No temporary file that the child has
-told of stays. When a limit ends it (time; the caller's on processor time; memory, also where a library aborts on a
+reported stays. When a limit ends it (time; the caller's on processor time; memory, also where a library aborts on a
 failed allocation or the system kills the child), the last result that it handed over is saved and the status is 3. When
 a signal ends it, such a result is saved if one can go on from it, and where there is none yet the message says why. A
 parent that is killed takes the child with it.
@@ -26,7 +26,7 @@ from collections.abc import Callable, Sequence
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
-from ptmcad.process.handover import Receiver, Topic, connect, disconnect, tell
+from ptmcad.process.handover import Receiver, Topic, connect, disconnect, send
 from ptmcad.process.streams import open_standard_streams, quiet_stream
 
 if sys.platform != "win32":
@@ -34,16 +34,16 @@ if sys.platform != "win32":
 if TYPE_CHECKING:
     from ptmcad.process.shortage import Limit, Usage, Waiting
 
-GRACE = 0.3
+GRACE_SECONDS = 0.3
 """Seconds from the request to leave to the kill."""
 
-LATE = 0.25
+OVERRUN_SECONDS = 0.25
 """Seconds by which the child may overrun its time limit: it looks at the clock itself, and does so first."""
 
-LOOK = 0.25
+POLL_SECONDS = 0.25
 """Seconds between two looks at the child's memory."""
 
-SPARE = 16
+SPARE_DESCRIPTORS = 16
 """Descriptors that there must be beside the open ones: for pipes, for imports, for the files of a result."""
 
 _CHUNK = 1 << 16
@@ -60,7 +60,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     """
     open_standard_streams()
     _check_descriptors()
-    signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # where it is ignored, the system tells nobody how a child has ended
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # where it is ignored, nobody learns how a child has ended
     messages, printed, lifeline, wake = os.pipe(), os.pipe(), os.pipe(), os.pipe()
     gc.freeze()  # what there is by now is not looked through again, which would copy its pages in the child
     parent = os.getpid()
@@ -76,7 +76,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
         os.close(lifeline[0])
         os._exit(_Watch(child, messages[0], printed[0], heeded).run(wake, before))
     for number in heeded:
-        signal.signal(number, _leave)
+        signal.signal(number, _terminate)
     if child == 0:
         for descriptor in (messages[0], printed[0], lifeline[1], *wake):
             os.close(descriptor)
@@ -92,12 +92,12 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             stream.flush()
-    tell(Topic.DONE)
+    send(Topic.DONE)
     os._exit(status)
 
 
 class _Watch:
-    """The parent's side: what the child has told, what has been asked of it, and what to do at its end."""
+    """The parent's side: what the child has reported, what has been asked of it, and what to do at its end."""
 
     def __init__(self, child: int, messages: int, printed: int, heeded: Sequence[int]) -> None:
         self.child = child
@@ -107,7 +107,7 @@ class _Watch:
         self.receiver = Receiver()
         self.caught: list[int] = []
         self.text = bytearray()
-        self.told: dict[Topic, list[str]] = {}
+        self.reports: dict[Topic, list[str]] = {}
         self.temporaries: list[str] = []
         self.out_of_time = False
         self.waiting: Waiting | None = None
@@ -130,17 +130,17 @@ class _Watch:
             return self._end(ended)
         except MemoryError:  # of this process, which needs little: it is the caller's limit
             os.kill(self.child, signal.SIGKILL)  # it may be there, or wait to be asked for its end: not for another yet
-            _say("stopped: memory ran out, also for the process that watches; no result could be saved\n")
+            _report("stopped: memory ran out, also for the process that watches; no result could be saved\n")
             return 3
 
     def _wait(self, wake: int) -> int:
         """The child's exit code, or minus the signal that ended it."""
         open_ends = {self.messages, self.printed, wake}
         kill_at: float | None = None
-        look_at = time.monotonic() + LOOK
+        look_at = time.monotonic() + POLL_SECONDS
         while True:
             due = kill_at if kill_at is not None else self._deadline()
-            timeout = LOOK if due is None else min(LOOK, max(0.0, due - time.monotonic()))
+            timeout = POLL_SECONDS if due is None else min(POLL_SECONDS, max(0.0, due - time.monotonic()))
             for end in select.select(list(open_ends), [], [], timeout)[0]:
                 if not self._read(end):
                     open_ends.discard(end)
@@ -157,14 +157,14 @@ class _Watch:
             due = self._deadline()
             self.out_of_time = not self.caught and due is not None and now >= due
             if not self.caught and not self.out_of_time and now >= look_at:
-                look_at = now + LOOK
+                look_at = now + POLL_SECONDS
                 if self._waits_for_memory(now):
                     self.waits_for_memory = True
                     os.kill(self.child, signal.SIGKILL)  # it would not listen
                     kill_at = now + 60
             if self.caught or self.out_of_time:
                 os.kill(self.child, signal.SIGTERM if signal.SIGTERM in self.heeded else signal.SIGKILL)
-                kill_at = now + GRACE
+                kill_at = now + GRACE_SECONDS
 
     def _waits_for_memory(self, now: float) -> bool:
         """Look at the child's memory."""
@@ -179,18 +179,18 @@ class _Watch:
 
     def _loading(self) -> str:
         """The libraries that the child was loading when it was last heard of."""
-        return self.told.get(Topic.LOADING, ["the program"])[0]
+        return self.reports.get(Topic.LOADING, ["the program"])[0]
 
     def _limits(self, lifted: bool = False) -> "tuple[Limit, ...]":
         """The limits on the child's memory, without the option's while that is lifted."""
         from ptmcad.process.shortage import Limit, caller_limits
 
-        own = self.told.get(Topic.MEMORY)
+        own = self.reports.get(Topic.MEMORY)
         return (*caller_limits(), *([] if own is None or lifted else [Limit(int(own[0]), False, own[1])]))
 
     def _deadline(self) -> float | None:
-        told = float(self.told[Topic.DEADLINE][0]) if Topic.DEADLINE in self.told else math.inf
-        return None if told == math.inf else told + LATE  # infinite while the clock stands still
+        limit = float(self.reports[Topic.DEADLINE][0]) if Topic.DEADLINE in self.reports else math.inf
+        return None if limit == math.inf else limit + OVERRUN_SECONDS  # infinite while the clock stands still
 
     def _read(self, end: int) -> bool:
         """Take what there is; False at the end of the pipe."""
@@ -203,28 +203,28 @@ class _Watch:
                 return False
             if end == self.messages:
                 for topic, texts in self.receiver.feed(data):
-                    self.told[topic] = texts
+                    self.reports[topic] = texts
                     if topic is Topic.TEMPORARY:
                         self.temporaries += texts
                     if topic is Topic.WAITING:
-                        _say(f"waiting   another process is writing in {texts[0]}\n")
+                        _report(f"waiting   another process is writing in {texts[0]}\n")
             elif end == self.printed:
                 self.text += data
 
     def _end(self, ended: int) -> int:
         """Leave nothing behind, say what there is to say, and return the exit status."""
         # a library may call exit() when memory runs out: then the child has not said that it was done
-        deserted = ended >= 0 and Topic.DONE not in self.told and ended <= 128
-        if ended < 0 or deserted or self.caught or self.out_of_time or Topic.EXHAUSTED in self.told:
-            self._tidy()
+        deserted = ended >= 0 and Topic.DONE not in self.reports and ended <= 128
+        if ended < 0 or deserted or self.caught or self.out_of_time or Topic.EXHAUSTED in self.reports:
+            self._clean_up()
         if self.caught:
-            if Topic.RESUMABLE in self.told or self.told.get(Topic.RESULT, [""])[0] == "complete":
+            if Topic.RESUMABLE in self.reports or self.reports.get(Topic.RESULT, [""])[0] == "complete":
                 self._stopped(f"by {signal.Signals(self.caught[0]).name}")
             return 128 + self.caught[0]
         text = self.text.decode(errors="replace")
         if self.out_of_time and (ended < 0 or ended > 128):
-            return self._stopped(f"the time limit of {self.told[Topic.DEADLINE][1]} was reached")
-        if Topic.EXHAUSTED in self.told or self.waits_for_memory:
+            return self._stopped(f"the time limit of {self.reports[Topic.DEADLINE][1]} was reached")
+        if Topic.EXHAUSTED in self.reports or self.waits_for_memory:
             return self._stopped(f"the memory limit of {self._limit_reached()} was reached")
         if -ended in (signal.SIGXCPU, signal.SIGKILL) and self._processor_time_is_over():
             return self._stopped("the limit on processor time that the caller has set (ulimit -t) was reached")
@@ -240,24 +240,26 @@ class _Watch:
                 last = "".join(text.rstrip().rpartition("\n")[2:])[:200] or "without a word"
                 how = signal.Signals(-ended).name if crashed else last
                 return self._stopped(f"most likely the memory limit of {self._limit_reached()} was reached ({how})")
-        _say(text)
+        _report(text)
         if deserted:
-            _say(f"error: the computation ended by itself with status {ended}; this is a bug, please report it\n")
+            _report(f"error: the computation ended by itself with status {ended}; this is a bug, please report it\n")
             return ended or 1
         if ended >= 0:
             return ended
         if -ended not in self.heeded:
-            _say(f"error: the computation crashed ({signal.Signals(-ended).name}); this is a bug, please report it\n")
+            _report(
+                f"error: the computation crashed ({signal.Signals(-ended).name}); this is a bug, please report it\n"
+            )
         return 128 - ended
 
     def _limit_reached(self) -> str:
         """The limit that left the child the least room, in words."""
-        limits, most = self._limits(), self._most()
+        limits, most = self._limits(), self._peak_usage()
         if not limits:
             return "the system"
         return min(limits, key=lambda limit: limit.size if most is None else limit.room(most)).text
 
-    def _most(self) -> "Usage | None":
+    def _peak_usage(self) -> "Usage | None":
         """The most that the child was seen to use; None when it ended too soon to be looked at."""
         return None if self.waiting is None else self.waiting.most
 
@@ -266,10 +268,10 @@ class _Watch:
 
         That is: while libraries were loaded under a small limit, or when half of a limit had been used.
         """
-        from ptmcad.process.shortage import SMALL
+        from ptmcad.process.shortage import LOW_LIMIT
 
-        most = self._most()
-        if self._loading() and any(limit.size < SMALL for limit in self._limits(lifted=True)):
+        most = self._peak_usage()
+        if self._loading() and any(limit.size < LOW_LIMIT for limit in self._limits(lifted=True)):
             return True
         return most is not None and any(2 * limit.room(most) <= limit.size for limit in self._limits())
 
@@ -280,11 +282,11 @@ class _Watch:
         soft, hard = resource.getrlimit(resource.RLIMIT_CPU)
         return any(limit != resource.RLIM_INFINITY and self.processor_time >= limit - 0.5 for limit in (soft, hard))
 
-    def _tidy(self) -> None:
+    def _clean_up(self) -> None:
         """Do what the child would have done: clear its line, put into place what it has begun to, remove its files."""
-        if Topic.PROGRESS in self.told:
-            _say(_CLEAR_LINE.decode())
-        journal = self.told.get(Topic.RENAMES, [""])[0]
+        if Topic.PROGRESS in self.reports:
+            _report(_CLEAR_LINE.decode())
+        journal = self.reports.get(Topic.RENAMES, [""])[0]
         temporaries = [path for path in self.temporaries if os.path.lexists(path)]
         if not journal and not temporaries:
             return
@@ -295,19 +297,19 @@ class _Watch:
 
         try:
             if journal:
-                finish(Path(journal), GRACE)
+                finish(Path(journal), GRACE_SECONDS)
             discard(map(Path, temporaries))
         except (OSError, OutputError) as error:
-            _say(f"error: {error}\n")
+            _report(f"error: {error}\n")
 
     def _stopped(self, why: str) -> int:
         """Save the result that was handed over last, unless the child had come to that itself."""
-        if Topic.TARGET not in self.told:
-            _say(f"stopped: {why}\n")
+        if Topic.TARGET not in self.reports:
+            _report(f"stopped: {why}\n")
             return 3
-        if Topic.RESULT not in self.told:
-            reason = f": {self.told[Topic.RESUMABLE][0]}" if Topic.RESUMABLE in self.told else ""
-            _say(f"stopped: {why}; there was no partial result to save yet{reason}\n")
+        if Topic.RESULT not in self.reports:
+            reason = f": {self.reports[Topic.RESUMABLE][0]}" if Topic.RESUMABLE in self.reports else ""
+            _report(f"stopped: {why}; there was no partial result to save yet{reason}\n")
             return 3
         from pathlib import Path  # not before it is needed: every start would pay for it
 
@@ -315,24 +317,24 @@ class _Watch:
         from ptmcad.process.commit import identity
         from ptmcad.process.output import how_to_go_on, save_stopped, where_saved
 
-        target, beside = Path(self.told[Topic.TARGET][0]), self.told[Topic.TARGET][1:]
-        state, text, remark = self.told[Topic.RESULT]
-        _, placed, mark = self.told.get(Topic.RENAMES, ("", "", ""))
+        target, beside = Path(self.reports[Topic.TARGET][0]), self.reports[Topic.TARGET][1:]
+        state, text, remark = self.reports[Topic.RESULT]
+        _, placed, mark = self.reports.get(Topic.RENAMES, ("", "", ""))
         try:
             if mark and identity(Path(placed)) == mark:
                 place = Path(placed)
             else:
                 place = save_stopped(target, text, whole=state == "complete", beside=beside)
         except OutputError as error:
-            _say(f"error: {why}, and the {state} result was lost: {error}\n")
+            _report(f"error: {why}, and the {state} result was lost: {error}\n")
             return 2
-        further = how_to_go_on(place) if Topic.RESUMABLE in self.told and state == "partial" else ""
+        further = how_to_go_on(place) if Topic.RESUMABLE in self.reports and state == "partial" else ""
         where = f"{place}{where_saved(target, place, beside)}{further}"
-        _say(f"stopped: {why}; the {state} result{remark} is in {where}\n")
+        _report(f"stopped: {why}; the {state} result{remark} is in {where}\n")
         return 3
 
 
-def _leave(number: int, _frame: FrameType | None) -> NoReturn:
+def _terminate(number: int, _frame: FrameType | None) -> NoReturn:
     """Leave through every ``finally``, once, and without a word: the interrupted code may be in any state."""
     for other in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(other, signal.SIG_IGN)
@@ -348,10 +350,10 @@ def _check_descriptors() -> None:
     """Refuse a limit on open files that would be met somewhere on the way."""
     spare: list[int] = []
     try:
-        while len(spare) < SPARE:
+        while len(spare) < SPARE_DESCRIPTORS:
             spare.append(os.dup(0))
     except OSError as error:
-        _say(f"error: {error.strerror}: ptmcad needs {SPARE} more than are open (ulimit -n)\n")
+        _report(f"error: {error.strerror}: ptmcad needs {SPARE_DESCRIPTORS} more than are open (ulimit -n)\n")
         os._exit(2)
     finally:
         for descriptor in spare:
@@ -406,7 +408,7 @@ def _redirect_tracebacks(unexpected: TextIO) -> None:
     sys.excepthook, sys.unraisablehook = uncaught, unraisable
 
 
-def _say(text: str) -> None:
+def _report(text: str) -> None:
     try:
         rest = memoryview(text.encode(errors="replace"))
         while rest:
@@ -414,5 +416,5 @@ def _say(text: str) -> None:
                 rest = rest[os.write(2, rest) :]
             except BlockingIOError:  # of a caller that has made it non-blocking
                 select.select([], [2], [])
-    except OSError:  # nobody reads standard error, or it is full: there is no third place to tell it
+    except OSError:  # nobody reads standard error, or it is full: there is no third place to report it
         return

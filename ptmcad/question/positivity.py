@@ -29,7 +29,7 @@ from ptmcad.text.numerals import approximate_text
 MAX_SPLITS = 400
 MAX_WORK = 2_000_000
 """Additions of Bernstein coefficients; less than a second."""
-READING = 10**8
+READING_WORK = 10**8
 """Work of algebra, in the unit of `ptmcad.algebra.definite.MAX_WORK`, while a record is read: some tenth of a second.
 
 A reader answers at once and knows no time limit; an engine, which does, asks again without this bound.
@@ -101,10 +101,10 @@ def decide(expression: Expression, axes: Axes, need: Need, max_work: int | None 
     """
     window = _window(axes)
     middle = _middle(window)
-    below = polynomial_value(expression.denominator, *middle)
-    if below == 0:
-        return Witness(middle, below) if need is Need.NO_POLE else Undecided((window,))
-    side = 1 if below > 0 else -1
+    denominator = polynomial_value(expression.denominator, *middle)
+    if denominator == 0:
+        return Witness(middle, denominator) if need is Need.NO_POLE else Undecided((window,))
+    side = 1 if denominator > 0 else -1
     if need is Need.NO_POLE:
         verdict = _decided(_times(expression.denominator, side), window, True, max_work)
         if isinstance(verdict, Witness):
@@ -113,10 +113,10 @@ def decide(expression: Expression, axes: Axes, need: Need, max_work: int | None 
         return verdict
     verdict = _decided(_times(expression.numerator, side), window, need is Need.POSITIVE, max_work)
     if isinstance(verdict, Witness) and verdict.value:
-        below = polynomial_value(expression.denominator, *verdict.point)
-        if below == 0:
+        denominator = polynomial_value(expression.denominator, *verdict.point)
+        if denominator == 0:
             return Undecided(((_around(verdict.point[0]), _around(verdict.point[1])),))
-        return Witness(verdict.point, side * verdict.value / below)
+        return Witness(verdict.point, side * verdict.value / denominator)
     return verdict
 
 

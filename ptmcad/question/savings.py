@@ -77,7 +77,7 @@ SAVINGS = (*_EXACT, *_CERTIFIED, *_ANY)
 BY_NAME = {saving.name: saving for saving in SAVINGS}
 
 
-def kept(names: Iterable[str], certified: bool) -> frozenset[str]:
+def switched_off(names: Iterable[str], certified: bool) -> frozenset[str]:
     """The savings to switch off, from the names that a caller gave.
 
     Parameters
@@ -99,7 +99,7 @@ def kept(names: Iterable[str], certified: bool) -> frozenset[str]:
             raise ConfigError(
                 f"{name!r} is a saving of the {BY_NAME[name].engine.value}, and this slice is the {engine.value}'s, "
                 f"which has {', '.join(s.name for s in SAVINGS if s.name in own)}",
-                key="keep",
+                key="without",
             )
     return own if ALL in given else frozenset(given)
 
@@ -117,7 +117,7 @@ def check_names(names: Iterable[str]) -> None:
             raise ConfigError(
                 f"{name[:60]!r} is no saving{did_you_mean(name, (*BY_NAME, ALL))}; "
                 f"there are {', '.join(BY_NAME)} and {ALL}",
-                key="keep",
+                key="without",
             )
 
 

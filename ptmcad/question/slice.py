@@ -33,7 +33,7 @@ def unstorable(data: Any) -> str | None:
 
 
 class Count(Enum):
-    """Which count tells two regions apart."""
+    """Which count distinguishes two regions."""
 
     STABLE = "stable"
     TOTAL = "total"
@@ -63,7 +63,7 @@ class Slice:
     parameters : every parameter of the mechanism as an `Expression` (a rational function in the two axes, exponent
         pairs in the order of ``axes``). An axis that is itself a parameter maps to itself. The free lengths are among
         them unless all of them are zero everywhere.
-    count : which count tells two regions apart.
+    count : which count distinguishes two regions.
     title : the picture's title, the name when empty.
     reference : published answers, as read from the record; never used by the computation.
     text : each parameter as the user wrote it, for reports; and any of k, l0, l0_1, l0_2 and l0_3 that such a text
@@ -85,7 +85,7 @@ class Slice:
 
     @property
     def has_free_lengths(self) -> bool:
-        """Whether some spring has a free length that is not zero everywhere; algebra can not answer then."""
+        """Whether some spring has a free length that is not zero everywhere; algebra cannot answer then."""
         own = self.description.free_lengths
         return any(bool(self.parameters[name].numerator) for name in own if name in self.parameters)
 
@@ -106,8 +106,8 @@ class Slice:
         loads = [name for name in values if name in description.forces]
         for name, value in values.items():
             if value not in (name, "0"):
-                shown = value if len(value) <= LONGEST else self.text.get(name, value)
-                yield f"{name} = {shown if len(shown) <= LONGEST else shown[: LONGEST - 1] + '…'}"
+                shown = value if len(value) <= MAX_HEADING_VALUE else self.text.get(name, value)
+                yield f"{name} = {shown if len(shown) <= MAX_HEADING_VALUE else shown[: MAX_HEADING_VALUE - 1] + '…'}"
         if loads and all(values[name] == "0" for name in loads):
             yield "no load"
 
@@ -152,7 +152,7 @@ def without_free_lengths(
 
 FREE_LENGTHS = ptm().free_lengths
 """A slice without free lengths need not have them."""
-LONGEST = 24
+MAX_HEADING_VALUE = 24
 """Longer values are cut in a heading."""
 
 

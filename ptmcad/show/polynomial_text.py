@@ -1,7 +1,7 @@
 """A polynomial in the two axes as the code of a computer algebra system, as LaTeX, or as plain text.
 
 Guarantee: what is written stands for exactly the polynomial, term by term in its own order, whatever the length of its
-coefficients; the axes' names are changed only where the language reserves or can not spell them, and two names stay
+coefficients; the axes' names are changed only where the language reserves or cannot spell them, and two names stay
 different.
 """
 
@@ -47,7 +47,7 @@ _NOTATIONS = {
     Style.LATEX: _Notation(power="{}^{{{}}}", times=" "),
 }
 
-_LONGEST_PYTHON_NUMBER = 4000
+_MAX_PYTHON_NUMBER = 4000
 """Digits; Python refuses decimal numbers of more than 4300 digits in a program, but takes hexadecimal ones."""
 _PYTHON_TAKEN = frozenset({"sympy", "variety"})
 _MAPLE_TAKEN = re.compile(
@@ -89,7 +89,7 @@ def polynomial_text(polynomial: PlanePolynomial, names: tuple[str, str], style: 
 
     Parameters
     ----------
-    names : of the two axes; `symbols` tells how they are spelled.
+    names : of the two axes; `symbols` shows how they are spelled.
     style : a `Style` or its value, such as ``"maple"``.
 
     Raises
@@ -133,7 +133,7 @@ def _terms(polynomial: PlanePolynomial, spelled: tuple[str, ...], style: Style) 
 
 def _number(natural: int, style: Style) -> str:
     digits = integer_text(natural)
-    return hex(natural) if style is Style.SYMPY and len(digits) > _LONGEST_PYTHON_NUMBER else digits
+    return hex(natural) if style is Style.SYMPY and len(digits) > _MAX_PYTHON_NUMBER else digits
 
 
 def _python(name: str) -> str:

@@ -20,7 +20,7 @@ _NAMES = {
 
 
 def count_text(region: Region, count: Count) -> str:
-    """The count by which regions are told apart, as text."""
+    """The count by which regions are distinguished, as text."""
     if count is Count.STABLE:
         return str(region.stable)
     if count is Count.TOTAL:
@@ -116,8 +116,8 @@ def table(result: RegionMap) -> str:
     bounds = [(count_text(r, count), r.area) for r in result.regions]
     if result.cover is not None:
         bounds = _by_count(bounds, result)
-    told = certified_digits if result.cover is None else interval_text
-    areas = "; ".join(f"{text}: {told(area)}" for text, area in bounds)
+    text_of_bounds = certified_digits if result.cover is None else interval_text
+    areas = "; ".join(f"{text}: {text_of_bounds(area)}" for text, area in bounds)
     if result.status is Status.EXACT and len(bounds) > 1 and not any(low for _, (low, _) in bounds):
         areas = "not computed"
     widths = [(high - low) / low for _, (low, high) in bounds if low]

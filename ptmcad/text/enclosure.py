@@ -13,7 +13,7 @@ from ptmcad.text.numerals import integer_text, magnitude, text_of
 
 DIGITS = 10
 """Significant digits of a text unless another number is asked for."""
-_PLAIN = 6
+_MAX_PLAIN_ZEROS = 6
 """Zeros after the point, or places before it beyond the digits, from which the form with an exponent is used."""
 
 
@@ -73,7 +73,7 @@ class Enclosure:
         Raises
         ------
         ValueError
-            When the enclosure is too wide; `settles` tells it before.
+            When the enclosure is too wide; `settles` says so before.
         """
         if not self.settles(digits):
             raise ValueError(f"the enclosure does not determine {digits} digits")
@@ -114,11 +114,11 @@ def _decimal(mantissa: int, exponent: int, digits: int, shorten: bool) -> str:
     written = integer_text(mantissa)
     point = digits + exponent  # where the point comes, counted from the first digit
     suffix = ""
-    if -_PLAIN < point <= 0:
+    if -_MAX_PLAIN_ZEROS < point <= 0:
         whole, decimals = "0", "0" * -point + written
     elif 0 < point <= digits:
         whole, decimals = written[:point], written[point:]
-    elif shorten and digits < point <= digits + _PLAIN:
+    elif shorten and digits < point <= digits + _MAX_PLAIN_ZEROS:
         whole, decimals = written + "0" * (point - digits), ""
     else:
         whole, decimals, suffix = written[0], written[1:], f"e{point - 1}"
@@ -189,11 +189,11 @@ class AlgebraicNumber:
 
     def _sign(self, at: Fraction) -> int:
         """The sign of the polynomial at a rational number."""
-        above, below = at.numerator, at.denominator
+        numerator, denominator = at.numerator, at.denominator
         total, power = 0, 1
         for coefficient in reversed(self.polynomial):
-            total = total * above + coefficient * power
-            power *= below
+            total = total * numerator + coefficient * power
+            power *= denominator
         return (total > 0) - (total < 0)
 
 

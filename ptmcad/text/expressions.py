@@ -99,19 +99,19 @@ class Expression:
         PoleError
             If the denominator vanishes there.
         """
-        below = _value(self.denominator, x, y)
-        if below == 0:
+        denominator = _value(self.denominator, x, y)
+        if denominator == 0:
             raise PoleError(
                 f"division by zero: the denominator of {self} vanishes at x = {text_of(x)}, y = {text_of(y)}"
             )
-        return _value(self.numerator, x, y) / below
+        return _value(self.numerator, x, y) / denominator
 
     def to_text(self, names: tuple[str, str] = ("x", "y")) -> str:
         """The expression as text that `parse` reads back."""
-        above = _polynomial_text(self.numerator, names)
+        numerator = _polynomial_text(self.numerator, names)
         if self.is_polynomial:
-            return above
-        return f"({above})/({_polynomial_text(self.denominator, names)})"
+            return numerator
+        return f"({numerator})/({_polynomial_text(self.denominator, names)})"
 
     def __str__(self) -> str:
         return self.to_text()
@@ -212,27 +212,27 @@ def _product(left: tuple[Term, ...], right: tuple[Term, ...]) -> _Polynomial:
     return product
 
 
-def _reduced(above: _Polynomial, below: _Polynomial) -> Expression:
-    """The normal form of above/below that `Expression` promises; below is not zero."""
-    above = {power: c for power, c in above.items() if c}
-    below = {power: c for power, c in below.items() if c}
-    if not above:
+def _reduced(numerator: _Polynomial, denominator: _Polynomial) -> Expression:
+    """The normal form of numerator/denominator that `Expression` promises; denominator is not zero."""
+    numerator = {power: c for power, c in numerator.items() if c}
+    denominator = {power: c for power, c in denominator.items() if c}
+    if not numerator:
         return Expression(())
-    if below.keys() != {(0, 0)}:
-        common_i = min(i for i, _ in above.keys() | below.keys())
-        common_j = min(j for _, j in above.keys() | below.keys())
-        above = {(i - common_i, j - common_j): c for (i, j), c in above.items()}
-        below = {(i - common_i, j - common_j): c for (i, j), c in below.items()}
-        quotient = _exact_quotient(above, below)
+    if denominator.keys() != {(0, 0)}:
+        common_i = min(i for i, _ in numerator.keys() | denominator.keys())
+        common_j = min(j for _, j in numerator.keys() | denominator.keys())
+        numerator = {(i - common_i, j - common_j): c for (i, j), c in numerator.items()}
+        denominator = {(i - common_i, j - common_j): c for (i, j), c in denominator.items()}
+        quotient = _exact_quotient(numerator, denominator)
         if quotient is not None:
             return Expression(terms_of(quotient))
-        unit = _unit(below)
+        unit = _unit(denominator)
     else:
-        unit = below[0, 0]
+        unit = denominator[0, 0]
     if unit != 1:
-        above = {power: c / unit for power, c in above.items()}
-        below = {power: c / unit for power, c in below.items()}
-    return Expression(terms_of(above), terms_of(below))
+        numerator = {power: c / unit for power, c in numerator.items()}
+        denominator = {power: c / unit for power, c in denominator.items()}
+    return Expression(terms_of(numerator), terms_of(denominator))
 
 
 def _unit(polynomial: _Polynomial) -> Fraction:
@@ -242,22 +242,22 @@ def _unit(polynomial: _Polynomial) -> Fraction:
     return content if polynomial[max(polynomial)] > 0 else -content
 
 
-def _exact_quotient(above: _Polynomial, below: _Polynomial) -> _Polynomial | None:
-    """above/below when it is a polynomial, else None. Division by the leading term in graded order."""
+def _exact_quotient(numerator: _Polynomial, divisor: _Polynomial) -> _Polynomial | None:
+    """numerator/divisor when it is a polynomial, else None. Division by the leading term in graded order."""
 
     def graded(power: tuple[int, int]) -> tuple[int, int]:
         return (power[0] + power[1], power[0])
 
-    lead = max(below, key=graded)
-    rest, quotient = dict(above), {}
+    lead = max(divisor, key=graded)
+    rest, quotient = dict(numerator), {}
     while rest:
         top = max(rest, key=graded)
         shift = (top[0] - lead[0], top[1] - lead[1])
         if min(shift) < 0:
             return None
-        factor = rest[top] / below[lead]
+        factor = rest[top] / divisor[lead]
         quotient[shift] = factor
-        for (i, j), c in below.items():
+        for (i, j), c in divisor.items():
             power = (i + shift[0], j + shift[1])
             value = rest.get(power, Fraction(0)) - factor * c
             if value:

@@ -81,15 +81,15 @@ def fraction_of(text: str) -> Fraction:
     match = _NUMBER.fullmatch(text)
     if match is None:
         raise ValueError(f"{text[:40]!r} is not an exact number such as 7/10 or 0.25")
-    sign, whole, below, decimals, exponent = match.groups()
-    digits = max(len(whole + (decimals or "")), len(below or ""))
+    sign, whole, denominator_text, decimals, exponent = match.groups()
+    digits = max(len(whole + (decimals or "")), len(denominator_text or ""))
     if digits > MAX_DIGITS or (exponent is not None and abs(int(exponent)) > MAX_EXPONENT):
         raise ValueError(f"the number {text[:20]}... is too long")
     value = Fraction(integer_of(whole + (decimals or "")))
     scale = int(exponent or 0) - len(decimals or "")
     value *= Fraction(10) ** scale
-    if below is not None:
-        if (denominator := integer_of(below)) == 0:
+    if denominator_text is not None:
+        if (denominator := integer_of(denominator_text)) == 0:
             raise ValueError(f"{text[:40]!r} has a zero denominator")
         value /= denominator
     return -value if sign else value
@@ -105,7 +105,7 @@ def magnitude(value: Fraction) -> int:
     """
     if value <= 0:
         raise ValueError("only positive numbers have a magnitude")
-    # log10(2) to twelve digits: at most a few steps remain, of which each is dear for numbers of many digits
+    # log10(2) to twelve digits: at most a few steps remain, of which each is expensive for numbers of many digits
     e = (value.numerator.bit_length() - value.denominator.bit_length()) * 301_029_995_664 // 10**12
     while value >= Fraction(10) ** (e + 1):
         e += 1

@@ -253,7 +253,7 @@ def _bad_character(text: str, position: int) -> ExpressionError:
     else:
         remedy = ": an expression has numbers, names, + - * / ^ and parentheses"
     shown = repr(character) if character.isascii() else f"'{character}' (U+{ord(character):04X})"
-    return ExpressionError(f"the character {shown} can not be used{remedy}", position)
+    return ExpressionError(f"the character {shown} cannot be used{remedy}", position)
 
 
 def _short(text: str) -> str:

@@ -26,7 +26,7 @@ def read_bytes(path: str | Path, most: int, what: str) -> bytes:
     Raises
     ------
     ConfigError
-        If the file is missing, is no regular file, can not be read, or is larger.
+        If the file is missing, is no regular file, cannot be read, or is larger.
     """
     descriptor = _open(path, what)
     try:
@@ -101,4 +101,4 @@ def _folder(path: str | Path, what: str) -> ConfigError:
 
 def _unreadable(path: str | Path, error: OSError | ValueError) -> ConfigError:
     reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-    return ConfigError(f"can not be read: {reason}", file=str(path))
+    return ConfigError(f"cannot be read: {reason}", file=str(path))

@@ -1,25 +1,26 @@
 """Checks of adjacency: the pairs of cells that share an open arc, those that do not, and that none is missing.
 
-Guarantee: every stored segment joins its cells and meets no curve; every gap between the curves over a critical value
-belongs to a stored pair; every record of cells that are not adjacent holds, and there is one wherever order alone would
-allow another pair.
+Guarantee: every stored segment joins its cells and meets no curve; every free interval between the curves over a
+critical value belongs to a stored pair; every record of cells that are not adjacent holds, and there is one wherever
+order alone would allow another pair.
 
 Why no pair is missing. Let the line over a critical value cross the open window, and take away the points of the curves
-on it, which are finitely many (no curve contains the line). The open intervals that are left are its *gaps*: at least
-one, whatever the curves do. Each gap lies in the closure of exactly one cell on either side, so two cells are adjacent
-across the line exactly when they have a gap in common. A stored segment crosses the line in a gap and tells its pair.
-The segments cut the line into parts: between two of them, or between one and the window's edge. Into a part run as many
-half-branches as the levels of its ends differ by, on both sides together; an isolated point of the curves changes no
-pair. A part contains no pair but those of the segments at its ends, if
+on it, which are finitely many (no curve contains the line). The open intervals that are left are its *free intervals*:
+at least one, whatever the curves do. Each of them lies in the closure of exactly one cell on either side, so two cells
+are adjacent across the line exactly when they have a free interval in common. A stored segment crosses the line in a
+free interval and shows its pair. The segments cut the line into parts: between two of them, or between one and the
+window's edge. Into a part run as many half-branches as the levels of its ends differ by, on both sides together; an
+isolated point of the curves changes no pair. A part contains no pair but those of the segments at its ends, if
 
-* no half-branch runs into it, and there is a segment at one of its ends at least: all its gaps have that segment's
-  pair. (Between the two edges of the window, with no segment, the pair of all gaps would be stored nowhere);
+* no half-branch runs into it, and there is a segment at one of its ends at least: all its free intervals have that
+  segment's pair. (Between the two edges of the window, with no segment, the pair of all of them would be stored
+  nowhere);
 * two half-branches run into a part between two segments: through each point inside the window runs an even number of
-  half-branches, so both end in one point, and the gaps on either side of it have the segments' pairs;
+  half-branches, so both end in one point, and the free intervals on either side of it have the segments' pairs;
 * a single half-branch runs into a part between a segment and the window's edge: being alone, it ends on the edge, so
-  that all gaps have the segment's pair.
+  that all free intervals have the segment's pair.
 
-Any other part is settled by a free segment built in each of its gaps, whose pair has to be stored.
+Any other part is settled by a free segment built in each of its free intervals, whose pair has to be stored.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from ptmcad.verification.claims import Claims, is_root, short, side
 from ptmcad.verification.derivation import rational
 from ptmcad.verification.report import Violation
 from ptmcad.verification.structure import inside_stack, points_over
-from ptmcad.verification.sturm import points_apart, roots_between
+from ptmcad.verification.sturm import roots_between, separated_points
 
 
 def check_adjacencies(claims: Claims) -> str:
@@ -195,10 +196,10 @@ def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
 
 
 def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[int, int]]) -> None:
-    """Try a free segment in each gap between the points of the curves over a critical value."""
+    """Try a free segment in each interval between the points of the curves over a critical value."""
     value = claims.result.critical_values[s]
     left, right = claims.result.stacks[s], claims.result.stacks[s + 1]
-    for v in points_apart(_points(claims, value), bottom, top):
+    for v in separated_points(_points(claims, value), bottom, top):
         low, high = rational(left.sample), rational(right.sample)
         while claims.free(low, high, v) is not None:
             low, high = _closer(low, high, value)

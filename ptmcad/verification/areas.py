@@ -24,7 +24,7 @@ from ptmcad.verification.report import Violation
 
 NARROWEST = 10**60
 """Bounds that are relatively narrower than the inverse of this are not even tried."""
-CROWD = 100
+CROWDED_PANELS = 100
 """Panels for each stack beyond which polynomials of higher degree are worth their cost."""
 ATTEMPTS = 7
 """Times that precision is raised, and strips are narrowed, before bounds count as not confirmed."""
@@ -62,7 +62,7 @@ def check_areas(claims: Claims) -> str:
         return "1 region, the window"
     for n, region in enumerate(result.regions):
         if region.area[1] - region.area[0] < region.area[1] / NARROWEST:
-            raise Violation(f"region {n}: that its area is {_between(region)} can not be confirmed: too narrow")
+            raise Violation(f"region {n}: that its area is {_between(region)} cannot be confirmed: too narrow")
     narrowest = min(region.area[1] - region.area[0] for region in result.regions)
     scale = (narrowest or window / 10**18) / window
     bits = 96 + 2 * _doublings(scale)
@@ -71,7 +71,7 @@ def check_areas(claims: Claims) -> str:
     strip = rational(scale) / (16 * len(result.stacks))
     unconfirmed = "the precision did not suffice to confirm the areas"
     degrees: tuple[int, ...] = (2,)
-    # of the narrowest bounds' width: how far inside of them an area can be told to be
+    # of the narrowest bounds' width: how far inside of them an area can be proved to be
     margin = fmpq(1, 64)
     for _ in range(ATTEMPTS):
         with ctx.workprec(bits):
@@ -134,7 +134,7 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int, degrees: tupl
                 open_regions.add(n)
         if not open_regions:
             return None
-        crowded = len(degrees) == 1 and len(panels) > CROWD * len(result.stacks)
+        crowded = len(degrees) == 1 and len(panels) > CROWDED_PANELS * len(result.stacks)
         halved = None if crowded else _halved(panels, open_regions, bounds, effort)
         if halved is None:
             n = min(open_regions)

@@ -22,12 +22,12 @@ from flint import fmpq
 from ptmcad.answer.regionmap import Kind
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.fibre import Fibre, Monomial, standard_monomials
-from ptmcad.verification.plan import kept
+from ptmcad.verification.plan import switched_off
 from ptmcad.verification.report import Violation
 
 POINTS, BITS = 12, 48
-CERTAIN = 2**16
-"""A value's part that it shares with no other one tells its multiplicity when it is larger than this."""
+MIN_CERTAIN_PART = 2**16
+"""A value's part that it shares with no other one shows its multiplicity when it is larger than this."""
 _SAVINGS = {"sign-curve": "the norm of H11", "hermite-matrix": "the Hermite matrix's determinant"}
 
 Values = tuple[Fraction, tuple[int, ...]]
@@ -38,7 +38,7 @@ def check_auxiliary(claims: Claims, seed: str) -> str:
     """Auxiliary components against the functions that they are factors of."""
     components = claims.result.components
     auxiliary = [n for n, c in enumerate(components) if c.kind is Kind.AUXILIARY]
-    savings = [name for name in _SAVINGS if name in kept(claims.result)]
+    savings = [name for name in _SAVINGS if name in switched_off(claims.result)]
     if not savings:
         if auxiliary:
             raise Violation(f"component {auxiliary[0]} is auxiliary, but no saving was switched off that leaves it out")
@@ -89,12 +89,14 @@ def _function(name: str, fibre: Fibre, monomials: Sequence[Monomial]) -> fmpq:
 
 def _multiplicities(values: Sequence[Values], number: int) -> list[int]:
     """How often each component divides a function, negative for poles: what most points tell."""
-    told = [Counter(e for value, at in values if (e := _multiplicity(value, at, k)) is not None) for k in range(number)]
-    return [counter.most_common(1)[0][0] if counter else 0 for counter in told]
+    votes = [
+        Counter(e for value, at in values if (e := _multiplicity(value, at, k)) is not None) for k in range(number)
+    ]
+    return [counter.most_common(1)[0][0] if counter else 0 for counter in votes]
 
 
 def _multiplicity(value: Fraction, at: Sequence[int], k: int) -> int | None:
-    """What one point tells of it: how often the primes of the component's value alone divide the function's.
+    """What one point shows of it: how often the primes of the component's value alone divide the function's.
 
     Small primes are left out: they may divide the constant, by which the function differs from a product of components.
     """
@@ -102,7 +104,7 @@ def _multiplicity(value: Fraction, at: Sequence[int], k: int) -> int | None:
     for other in (_SMALL_PRIMES, *at[:k], *at[k + 1 :]):
         while (common := gcd(own, other)) > 1:
             own //= common
-    if own < CERTAIN:
+    if own < MIN_CERTAIN_PART:
         return None
     numerator, denominator, found = value.numerator, value.denominator, 0
     while numerator % own == 0:

@@ -40,7 +40,7 @@ class Branch:
         return cls(curve, root, [arb_poly(c) for c in curve.in_v], [arb_poly(c) for c in curve.in_u])
 
     def height(self, u: fmpq, low: fmpq, high: fmpq) -> arb | None:
-        """The branch over u; None when the balls do not tell which root it is."""
+        """The branch over u; None when the balls do not show which root it is."""
         for bits in sorted({64, ctx.prec}):  # the roots are isolated roughly first, because that is cheaper
             height = self._height(u, low, high, bits)
             if height is not None and height.rel_accuracy_bits() > ctx.prec // 2:
@@ -125,7 +125,7 @@ def integral_over(branch: Branch, left: fmpq, right: fmpq, effort: Effort) -> ar
         if integral is not None:
             integral -= low * (2 * half)
         elif 2 * half < effort.shut:
-            bottom, top = _shut_in(branch, middle, half, height, effort)
+            bottom, top = _enclosed(branch, middle, half, height, effort)
             integral = arb(bottom - low).union(arb(top - low)) * (2 * half)
     if integral is None:
         integral = arb(0).union(arb(2 * half * (high - low)))
@@ -237,7 +237,7 @@ def _series(d: Sequence[arb_poly], start: arb_series, order: int) -> list[arb]:
     return found + [arb(0)] * (order - len(found))
 
 
-def _shut_in(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[fmpq, fmpq]:
+def _enclosed(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[fmpq, fmpq]:
     """Heights below and above the branch at which the curve does not meet the panel."""
     low, high = effort.heights
     mantissa, exponent = (int(n) for n in height.mid().man_exp())
@@ -251,7 +251,7 @@ def _shut_in(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effo
         while leap and start * 2**tried < direction * (edge - center):
             margin = start * 2**tried
             candidate = _simple(center + direction * margin, margin / 8)
-            # the height over the middle tells on which side of the candidate the branch is
+            # the height over the middle shows on which side of the candidate the branch is
             clear = arb(candidate) < height if direction < 0 else arb(candidate) > height
             if clear and _misses(branch, middle, half, candidate):
                 best, leap = candidate, leap // 2

@@ -30,7 +30,7 @@ NOT_CHECKED = (
 )
 
 CheckOf = tuple[str, str, Callable[[Claims], str]]
-"""The name of a check, its method, and the function that raises `Violation` or tells what it checked."""
+"""The name of a check, its method, and the function that raises `Violation` or says what it checked."""
 
 _SINCE_VARIETY: tuple[CheckOf, ...] = (
     ("critical values", "discriminants, resultants, Sturm", check_critical_values),

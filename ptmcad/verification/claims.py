@@ -190,14 +190,14 @@ def bracket(value: CriticalValue, width: fmpq) -> tuple[fmpq, fmpq]:
     """A narrow bracket of a critical value."""
     low, high = rational(value.low), rational(value.high)
     p = polynomial(value)
-    below = p(low)
+    low_value = p(low)
     while high - low > width:
         middle = (low + high) / 2
         here = p(middle)
         if here == 0:
             return middle, middle
-        # the only root may have even multiplicity; then the ends do not tell on which side it lies
-        right = (here > 0) == (below > 0) if below * p(high) < 0 else side(middle, value) < 0
+        # the only root may have even multiplicity; then the ends do not show on which side it lies
+        right = (here > 0) == (low_value > 0) if low_value * p(high) < 0 else side(middle, value) < 0
         low, high = (middle, high) if right else (low, middle)
     return low, high
 

@@ -21,14 +21,14 @@ def check_shape(claims: Claims) -> str:
     """Numbers refer to what exists, in order."""
     r = claims.result
     if r.status not in (Status.EXACT, Status.PARTIAL):
-        raise Violation(f"the status {r.status.value!r} can not be checked: only exact and partial results can")
+        raise Violation(f"the status {r.status.value!r} cannot be checked: only exact and partial results can")
     if r.undetermined != (0 if r.stacks else 1):
         raise Violation(f"{approximate_text(r.undetermined)} of the window is said to be undetermined, but "
                         f"{'all cells' if r.stacks else 'no cells'} are stored")  # fmt: skip
     if r.slice.mechanism != MECHANISM.name or set(r.slice.parameters) - set(SHORTHANDS) != set(PARAMETERS):
         raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
     if r.slice.count not in _KEYS:
-        raise Violation(f"an exact map has no {r.slice.count.value} counts by which its regions could be told apart")
+        raise Violation(f"an exact map has no {r.slice.count.value} counts by which its regions could be distinguished")
     if any(a.low >= a.high for a in r.slice.axes) or r.base not in (0, 1):
         raise Violation("the window is empty")
     if any(c.admissible is not None for c in r.cells) or any(g.admissible is not None for g in r.regions):
@@ -75,7 +75,7 @@ def _is_index(value: object, length: int) -> bool:
 
 
 _KEYS = {Count.STABLE: "stable", Count.TOTAL: "total", Count.INDEX: "index"}
-"""The counts by which regions of an exact map are told apart."""
+"""The counts by which regions of an exact map are distinguished."""
 
 
 def _key(cell: Cell, count: Count) -> object:

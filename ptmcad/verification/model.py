@@ -112,12 +112,12 @@ def equation_factors(claims: Claims) -> list[fmpz_mpoly]:
         sums: dict[tuple[int, ...], tuple[fmpq_mpoly, fmpq_mpoly]] = {}
         for exponents, c in _on_torus(_by_angle(_potential(), angle)).to_dict().items():
             powers = [int(e) for e in exponents]
-            above, below = plane.constant(c), plane.constant(1)
+            numerator, denominator = plane.constant(c), plane.constant(1)
             for name, e in zip(PARAMETERS, powers[len(UNKNOWNS) :], strict=True):
-                above, below = above * values[name][0] ** e, below * values[name][1] ** e
+                numerator, denominator = numerator * values[name][0] ** e, denominator * values[name][1] ** e
             unknown = tuple(powers[: len(UNKNOWNS)])
             a, b = sums.get(unknown, (plane.constant(0), plane.constant(1)))
-            sums[unknown] = (a * below + above * b, b * below)
+            sums[unknown] = (a * denominator + numerator * b, b * denominator)
         common = plane.constant(0)
         for a, b in sums.values():
             if not a.is_zero():

@@ -46,8 +46,8 @@ _NO_AREAS = PlanStep("areas of the regions", False, "not asked for")
 def check_plan(claims: Claims) -> str:
     """Every step of the plan."""
     result = claims.result
-    keep = kept(result)
-    expected = list(_expected(result, keep))
+    without = switched_off(result)
+    expected = list(_expected(result, without))
     if len(expected) != len(result.plan):
         raise Violation(f"the plan has {len(result.plan)} steps, not {len(expected)}")
     for n, (step, other) in enumerate(zip(result.plan, expected, strict=True)):
@@ -56,8 +56,8 @@ def check_plan(claims: Claims) -> str:
             done = "computed" if other.done else "left out"
             raise Violation(f"step {n} of the plan is not {str(step)[:100]!r}, but {other.what!r}, {done}: "
                             f"{other.reason or 'by predicted cost'}")  # fmt: skip
-    _check_left_out(claims, keep)
-    return f"{len(expected)} steps, {len(keep)} savings switched off"
+    _check_left_out(claims, without)
+    return f"{len(expected)} steps, {len(without)} savings switched off"
 
 
 def _is_choice(reason: str) -> bool:
@@ -66,12 +66,12 @@ def _is_choice(reason: str) -> bool:
     return reason == _SAME_COST if costs is None else float(costs[1]) <= float(costs[2])
 
 
-def kept(result: RegionMap) -> frozenset[str]:
+def switched_off(result: RegionMap) -> frozenset[str]:
     """The savings that the plan says were switched off."""
     return frozenset(step.saving for step in result.plan if step.saving and step.done)
 
 
-def _expected(result: RegionMap, keep: frozenset[str]) -> Iterator[PlanStep]:
+def _expected(result: RegionMap, without: frozenset[str]) -> Iterator[PlanStep]:
     """The plan; the reason is empty where predicted costs decided."""
     names = result.slice.axis_names
     zero = ", ".join(n for n, e in result.slice.parameters.items() if not e.numerator)
@@ -79,13 +79,13 @@ def _expected(result: RegionMap, keep: frozenset[str]) -> Iterator[PlanStep]:
         if saving == "equal-counts" and _NO_AREAS in result.plan:
             yield _NO_AREAS
         elif zero or saving:
-            yield _step(saving, what.format(zero=zero), why, keep)
-    if "no-real-points" in keep:
-        yield _step("no-real-points", "components without a point in the window", "", keep)
+            yield _step(saving, what.format(zero=zero), why, without)
+    if "no-real-points" in without:
+        yield _step("no-real-points", "components without a point in the window", "", without)
     for c in result.components:
         yield _of_component(c, names)
     this, other = (f"decomposition over {names[axis]}" for axis in (result.base, 1 - result.base))
-    if "axis-order" in keep:
+    if "axis-order" in without:
         yield PlanStep(this, True, "the first axis, as asked for", "axis-order")
     else:
         yield PlanStep(this, True, "")
@@ -93,11 +93,11 @@ def _expected(result: RegionMap, keep: frozenset[str]) -> Iterator[PlanStep]:
     powers = ", ".join(_even_powers(result))
     if powers:
         why = f"computed in the power, where only such occur: {powers}"
-        yield _step("even-powers", "discriminants and resultants of full degree", why, keep)
+        yield _step("even-powers", "discriminants and resultants of full degree", why, without)
 
 
-def _step(saving: str, what: str, why: str, keep: frozenset[str]) -> PlanStep:
-    return PlanStep(what, saving in keep, _KEPT if saving in keep else why, saving)
+def _step(saving: str, what: str, why: str, without: frozenset[str]) -> PlanStep:
+    return PlanStep(what, saving in without, _KEPT if saving in without else why, saving)
 
 
 def _of_component(c: Component, names: tuple[str, str]) -> PlanStep:
@@ -116,23 +116,23 @@ def _even_powers(result: RegionMap) -> Iterator[str]:
                 yield f"{name}^{power} in component {n}"
 
 
-def _check_left_out(claims: Claims, keep: frozenset[str]) -> None:
+def _check_left_out(claims: Claims, without: frozenset[str]) -> None:
     """What savings leave out, or would have left out, against the components, the areas and the base."""
     result = claims.result
     reasons = {c.left_out for c in result.components}
-    if "no-real-points" in keep and NO_POINT in reasons:
+    if "no-real-points" in without and NO_POINT in reasons:
         raise Violation("a component without a point in the window is left out, but the plan says that such are kept")
-    if "no-real-points" not in keep:
+    if "no-real-points" not in without:
         for n, c in enumerate(result.components):
             if not c.left_out and plainly_outside(PlaneCurve.of(n, c.polynomial, result.base), claims):
                 raise Violation(f"component {n} is used, but it has no point in the window, and the plan does not say "
                                 "that such are kept")  # fmt: skip
-    if "infinity" in keep and HARMLESS in reasons:
+    if "infinity" in without and HARMLESS in reasons:
         raise Violation("a component is left out as harmless, but the plan says that such are kept")
     if _NO_AREAS in result.plan:
         x, y = result.slice.axes
         nothing = (Fraction(0), (x.high - x.low) * (y.high - y.low))
         if any(region.area != nothing for region in result.regions):
             raise Violation("areas are known, but the plan says that they were not asked for")
-    if "axis-order" in keep and result.base != 0:
+    if "axis-order" in without and result.base != 0:
         raise Violation("the base is not the first axis, but the plan says that it was asked for")

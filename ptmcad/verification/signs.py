@@ -21,7 +21,7 @@ from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpz_mpoly, fmpz_pol
 from ptmcad.text.expressions import Expression
 from ptmcad.verification.claims import PLANE, PlaneCurve
 from ptmcad.verification.elimination import discriminant
-from ptmcad.verification.sturm import points_apart, roots_between, squarefree
+from ptmcad.verification.sturm import roots_between, separated_points, squarefree
 
 MAX_DEGREE = 30
 """The sum of the degrees in the two axes up to which a function of both is looked at."""
@@ -44,16 +44,16 @@ class Sign(Enum):
 
 def has_no_pole(e: Expression, window: Window) -> Sign:
     """Whether the denominator, as it is stored, has no zero in the open window."""
-    below = _polynomial(e.denominator)
-    return _sign(below * _side(below, window), window, strict=True)
+    denominator = _polynomial(e.denominator)
+    return _sign(denominator * _side(denominator, window), window, strict=True)
 
 
 def is_in_domain(e: Expression, window: Window, strict: bool) -> Sign:
     """Whether a function without a pole is positive, or not negative, in the open window."""
     if not e.numerator:
         return Sign.WRONG if strict else Sign.PROVED
-    below = _polynomial(e.denominator)
-    return _sign(_polynomial(e.numerator) * _side(below, window), window, strict)
+    denominator = _polynomial(e.denominator)
+    return _sign(_polynomial(e.numerator) * _side(denominator, window), window, strict)
 
 
 def _polynomial(terms: Iterable[tuple[int, int, Fraction]]) -> fmpz_mpoly:
@@ -113,7 +113,7 @@ def _has_curve(f: PlaneCurve, window: Window) -> bool:
         if q.degree() > 0:
             new = squarefree(q)
             critical *= new // new.gcd(critical)
-    return any(roots_between(f.over(u), *fibre) > 0 for u in points_apart(critical, *base))
+    return any(roots_between(f.over(u), *fibre) > 0 for u in separated_points(critical, *base))
 
 
 def _generic_value(p: fmpz_mpoly, window: Window) -> fmpq:
@@ -137,7 +137,7 @@ def _has_no_isolated_zero(f: PlaneCurve, window: Window) -> bool:
     base, fibre = window
     d = discriminant(f.terms)
     multiple = squarefree(d.gcd(d.derivative())) if d.degree() > 1 else fmpz_poly([1])
-    return all(_is_apart(f, narrow, fibre) for narrow in _narrow_roots(multiple, base))
+    return all(_is_separated(f, narrow, fibre) for narrow in _narrow_roots(multiple, base))
 
 
 def _narrow_roots(q: fmpz_poly, base: Interval) -> Iterator[Interval]:
@@ -156,7 +156,7 @@ def _narrow_roots(q: fmpz_poly, base: Interval) -> Iterator[Interval]:
         waiting += [(low, middle), (middle, high)]
 
 
-def _is_apart(f: PlaneCurve, narrow: Interval, fibre: Interval) -> bool:
+def _is_separated(f: PlaneCurve, narrow: Interval, fibre: Interval) -> bool:
     """Whether f is proved not to vanish over an interval, by balls over parts of the fibre."""
     with ctx.workprec(_BITS):
         u = arb(narrow[0]).union(arb(narrow[1]))

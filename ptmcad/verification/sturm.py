@@ -74,7 +74,7 @@ def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq,
     return sorted(found, key=lambda interval: fmpq(interval[0]))
 
 
-def points_apart(p: fmpz_poly, low: fmpq, high: fmpq) -> list[fmpq]:
+def separated_points(p: fmpz_poly, low: fmpq, high: fmpq) -> list[fmpq]:
     """A rational point in each open interval that the roots of p leave of (low, high)."""
     roots = isolating_intervals(p, low, high)
     if not roots:

@@ -14,9 +14,9 @@ component consists of such poles. Where one is left out as harmless, the values 
 0 near almost all of its points.
 
 Conversely, whatever the points are, no true claim about N is rejected: each rejection is a contradiction between exact
-values. Claims about poles, which are told by the primes that values have in common, are decided by half of the bits
-of a value of at least 200 bits; a true one is rejected, or a false one accepted, when primes that make up 100 of these
-bits divide further values too, which has a probability near 2^-100.
+values. Claims about poles, which are recognised by the primes that values have in common, are decided by half of the
+bits of a value of at least 200 bits; a true one is rejected, or a false one accepted, when primes that make up 100 of
+these bits divide further values too, which has a probability near 2^-100.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ FRESH_POINTS = 10
 FAR_POINTS, FAR_BITS = 3, 400
 """For poles: a value of so many bits is not made of small primes by accident, nor by trying."""
 CLEAR_BITS = FAR_BITS // 2
-"""A value's part with primes of its own tells something from this size on."""
+"""A value's part with primes of its own says something from this size on."""
 
 
 def check_irreducible(claims: Claims) -> str:
@@ -122,7 +122,7 @@ def random_places(claims: Claims, seed: str, bits: int) -> Iterator[Place]:
     """Random points, without end, of components that `check_irreducible` has accepted: of others there may be none.
 
     Components vanish on a share of at most (sum of degrees)/2^bits of the points, and on a point where one does,
-    nothing can be told: it is drawn again from one bit more, so that a point is found whatever the degrees are.
+    nothing can be concluded: it is drawn again from one bit more, so that a point is found whatever the degrees are.
     """
     source, forms = random.Random(f"{bits} {seed}"), random.Random(f"form {bits} {seed}")
     polynomials = [PlaneCurve.of(n, c.polynomial, 0).flint() for n, c in enumerate(claims.result.components)]
@@ -161,7 +161,7 @@ def check_identity(claims: Claims, places: Iterator[Place]) -> tuple[int, list[i
     draw()
     exponents: list[int] = []
     for k, c in enumerate(result.components):
-        while (pair := _telling(k, norms)) is None:
+        while (pair := _separating_points(k, norms)) is None:
             draw()
         exponents.append(e := _exponent(claims, k, *pair))
         if c.kind is Kind.CRITICAL and e < 1:
@@ -182,7 +182,7 @@ def check_identity(claims: Claims, places: Iterator[Place]) -> tuple[int, list[i
 _Pair = tuple[tuple[Place, Fraction], tuple[Place, Fraction], int]
 
 
-def _telling(k: int, norms: Sequence[tuple[Place, Fraction]]) -> _Pair | None:
+def _separating_points(k: int, norms: Sequence[tuple[Place, Fraction]]) -> _Pair | None:
     """Two points that tell component k's exponent: its value at the first has primes that divide no other value at
     either, which are returned as their product with multiplicities. None when there are no such points yet.
 
@@ -231,10 +231,10 @@ def _check_poles(claims: Claims, places: Iterator[Place]) -> None:
             asked.append((_has_poles, "at infinity, but solutions have no pole on it"))
         if c.left_out == HARMLESS:
             asked.append((_is_harmless, "harmless, but det H may vanish at solutions near it"))
-        for told, message in asked:
+        for holds, message in asked:
             while len(clear := [p for p in far if _far_part(k, p).bit_length() > CLEAR_BITS]) < FAR_POINTS:
                 far.append(next(places))
-            if not any(told(k, place) for place in clear):
+            if not any(holds(k, place) for place in clear):
                 text = c.polynomial.text(result.slice.axis_names)[:60]
                 raise Violation(f"component {k} is said to be {message}: {text}")
     foreign = [_foreign_poles(claims, place) for place in far]

@@ -13,7 +13,7 @@ from ptmcad.answer.regionmap import HARMLESS, NO_POINT, CriticalValue, Kind
 from ptmcad.verification.claims import Claims, PlaneCurve, ball, fraction, short
 from ptmcad.verification.report import Violation
 from ptmcad.verification.structure import points_over, projection_of_one
-from ptmcad.verification.sturm import isolating_intervals, points_apart, roots_between
+from ptmcad.verification.sturm import isolating_intervals, roots_between, separated_points
 
 BOXES = 600
 """Boxes into which the window may be cut before the algebraic way is taken."""
@@ -29,7 +29,7 @@ def check_left_out(claims: Claims) -> str:
         if not c.left_out or (c.left_out == HARMLESS and c.kind is Kind.INFINITY):
             continue
         if c.left_out != NO_POINT:
-            raise Violation(f"component {n} is left out for a reason that can not be checked: {c.left_out[:60]}")
+            raise Violation(f"component {n} is left out for a reason that cannot be checked: {c.left_out[:60]}")
         number += 1
         hit = _point_in_window(PlaneCurve.of(n, c.polynomial, result.base), claims)
         if hit is not None:
@@ -52,7 +52,7 @@ def _point_in_window(curve: PlaneCurve, claims: Claims) -> str | None:
         product = product * (f // f.gcd(product))
         if "edge" not in origin:
             singular.append(f)
-    if any(roots_between(curve.over(u), *claims.height) for u in points_apart(product, *claims.base)):
+    if any(roots_between(curve.over(u), *claims.height) for u in separated_points(product, *claims.base)):
         return runs
     # no branch runs through the window; what is left are isolated points, over roots of the discriminant
     for f in singular:

@@ -135,15 +135,15 @@ def with_non_adjacencies(r: RegionMap) -> RegionMap:
     return replace(r, non_adjacencies=tuple(found))
 
 
-def kept(r: RegionMap) -> frozenset[str]:
+def switched_off(r: RegionMap) -> frozenset[str]:
     """The savings that the plan says were switched off."""
     return frozenset(step.saving for step in r.plan if step.saving and step.done)
 
 
-def with_plan(r: RegionMap, keep: frozenset[str] | None = None) -> RegionMap:
+def with_plan(r: RegionMap, without: frozenset[str] | None = None) -> RegionMap:
     """The plan that goes with slice and components; the reason for the base axis is the true map's."""
-    keep = kept(r) if keep is None else keep
-    steps = plan_of(r.slice, r.components, r.base, (1, 2), keep, NO_AREAS not in r.plan)
+    without = switched_off(r) if without is None else without
+    steps = plan_of(r.slice, r.components, r.base, (1, 2), without, NO_AREAS not in r.plan)
     old = next((step.reason for step in r.plan if "predicted" in step.reason), "predicted cost 1 against 2")
     return replace(r, plan=tuple(replace(s, reason=old) if "predicted" in s.reason else s for s in steps))
 

@@ -13,11 +13,11 @@ from forger.consistency import (
     changed,
     composed,
     drop,
-    kept,
     put,
     renumbered_cells,
     settled,
     swapped,
+    switched_off,
     with_plan,
 )
 from forger.decompose import decomposed
@@ -71,11 +71,11 @@ def component_invented(r: RegionMap) -> Iterator[Alteration]:
     for n, p in enumerate(_lines(r)):
         for kind in Kind:
             new = Component(p, kind, "" if n < 2 else NO_POINT)
-            keep = kept(r)
-            yield partial(decomposed, r, (*r.components, new), keep)
+            without = switched_off(r)
+            yield partial(decomposed, r, (*r.components, new), without)
             if kind is Kind.AUXILIARY:
-                for saving in sorted(AUXILIARY - keep):
-                    yield partial(decomposed, r, (*r.components, new), keep | {saving})
+                for saving in sorted(AUXILIARY - without):
+                    yield partial(decomposed, r, (*r.components, new), without | {saving})
 
 
 def component_of_another_kind(r: RegionMap) -> Iterator[Alteration]:
@@ -86,8 +86,8 @@ def component_of_another_kind(r: RegionMap) -> Iterator[Alteration]:
                 other = replace(r, components=put(r.components, k, kind=kind))
                 yield partial(with_plan, other)
                 if kind is Kind.AUXILIARY:
-                    for saving in sorted(AUXILIARY - kept(r)):
-                        yield partial(with_plan, other, kept(r) | {saving})
+                    for saving in sorted(AUXILIARY - switched_off(r)):
+                        yield partial(with_plan, other, switched_off(r) | {saving})
 
 
 def component_altered(r: RegionMap) -> Iterator[Alteration]:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from forger.consistency import NO_AREAS, kept, settled, with_plan
+from forger.consistency import NO_AREAS, settled, switched_off, with_plan
 from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.regionmap import Component, RegionMap
 from ptmcad.errors import HypothesisError
@@ -32,12 +32,12 @@ from ptmcad.exact.stages import (
 from ptmcad.options import Options
 
 
-def decomposed(r: RegionMap, components: Sequence[Component], keep: frozenset[str] | None = None) -> RegionMap:
+def decomposed(r: RegionMap, components: Sequence[Component], without: frozenset[str] | None = None) -> RegionMap:
     """The map with these components, over the same base, and with all that follows from them."""
     problem = problem_of(r.slice)
-    base, keep = r.base, kept(r) if keep is None else keep
+    base, without = r.base, switched_off(r) if without is None else without
     variety = Variety(tuple(components), r.complex_solutions, base, *seen_from(components, base), (1, 2))
-    projection = projection_of(problem, variety, keep)
+    projection = projection_of(problem, variety, without)
     stacks = stacks_of(problem, variety, projection)
     known = [_equilibria(problem, at) for at in stacks.points]
     some = next((e for e in known if e is not None), None) or _equilibria(problem, _inside(r))
@@ -49,10 +49,10 @@ def decomposed(r: RegionMap, components: Sequence[Component], keep: frozenset[st
     except ArithmeticError:
         counts = with_keys(problem, counts.found[:1] * len(known))
         neighbours = neighbours_of(variety, projection, stacks, counts, crossings)
-    options = Options(keep=keep, areas=NO_AREAS not in r.plan)
+    options = Options(without=without, areas=NO_AREAS not in r.plan)
     cells = Cells(projection, stacks, counts, neighbours)
     found = replace(assemble(problem, options, Reached(variety, cells)), plan=r.plan, system=r.system)
-    found = with_plan(found, keep)
+    found = with_plan(found, without)
     areas = {frozenset(tuple(r.cells[n].sample) for n in g.cells): g.area for g in r.regions}
     whole = (Fraction(0), found.regions[0].area[1])
     if NO_AREAS in r.plan:

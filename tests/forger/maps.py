@@ -17,8 +17,8 @@ def named(name: str) -> RegionMap:
     if name.isdigit():
         number = int(name)
         return ptmcad.classify(ptmcad.slice_from_mapping(drawn(number, len(REFUSED.get(number, ()))).record))
-    stem, *keep = name.split("+")
-    areas = "no-areas" not in keep
+    stem, *without = name.split("+")
+    areas = "no-areas" not in without
     return ptmcad.classify(
-        ptmcad.load(CONFIGS / f"{stem}.yaml"), keep=[k for k in keep if k != "no-areas"], areas=areas
+        ptmcad.load(CONFIGS / f"{stem}.yaml"), without=[k for k in without if k != "no-areas"], areas=areas
     )

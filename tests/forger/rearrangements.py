@@ -11,9 +11,9 @@ from forger.consistency import (
     NO_AREAS,
     Alteration,
     changed,
-    kept,
     put,
     renumbered_components,
+    switched_off,
     window_area,
     with_plan,
 )
@@ -181,18 +181,18 @@ def _turned(text: str) -> str:
 
 def component_left_in(r: RegionMap) -> Iterator[Alteration]:
     """One without a point in the window is used, which the plan says."""
-    if "no-real-points" not in kept(r) and any(c.left_out == "no point in the window" for c in r.components):
+    if "no-real-points" not in switched_off(r) and any(c.left_out == "no point in the window" for c in r.components):
         everything = tuple(
             replace(c, left_out="" if c.left_out == "no point in the window" else c.left_out) for c in r.components
         )
-        yield partial(decomposed, r, everything, kept(r) | {"no-real-points"})
+        yield partial(decomposed, r, everything, switched_off(r) | {"no-real-points"})
 
 
 def savings_without_trace(r: RegionMap) -> Iterator[Alteration]:
     """Imports and areas beside walls that separate nothing were computed or not: no entry depends on it."""
     for saving in ("imports", "equal-counts"):
         if saving == "imports" or NO_AREAS not in r.plan:
-            yield partial(with_plan, r, kept(r) ^ {saving})
+            yield partial(with_plan, r, switched_off(r) ^ {saving})
 
 
 KINDS = (

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from flint import arb, arb_poly, ctx, fmpq
 
-from forger.consistency import drop, kept, put, swapped, with_plan
+from forger.consistency import drop, put, swapped, switched_off, with_plan
 from forger.maps import named
 from ptmcad.answer.regionmap import (
     HARMLESS,
@@ -134,7 +134,7 @@ def more_components(*more: Component) -> Change:
 
 
 def keeping(*savings: str) -> Change:
-    return lambda r: with_plan(r, kept(r) | set(savings))
+    return lambda r: with_plan(r, switched_off(r) | set(savings))
 
 
 def first(r: RegionMap, **what: Any) -> int:
@@ -210,7 +210,7 @@ def area(k: int, low: Fraction, high: Fraction) -> Change:
 HALF = Fraction(1, 2)
 
 SHAPE: list[tuple[str, Change, str]] = [
-    ("fig3", lambda r: replace(r, status=Status.CERTIFIED), "the status 'certified' can not be checked"),
+    ("fig3", lambda r: replace(r, status=Status.CERTIFIED), "the status 'certified' cannot be checked"),
     ("fig3", lambda r: replace(r, undetermined=HALF), "0.5 of the window is said to be undetermined, but all cells"),
     ("fig3", with_slice(mechanism="other"), "the mechanism 'other' is not known"),
     ("fig3", with_slice(count=Count.ADMISSIBLE), "an exact map has no admissible counts"),
@@ -277,7 +277,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
      "is not stored, but it bounds the domain of|is not stored, but equation"),
     (check_boundary, "fig3", lambda r: kind_of(first(r, kind=Kind.BOUNDARY), Kind.CRITICAL)(r), "stored as critical,"),
     (check_boundary, "fig3", kind_of(0, Kind.BOUNDARY), "component 0 is stored as boundary, but bounds nothing"),
-    (check_left_out, "fig3", of("components", 0, left_out="it is ugly"), "for a reason that can not be checked"),
+    (check_left_out, "fig3", of("components", 0, left_out="it is ugly"), "for a reason that cannot be checked"),
     (check_left_out, "fig3", of("components", 0, left_out=NO_POINT), "is left out, but runs through the window"),
     (check_plan, "fig3", lambda r: replace(r, plan=r.plan[1:]), "the plan has 12 steps, not 13"),
     (check_plan, "fig3", of("plan", 0, reason="nobody asked"), "step 0 of the plan is not"),
@@ -406,7 +406,7 @@ def test_rejecting_branches(check: Check, name: str, change: Change, words: str)
 def test_what_was_kept_is_no_fault(check: Check, name: str) -> None:
     """A curve of the Hermite matrix alone is auxiliary, curves without points are used, where that was asked for."""
     r = the(name)
-    assert {*name.split("+")[1:]} - {"no-areas"} <= kept(r)
+    assert {*name.split("+")[1:]} - {"no-areas"} <= switched_off(r)
     check(Claims(r))
 
 

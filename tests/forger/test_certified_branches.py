@@ -119,7 +119,7 @@ def of(table: str, k: int, **changes: Any) -> Change:
 
 
 def both(k: int, **changes: Any) -> Change:
-    """A cell and its region, which are told by the same number here, with other counts."""
+    """A cell and its region, which have the same number here, with other counts."""
     return lambda r: of("regions", k, **changes)(of("cells", k, **changes)(r))
 
 
@@ -177,13 +177,13 @@ def instead(old: str, new: str) -> Change:
 
 
 def beside(r: RegionMap) -> RegionMap:
-    """The first box just touches its equilibrium, so that nobody can tell whether it is in the box."""
+    """The first box just touches its equilibrium, so that nobody can say whether it is in the box."""
     s = r.cells[0].solutions[0]
     return with_solution(0, center=(s.center[0] + s.radius, s.center[1]))(r)
 
 
 def reaching(r: RegionMap) -> RegionMap:
-    """The box of one equilibrium reaches to another one, and nobody can tell whether this one is in it."""
+    """The box of one equilibrium reaches to another one, and nobody can say whether this one is in it."""
     for j, one in enumerate(r.cells[0].solutions):
         for other in r.cells[0].solutions:
             far = max(abs(a - b) for a, b in zip(one.center, other.center, strict=True))
@@ -276,7 +276,7 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     *((check_potential, springs, plus(text), "is not a formula in the names")
       for text in ("0*L1**2", "0*\N{GREEK SMALL LETTER ALPHA}", "1.5", "0 # L1", "0\n", "0\0", "0x0", "0*1_0",
                    "L1 % L2", "cos(th1, th2)", "0if L1 else 0", "0*L1[0]", "0*L1.real")),
-    *((check_potential, springs, plus(text), "the stored potential can not be read")
+    *((check_potential, springs, plus(text), "the stored potential cannot be read")
       for text in ("1 +", "((1)", "01", "1" * 4400, "(" * 250 + "0" + ")" * 250)),
     (check_potential, springs, with_system(potential="+".join("1" * 2000)), "too many parts within each other"),
     *((check_potential, springs, plus(text), "the stored potential has a part that is no formula")

@@ -123,7 +123,9 @@ def test_auxiliary_curves_are_neither_invented_nor_left_out() -> None:
 def test_an_exact_map_has_no_admissible_counts(shipped: Callable[..., RegionMap]) -> None:
     r = shipped("fig2")
     report = ptmcad.verify(replace(r, slice=replace(r.slice, count=Count.ADMISSIBLE)))
-    assert report.violation == "shape: an exact map has no admissible counts by which its regions could be told apart"
+    assert (
+        report.violation == "shape: an exact map has no admissible counts by which its regions could be distinguished"
+    )
 
 
 @pytest.mark.slow

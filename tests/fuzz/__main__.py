@@ -23,7 +23,7 @@ HERE = Path(__file__).resolve().parent
 
 
 def guided(kind: str, cases: int, seed: int, folder: Path) -> bool:
-    """Run a campaign of `fuzz.guided`, print its figures, and tell whether it found nothing."""
+    """Run a campaign of `fuzz.guided`, print its figures, and return whether it found nothing."""
     start = time.monotonic()
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join((str(HERE.parent), str(HERE.parents[1])))}
     done = subprocess.run(
@@ -44,7 +44,7 @@ def guided(kind: str, cases: int, seed: int, folder: Path) -> bool:
 
 
 def seeded(kind: str, cases: int, seed: int, folder: Path) -> bool:
-    """Run cases made from seeds, print the figures, and tell whether nothing was found."""
+    """Run cases made from seeds, print the figures, and return whether nothing was found."""
     start = time.monotonic()
     tally = watched(kind, range(seed * 1_000_000, seed * 1_000_000 + cases), folder)
     slowest, _, number = tally.slowest

@@ -34,7 +34,7 @@ END = FINITE | st.sampled_from([inf, -inf, nan])
 
 @st.composite
 def intervals(draw: st.DrawFn, end: st.SearchStrategy[float] = END) -> tuple[float, float]:
-    """A lower and an upper end; an end that tells nothing may be infinite or NaN, whatever the other one is."""
+    """A lower and an upper end; an end that says nothing may be infinite or NaN, whatever the other one is."""
     a, b = draw(end) * draw(st.sampled_from([1, -1])), draw(end) * draw(st.sampled_from([1, -1]))
     if a > b:
         a, b = b, a
@@ -199,7 +199,7 @@ def check_sines(low: Floats, high: Floats) -> None:
             for quarter in (0, 1):
                 u, v = row[2 * quarter], row[2 * quarter + 1]
                 p, q = at[quarter], at[2 + quarter]
-                # the numbers of the last extrema below the ends tell how many lie between
+                # the numbers of the last extrema below the ends show how many lie between
                 first = ((x / pi) - (arb(1) - quarter) / 2).floor()
                 last = ((y / pi) - (arb(1) - quarter) / 2).floor()
                 n, m = whole(first), whole(last)

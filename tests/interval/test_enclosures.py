@@ -218,7 +218,7 @@ def _shortest(point: Floats) -> float:
 
 
 def test_contraction_discards_what_holds_none() -> None:
-    """Boxes around random points off the curve, small enough to be told."""
+    """Boxes around random points off the curve, small enough to be decided."""
     rng = np.random.default_rng(9)
     system = fold_curves()[0].system.arguments()
     m, n = system[4].shape

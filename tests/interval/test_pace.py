@@ -13,13 +13,13 @@ from typing import Any
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified import assembly, engine, loading, refinement
-from ptmcad.certified.pace import ALLOWANCE, SAFETY, SHARE, SHORTEST, Pace
+from ptmcad.certified.pace import ALLOWANCE, MAP_TIME_SHARE, MIN_RESERVE, SAFETY, Pace
 from ptmcad.errors import LimitReached
 from ptmcad.options import Options
 
 
 class Clock:
-    """A clock that moves when it is told to, and a millisecond at each look, as time does."""
+    """A clock that moves when it is made to, and a millisecond at each look, as time does."""
 
     def __init__(self) -> None:
         self.now = 1000.0
@@ -69,7 +69,7 @@ def test_a_long_task_is_expected_again() -> None:
     assert not pace.late(10)
     clock.now += 14.5  # 13.5 are left: one more such task does not fit with the map
     assert pace.late(10)
-    assert Pace(clock() + SHORTEST / 2, clock, clock).late(10)
+    assert Pace(clock() + MIN_RESERVE / 2, clock, clock).late(10)
     assert not Pace(None, clock, clock).late(10**7)
 
 
@@ -85,7 +85,7 @@ def test_maps_on_the_way_take_a_small_part_of_the_time() -> None:
             pace.map.record(20_000, 3.0)
             pace.spent += 3
             made += 1
-    assert 50 <= made <= (ALLOWANCE + SHARE * (clock.now - pace.started)) / 3 + 1
+    assert 50 <= made <= (ALLOWANCE + MAP_TIME_SHARE * (clock.now - pace.started)) / 3 + 1
 
 
 def test_what_is_not_worth_while_is_not_looked_at_all_the_time() -> None:
@@ -95,7 +95,7 @@ def test_what_is_not_worth_while_is_not_looked_at_all_the_time() -> None:
     assert pace.due(1000)
     pace.looked(1.0)
     assert not pace.due(1000)
-    clock.now += 2 / SHARE + 1
+    clock.now += 2 / MAP_TIME_SHARE + 1
     assert pace.due(1000)
 
 
@@ -172,7 +172,7 @@ def test_before_anything_is_decided_the_message_says_that_there_is_no_map(monkey
     clock = Clock()
     monkeypatch.setattr(engine, "Pace", lambda until: Pace(until, clock, clock))
     with pytest.raises(LimitReached, match="before anything was decided: there is no map to save yet") as limit:
-        engine.certified_map(window(), Options(deadline=clock() + SHORTEST / 2, jobs=1))
+        engine.certified_map(window(), Options(deadline=clock() + MIN_RESERVE / 2, jobs=1))
     assert limit.value.partial is None
 
 

@@ -137,7 +137,7 @@ def test_a_box_without_solutions_has_no_strip() -> None:
 
 
 def test_a_box_with_an_unbounded_derivative_stays_whole() -> None:
-    """x = 1/t over an interval with t = 0: the natural test can not exclude it, and nothing linear can be said."""
+    """x = 1/t over an interval with t = 0: the natural test cannot exclude it, and nothing linear can be said."""
     graph = Graph()
     x, y, t = (graph.variable(k) for k in range(3))
     curve = system([x - graph.constant(Fraction(1)) / t, y - t], (0, 1, 2))

@@ -13,7 +13,7 @@ from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import components, union_area
 from ptmcad.cover.complement import PLAIN, Tiling
 from ptmcad.cover.graph import Touching
-from ptmcad.cover.rectangles import MOST_STEPS, Cover
+from ptmcad.cover.rectangles import MAX_STEPS, Cover
 from ptmcad.cover.subdivision import CUT, Subdivision, rectangle_array
 
 
@@ -76,8 +76,8 @@ def test_components_do_not_depend_on_the_tiling(cover: Cover) -> None:
 
 def test_many_rectangles_need_longer_arrays() -> None:
     """A diagonal of 5000 squares on the finest lattice: deep, and more parts than the arrays begin with."""
-    side = MOST_STEPS // 8192
-    cover = Cover(MOST_STEPS, tuple((k * side, (k + 1) * side, k * side, (k + 1) * side) for k in range(5000)))
+    side = MAX_STEPS // 8192
+    cover = Cover(MAX_STEPS, tuple((k * side, (k + 1) * side, k * side, (k + 1) * side) for k in range(5000)))
     found = components(cover, COMPILED)
     assert found.areas == components(cover, PLAIN).areas
     assert found.cluster_areas == (5000 * side**2,)

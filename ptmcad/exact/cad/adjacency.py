@@ -3,24 +3,23 @@
 Guarantee: the pairs found are adjacent, and no pair is missing. Two cells on both sides of a critical abscissa a are
 adjacent exactly when an open segment of the line u = a, free of the curves, belongs to the closure of both.
 
-A *barrier* is a rational height e such that no curve meets the horizontal segment [l, r] x {e}, where l < a < r lie in
-the two stacks; it proves that the cells at (l, e) and (r, e) are adjacent. Between consecutive barriers lies a *slot*
-that some branches enter from the left and some from the right. All pairs are found once every slot contains at most one
-point of the line u = a that branches run into, because then barriers stand on both sides of each such point.
+A *separator* is a rational height e such that no curve meets the horizontal segment [l, r] x {e}, where l < a < r lie
+in the two stacks; it proves that the cells at (l, e) and (r, e) are adjacent. Between consecutive separators lies a
+*gap* that some branches enter from the left and some from the right. All pairs are found once every gap contains at
+most one point of the line u = a that branches run into, because then separators stand on both sides of each such point.
 
-* A slot with at most two branches is such a slot: through every point of a real algebraic curve (no vertical line among
-  them) runs an even number of half-branches, so two branches in a slot end at the same point. Only the point on the
-  window's edge, if a curve passes there, may take an odd number: so an edge slot with one branch is such a slot.
-* A slot with more branches is split, if it can be, by bracketing a more closely; if that fails, all real roots of
-  res_u(q, p) in the slot are isolated, q being a's polynomial: they include every point of the curves over a, so
-  heights between them are barriers once the bracket is narrow enough.
+* A gap with at most two branches does: through every point of a real algebraic curve (no vertical line among
+  them) runs an even number of half-branches, so two branches in a gap end at the same point. Only the point on the
+  window's edge, if a curve passes there, may take an odd number: so a gap at the edge with one branch does.
+* A gap with more branches is split, if it can be, by bracketing a more closely; if that fails, all real roots of
+  res_u(q, p) in the gap are isolated, q being a's polynomial: they include every point of the curves over a, so
+  heights between them are separators once the bracket is narrow enough.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum
 from itertools import pairwise
 
 from flint import fmpq
@@ -39,18 +38,19 @@ from ptmcad.algebra.real_roots import (
 )
 from ptmcad.algebra.resultants import Check, nothing, resultant
 from ptmcad.algebra.window import Interval
+from ptmcad.answer.regionmap import Reason
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, Wall, roots_over
 
 ROUNDS = 4
 """Bracketings that are tried before the exact separation; each has twice as many bits as the one before."""
-_LONG = 64
+_LONG_COEFFICIENT_BITS = 64
 """Long coefficients may bring branches very near to each other: one bracketing more is tried for each doubling of their
-bits beyond ``_LONG`` 2^ROUNDS, as the cost of the exact separation grows with them far faster."""
+bits beyond ``_LONG_COEFFICIENT_BITS`` 2^ROUNDS, as the cost of the exact separation grows with them far faster."""
 
 
 @dataclass(frozen=True, slots=True)
-class Passage:
+class Separator:
     """Cells ``left`` and ``right`` (levels in their stacks) joined by the open segment [low, high] x {height}."""
 
     left: int
@@ -60,36 +60,28 @@ class Passage:
     height: fmpq
 
 
-class Closing(Enum):
-    """Why a slot has no room for further pairs; see the module's text."""
-
-    PAIR = "two half-branches meet"
-    EDGE = "a half-branch ends on the window's edge"
-    POINT = "one point of the curves"
-
-
 @dataclass(frozen=True, slots=True)
-class Slot:
-    """Heights between two barriers (None at the window's edge) which branches enter, and why no other barrier fits.
+class Gap:
+    """Heights between two separators (None at the window's edge) which branches enter, and why no other separator fits.
 
     Attributes
     ----------
-    left, right : the lowest and the highest level, in either stack, of the cells that reach into the slot.
+    left, right : the lowest and the highest level, in either stack, of the cells that reach into the gap.
     """
 
     left: tuple[int, int]
     right: tuple[int, int]
-    below: Passage | None
-    above: Passage | None
-    closing: Closing
+    below: Separator | None
+    above: Separator | None
+    reason: Reason
 
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """What happens between two neighbouring stacks: one passage for each adjacent pair, and the slots between them."""
+    """What happens between two neighbouring stacks: one separator for each adjacent pair, and the gaps between them."""
 
-    passages: tuple[Passage, ...]
-    slots: tuple[Slot, ...]
+    separators: tuple[Separator, ...]
+    gaps: tuple[Gap, ...]
 
 
 def cross(
@@ -103,7 +95,7 @@ def cross(
     extra: tuple[fmpq, ...] = ()
     points: UnivariatePolynomial | None = None  # costly, computed once if the rounds do not suffice
     attempt, height = 0, max((int(q.height_bits()) for c in curves for q in c.in_v), default=0)
-    rounds = max(ROUNDS, (height // _LONG).bit_length())
+    rounds = max(ROUNDS, (height // _LONG_COEFFICIENT_BITS).bit_length())
     while True:
         check()
         width, resolution = width / 2**step, resolution / 2 ** (step - 2)
@@ -111,14 +103,14 @@ def cross(
         over_low, over_high = (
             tuple((w, refine(r, resolution)) for w, r in roots_over(curves, u, fibre)) for u in (low, high)
         )
-        found = _barriers(curves, low, high, over_low, over_high, fibre, extra)
-        gaps = _gaps(found, len(over_low), len(over_high), fibre)
-        # without any barrier nothing is proved, even if no branch runs up to the line
-        unresolved = [g for g in gaps if not found or _closing(g, curves, end, points) is None]
+        found = _separators(curves, low, high, over_low, over_high, fibre, extra)
+        gaps = _open_gaps(found, len(over_low), len(over_high), fibre)
+        # without any separator nothing is proved, even if no branch runs up to the line
+        unresolved = [g for g in gaps if not found or _reason(g, curves, end, points) is None]
         if not unresolved:
             unique = {(p.left, p.right): p for p in reversed(found)}
-            slots = (_slot(g, curves, end, points) for g in gaps if g.branches)
-            return Crossing(tuple(sorted(unique.values(), key=lambda p: (p.left, p.right))), tuple(slots))
+            closed = (_gap(g, curves, end, points) for g in gaps if g.branches)
+            return Crossing(tuple(sorted(unique.values(), key=lambda p: (p.left, p.right))), tuple(closed))
         attempt += 1
         step = 2 * step
         if attempt >= rounds:
@@ -138,7 +130,7 @@ def _bracket(end: BaseEnd, width: fmpq, low: fmpq, high: fmpq) -> tuple[fmpq, fm
     return root.low, root.high
 
 
-def _barriers(
+def _separators(
     curves: Sequence[Curve],
     low: fmpq,
     high: fmpq,
@@ -146,8 +138,8 @@ def _barriers(
     over_high: Sequence[tuple[Wall, RealRoot]],
     fibre: Interval,
     extra: Sequence[fmpq],
-) -> list[Passage]:
-    """The barriers among the gaps between the branches and among the extra heights, from below."""
+) -> list[Separator]:
+    """The separators among the gaps between the branches and among the extra heights, from below."""
     occupied = sorted((r.low, r.high) for _, r in (*over_low, *over_high))
     heights = list(extra)
     top = fibre[0]
@@ -164,18 +156,18 @@ def _barriers(
             continue
         below_low = sum(r.high < height for _, r in over_low)
         below_high = sum(r.high < height for _, r in over_high)
-        result.append(Passage(below_low, below_high, low, high, height))
+        result.append(Separator(below_low, below_high, low, high, height))
     return result
 
 
 @dataclass(frozen=True, slots=True)
-class _Gap:
-    """Heights between two barriers, or a barrier and the window's edge, or both edges."""
+class _OpenGap:
+    """Heights between two separators, or a separator and the window's edge, or both edges."""
 
     bottom: fmpq
     top: fmpq
-    below: Passage | None
-    above: Passage | None
+    below: Separator | None
+    above: Separator | None
     left: tuple[int, int]
     right: tuple[int, int]
 
@@ -190,15 +182,15 @@ class _Gap:
         return [height for height, end in ((self.bottom, self.below), (self.top, self.above)) if end is None]
 
 
-def _gaps(found: Sequence[Passage], count_left: int, count_right: int, fibre: Interval) -> list[_Gap]:
-    """The gaps between consecutive barriers, from below, the window's edges included."""
-    ends: list[tuple[fmpq, int, int, Passage | None]] = [(fibre[0], 0, 0, None)]
+def _open_gaps(found: Sequence[Separator], count_left: int, count_right: int, fibre: Interval) -> list[_OpenGap]:
+    """The gaps between consecutive separators, from below, the window's edges included."""
+    ends: list[tuple[fmpq, int, int, Separator | None]] = [(fibre[0], 0, 0, None)]
     ends += [(p.height, p.left, p.right, p) for p in found]
     ends.append((fibre[1], count_left, count_right, None))
-    return [_Gap(a[0], b[0], a[3], b[3], (a[1], b[1]), (a[2], b[2])) for a, b in pairwise(ends)]
+    return [_OpenGap(a[0], b[0], a[3], b[3], (a[1], b[1]), (a[2], b[2])) for a, b in pairwise(ends)]
 
 
-def _closing(gap: _Gap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Closing | None:
+def _reason(gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Reason | None:
     """Why branches run into at most one point of the gap; None when that is not known.
 
     ``points`` is the polynomial of `_points_polynomial`, or None while it is not known. A gap without branches may
@@ -206,20 +198,20 @@ def _closing(gap: _Gap, curves: Sequence[Curve], end: BaseEnd, points: Univariat
     """
     branches, edges = gap.branches, gap.edges
     if branches == 0:
-        return Closing.POINT
+        return Reason.POINT
     if len(edges) == 2 or (not edges and branches % 2 == 1) or (edges and not _meets(curves, end, edges[0])):
         return None
     if branches <= 2 - len(edges):
-        return Closing.EDGE if edges else Closing.PAIR
+        return Reason.EDGE if edges else Reason.PAIR
     if points is None or len(isolate(points, gap.bottom, gap.top)) > 1 - len(edges):
         return None
-    return Closing.POINT
+    return Reason.POINT
 
 
-def _slot(gap: _Gap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Slot:
-    closing = _closing(gap, curves, end, points)
-    assert closing is not None
-    return Slot(gap.left, gap.right, gap.below, gap.above, closing)
+def _gap(gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Gap:
+    reason = _reason(gap, curves, end, points)
+    assert reason is not None
+    return Gap(gap.left, gap.right, gap.below, gap.above, reason)
 
 
 def _meets(curves: Sequence[Curve], end: BaseEnd, edge: fmpq) -> bool:
@@ -251,7 +243,7 @@ def _points_polynomial(curves: Sequence[Curve], end: BaseEnd) -> UnivariatePolyn
     return product
 
 
-def _between_points(points: UnivariatePolynomial, gap: _Gap) -> list[fmpq]:
+def _between_points(points: UnivariatePolynomial, gap: _OpenGap) -> list[fmpq]:
     """Heights between all possible points in the gap."""
     roots = inside(disjoint(isolate(points, gap.bottom, gap.top)), (gap.bottom, gap.top))
     levels = [gap.bottom, *(x for r in roots for x in (r.low, r.high)), gap.top]

@@ -50,7 +50,7 @@ class _Effort:
 class _Panel:
     """A part of a wall that separates region ``below`` from region ``above``, with the enclosure of its integral.
 
-    ``smooth`` tells whether the branch was enclosed by its Taylor series or by arcs; ``singular`` is not zero when that
+    ``smooth`` shows whether the branch was enclosed by its Taylor series or by arcs; ``singular`` is not zero when that
     is not even tried because the branch seems to turn at the left (negative) or right (positive) end, and counts how
     often it seemed so. Neither affects the guarantee.
     """
@@ -96,13 +96,17 @@ def region_areas(
     width = base[1] - base[0]
     strip = fmpq(1, 10 ** (digits + 3) * 4)
     # at first not much more for long coefficients: where they cancel, `branch_integral` says so, and arcs may do
-    bits = 64 + 6 * digits + min(max((int(q.height_bits()) for c in curves for q in c.in_v), default=0) // 2, _LONG)
+    bits = (
+        64
+        + 6 * digits
+        + min(max((int(q.height_bits()) for c in curves for q in c.in_v), default=0) // 2, _LONG_COEFFICIENT_BITS)
+    )
     bits += _bits_lost(base) + _bits_lost(fibre)
     narrowest = min(map(_isolated, stacks))
     finer, even = 20, True
     by_component = {c.component: c for c in curves}
 
-    @lru_cache(maxsize=_KEPT)
+    @lru_cache(maxsize=_CACHED_FIBRES)
     def roots(component: int, u: fmpq) -> tuple[RealRoot, ...]:
         # walls over the same stack are cut at the same places, and again when an attempt is repeated
         return isolate(by_component[component].fibre(u), *fibre)
@@ -141,22 +145,22 @@ def _with_room(bounds: tuple[Fraction, Fraction], tolerance: Fraction, whole: Fr
 
 
 _NEGLIGIBLE = Fraction(1, 10**15)
-_PATIENT = 5
+_HALVING_CUTS = 5
 """Cuts by half towards a turning point before they come faster."""
-_FASTEST = 10
+_MAX_CUTS = 10
 """The fastest cut is to the part 2^-32 of a panel."""
-_LONG = 128
+_LONG_COEFFICIENT_BITS = 128
 """Bits granted at first to long coefficients."""
-_VASTLY = 2**8
+_HOPELESS_RATIO = 2**8
 """So much larger than allowed are strips against rough areas, when it is pointless to find out about the exact ones."""
-_KEPT = 1024
+_CACHED_FIBRES = 1024
 """Fibres whose roots are remembered."""
-_AT_FIRST = 20
+_ROUGH_HEIGHT_BITS = 20
 """Bits to which the height of a branch is asked for before the regions' areas are known roughly."""
 
 
 class _Unreachable(ArithmeticError):
-    """The tolerance can not be reached at this precision, or with strips of this width left out."""
+    """The tolerance cannot be reached at this precision, or with strips of this width left out."""
 
     def __init__(self, strips: bool) -> None:
         super().__init__()
@@ -194,10 +198,10 @@ def _areas(
     lost = gaps * (fibre[1] - fibre[0])
     if strips[1]:
         rough = _rough(spans, stacks, regions, fibre, count, effort)
-        if lost * 4 > from_fraction(tolerance) * min(rough) * _VASTLY:
+        if lost * 4 > from_fraction(tolerance) * min(rough) * _HOPELESS_RATIO:
             raise _Unreachable(strips=True)
     fixed = _edges(spans, regions, fibre, count)
-    wanted = (fibre[1] - fibre[0]) / 2**_AT_FIRST
+    wanted = (fibre[1] - fibre[0]) / 2**_ROUGH_HEIGHT_BITS
     panels = []
     for (low, high), stack, row in zip(spans, stacks, regions, strict=True):
         for j, wall in enumerate(stack.walls):
@@ -325,7 +329,7 @@ def _halves(p: _Panel, fibre: Interval, effort: _Effort, wanted: fmpq) -> tuple[
     A branch that turns at an end is cut nearer and nearer to that end. When this has gone well for some times, the cuts
     come so fast that a turn which is many orders of magnitude smaller than the panel is reached in a few steps.
     """
-    share = fmpq(1, 2**2 ** max(0, abs(p.singular) - _PATIENT))
+    share = fmpq(1, 2**2 ** max(0, abs(p.singular) - _HALVING_CUTS))
     if p.singular > 0:
         share = 1 - share
     margin = (p.high - p.low) * min(share, 1 - share) / 8
@@ -334,10 +338,10 @@ def _halves(p: _Panel, fibre: Interval, effort: _Effort, wanted: fmpq) -> tuple[
     left = _panel(p.curve, p.root, p.low, middle, p.below, p.above, fibre, effort, wanted, min(p.singular, 0))
     right = _panel(p.curve, p.root, middle, p.high, p.below, p.above, fibre, effort, wanted, max(p.singular, 0))
     if left.smooth and not right.smooth:
-        right = replace(right, singular=min(max(p.singular, 0) + 1, _FASTEST))
+        right = replace(right, singular=min(max(p.singular, 0) + 1, _MAX_CUTS))
     elif right.smooth and not left.smooth:
-        left = replace(left, singular=max(min(p.singular, 0) - 1, -_FASTEST))
-    elif abs(p.singular) > _PATIENT:
+        left = replace(left, singular=max(min(p.singular, 0) - 1, -_MAX_CUTS))
+    elif abs(p.singular) > _HALVING_CUTS:
         left, right = (replace(q, singular=(q.singular > 0) - (q.singular < 0)) for q in (left, right))
     return left, right
 

@@ -1,7 +1,7 @@
 """Walls as chains of chords, each with a proved distance that the wall keeps to it.
 
-Guarantee: over its part of the base each wall stays within `Chord.apart` of its chord, measured along the fibre; what
-lies over no chord is a part of the base of at most the width that was asked for.
+Guarantee: over its part of the base each wall stays within `Chord.distance` of its chord, measured along the fibre;
+what lies over no chord is a part of the base of at most the width that was asked for.
 
 On a panel that holds no critical value a wall is the graph of a function with two derivatives. If its second derivative
 is at most K in modulus there, a panel of width w has the graph within K w^2 / 8 of the chord between its ends;
@@ -26,9 +26,9 @@ from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
 
 _BITS = 128
-_PLACES = 2**60
+_GRID_STEPS = 2**60
 """Ends of chords are rounded to this part of the fibre."""
-ROUNDING = Fraction(2, _PLACES)
+ROUNDING = Fraction(2, _GRID_STEPS)
 """By which distances are made larger for that."""
 SHORT, FLAT, LITTLE = Fraction(1, 2**12), Fraction(1, 2**12), Fraction(1, 2**34)
 """Between two heights a wall is shut in on panels of at most the first width; that does when they are the second apart,
@@ -45,14 +45,14 @@ class Chord:
     ----------
     left, right : along the base.
     at_left, at_right : along the fibre.
-    apart : the wall's largest distance, along the fibre.
+    distance : the wall's largest distance, along the fibre.
     """
 
     left: Fraction
     right: Fraction
     at_left: Fraction
     at_right: Fraction
-    apart: Fraction
+    distance: Fraction
 
 
 def chords(
@@ -61,7 +61,7 @@ def chords(
     span: tuple[Fraction, Fraction],
     base: Interval,
     fibre: Interval,
-    apart: Fraction,
+    max_distance: Fraction,
     narrowest: Fraction,
     check: Callable[[], None] = lambda: None,
 ) -> tuple[Chord, ...]:
@@ -70,7 +70,7 @@ def chords(
     Parameters
     ----------
     span : where, as shares of the base; no critical value lies in it, its ends included.
-    apart : the largest distance wanted, as a share of the fibre; it may be exceeded on panels where the wall is shut in
+    max_distance : the largest distance wanted, as a share of the fibre; exceeded perhaps where the wall is enclosed
         between two heights, see `FLAT` and `LITTLE`.
     narrowest : panels of at most this share of the base are not halved. Where nothing is proved on one, the distance to
         its chord is `UNPROVED`, which always holds.
@@ -83,9 +83,9 @@ def chords(
     def place(share: Fraction) -> Fraction:
         if share not in heights:
             u = base[0] + width * fmpq(share.numerator, share.denominator)
-            at = refine(isolate(curve.fibre(u), *fibre)[root], height / _PLACES)
-            rounded = ((at.middle - fibre[0]) / height * _PLACES + fmpq(1, 2)).floor()
-            heights[share] = Fraction(int(rounded), _PLACES)
+            at = refine(isolate(curve.fibre(u), *fibre)[root], height / _GRID_STEPS)
+            rounded = ((at.middle - fibre[0]) / height * _GRID_STEPS + fmpq(1, 2)).floor()
+            heights[share] = Fraction(int(rounded), _GRID_STEPS)
         return heights[share]
 
     waiting = [span]
@@ -94,7 +94,7 @@ def chords(
         left, right = waiting.pop()
         middle = (left + right) / 2
         distance = _distance(curve, root, left, right, base, fibre)
-        enough = distance is not None and distance <= apart
+        enough = distance is not None and distance <= max_distance
         if distance is None and right - left <= SHORT:
             distance = _between_heights(curve, (left, right), (place(left), place(right)), base, fibre)
             enough = distance is not None and distance <= FLAT and distance * (right - left) <= LITTLE
@@ -119,7 +119,7 @@ def _distance(
         return None
     mantissa, exponent = (abs(slope.second) * arb(radius * radius / 2 / height)).upper().man_exp()
     distance = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-    return -((-distance * _PLACES).__floor__()) * Fraction(1, _PLACES)
+    return -((-distance * _GRID_STEPS).__floor__()) * Fraction(1, _GRID_STEPS)
 
 
 def _between_heights(
@@ -127,7 +127,7 @@ def _between_heights(
 ) -> Fraction | None:
     """How far apart two heights are between which a wall with these ends is shut in over a panel; None: not proved.
 
-    The wall does not leave the window, and it can not cross a height at which p has no zero over the panel.
+    The wall does not leave the window, and it cannot cross a height at which p has no zero over the panel.
     """
     width, height = base[1] - base[0], fibre[1] - fibre[0]
     u = base[0] + width * fmpq((panel[0] + panel[1]).numerator, (panel[0] + panel[1]).denominator) / 2

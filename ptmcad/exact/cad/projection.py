@@ -55,16 +55,16 @@ def project(
     base: Interval,
     fibre: Interval,
     check: Check = nothing,
-    keep: frozenset[str] = frozenset(),
+    without: frozenset[str] = frozenset(),
 ) -> Projection:
     """The projection of the curves (and of vertical lines, given by their polynomials in u) and its real roots.
 
     Parameters
     ----------
     check : called now and then; may raise to stop.
-    keep : names of savings to switch off: ``"even-powers"``.
+    without : names of savings to switch off: ``"even-powers"``.
     """
-    deflate = "even-powers" not in keep
+    deflate = "even-powers" not in without
     found: dict[tuple[int, ...], tuple[UnivariatePolynomial, str]] = {}
 
     def adopt(factors: list[UnivariatePolynomial], origin: str) -> None:
@@ -118,14 +118,14 @@ def _of_two(c: Curve, d: Curve, check: Check, deflate: bool) -> list[UnivariateP
 
 
 Coefficients = tuple[UnivariatePolynomial, ...]
-_LONG = 1000
+_LONG_COEFFICIENT_BITS = 1000
 """Bits of coefficients from which on other units for u and v are looked for."""
 
 
 def _shortened(polynomials: list[Coefficients], deflate: bool) -> tuple[list[Coefficients], int, int]:
     """The polynomials with u in place of unit u^inflation, unit, and inflation."""
     deflated, inflation = _deflated(polynomials, deflate)
-    if max(c.height_bits() for p in deflated for c in p) < _LONG:
+    if max(c.height_bits() for p in deflated for c in p) < _LONG_COEFFICIENT_BITS:
         return deflated, 1, inflation
     shorter, unit = balanced(deflated)
     return shorter, unit, inflation

@@ -156,7 +156,7 @@ def first_minor(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Un
     Raises
     ------
     DimensionError
-        When the system does not have two angles: then its sign does not tell minima from maxima.
+        When the system does not have two angles: then its sign does not distinguish minima from maxima.
     """
     require_two_angles(system, "the curve on which minima and maxima could change places")
     return _without_denominators(_substitute(system, system.hessian[0][0], parameters))
@@ -186,11 +186,11 @@ def _substitute(
     for monomial, part in system.ring.split(p).items():
         total: Ratio = (ZERO, ONE)
         for exponents, coefficient in part.items():
-            above, below = ONE * int(coefficient.p), ONE * int(coefficient.q)
+            numerator, denominator = ONE * int(coefficient.p), ONE * int(coefficient.q)
             for value, e in zip(values, exponents, strict=True):
                 if e:
-                    above, below = above * value[0] ** e, below * value[1] ** e
-            total = add_ratios(total, ratio(above, below))
+                    numerator, denominator = numerator * value[0] ** e, denominator * value[1] ** e
+            total = add_ratios(total, ratio(numerator, denominator))
         if not total[0].is_zero():
             result[monomial] = total
     return result

@@ -32,7 +32,7 @@ from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.numerals import shortest_text
 
-FINE = Fraction(1, 2**100)
+END_WIDTH = Fraction(1, 2**100)
 """Width of the ends' isolating intervals, against the window's."""
 
 
@@ -114,7 +114,7 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Kind], ...]:
             for number in roots_in(component.polynomial, low, high):
                 numbers.append(number)
                 kinds[number.polynomial] = component.kind
-    ordered = in_order(numbers, low, high, (high - low) * FINE)
+    ordered = in_order(numbers, low, high, (high - low) * END_WIDTH)
     return tuple((number, kinds[number.polynomial]) for number in ordered)
 
 

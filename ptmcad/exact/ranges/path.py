@@ -32,10 +32,10 @@ from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
 DIGITS = 12
-_NEAREST = Fraction(1, 10**5)
+_MIN_DISTANCE = Fraction(1, 10**5)
 """How near to a critical value a branch is followed, against the window's width."""
 
-_STEPS = 64
+_MIN_STEPS = 64
 """The longest step is this part of the window, so that a polyline through the points looks smooth."""
 
 
@@ -126,9 +126,9 @@ def _one_way(
         following = _ends(numbers[k + 1], side)[0] if k + 1 < len(numbers) else edge
         gap = min(abs(near - current.value), abs(following - far)) / 8
         crossed, after = None, far
-        while crossed is None and gap > window * _NEAREST:
+        while crossed is None and gap > window * _MIN_DISTANCE:
             after = _beside(far, side, gap)
-            steps, done = follow(family, current, _beside(near, -side, gap), window / _STEPS)
+            steps, done = follow(family, current, _beside(near, -side, gap), window / _MIN_STEPS)
             reached += steps
             current = steps[-1] if steps else current
             if not done:
@@ -139,7 +139,7 @@ def _one_way(
             return reached, _meeting(family, line, number, current, after)
         reached.append(crossed)
         current = crossed
-    steps, done = follow(family, current, _beside(edge, -side, window / 10**6), window / _STEPS)
+    steps, done = follow(family, current, _beside(edge, -side, window / 10**6), window / _MIN_STEPS)
     reached += steps
     return reached, PathEnd(Fate.WINDOW if done else Fate.UNDECIDED, edge, _point(steps[-1] if steps else current))
 

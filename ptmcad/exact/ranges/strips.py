@@ -52,7 +52,7 @@ class Strip:
 
 
 def refuse_free_lengths(slice: Slice) -> None:
-    """Refuse what strips can not answer.
+    """Refuse what strips cannot answer.
 
     Raises
     ------

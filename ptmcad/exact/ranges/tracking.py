@@ -23,9 +23,9 @@ from ptmcad.text.expressions import Expression, Term
 Pair = tuple[arb, arb]
 Matrix = tuple[Pair, Pair]
 BITS = 160
-_LEAST = Fraction(1, 2**60)
+_MIN_STEP = Fraction(1, 2**60)
 """Steps shorter than this, against the distance to be gone, are not tried."""
-_MOST_STEPS = 3000
+_MAX_STEPS = 3000
 """Where a branch comes ever nearer to others, steps shrink with the distance and their number has no bound."""
 
 
@@ -66,11 +66,11 @@ def _dual(expression: Expression, x: arb) -> Dual:
     def of(terms: tuple[Term, ...]) -> Dual:
         value, slope = arb(0), arb(0)
         for i, _, c in terms:
-            power, below = arb(1), arb(0)
+            power, derivative = arb(1), arb(0)
             for k in range(i):
-                below, power = power * (k + 1), power * x
+                derivative, power = power * (k + 1), power * x
             factor = arb(from_fraction(c))
-            value, slope = value + factor * power, slope + factor * below
+            value, slope = value + factor * power, slope + factor * derivative
         return value, slope
 
     (a, da), (b, db) = of(expression.numerator), of(expression.denominator)
@@ -279,9 +279,9 @@ def follow(family: Family, start: Reached, end: Fraction, longest: Fraction) -> 
     """
     found: list[Reached] = []
     current, step = start, max(-longest, min(longest, (end - start.value) / 8))
-    least = abs(end - start.value) * _LEAST
+    least = abs(end - start.value) * _MIN_STEP
     while current.value != end:
-        if len(found) == _MOST_STEPS:
+        if len(found) == _MAX_STEPS:
             return found, False
         goal = end if abs(step) >= abs(end - current.value) else _short(current.value, step)
         reached = bridge(family, current, goal)

@@ -48,10 +48,10 @@ from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
 ROWS = 41
 """Rows of the table."""
-_FINE = fmpq(1, 2**120)
-_SMALLEST = fmpq(1, 2**50)
+_END_WIDTH = fmpq(1, 2**120)
+_MIN_PIECE = fmpq(1, 2**50)
 """Length of a piece, against the strip's, that is not cut any more."""
-_MOST_PIECES = 20_000
+_MAX_PIECES = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,12 +126,12 @@ class _Search:
     # ------------------------------------------------------------------------------------------------ lower bounds
 
     def sample(self, strip: Strip) -> None:
-        (_, left), (right, _) = base_interval(strip, _FINE)
+        (_, left), (right, _) = base_interval(strip, _END_WIDTH)
         for k in range(1, 8):
             self.width_at(strip, left + (right - left) * fmpq(k, 8))
 
     def width_at(self, strip: Strip, u: fmpq) -> Interval:
-        low, high = (at_abscissa(b, u, strip.fibre, _FINE) for b in (strip.low, strip.high))
+        low, high = (at_abscissa(b, u, strip.fibre, _END_WIDTH) for b in (strip.low, strip.high))
         width = (high.low - low.high, high.high - low.low)
         self.known = max(self.known, width[0])
         return width
@@ -139,17 +139,17 @@ class _Search:
     # -------------------------------------------------------------------------------------------------- strips' ends
 
     def plateau(self, strip: Strip) -> None:
-        (left, _), (_, right) = base_interval(strip, _FINE)
+        (left, _), (_, right) = base_interval(strip, _END_WIDTH)
         self.candidates.append(_Candidate(Place.PLATEAU, (left, right), self.width_at(strip, strip.sample)))
 
     def ends(self, strip: Strip) -> None:
         """Settle neighbourhoods of rational ends with the largest limits, and list the rest as one piece."""
-        left, right = base_interval(strip, _FINE)
+        left, right = base_interval(strip, _END_WIDTH)
         low, high = left[0], right[1]
         for side, (at, end) in enumerate(((left, strip.left), (right, strip.right))):
             if at[0] != at[1]:
                 continue
-            lowest, highest = (limit(b, strip, at[0], _FINE) for b in (strip.low, strip.high))
+            lowest, highest = (limit(b, strip, at[0], _END_WIDTH) for b in (strip.low, strip.high))
             if lowest is None or highest is None:
                 continue
             (a_low, a_high), (b_low, b_high) = _bounds(lowest), _bounds(highest)
@@ -168,7 +168,7 @@ class _Search:
                 low = at[0] + length
             else:
                 high = at[0] - length
-        self.add(_Piece(strip, low, high, low == left[0], high == right[1], (right[1] - left[0]) * _SMALLEST))
+        self.add(_Piece(strip, low, high, low == left[0], high == right[1], (right[1] - left[0]) * _MIN_PIECE))
 
     # -------------------------------------------------------------------------------------------------------- pieces
 
@@ -196,7 +196,7 @@ class _Search:
             if -negative < self.known:
                 return  # and so are all others
             count += 1
-            if count > _MOST_PIECES or piece.high - piece.low < piece.smallest:
+            if count > _MAX_PIECES or piece.high - piece.low < piece.smallest:
                 end = piece.strip.left if piece.open_left else piece.strip.right if piece.open_right else None
                 critical = None if end is None or end.root is None else algebraic_number(end.root)
                 self.candidates.append(
@@ -291,7 +291,7 @@ def _rational_above(value: arb) -> fmpq:
 
 
 def limit(branch: Branch, strip: Strip, end: fmpq, width: fmpq) -> End | None:
-    """The limit of a branch at a rational end of its strip; None when it could not be told from other points."""
+    """The limit of a branch at a rational end of its strip; None when it could not be separated from other points."""
     if branch.curve is None:
         return to_fraction(branch.edge)
     margin = strip.fibre[1] - strip.fibre[0]
@@ -328,7 +328,7 @@ def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End
             third = (rises[0] - rises[1]) / 3
             slope = simplest_between(*sorted((rises[1] + third, rises[0] - third)))
             if all(
-                _keeps_off(branch, strip, end, limit, slope, direction * length, side)
+                _avoids_level(branch, strip, end, limit, slope, direction * length, side)
                 for branch, limit, side in zip((strip.low, strip.high), limits, (1, -1), strict=True)
             ):
                 return length
@@ -336,7 +336,7 @@ def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End
     return None
 
 
-def _keeps_off(branch: Branch, strip: Strip, end: fmpq, limit: End, slope: fmpq, length: fmpq, side: int) -> bool:
+def _avoids_level(branch: Branch, strip: Strip, end: fmpq, limit: End, slope: fmpq, length: fmpq, side: int) -> bool:
     """Whether a branch is proved to stay on one side of the chord from its limit."""
     start = _bounds(limit)
     tip = at_abscissa(branch, end + length, strip.fibre, abs(length) / 2**60)

@@ -95,7 +95,7 @@ def slice_from_options(
     slice : ``"X,Y"``, the two axes, the horizontal one first.
     sets : texts ``NAME=VALUE``.
     ranges : texts ``NAME=LO:HI``, for axes.
-    count : which count tells two regions apart.
+    count : which count distinguishes two regions.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def slice_from_options(
         raise ConfigError("give a problem record (a YAML file), or two axes such as --slice L2,rho")
     for name, value in given_sets.items():
         if name in record.axes:
-            raise value.place.error(f"{name} is an axis and can not be fixed too: choose other axes with --slice")
+            raise value.place.error(f"{name} is an axis and cannot be fixed too: choose other axes with --slice")
         record = replace(record, values={**record.values, name: value})
     for name, window in given_ranges.items():
         if name not in record.axes:

@@ -87,7 +87,7 @@ def _title(node: Node) -> str:
     title = " ".join(_text(node, _MAX_TITLE).split())
     if not title.isprintable():
         hidden = next(c for c in title if not c.isprintable())
-        raise node.place.error(f"the title has a character that can not be printed, U+{ord(hidden):04X}: remove it")
+        raise node.place.error(f"the title has a character that cannot be printed, U+{ord(hidden):04X}: remove it")
     return title
 
 
@@ -107,7 +107,7 @@ def _file_name(node: Node) -> str:
     name = _text(node, _MAX_NAME)
     if not name or not name[0].isalnum() or not all(c.isalnum() or c in "._-" for c in name) or name.endswith("."):
         raise node.place.error(
-            f"{name!r} can not name a file: use letters, digits, '.', '_' and '-', starting with a letter or digit"
+            f"{name!r} cannot name a file: use letters, digits, '.', '_' and '-', starting with a letter or digit"
         )
     return _portable(name, node.place)
 
@@ -121,14 +121,14 @@ def portable_file(file: str, option: str) -> str:
         When Windows keeps the name for a device, or would drop its end.
     """
     if file.endswith((".", " ")):
-        raise Place(option).error(f"{file!r} can not name a file: Windows drops dots and spaces at the end")
+        raise Place(option).error(f"{file!r} cannot name a file: Windows drops dots and spaces at the end")
     return _portable(file, Place(option))
 
 
 def _portable(name: str, place: Place) -> str:
     device = name.partition(".")[0].rstrip(" ").upper()
     if device in _DEVICES:
-        raise place.error(f"{name!r} can not name a file: Windows keeps {device} for a device, whatever the suffix")
+        raise place.error(f"{name!r} cannot name a file: Windows keeps {device} for a device, whatever the suffix")
     return name
 
 
@@ -187,7 +187,7 @@ def _window(name: str, node: Node) -> Window:
 
 def check_axis_name(name: str, place: Place) -> None:
     if not NAME.fullmatch(name) or len(name) > 40 or name.lower() in ("nan", "inf", "infinity"):
-        raise place.error(f"{name[:40]!r} can not name an axis: use letters, digits and '_', starting with a letter")
+        raise place.error(f"{name[:40]!r} cannot name an axis: use letters, digits and '_', starting with a letter")
 
 
 def count_of(node: Node) -> Count:

@@ -15,7 +15,7 @@ from ptmcad.mechanism import Kind, Mechanism, mechanism_of
 from ptmcad.question.config.parameters import PARAMETERS
 from ptmcad.question.config.record import Record, Window
 from ptmcad.question.domain import fault, unproved
-from ptmcad.question.positivity import READING
+from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression, axis, names_in, parse
 from ptmcad.text.syntax import did_you_mean
@@ -32,7 +32,7 @@ def slice_of(record: Record) -> Slice:
     for name in record.axes:
         if name in record.values:
             place = record.values[name].place
-            raise place.error(f"{name} is an axis and can not be fixed too: remove it here or from the axes")
+            raise place.error(f"{name} is an axis and cannot be fixed too: remove it here or from the axes")
     axes = tuple(_axis(name, window) for name, window in record.axes.items())
     resolved = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)}).run()
     for name, expression in resolved.items():
@@ -102,7 +102,7 @@ def _texts(
         for name in names_in(waiting.pop()):
             if name in texts or name in record.axes:
                 continue
-            problem = "" if resolved[name].is_constant else unproved(name, resolved[name], axes, READING)
+            problem = "" if resolved[name].is_constant else unproved(name, resolved[name], axes, READING_WORK)
             if problem:
                 raise _place_of(name, record).error(problem)
             texts[name] = _written(name, record)
@@ -203,7 +203,7 @@ def _check_value(name: str, expression: Expression, record: Record, axes: tuple[
     if expression.is_constant:
         _check_number(name, expression.constant(), place)
         return
-    problem = fault(name, expression, axes, READING)
+    problem = fault(name, expression, axes, READING_WORK)
     if problem:
         raise place.error(problem)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from ptmcad.cover.rectangles import MOST_STEPS, Cover
+from ptmcad.cover.rectangles import MAX_STEPS, Cover
 from ptmcad.show.document.node import Node
 
 MAX_RECTANGLES = 1_000_000
@@ -24,8 +24,8 @@ def read_cover(node: Node) -> Cover:
     """
     entry = node.record("steps", "rectangles")
     steps = entry["steps"].value
-    if type(steps) is not int or not 0 < steps <= MOST_STEPS or steps & (steps - 1):
-        raise entry["steps"].fault(f"is not a power of two up to {MOST_STEPS}")
+    if type(steps) is not int or not 0 < steps <= MAX_STEPS or steps & (steps - 1):
+        raise entry["steps"].fault(f"is not a power of two up to {MAX_STEPS}")
     # not by `Node.each`, which would make an object of each of millions of numbers
     place, numbers = entry["rectangles"], entry["rectangles"].value
     if not isinstance(numbers, list) or len(numbers) % 4 or not all(type(n) is int for n in numbers):

@@ -20,7 +20,7 @@ from ptmcad.text.numerals import fraction_of
 MAX_ITEMS = 100_000
 MAX_NUMBER = 10**6
 """Of cells, regions, equilibria."""
-MOST_CHARACTERS = 40_000
+MAX_CHARACTERS = 40_000
 """Of a coordinate. A record's numbers have 2000 digits at most, and coordinates in its result a few times as many."""
 
 Item = TypeVar("Item")
@@ -121,8 +121,8 @@ class Node:
 
     def fraction(self) -> Fraction:
         """A point's coordinate or the like: what is computed from it grows with its length."""
-        if len(self.text()) > MOST_CHARACTERS:
-            raise self.fault(f"is a number of more than {MOST_CHARACTERS} characters")
+        if len(self.text()) > MAX_CHARACTERS:
+            raise self.fault(f"is a number of more than {MAX_CHARACTERS} characters")
         return self.coefficient()
 
     def coefficient(self) -> Fraction:

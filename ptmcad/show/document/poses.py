@@ -13,7 +13,7 @@ import json
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.answer.poses import MOST_DIGITS, Pose, Poses, Spring, Vector
+from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, Vector
 from ptmcad.answer.regionmap import Status
 from ptmcad.show.document.node import Node, opened
 from ptmcad.text.enclosure import Enclosure, exact_text
@@ -84,8 +84,8 @@ def read_poses(text: str) -> Poses:
         "format", "status", "remark", "mechanism", "parameters", "digits", "bits", "equilibria"
     )
     digits = document["digits"].natural()
-    if not 1 <= digits <= MOST_DIGITS:
-        raise document["digits"].fault(f"is not between 1 and {MOST_DIGITS}")
+    if not 1 <= digits <= MAX_DIGITS:
+        raise document["digits"].fault(f"is not between 1 and {MAX_DIGITS}")
     return Poses(
         mechanism=document["mechanism"].line(MAX_NAME),
         parameters={_name(node, key): node.fraction() for key, node in document["parameters"].mapping().items()},

@@ -148,7 +148,7 @@ def _slice(node: Node) -> Slice:
             raise head["axes"].fault(f"has an empty range for {a.name}")
     name = head["name"].line(MAX_NAME)
     if not all(c.isalnum() or c in "._-" for c in name):
-        raise head["name"].fault("can not name a file")
+        raise head["name"].fault("cannot name a file")
     functions = {axes[0].name: axis_function(0), axes[1].name: axis_function(1)}
 
     def expression(value: Node) -> Expression:

@@ -11,7 +11,7 @@ from ptmcad.show.polynomial_text import Style, polynomial_lines, symbols
 from ptmcad.text.numerals import text_of
 
 _WIDTH = 96
-_LONGEST_VALUE = 60
+_MAX_VALUE = 60
 _LATEX_WIDTH = 70
 """What fills a line of an article in two-column landscape or in one column at 10 pt, with room for the number."""
 
@@ -32,7 +32,7 @@ def fixed_parameters(variety: SliceVariety) -> str:
             values.pop(shorthand, None)
             values |= own
     return ", ".join(
-        f"{name} = {value if len(value) <= _LONGEST_VALUE else value[:_LONGEST_VALUE] + '...'}"
+        f"{name} = {value if len(value) <= _MAX_VALUE else value[:_MAX_VALUE] + '...'}"
         for name, value in values.items()
         if value != name and not (name in mechanism.forces and value == "0")
     )

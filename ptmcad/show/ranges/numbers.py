@@ -13,7 +13,7 @@ from ptmcad.answer.intervals import CountInterval, End
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.numerals import integer_text, text_of
 
-MOST_DIGITS = 1000
+MAX_DIGITS = 1000
 """That may be asked for."""
 
 
@@ -30,7 +30,7 @@ def end_text(end: End, digits: int) -> str:
 
 
 def settled(enclosure: Enclosure, digits: int) -> str | None:
-    """The text of an enclosure that can not be made narrower; None when it does not settle a single digit."""
+    """The text of an enclosure that cannot be made narrower; None when it does not settle a single digit."""
     for fewer in range(digits, 0, -1):
         if enclosure.settles(fewer):
             return enclosure.text(fewer)
@@ -47,7 +47,7 @@ def width_text(interval: CountInterval, digits: int) -> str:
         found = finer(interval, Fraction(1, 2**bits) * (interval.width.high or 1)).width
         if found.settles(digits):
             return found.text(digits)
-        if bits > 4 * MOST_DIGITS:
+        if bits > 4 * MAX_DIGITS:
             return settled(found, digits) or "0"
         bits *= 2
 

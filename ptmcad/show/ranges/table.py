@@ -20,8 +20,8 @@ from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.plane import PlanePolynomial
 
-LONGEST = 60
-"""Characters of a polynomial; of longer ones the degree is told."""
+MAX_POLYNOMIAL = 60
+"""Characters of a polynomial; of longer ones the degree is reported."""
 _ANGLE_DIGITS = 8
 
 
@@ -62,7 +62,7 @@ def formula(end: End, name: str) -> str:
     if isinstance(end, Fraction):
         return ""
     text = PlanePolynomial.of((k, 0, c) for k, c in enumerate(end.polynomial)).text((name, "_"))
-    return text if len(text) <= LONGEST else f"a polynomial of degree {end.degree}, in the JSON"
+    return text if len(text) <= MAX_POLYNOMIAL else f"a polynomial of degree {end.degree}, in the JSON"
 
 
 def aligned(rows: list[list[str]]) -> list[str]:

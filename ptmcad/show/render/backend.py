@@ -13,7 +13,7 @@ from contextlib import suppress
 from ptmcad.process.memory import loading, missing_room
 
 _BACKEND = "MPLBACKEND"
-_ROOM = 16 << 20
+_PICTURE_BYTES = 16 << 20
 """Bytes that a small picture takes, beside the libraries."""
 
 
@@ -48,5 +48,5 @@ def load_matplotlib() -> None:
     if wanted is not None:
         with suppress(ValueError):  # no backend's name: nobody else can use it either
             matplotlib.rcParams["backend"] = wanted
-    if missing_room(_ROOM) is not None:
+    if missing_room(_PICTURE_BYTES) is not None:
         raise MemoryError("no room for a picture")

@@ -1,4 +1,4 @@
-"""The colour of a count: the same in every picture, told apart by the colour-blind and on grey prints.
+"""The colour of a count: the same in every picture, distinguishable to the colour-blind and on grey prints.
 
 Guarantee: two different counts of a torus (where saddles = minima + maxima) never have the same fill. Along a row of
 the palette the lightness falls by at least six units of CIE L* a step; the hues start from those of Okabe & Ito.
@@ -36,7 +36,7 @@ UNDETERMINED = Fill("#8f8f8f")
 
 
 def fill_of(region: Region, count: Count) -> Fill:
-    """The fill of a region, by the count that tells regions apart; white where that count is not known.
+    """The fill of a region, by the count that distinguishes regions; white where that count is not known.
 
     Totals are even on a torus (the Euler sum): 4 and 6 in all are coloured as 1 and 2 stable, which mostly go together.
     """

@@ -25,7 +25,7 @@ from ptmcad.show.render.sketch import arrow_lengths, frame_of
 from ptmcad.show.render.view import View
 
 _GAP, _RIM, _LINE = 0.2, 0.15, 0.2
-_MOST_HEIGHT = 134.0
+_MAX_HEIGHT = 134.0
 """Of a panel, in points: two of them and the legend stand beside the map."""
 _DPI = 150
 
@@ -54,7 +54,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     )
     values = [assigned(a.name, v) for a, v in zip(result.slice.axes, (x, y), strict=True)]
     head = textwrap.wrap(f"{'Stable poses' if shown else 'No stable pose'} at " + ", ".join(values), 34)
-    frame = frame_of(shown, most_height=_MOST_HEIGHT) if shown else None
+    frame = frame_of(shown, most_height=_MAX_HEIGHT) if shown else None
     wide = 200.0 / 72
     panels = _LINE * len(head) + 0.1
     if frame is not None:
@@ -113,7 +113,7 @@ def point_of(slice: Slice, poses: Poses) -> tuple[Fraction, Fraction]:
     Raises
     ------
     ValueError
-        When there is none, or no parameter is a number times an axis, so that it can not be read off.
+        When there is none, or no parameter is a number times an axis, so that it cannot be read off.
     """
     found = []
     for axis, exponents in zip(slice.axes, ((1, 0), (0, 1)), strict=True):

@@ -4,7 +4,7 @@ Guarantee: every equilibrium is marked, at both edges where an angle is 180 degr
 `ptmcad.show.render.poses.draw_poses`. Contours pass through saddles and degenerate equilibria, also where the energy is
 large and its differences are small, because its constant part is taken out exactly before anything is rounded.
 
-Not guaranteed: anything that only the picture tells. It is drawn in floating point from the exact poses.
+Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact poses.
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ def draw_landscape(poses: Poses) -> Figure:
         through = sorted({energy.scaled(p.energy.center) for p in shown if p.index in (1, None)})
         finer, fine_heights = _sampled(energy, _FINE)
         axes.contour(finer, finer, fine_heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
-        _dress(axes)
+        _decorate(axes)
         _mark(axes, shown)
         scale = _energy_scale(energy, levels)
         bar = figure.add_axes(((LEFT + SIDE + 0.2) / size[0], BOTTOM / size[1], 0.16 / size[0], SIDE / size[1]))
@@ -170,7 +170,7 @@ def contour_levels(critical: Sequence[float], low: float, high: float) -> list[f
     """Increasing levels from the least to the largest energy, all critical ones and some between any two."""
     marks = [low]
     for value in [*critical, high]:
-        # energies nearer than what floats tell apart are one
+        # energies nearer than what floats distinguish are one
         if value - marks[-1] > 1e-9 * (high - low):
             marks.append(value)
     levels = [marks[0]]
@@ -180,7 +180,7 @@ def contour_levels(critical: Sequence[float], low: float, high: float) -> list[f
     return levels
 
 
-def _dress(axes: Any) -> None:
+def _decorate(axes: Any) -> None:
     axes.set(xlim=(-180, 180), ylim=(-180, 180), aspect="equal")
     ticks = range(-180, 181, 60)
     axes.set_xticks(ticks)

@@ -24,7 +24,7 @@ RIM, RIM_INK = 0.35, "#404040"
 
 LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
 """Inches between lines, width of a swatch, characters in a line."""
-_MOST_AREAS = 16
+_MAX_AREAS = 16
 _HEADS = {
     Count.STABLE: "Stable equilibria",
     Count.TOTAL: "Equilibria",
@@ -103,10 +103,10 @@ def _with_total(text: str, regions: list[Region], count: Count) -> str:
 
 
 def _areas(regions: list[Region]) -> list[str]:
-    areas = [certified_digits(r.area, 7) for r in regions[:_MOST_AREAS]]
+    areas = [certified_digits(r.area, 7) for r in regions[:_MAX_AREAS]]
     if len(regions) == 1:
         return [f"area {areas[0]}"]
-    rest = regions[_MOST_AREAS:]
+    rest = regions[_MAX_AREAS:]
     if rest:
         together = (sum((r.area[0] for r in rest), Fraction(0)), sum((r.area[1] for r in rest), Fraction(0)))
         areas.append(f"{len(rest)} more: {certified_digits(together, 7)} together")

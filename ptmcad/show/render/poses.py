@@ -3,7 +3,7 @@
 Guarantee: every equilibrium has a panel, with its kind and its energy, of which every digit shown is certified; the
 figure's label holds a title and a description in words. `ptmcad.show.render.printing.save` writes it.
 
-Not guaranteed: anything that only the picture tells. It is drawn in floating point from the exact poses.
+Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact poses.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from ptmcad.text.numerals import magnitude, shortest_text
 MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
 """In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of the title."""
 _DIGITS = 6
-_LONGEST = 14
+_MAX_VALUE = 14
 """Longer values of parameters are rounded in the title."""
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -130,7 +130,7 @@ def printed_number(text: str) -> str:
 def value_text(value: Fraction) -> str:
     """A parameter's value, exactly where that is short, else rounded and after the sign for it."""
     text = shortest_text(value)
-    if len(text) <= _LONGEST and abs(value) < 10**7:
+    if len(text) <= _MAX_VALUE and abs(value) < 10**7:
         return f"=\N{NO-BREAK SPACE}{printed_number(text)}"
     known = Enclosure(value, value)
     rounded = known.text(7)

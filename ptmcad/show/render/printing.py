@@ -66,7 +66,7 @@ def save(figure: Figure, path: Path, *, dpi: int = 150) -> None:
 
     Parameters
     ----------
-    path : its suffix tells the format: png, svg or pdf.
+    path : its suffix gives the format: png, svg or pdf.
     dpi : resolution of a PNG.
 
     Raises
@@ -74,7 +74,7 @@ def save(figure: Figure, path: Path, *, dpi: int = 150) -> None:
     ValueError
         For another suffix.
     OSError
-        When the file can not be written.
+        When the file cannot be written.
     """
     suffix = suffix_of(path)
     title, _, description = str(figure.get_label()).partition("\n")

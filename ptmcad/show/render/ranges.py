@@ -3,7 +3,7 @@
 Guarantee: labels do not overlap; what colours and lines mean is said in words; each figure's label holds a title and a
 description. `ptmcad.show.render.printing.save` writes them.
 
-Not guaranteed: anything that only the picture tells. It is drawn in floating point from the exact answer.
+Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact answer.
 """
 
 from __future__ import annotations

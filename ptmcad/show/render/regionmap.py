@@ -4,7 +4,7 @@ Guarantee: the same map gives the same bytes (SVG and PNG) with the same matplot
 resolution hides are marked by an arrow and shown in insets. What a certified map leaves undetermined is grey, with a
 hairline around it, so that it is seen however narrow it is. Global state of matplotlib is neither used nor changed.
 
-Not guaranteed: anything that only the picture tells. It is drawn in floating point from the exact map.
+Not guaranteed: anything that only the picture shows. It is drawn in floating point from the exact map.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
 
     Parameters
     ----------
-    path : its suffix tells the format: png, svg or pdf.
+    path : its suffix gives the format: png, svg or pdf.
     samples : whether to draw the cells' sample points.
     dpi : resolution of a PNG; slivers are what is not seen at this resolution, in every format.
 
@@ -52,7 +52,7 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
     ValueError
         For another suffix.
     OSError
-        When the file can not be written.
+        When the file cannot be written.
 
     Guarantee
     ---------

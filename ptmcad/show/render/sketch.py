@@ -21,7 +21,7 @@ MECHANISM = ptm()
 BASE = (MECHANISM.held(Support.PIN), MECHANISM.held(Support.SLIDER_X))
 """The points at the ends of the telescopic base."""
 BAR_WIDTHS = (5.5, 3.2)
-WIDTH, MOST_HEIGHT, LEAST_HEIGHT, MARGIN = 200.0, 210.0, 112.0, 36.0
+WIDTH, MAX_HEIGHT, LEAST_HEIGHT, MARGIN = 200.0, 210.0, 112.0, 36.0
 PIN = 2.4
 SUPPORT, GROUND = (7.0, 10.0), 4.0
 SLIDER = (7.5, 4.2)
@@ -82,7 +82,7 @@ class Sketch:
     labels: tuple[Placed, ...]
 
 
-def frame_of(shown: Sequence[Pose], width: float = WIDTH, most_height: float = MOST_HEIGHT) -> Frame:
+def frame_of(shown: Sequence[Pose], width: float = WIDTH, most_height: float = MAX_HEIGHT) -> Frame:
     """The frame that shows all these poses at one scale, as large as the width and the height allow."""
     sides = [[high - low for low, high in _sides(_centers(pose).values())] for pose in shown]
     wide, tall = (max(side[k] for side in sides) for k in (0, 1))

@@ -17,7 +17,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.view import Interval, Shapes, View
 
 STEPS = 100
-MOST_ZOOMS = 12
+MAX_ZOOMS = 12
 _PIXELS = 60
 _CLEAR = 2
 """A square of 2 * _CLEAR + 1 pixels of the view's _PIXELS is seen clearly."""
@@ -52,7 +52,7 @@ def thin_regions(whole: Shapes, pixels: int) -> tuple[int, ...]:
     return tuple(n for n in range(len(whole.result.regions)) if not _eroded(image == n).any())
 
 
-def zooms(whole: Shapes, thin: Sequence[int], most: int = MOST_ZOOMS) -> tuple[Zoom, ...]:
+def zooms(whole: Shapes, thin: Sequence[int], most: int = MAX_ZOOMS) -> tuple[Zoom, ...]:
     """Views that show the thin regions clearly, each as many of them as it happens to; at most so many views."""
     waiting = list(thin)
     found: list[Zoom] = []

@@ -16,7 +16,7 @@ Bounds = tuple[Fraction, Fraction]
 _PI = (Fraction(3141592653589793238, 10**18), Fraction(3141592653589793239, 10**18))
 _BITS = 96
 """Of the square roots' and the angles' own precision, well beyond that of stored boxes."""
-_LONGEST = 12
+_MAX_PLAIN_PLACES = 12
 """Places before or after the point from which the form with an exponent is used."""
 
 
@@ -65,7 +65,7 @@ def _root(value: Fraction, up: bool) -> Fraction:
 def degrees(cosine: Bounds, sine: Bounds) -> Bounds | None:
     """The angle, in (-180, 180] up to its own width, whose cosine and sine lie between these bounds.
 
-    None when the bounds are too wide to tell, or no angle has such a cosine and sine nearby.
+    None when the bounds are too wide to decide, or no angle has such a cosine and sine nearby.
     """
     guess = Fraction(round(atan2(float(sum(sine)), float(sum(cosine))) * 2**60), 2**60)
     c, s = _cosine_sine(guess)
@@ -117,7 +117,7 @@ def decimal_text(a: Bounds, exponent: int) -> str:
         exponent, unit = exponent + 1, unit * 10
     text = integer_text(abs(digits))
     sign = "−" if digits < 0 else ""
-    if exponent > 0 or exponent < -_LONGEST:
+    if exponent > 0 or exponent < -_MAX_PLAIN_PLACES:
         return f"{sign}{text}e{exponent}" if digits else "0"
     text = text.zfill(1 - exponent)
     return sign + (f"{text[:exponent]}.{text[exponent:]}" if exponent else text)

@@ -104,7 +104,7 @@ function fillPanel(number, cell) {
   if (!cell.equilibria.length) {
     const noPoses = cell.stack === null ? "Poses of springs with free lengths are not drawn here: ptmcad solve draws them."
       : "The result stores no poses for this cell.";
-    const why = DATA.drawable ? noPoses : "The poses of this mechanism can not be drawn.";
+    const why = DATA.drawable ? noPoses : "The poses of this mechanism cannot be drawn.";
     panel.append(html("p", "", why));
     return;
   }

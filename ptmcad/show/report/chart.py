@@ -29,7 +29,7 @@ Mark = tuple[str, tuple[float, float]]
 Label = tuple[int, float, float]
 """A region and the place of its count."""
 
-SHOWN = 300
+MAP_PIXELS = 300
 """Pixels of the map's side on a phone: regions thinner than three of them get a view of their own."""
 LABEL, _LETTER = 42, 0.55
 """Size of the counts' type on phones, in the picture's units, and a character's width against it, on the whole."""
@@ -49,7 +49,7 @@ class Chart:
 def chart(seen: Shapes) -> Chart:
     """The pictures of a map."""
     result = seen.result
-    thin = thin_regions(seen, SHOWN)
+    thin = thin_regions(seen, MAP_PIXELS)
     views = zooms(seen, thin)
     marks = [(chr(ord("A") + k), zoom) for k, zoom in enumerate(views)]
     tips = [
@@ -150,11 +150,11 @@ def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[La
 def _window_text(seen: Shapes) -> str:
     axes = seen.result.slice.axes
     ends = (seen.view.x, seen.view.y)
-    spans = (f"{a.name} from {_short(e[0])} to {_short(e[1])}" for a, e in zip(axes, ends, strict=True))
+    spans = (f"{a.name} from {_shortened(e[0])} to {_shortened(e[1])}" for a, e in zip(axes, ends, strict=True))
     return "Region map over " + " and ".join(spans)
 
 
-def _short(value: Fraction) -> str:
+def _shortened(value: Fraction) -> str:
     text = shortest_text(value)
     return text if len(text) <= 12 else f"{float(value):.6g}" if abs(value) < 10**300 else text[:12] + "…"
 
@@ -183,7 +183,7 @@ def _cells(seen: Shapes) -> Iterator[str]:
 def cell_text(result: RegionMap, number: int) -> str:
     """What a cell is, in words: its region, its counts, its sample."""
     cell = result.cells[number]
-    at = ", ".join(f"{name} = {_short(cell.sample[name])}" for name in cell.sample.names)
+    at = ", ".join(f"{name} = {_shortened(cell.sample[name])}" for name in cell.sample.names)
     return f"Cell {number} of region {cell.region}: {counts_text(cell)}; sample {at}"
 
 

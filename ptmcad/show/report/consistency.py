@@ -12,7 +12,7 @@ from ptmcad.answer.regionmap import Cell, Region, RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count
 
-MOST = 1000
+MAX_EQUILIBRIA = 1000
 """Equilibria that a fill can tell; no mechanism of two angles and three springs has so many."""
 
 
@@ -54,7 +54,7 @@ def check_numbers(result: RegionMap) -> None:
         region = result.regions[cell.region]
         if n not in region.cells:
             raise _fault(f"cell {n} is in region {cell.region}, which does not have it")
-        for name in _told_by(result.slice.count):
+        for name in _counts_known_from(result.slice.count):
             if getattr(cell, name) != getattr(region, name):
                 raise _fault(f"cell {n} and its region {cell.region} differ in their counts")
         if not all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, cell.sample, strict=True)):
@@ -63,8 +63,8 @@ def check_numbers(result: RegionMap) -> None:
         most = max((n for n in (region.stable, region.total, region.admissible, *(region.index or ())) if n), default=0)
         if region.area[0] > region.area[1]:
             raise _fault(f"region {n} has an area below its own lower bound")
-        if most > MOST:
-            raise _fault(f"region {n} counts {most} equilibria, more than {MOST}")
+        if most > MAX_EQUILIBRIA:
+            raise _fault(f"region {n} counts {most} equilibria, more than {MAX_EQUILIBRIA}")
         _within(region.cells, len(result.cells), f"region {n}", "cell")
         _check_counts(region, f"region {n}")
         if not region.cells:
@@ -82,7 +82,7 @@ def _check_counts(part: Cell | Region, place: str) -> None:
         raise _fault(f"{place} has index {part.index}, {part.total} equilibria and {part.stable} stable ones")
 
 
-def _told_by(count: Count) -> tuple[str, ...]:
+def _counts_known_from(count: Count) -> tuple[str, ...]:
     """The counts that are the same in all cells of a region."""
     return {
         Count.STABLE: ("stable",),

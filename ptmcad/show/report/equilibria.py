@@ -38,7 +38,7 @@ UNKNOWNS = tuple(f"{function}_{angle}" for angle in MECHANISM.angles for functio
 NEEDED = MECHANISM.without_free_lengths
 """Unknowns and parameters of the paper's mechanism, without which there is no drawing of it."""
 
-LARGEST = 10**100
+MAX_DRAWN = 10**100
 """Of parameters and coefficients that can be drawn: their products stay far within the range of floating point."""
 
 _DIGITS = 7
@@ -48,7 +48,7 @@ Value = TypeVar("Value")
 
 
 def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
-    """All that the page tells and draws for a cell's sample: parameters, loads, potential and equilibria, as JSON data.
+    """All that the page shows and draws for a cell's sample: parameters, loads, potential and equilibria, as JSON data.
 
     In a certified map, whose unknowns are angles, poses and potential are left out.
 
@@ -66,10 +66,10 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     drawn = (
         polynomial
         and all(name in values for name in NEEDED)
-        and all(abs(v) < LARGEST for v in (*values.values(), *potential.values()))
+        and all(abs(v) < MAX_DRAWN for v in (*values.values(), *potential.values()))
     )
     return {
-        "parameters": [[n, both(v)] for n, v in told(values).items()],
+        "parameters": [[n, both(v)] for n, v in distinct_parameters(values).items()],
         "loads": [[float(value_at(load.x, values)), float(value_at(load.y, values))] for load in MECHANISM.loads]
         if drawn
         else [],
@@ -79,7 +79,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     }
 
 
-def told(values: Mapping[str, Value]) -> dict[str, Value]:
+def distinct_parameters(values: Mapping[str, Value]) -> dict[str, Value]:
     """The parameters worth telling: one k when all springs have it."""
     return merged({name: value for name, value in values.items() if name not in MECHANISM.shorthands}, MECHANISM)
 

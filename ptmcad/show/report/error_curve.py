@@ -1,7 +1,7 @@
 """The curve of error against run time, read from a measurement's file and drawn with logarithmic axes.
 
 Guarantee: a file that is not such a measurement is refused with the place of the fault; every point of it is drawn and
-told in the table.
+given in the table.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from ptmcad.show.report.sections import table
 from ptmcad.text.textfile import read_text
 
 FORMAT = "ptmcad-error-time/1"
-MOST_BYTES = 1_000_000
-_MOST_SERIES, _MOST_POINTS = 8, 1000
+MAX_BYTES = 1_000_000
+_MAX_SERIES, _MAX_POINTS = 8, 1000
 _WIDTH, _HEIGHT, _LEFT, _BOTTOM = 600, 360, 110, 100
 _MARKS = ("M-6 0a6 6 0 1 0 12 0a6 6 0 1 0 -12 0", "M-6 -6H6V6H-6Z", "M0 -7L7 6H-7Z", "M0 -8L8 0L0 8L-8 0Z")
 
@@ -49,7 +49,7 @@ def read_error_curve(path: Path) -> ErrorCurve:
     ConfigError
         When the file is missing or is no such measurement.
     """
-    text = read_text(path, MOST_BYTES, f"a {FORMAT} file")
+    text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
     try:
         return _decode(json.loads(text))
     except (ValueError, RecursionError) as error:
@@ -74,13 +74,13 @@ def _decode(data: object) -> ErrorCurve:
     def series(node: Node) -> Series:
         s = node.record("name", "points")
         points = s["points"].each(pair)
-        if not 0 < len(points) <= _MOST_POINTS:
-            raise s["points"].fault(f"has not 1 to {_MOST_POINTS} entries")
+        if not 0 < len(points) <= _MAX_POINTS:
+            raise s["points"].fault(f"has not 1 to {_MAX_POINTS} entries")
         return Series(s["name"].line(60), points)
 
     found = document["series"].each(series)
-    if not 0 < len(found) <= _MOST_SERIES:
-        raise document["series"].fault(f"has not 1 to {_MOST_SERIES} entries")
+    if not 0 < len(found) <= _MAX_SERIES:
+        raise document["series"].fault(f"has not 1 to {_MAX_SERIES} entries")
     return ErrorCurve(document["error"].line(200), found)
 
 

@@ -12,7 +12,7 @@ from ptmcad.show.polynomial_text import Style, polynomial_text, symbols
 from ptmcad.show.report.sections import copied
 from ptmcad.text.numerals import integer_text
 
-LONGEST_FORMULA = 100_000
+MAX_FORMULA = 100_000
 """Characters of a formula that the page holds in all its forms."""
 _PROGRAMS = {
     Style.TEXT: "text",
@@ -46,7 +46,7 @@ def _curve(number: int, component: Component, names: tuple[str, str], known: boo
 
 def _formula(component: Component, names: tuple[str, str]) -> str:
     p = component.polynomial
-    if sum(len(integer_text(c)) + 20 for _, _, c in p.terms) > LONGEST_FORMULA:
+    if sum(len(integer_text(c)) + 20 for _, _, c in p.terms) > MAX_FORMULA:
         return "<p>The formula is too long for this page; the result has it.</p>"
     parts = ["<p>The curve is where this polynomial is zero.</p>"]
     for style, program in _PROGRAMS.items():

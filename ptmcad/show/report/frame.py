@@ -15,8 +15,8 @@ from ptmcad.text.numerals import magnitude, shortest_text
 
 SIDE, LEFT, BOTTOM, RIM = 600, 110, 100, 24
 """In the picture's own units: the window's side, the room for the axes' numbers and names, the rim."""
-_MOST_TICKS = 6
-_NAME = 24
+_MAX_TICKS = 6
+_MAX_NAME = 24
 
 
 def frame(seen: Shapes) -> Iterator[str]:
@@ -34,7 +34,7 @@ def frame(seen: Shapes) -> Iterator[str]:
                 yield f'<path class="tick" d="M0 {SIDE - at:.1f}h-8"/>'
                 yield f'<text class="number y" x="-14" y="{SIDE - at:.1f}" dy=".36em">{value}</text>'
         name = slice.axes[number].name
-        text = scale.name(symbol(name if len(name) <= _NAME else name[: _NAME - 1] + "…"))
+        text = scale.name(symbol(name if len(name) <= _MAX_NAME else name[: _MAX_NAME - 1] + "…"))
         known = unit(slice, number)
         text = escape(f"{text} ({known})" if known else text)
         if number == 0:
@@ -44,12 +44,12 @@ def frame(seen: Shapes) -> Iterator[str]:
 
 
 def ticks(interval: tuple[Fraction, Fraction], scale: Scale) -> list[tuple[str, Fraction]]:
-    """At most `_MOST_TICKS` + 1 round numbers of a scale, as text, and where they are between the ends (0 to 1)."""
+    """At most `_MAX_TICKS` + 1 round numbers of a scale, as text, and where they are between the ends (0 to 1)."""
     low, high = interval
     power = Fraction(10) ** scale.exponent
     shown = ((low - scale.offset) / power, (high - scale.offset) / power)
-    step = Fraction(10) ** magnitude((shown[1] - shown[0]) / _MOST_TICKS)
-    factor = next(f for f in (1, 2, Fraction(5, 2), 5, 10) if (shown[1] - shown[0]) / (step * f) <= _MOST_TICKS)
+    step = Fraction(10) ** magnitude((shown[1] - shown[0]) / _MAX_TICKS)
+    factor = next(f for f in (1, 2, Fraction(5, 2), 5, 10) if (shown[1] - shown[0]) / (step * f) <= _MAX_TICKS)
     step *= factor
     first, last = -(-shown[0] // step), shown[1] // step
     values = [k * step for k in range(int(first), int(last) + 1)]

@@ -1,7 +1,7 @@
 """The page: the template filled with the map, its data and the sections.
 
-Guarantee: the policy in its head allows nothing but the page's own style sheet and script, told by their hashes; the
-data can not end the element it stands in. The same result gives the same bytes, timings apart.
+Guarantee: the policy in its head allows nothing but the page's own style sheet and script, named by their hashes; the
+data cannot end the element it stands in. The same result gives the same bytes, timings apart.
 """
 
 from __future__ import annotations
@@ -41,13 +41,13 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
 
     Parameters
     ----------
-    timings : whether run times are told; without them the text is the same for the same slice.
+    timings : whether run times are shown; without them the text is the same for the same slice.
     errors : the curve of error against time, if it was measured.
 
     Raises
     ------
     ConfigError
-        When the map is a certified one, or contradicts itself so that it can not be drawn.
+        When the map is a certified one, or contradicts itself so that it cannot be drawn.
     """
     check_numbers(result)
     seen = _outline(result)

@@ -18,7 +18,7 @@ Potential = Mapping[tuple[int, ...], Fraction]
 """Exponents of the system's unknowns to coefficients."""
 
 _TERM = re.compile(r"(^-?|[+-]) ?([^ ]+) ?")
-_MOST = 100_000
+_MAX_CHARACTERS = 100_000
 """Characters of a potential, which has some hundred."""
 _EXPONENT = re.compile(r"[1-9][0-9]?", re.ASCII)
 
@@ -32,7 +32,7 @@ def potential_at(system: System, values: Mapping[str, Fraction]) -> Potential:
         When the text is not a sum of products of numbers, parameters and unknowns.
     """
     text = system.potential
-    if len(text) > _MOST or "".join(m[0] for m in _TERM.finditer(text)) != text:
+    if len(text) > _MAX_CHARACTERS or "".join(m[0] for m in _TERM.finditer(text)) != text:
         raise ConfigError("the stored potential is not a polynomial", key="system.potential")
     found: dict[tuple[int, ...], Fraction] = {}
     for sign, body in _TERM.findall(text):

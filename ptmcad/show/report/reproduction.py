@@ -1,7 +1,7 @@
 """The problem record and the command lines that pose a result's question again.
 
 Guarantee: a record or command line that is returned, read by `ptmcad.question.config`, gives the result's slice,
-parameter for parameter: that is tried before it is returned. What can not be posed again is None.
+parameter for parameter: that is tried before it is returned. What cannot be posed again is None.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ptmcad.text.yamltree import plain_data, read_text
 
 @dataclass(frozen=True, slots=True)
 class Reproduction:
-    """Ways to the same slice: a record in YAML, and a command line that needs none (it can not set the title)."""
+    """Ways to the same slice: a record in YAML, and a command line that needs none (it cannot set the title)."""
 
     record: str | None
     command: str | None

@@ -14,16 +14,16 @@ from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.legend import entries, percent
 from ptmcad.show.report.bounds import exactly
 from ptmcad.show.report.chart import Chart, counts_text, hatch_id
-from ptmcad.show.report.equilibria import both, told
+from ptmcad.show.report.equilibria import both, distinct_parameters
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import certified_digits
 from ptmcad.text.numerals import decimal, text_of
 
 _COUNTED = {
-    Count.STABLE: "regions are told apart by the number of stable equilibria",
-    Count.TOTAL: "regions are told apart by the number of equilibria",
-    Count.INDEX: "regions are told apart by the numbers of minima, saddles and maxima",
-    Count.ADMISSIBLE: "regions are told apart by the number of stable equilibria with every spring longer than its "
+    Count.STABLE: "regions are distinguished by the number of stable equilibria",
+    Count.TOTAL: "regions are distinguished by the number of equilibria",
+    Count.INDEX: "regions are distinguished by the numbers of minima, saddles and maxima",
+    Count.ADMISSIBLE: "regions are distinguished by the number of stable equilibria with every spring longer than its "
     "free length",
 }
 _STATUS = {
@@ -89,7 +89,7 @@ def question(result: RegionMap) -> str:
     slice = result.slice
     axes = "; ".join(f"{a.name} from {both(a.low)} to {both(a.high)}" for a in slice.axes)
     names = slice.axis_names
-    values = [(n, e.to_text(names)) for n, e in told(slice.parameters).items() if n not in names]
+    values = [(n, e.to_text(names)) for n, e in distinct_parameters(slice.parameters).items() if n not in names]
     shown = ", ".join(f"{n} = {v}" for n, v in values if v != "0")
     zero = ", ".join(n for n, v in values if v == "0")
     mechanism = "the planar tensegrity mechanism of Wenger and Chablat" if slice.mechanism == "ptm" else slice.mechanism

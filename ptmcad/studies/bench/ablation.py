@@ -48,10 +48,12 @@ PATIENCE = 30.0
 SWAPPED = ("axis-order",)
 """Savings that are measured with the axes exchanged as well, as the records give the better order first."""
 
-Told = Callable[[str], None]
+Progress = Callable[[str], None]
 
 
-def ablation(records: Sequence[Path], rounds: int = 3, seed: int = 1, told: Told = lambda _: None) -> dict[str, Any]:
+def ablation(
+    records: Sequence[Path], rounds: int = 3, seed: int = 1, progress: Progress = lambda _: None
+) -> dict[str, Any]:
     """The benchmark as JSON data.
 
     Parameters
@@ -59,12 +61,12 @@ def ablation(records: Sequence[Path], rounds: int = 3, seed: int = 1, told: Told
     records : problem records; of those with free lengths only `CERTIFIED` are taken.
     rounds : runs of each variant of the exact engine, and of each whole process; certified variants run once.
     seed : of the order within a round.
-    told : told about each record.
+    progress : called with the name of each record.
 
     Raises
     ------
     PtmcadError
-        When a record can not be read or computed.
+        When a record cannot be read or computed.
     """
     order = random.Random(seed)
     slices = {path: load(path) for path in records}
@@ -72,7 +74,7 @@ def ablation(records: Sequence[Path], rounds: int = 3, seed: int = 1, told: Told
         require_numba()
     rows, free = [], []
     for slice in slices.values():
-        told(slice.name)
+        progress(slice.name)
         if slice.has_free_lengths:
             if slice.name in CERTIFIED:
                 free += [_certified(slice, *part) for part in CERTIFIED[slice.name]]
@@ -98,8 +100,8 @@ def exchanged(slice: Slice) -> Slice:
     """The slice with its axes exchanged."""
 
     def turned(e: Expression) -> Expression:
-        above, below = (tuple(sorted((j, i, c) for i, j, c in part)) for part in (e.numerator, e.denominator))
-        return Expression(above, below)
+        numerator, denominator = (tuple(sorted((j, i, c) for i, j, c in part)) for part in (e.numerator, e.denominator))
+        return Expression(numerator, denominator)
 
     return replace(
         slice,
@@ -119,12 +121,14 @@ def _exact(slice: Slice, names: Sequence[str], rounds: int, order: random.Random
 
     result = classify(slice)
     variants: dict[str, tuple[str, ...]] = {"": (), **{name: (name,) for name in names}}
-    differences = {name: difference(result, classify(slice, keep=keep)) for name, keep in variants.items() if name}
+    differences = {
+        name: difference(result, classify(slice, without=without)) for name, without in variants.items() if name
+    }
     seconds: dict[str, list[float]] = {name: [] for name in variants}
     for _ in range(rounds):
         for name in order.sample(list(variants), len(variants)):
             start = process_time()
-            classify(slice, keep=variants[name])
+            classify(slice, without=variants[name])
             seconds[name].append(process_time() - start)
     return {
         "record": slice.name,
@@ -153,7 +157,7 @@ def _ratio(these: Sequence[float], those: Sequence[float]) -> float:
 
 def _processes(path: Path, name: str, rounds: int, order: random.Random) -> dict[str, Any]:
     """Whole processes that write JSON: with all savings, with everything imported, and without any saving."""
-    variants: dict[str, tuple[str, ...]] = {"": (), "imports": ("--keep", "imports"), ALL: ("--keep", ALL)}
+    variants: dict[str, tuple[str, ...]] = {"": (), "imports": ("--without", "imports"), ALL: ("--without", ALL)}
     seconds: dict[str, list[float]] = {name: [] for name in variants}
     with tempfile.TemporaryDirectory() as folder:
         command = (sys.executable, "-m", "ptmcad", "classify", str(path.resolve()), "--format", "json", "--out", folder)
@@ -201,13 +205,13 @@ def _certified(
     }
 
 
-def _enclosed(slice: Slice, keep: tuple[str, ...], share: Fraction) -> tuple[RegionMap, float, bool]:
+def _enclosed(slice: Slice, without: tuple[str, ...], share: Fraction) -> tuple[RegionMap, float, bool]:
     """The map, the processor seconds it took, and whether the share was reached before patience ended."""
     from ptmcad.ask.classification import classify
 
     start, begun = process_time(), perf_counter()
     try:
-        result = classify(slice, tolerance=share, jobs=1, keep=keep, timeout=PATIENCE)
+        result = classify(slice, tolerance=share, jobs=1, without=without, timeout=PATIENCE)
     except LimitReached as stopped:
         if not isinstance(stopped.partial, RegionMap) or perf_counter() - begun < PATIENCE / 2:
             raise
@@ -221,7 +225,7 @@ def to_markdown(found: dict[str, Any]) -> str:
     lines = [
         "# What each saving is worth",
         "",
-        "Processor time of the computation with a saving switched off (`--keep NAME`), over that with all savings",
+        "Processor time of the computation with a saving switched off (`--without NAME`), over that with all savings",
         "made: 1.00 means that the saving is worth nothing on that slice. `all` is the plain pipeline.",
         "[plan.md](../plan.md) says what the savings are. Every map was compared with the one that all savings made:",
         "regions, counts, neighbours, areas. Made by `python -m ptmcad.studies.bench.ablation --out docs/benchmarks`.",
@@ -243,7 +247,7 @@ def to_markdown(found: dict[str, Any]) -> str:
         "",
         "`ptmcad classify RECORD --format json`, processor time of everything, start-up included.",
         "",
-        _line(("slice", "ms, all made", "ms, --keep imports", "over", "ms, --keep all", "over")),
+        _line(("slice", "ms, all made", "ms, --without imports", "over", "ms, --without all", "over")),
         _line(("---",) * 6),
     ]
     for row in found["processes"]:

@@ -4,7 +4,7 @@ Guarantee: none for the counts, as with every such program; they are what floati
 input gives the same counts.
 
 All of it is vectorised: eigenvalues of stacked companion matrices (numpy, hence LAPACK), imaginary parts below
-`IMAGINARY` dropped, two Newton steps on what is left, theta1 from the first equation, stability from the Hessian's
+`MAX_IMAGINARY` dropped, two Newton steps on what is left, theta1 from the first equation, stability from the Hessian's
 signs. It runs as ``python -m ptmcad.studies.bench.companion QUESTION N RESULT`` and imports no algebra.
 """
 
@@ -20,12 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-IMAGINARY = 1e-7
+MAX_IMAGINARY = 1e-7
 """Relative size of imaginary parts that are taken for rounding; nearby values change the result little."""
 POLISHING = 2
-AT_ONCE = 40_000
+BATCH_POINTS = 40_000
 """Points whose matrices are in memory together."""
-LEADING = 1e-14
+MIN_LEADING = 1e-14
 """A leading coefficient that is relatively smaller everywhere in the window is taken for zero: the degree is lower."""
 
 Values = dict[str, Array]
@@ -44,7 +44,10 @@ def grid_values(question: dict[str, Any], n: int) -> Values:
             total += c * first ** int(i) * second ** int(j)
         return total
 
-    return {name: evaluated(above) / evaluated(below) for name, (above, below) in question["parameters"].items()}
+    return {
+        name: evaluated(numerator) / evaluated(denominator)
+        for name, (numerator, denominator) in question["parameters"].items()
+    }
 
 
 def sextics(p: Values) -> Array:
@@ -74,11 +77,11 @@ def counts(p: Values) -> NDArray[np.int8]:
     polynomials = sextics(p)
     size = np.abs(polynomials).max(axis=1, keepdims=True)
     polynomials = polynomials / np.where(size > 0, size, 1)
-    while polynomials.shape[1] > 2 and np.abs(polynomials[:, 0]).max() < LEADING:
+    while polynomials.shape[1] > 2 and np.abs(polynomials[:, 0]).max() < MIN_LEADING:
         polynomials = polynomials[:, 1:]
     found = np.zeros((2, len(polynomials)), dtype=np.int8)
-    for start in range(0, len(polynomials), AT_ONCE):
-        part = slice(start, start + AT_ONCE)
+    for start in range(0, len(polynomials), BATCH_POINTS):
+        part = slice(start, start + BATCH_POINTS)
         found[:, part] = _counts(polynomials[part], {name: values[part] for name, values in p.items()})
     return found
 
@@ -91,7 +94,7 @@ def _counts(polynomials: Array, p: Values) -> NDArray[np.int8]:
     companion[:, 0, :] = -monic
     companion[:, np.arange(1, degree), np.arange(degree - 1)] = 1
     roots = np.linalg.eigvals(companion)
-    real = np.abs(roots.imag) < IMAGINARY * (1 + np.abs(roots.real))
+    real = np.abs(roots.imag) < MAX_IMAGINARY * (1 + np.abs(roots.real))
     t = _polished(polynomials, roots.real)
     stable = real & _stable(t, {name: values[:, None] for name, values in p.items()})
     return np.stack([stable.sum(axis=1), real.sum(axis=1)]).astype(np.int8)

@@ -17,7 +17,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.studies.bench.study import Figures, Measurement, Study, Times
 
 MARGIN = 1.1
-SINGLE = 1.5
+SINGLE_RUN_MARGIN = 1.5
 """The same where one of the two was run once only, so that its spread is not known."""
 
 
@@ -90,7 +90,7 @@ def _changes(old: Study, new: Study, before: Measurement, after: Measurement | N
 
 def _time(old_floor: Times, before: Times, new_floor: Times, after: Times) -> tuple[Verdict, float]:
     """The verdict, and the ratio of medians over their floors."""
-    margin = MARGIN if before.runs > 1 and after.runs > 1 else SINGLE
+    margin = MARGIN if before.runs > 1 and after.runs > 1 else SINGLE_RUN_MARGIN
     ratio = (after.median / new_floor.median) / (before.median / old_floor.median)
     if after.minimum / new_floor.maximum > margin * before.maximum / old_floor.minimum:
         return Verdict.SLOWER, ratio
@@ -105,7 +105,7 @@ def _worse(before: Measurement, after: Measurement) -> Iterator[Change]:
     old, new = before.figures or {}, after.figures or {}
     for count, f in old.items():
         if count not in new:
-            yield Change(*place, Verdict.LOST, f"{count}: no error is told any more")
+            yield Change(*place, Verdict.LOST, f"{count}: no error is reported any more")
             continue
         for name, a, b in _pairs(f, new[count]):
             if a != b:
@@ -140,8 +140,8 @@ def comparison_table(changes: tuple[Change, ...]) -> str:
     ]
     bad = [c for c in changes if c.verdict in BAD]
     tally = {v: sum(c.verdict is v for c in bad) for v in (Verdict.SLOWER, Verdict.WORSE, Verdict.LOST)}
-    told = ", ".join(f"{number} {verdict.value}" for verdict, number in tally.items() if number)
-    return "\n".join([*lines, told or "nothing became slower or worse beyond noise"])
+    summary = ", ".join(f"{number} {verdict.value}" for verdict, number in tally.items() if number)
+    return "\n".join([*lines, summary or "nothing became slower or worse beyond noise"])
 
 
 def _cells(change: Change) -> tuple[str, str, str]:

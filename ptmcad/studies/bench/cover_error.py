@@ -2,7 +2,7 @@
 
 Guarantee: the share that is wrong is bounded without trusting the certified engine. The window without its cover and
 without boxes around the true walls falls into components; each lies in one certified cell and in one true region, and
-one exactly located point tells whether their counts agree. What the boxes add to the cover is the bounds' distance.
+one exactly located point shows whether their counts agree. What the boxes add to the cover is the bounds' distance.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from ptmcad.studies.bench.error import Bounds, MapError, faintest
 from ptmcad.studies.bench.reference import Reference, Walls, regions, shown_count
 
 Integers = NDArray[np.int64]
-FINEST = 2.0**-16
+MIN_BOX_SHARE = 2.0**-16
 """Share of the window's side below which the boxes around walls are not made smaller."""
-MOST_PARTS = 200
+MAX_PARTS = 200
 """Components that are located; the area of any others counts as doubtful."""
 
 
 def cover_error(exact: Reference, walls: Walls, result: RegionMap, count: str) -> MapError | None:
-    """Of a certified map of the same slice; None when its cells do not tell this count.
+    """Of a certified map of the same slice; None when its cells do not have this count.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def cover_error(exact: Reference, walls: Walls, result: RegionMap, count: str) -
     agreed = [0] * len(walls.counts)
     wrong = unshown = 0
     for n, area in enumerate(parts.areas):
-        if n >= MOST_PARTS:
+        if n >= MAX_PARTS:
             doubt += area
             continue
         place = _inside(parts, n)
@@ -111,7 +111,7 @@ def _region(exact: Reference, region_of: tuple[int, ...], place: tuple[Fraction,
 
 def _boxes(walls: Walls, base: int, steps: int) -> NDArray[np.float64]:
     """Chords as rows (u0, v0, u1, v1, apart) in lattice steps along the slice's first and second axis, and the gaps."""
-    rows = [[c.left, c.at_left, c.right, c.at_right, c.apart] for c, _, _ in walls.chords]
+    rows = [[c.left, c.at_left, c.right, c.at_right, c.distance] for c, _, _ in walls.chords]
     for left, right, parts in walls.gaps:
         rows += [[left, (low + high) / 2, right, (low + high) / 2, (high - low) / 2] for low, high in parts]
     array = np.array([[float(x) for x in row] for row in rows]).reshape(-1, 5) * steps
@@ -134,7 +134,7 @@ def _outside(shown: Components, chords: NDArray[np.float64]) -> tuple[tuple[int,
         box, leaf = tree.meeting(boxes, closed=False)
         poking = np.unique(box[tree.state[leaf] == FREE])
         size = np.abs(ends[poking, :, 1] - ends[poking, :, 0]).max(axis=1)
-        small = size <= FINEST * steps
+        small = size <= MIN_BOX_SHARE * steps
         found.append(boxes[poking[small]])
         longer = chords[poking[~small]]
         middle = (longer[:, :2] + longer[:, 2:4]) / 2
@@ -150,7 +150,7 @@ def _outside(shown: Components, chords: NDArray[np.float64]) -> tuple[tuple[int,
 
 def _distances(walls: Walls, cover: Cover, boxes: Any, base: int) -> Distances | None:
     """How far the cover reaches from the true walls; and these from the cover, which holds them but for the boxes."""
-    known = [c for c, _, _ in walls.chords if c.apart < UNPROVED]
+    known = [c for c, _, _ in walls.chords if c.distance < UNPROVED]
     if not known or not cover.rectangles:
         return Distances((0.0, 0.0), (0.0, 0.0)) if not known and not cover.rectangles else None
     from scipy.spatial import cKDTree

@@ -70,9 +70,9 @@ def distances(walls: Walls, sides: Points, pixel: Fraction) -> Distances | None:
     None when just one of the boundaries is empty.
     """
     spacing = float(pixel) / DENSITY
-    known = [c for c, _, _ in walls.chords if c.apart < UNPROVED]
+    known = [c for c, _, _ in walls.chords if c.distance < UNPROVED]
     segments = _segments(known)
-    apart = np.array([float(c.apart) for c in known])
+    apart = np.array([float(c.distance) for c in known])
     vague = np.array(
         [[float(x) for x in (left, low, right, high)] for left, right, parts in walls.gaps for low, high in parts]
     ).reshape(-1, 4)
@@ -101,7 +101,7 @@ def distances(walls: Walls, sides: Points, pixel: Fraction) -> Distances | None:
 def chord_points(known: Sequence[Chord], spacing: float) -> tuple[Points, float]:
     """Points on chords, and a bound for the distance from any point of the walls to the nearest one and back."""
     points, _, near = _points(_segments(known), spacing)
-    return points, float(near.max()) + max(float(c.apart) for c in known) + ROUNDING
+    return points, float(near.max()) + max(float(c.distance) for c in known) + ROUNDING
 
 
 def _segments(known: Sequence[Chord]) -> Points:

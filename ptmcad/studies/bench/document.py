@@ -19,13 +19,13 @@ from ptmcad.show.document.node import Node
 from ptmcad.studies.bench.study import FORMAT, Figures, Measurement, Study, Times
 from ptmcad.text.textfile import read_text
 
-MOST_BYTES = 10_000_000
+MAX_BYTES = 10_000_000
 _COLUMNS = (
     "slice", "method", "setting", "seconds_median", "seconds_min", "seconds_max", "runs", "computing_median",
     "peak_mib", "count", "wrong_low", "wrong_high", "undetermined", "wrong_centres", "regions", "missed",
     "faintest_low", "faintest_high", "distance_low", "distance_high", "area_width", "reason",
 )  # fmt: skip
-MOST_COUNTED = 10**12
+MAX_COUNTED = 10**12
 
 
 def write_study(study: Study) -> str:
@@ -63,7 +63,7 @@ def read_study(path: Path) -> Study:
     ConfigError
         When the file is missing or is no such document.
     """
-    text = read_text(path, MOST_BYTES, f"a {FORMAT} file")
+    text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
     try:
         return study_of(text)
     except (ValueError, RecursionError) as error:
@@ -130,8 +130,8 @@ def _figures(node: Node) -> Figures:
 def _number(node: Node) -> int:
     """Of pixels or regions: what nobody can count is not one."""
     found = _whole(node)
-    if found > MOST_COUNTED:
-        raise node.fault(f"is more than {MOST_COUNTED}")
+    if found > MAX_COUNTED:
+        raise node.fault(f"is more than {MAX_COUNTED}")
     return found
 
 

@@ -128,7 +128,7 @@ def wrong_areas(walls: Walls, picture: Counts) -> tuple[Bounds, tuple[Bounds, ..
     for chord, lower, upper in walls.chords:
         left, right = from_fraction(chord.left), from_fraction(chord.right)
         at_left = from_fraction(chord.at_left)
-        blurred = from_fraction(chord.apart) * (right - left)
+        blurred = from_fraction(chord.distance) * (right - left)
         doubt += blurred
         doubts[lower] += blurred
         doubts[upper] += blurred

@@ -131,8 +131,8 @@ def _words(curves: tuple[Curve, ...]) -> str:
     """The description for who does not see the picture."""
     parts = []
     for c in curves:
-        told = ", ".join(f"{s.seconds[0]:.3g} s: {(s.error[0] + s.error[1]) / 2:.3g}" for s in c.spots)
-        parts.append(f"{c.name}: {told}.")
+        points = ", ".join(f"{s.seconds[0]:.3g} s: {(s.error[0] + s.error[1]) / 2:.3g}" for s in c.spots)
+        parts.append(f"{c.name}: {points}.")
     return " ".join(parts)
 
 

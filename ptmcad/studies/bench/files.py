@@ -24,7 +24,7 @@ def save(study: Study, folder: Path) -> tuple[Path, ...]:
     Raises
     ------
     OutputError
-        When one can not be written.
+        When one cannot be written.
     """
     name = study.slice
     writers: dict[str, Writer] = {f"{name}.bench.csv": text_writer(write_table(study))}
@@ -41,9 +41,9 @@ def save_page(folder: Path) -> Path:
     Raises
     ------
     ConfigError
-        When a stored study can not be read.
+        When a stored study cannot be read.
     OutputError
-        When the page can not be written.
+        When the page cannot be written.
     """
     studies = [read_study(path) for path in sorted(folder.glob("*.bench.json"))]
     return write_files(folder, {PAGE: text_writer(page(studies))})[0]

@@ -42,13 +42,13 @@ FLOOR = (
     "import flint, numpy, click, yaml; numpy.linalg.eigvals(numpy.random.default_rng(1).random((8000, 6, 6)))",
 )
 """The reference job: start-up, and some linear algebra that is always the same."""
-LONG = 1.25
+MAX_REPEATED_SECONDS = 1.25
 """Seconds from which on a job is not repeated."""
-MOST_PANELS = 10_000
+MAX_PANELS = 10_000
 """Of all walls together: what is steep takes many, and some slices have walls too steep for the measurement."""
 NO_MAP = "no exact map to compare with: the share is the engine's"
 NO_WALLS = "errors not measured: the true walls are too steep for chains of chords; shares are the engine's"
-GRACE = 1.0
+GRACE_SECONDS = 1.0
 """Seconds that an engine has to save what it has when its time is over."""
 GROWTH = 4.5
 """A grid is taken to need so many times the time of the one before, which has a quarter of its pixels."""
@@ -67,7 +67,7 @@ class _Runs:
 
     @property
     def due(self) -> bool:
-        return not self.reason and not (self.usages and self.usages[0].seconds > LONG)
+        return not self.reason and not (self.usages and self.usages[0].seconds > MAX_REPEATED_SECONDS)
 
 
 def measure(
@@ -89,12 +89,12 @@ def measure(
     ----------
     record : the slice's own file.
     verified : whether an independent check confirms a map, such as `ptmcad.verify`; the errors rest on it.
-    rounds : runs of each job that takes no longer than `LONG`; others are run once.
+    rounds : runs of each job that takes no longer than `MAX_REPEATED_SECONDS`; others are run once.
     seed : of the order within a round, and of the starts of the scipy grid.
     time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
     quick : fewer and coarser settings.
     warm_up : run the certified engine once before, because the first run on a machine compiles.
-    report : told what is being done.
+    report : called with what is being done.
 
     Raises
     ------
@@ -136,13 +136,13 @@ def measure(
 
 
 def _walls(exact: Reference) -> dict[str, Walls] | None:
-    """The exact map's walls as chains of chords; None where that takes more than `MOST_PANELS` panels."""
+    """The exact map's walls as chains of chords; None where that takes more than `MAX_PANELS` panels."""
     panels = 0
 
     def count() -> None:
         nonlocal panels
         panels += 1
-        if panels > MOST_PANELS:
+        if panels > MAX_PANELS:
             raise _TooManyError
 
     try:
@@ -170,7 +170,7 @@ def _begin(
 
 
 def _compile(started: Sequence[_Runs]) -> None:
-    """Run the certified engine's first job, if there is one: what is told is the time of every later run."""
+    """Run the certified engine's first job, if there is one: what is reported is the time of every later run."""
     for r in started:
         if r.job.method is Method.CERTIFIED:
             run(r.job.commands[0][0], timeout=300)
@@ -240,8 +240,8 @@ def _run_until(r: _Runs, left: float, time_limit: float) -> float:
     """The same for a job that has an answer at any time, and a smaller error later."""
     assert r.job.answer is not None
     r.job.answer.unlink(missing_ok=True)
-    command = (*r.job.commands[0][0], "--timeout", f"{max(left - GRACE, 0.1):.2f}")
-    usage = run(command, timeout=left + GRACE)
+    command = (*r.job.commands[0][0], "--timeout", f"{max(left - GRACE_SECONDS, 0.1):.2f}")
+    usage = run(command, timeout=left + GRACE_SECONDS)
     if r.job.answer.exists():
         r.usages.append(Usage(Outcome.DONE, usage.seconds, usage.processor_seconds, usage.peak_mebibytes))
         r.computing.append(json.loads(r.job.answer.read_text(encoding="utf-8"))["timings"]["total"])

@@ -1,7 +1,7 @@
 """The methods that are compared, each as processes to run at a number of settings.
 
-Guarantee: each job gets the same slice, with exact numbers where the method takes them; what a method can not do for a
-slice, or what is not installed, is told with its reason.
+Guarantee: each job gets the same slice, with exact numbers where the method takes them; what a method cannot do for a
+slice, or what is not installed, is reported with its reason.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ def _module(name: str, *arguments: str) -> tuple[str, ...]:
 
 
 def _qepcad(slice: Slice) -> tuple[Job, ...] | str:
-    """Both total counts in the better elimination order, which a trial tells."""
+    """Both total counts in the better elimination order, which a trial shows."""
     command = qepcad.command()
     if command is None:
         return "qepcad is not installed"

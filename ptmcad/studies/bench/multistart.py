@@ -25,7 +25,7 @@ STARTS = 5
 """Along each angle: 25 starts a point."""
 RESIDUAL = 1e-9
 """Of the equations, relative to the sizes of their terms."""
-SAME = 1e-5
+SAME_SOLUTION = 1e-5
 """Two solutions closer than this in both angles are one."""
 
 
@@ -67,7 +67,7 @@ def _count(p: dict[str, float], starts: Array) -> tuple[int, int]:
         value, slope = gradient(angles)
         if not np.abs(value).max() < RESIDUAL * scale:
             continue
-        if any(np.abs(np.remainder(angles - other + np.pi, 2 * np.pi) - np.pi).max() < SAME for other in seen):
+        if any(np.abs(np.remainder(angles - other + np.pi, 2 * np.pi) - np.pi).max() < SAME_SOLUTION for other in seen):
             continue
         seen.append(angles)
         # the Hessian's rows are -L1 and -L2 times those of the slope

@@ -16,7 +16,7 @@ DPI = 110
 
 
 def draw(study: Study, path: Path) -> None:
-    """Draw a study with at least one measurement to a file whose suffix tells the format."""
+    """Draw a study with at least one measurement to a file whose suffix gives the format."""
     drawn = tuple(
         Curve(
             name,

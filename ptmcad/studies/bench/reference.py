@@ -1,6 +1,6 @@
 """The exact map against which every error is measured: counts at pixel centres, and walls as chords.
 
-Guarantee: counts at centres are exact, a centre on a wall being told apart; walls have proved distances to their
+Guarantee: counts at centres are exact, a centre on a wall being reported as such; walls have proved distances to their
 chords, and `Walls.gaps` are all parts of the base that no chord covers.
 
 The base axis is the map's own; shares of the window run from 0 to 1 along the base and along the fibre.
@@ -26,16 +26,16 @@ from ptmcad.exact.cad.stacks import roots_over
 from ptmcad.exact.regions import Link, merge
 from ptmcad.question.slice import Count
 
-APART = Fraction(1, 2**18)
+MAX_CHORD_DISTANCE = Fraction(1, 2**18)
 """Largest distance between a wall and its chord, as a share of the window's side."""
-GAP = Fraction(1, 2**32)
+GAP_HALF_WIDTH = Fraction(1, 2**32)
 """Half of the base's share around a critical value that is left to the gaps."""
-NARROWEST = Fraction(1, 2**24)
+MIN_STACK_WIDTH = Fraction(1, 2**24)
 """Share of the base of the narrowest panels; those on which nothing is proved go to the gaps."""
 DEPTH = 12
 """Halvings of the fibre over a gap."""
 COUNTS = ("stable", "total", "index")
-"""The counts for which errors are told; on the torus the index follows from the other two (the Euler sum)."""
+"""The counts for which errors are reported; on the torus the index follows from the other two (the Euler sum)."""
 CODE = 100
 
 
@@ -70,7 +70,7 @@ Reaches = dict[tuple[int, Fraction, Fraction], tuple[tuple[Fraction, Fraction], 
 
 @dataclass(frozen=True, slots=True)
 class Walls:
-    """What separates regions when they are told apart by a count.
+    """What separates regions when they are distinguished by a count.
 
     Attributes
     ----------
@@ -95,10 +95,10 @@ def reference(result: RegionMap) -> Reference:
     Raises
     ------
     ValueError
-        When the map is not exact, or its regions are not told apart by the index.
+        When the map is not exact, or its regions are not distinguished by the index.
     """
     if result.status is not Status.EXACT or result.slice.count is not Count.INDEX:
-        raise ValueError("errors are measured against an exact map with regions told apart by the index")
+        raise ValueError("errors are measured against an exact map with regions distinguished by the index")
     axes = result.slice.axes
     base, fibre = ((from_fraction(axes[k].low), from_fraction(axes[k].high)) for k in (result.base, 1 - result.base))
     used = [(n, from_plane(c.polynomial)) for n, c in enumerate(result.components) if not c.left_out]
@@ -109,13 +109,18 @@ def reference(result: RegionMap) -> Reference:
         RealRoot(UnivariatePolynomial(list(c.polynomial)), from_fraction(c.low), from_fraction(c.high))
         for c in result.critical_values
     )
-    narrow = (base[1] - base[0]) * from_fraction(GAP) / 2
-    ends = [(Fraction(0), GAP)]  # on the window's edge branches may meet too
+    narrow = (base[1] - base[0]) * from_fraction(GAP_HALF_WIDTH) / 2
+    ends = [(Fraction(0), GAP_HALF_WIDTH)]  # on the window's edge branches may meet too
     for value in critical:
         near = refine(value, narrow)
         low, high = to_share(near.low, base), to_share(near.high, base)
-        ends.append(((low / GAP).__floor__() * GAP - GAP, -((-high / GAP).__floor__()) * GAP + GAP))
-    ends.append((1 - GAP, Fraction(1)))
+        ends.append(
+            (
+                (low / GAP_HALF_WIDTH).__floor__() * GAP_HALF_WIDTH - GAP_HALF_WIDTH,
+                -((-high / GAP_HALF_WIDTH).__floor__()) * GAP_HALF_WIDTH + GAP_HALF_WIDTH,
+            )
+        )
+    ends.append((1 - GAP_HALF_WIDTH, Fraction(1)))
     spans = tuple((left[1], right[0]) for left, right in pairwise(ends))
     return Reference(result, base, fibre, curves, lines, spans, critical)
 
@@ -144,18 +149,20 @@ def walls(exact: Reference, check: Callable[[], None] = lambda: None) -> dict[st
                     continue
                 if (s, level) not in chains:
                     source = by_component[wall.component]
-                    chains[s, level] = chords(source, wall.root, span, exact.base, exact.fibre, APART, NARROWEST, check)
+                    chains[s, level] = chords(
+                        source, wall.root, span, exact.base, exact.fibre, MAX_CHORD_DISTANCE, MIN_STACK_WIDTH, check
+                    )
                 sides += [(c, below, above) for c in chains[s, level]]
         meeting = [by_component[n] for n in sorted(separating)]
         gaps = tuple(_gaps(exact, [c for c, _, _ in sides], meeting, reaches, check))
-        found[count] = Walls(*_told(exact.result, region_of, count), tuple(sides), tuple(tops), gaps)
+        found[count] = Walls(*_regions_by_count(exact.result, region_of, count), tuple(sides), tuple(tops), gaps)
     return found
 
 
-def _told(
+def _regions_by_count(
     result: RegionMap, region_of: tuple[int, ...], count: str
 ) -> tuple[tuple[int, ...], tuple[tuple[Fraction, Fraction], ...]]:
-    """Counts and areas of the regions; those of the map, which are told apart by the index, are parts of them."""
+    """Counts and areas of the regions; those of the map, which are distinguished by the index, are parts of them."""
     first, second = result.slice.axes
     window = (first.high - first.low) * (second.high - second.low)
     number = 1 + max(region_of)
@@ -173,7 +180,7 @@ def _gaps(
     """Around the critical values, and where a wall's distance to its chord is not proved."""
     places = [x for low, high in exact.spans if low < high for x in (low, high)]
     around = zip([Fraction(0), *places[1::2]], [*places[::2], Fraction(1)], strict=True)
-    unproved = {(c.left, c.right) for c in known if c.apart == UNPROVED}
+    unproved = {(c.left, c.right) for c in known if c.distance == UNPROVED}
     ends: dict[Fraction, list[Fraction]] = {}
     for c in known:
         ends.setdefault(c.left, []).append(c.at_left)
@@ -220,14 +227,14 @@ def _joined(parts: list[tuple[Fraction, Fraction]]) -> Iterator[tuple[Fraction, 
 
 
 def regions(result: RegionMap, count: str) -> tuple[int, ...]:
-    """The region of every cell when regions are told apart by a count; numbers from 0."""
+    """The region of every cell when regions are distinguished by a count; numbers from 0."""
     keys = [count_of(cell, count) for cell in result.cells]
     return merge(keys, [Link(a.first, a.second, a.component) for a in result.adjacencies])
 
 
 def count_of(cell: Cell, count: str) -> int:
     if cell.stable is None or cell.total is None:
-        raise ValueError("the map does not tell both the stable and the total counts of its cells")
+        raise ValueError("the map does not give both the stable and the total counts of its cells")
     return int(shown_count(cell.stable, cell.total, count))
 
 

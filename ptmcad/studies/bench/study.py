@@ -16,7 +16,7 @@ from ptmcad.text.numerals import decimal
 
 FORMAT = "ptmcad-bench/1"
 DIGITS = 6
-SEEN = 0.99
+SEEN_SHARE = 0.99
 """A grid sees a region when it shows this share of it, at least, with its count."""
 Bounds = tuple[float, float]
 
@@ -52,7 +52,7 @@ class Measurement:
     Attributes
     ----------
     seconds : of whole processes, start-up included; None when it was not run to its end.
-    computing : of the computation in them, where the process tells.
+    computing : of the computation in them, where the process reports them.
     peak : largest resident set in MiB.
     reason : why there are no times; empty when there are.
     note : what the figures rest on, where it is not a measurement of ours.
@@ -129,7 +129,7 @@ def _rounded(value: Fraction, up: bool) -> float:
 
 
 def main_figures(measurement: Measurement) -> Figures | None:
-    """The figures for the finest count that the method tells."""
+    """The figures for the finest count that the method gives."""
     found = measurement.figures or {}
     return next((found[count] for count in ("index", "total", "stable", "admissible") if count in found), None)
 
@@ -139,13 +139,13 @@ def smallest_grid(study: Study, method: str, count: str, seen: bool) -> int | No
 
     Parameters
     ----------
-    seen : ask for grids that see every region (see `SEEN`), and not just find some pixel of it.
+    seen : ask for grids that see every region (see `SEEN_SHARE`), and not just find some pixel of it.
     """
     fit = []
     for m in study.measurements:
         f = (m.figures or {}).get(count)
         if m.method == method and m.grid is not None and f is not None:
-            found = f.faintest is not None and f.faintest[0] >= SEEN if seen else f.missed == 0
+            found = f.faintest is not None and f.faintest[0] >= SEEN_SHARE if seen else f.missed == 0
             fit += [m.grid] if found else []
     return min(fit, default=None)
 

@@ -87,12 +87,12 @@ def measure(
     timeout : seconds after which a run is killed and the job given up.
     seed : of the order within a round.
     date : recorded as it is.
-    progress : told about each round.
+    progress : called before each round.
 
     Raises
     ------
     ConfigError
-        If a record can not be read.
+        If a record cannot be read.
     """
     for path in records:
         config.load(path)
@@ -207,8 +207,8 @@ def _got_through(runs: Sequence[Usage]) -> bool:
     return all(usage.outcome is Outcome.DONE for usage in runs)
 
 
-def _ratio(above: Sequence[Usage], below: Sequence[Usage]) -> float:
+def _ratio(numerator: Sequence[Usage], denominator: Sequence[Usage]) -> float:
     """Median of the ratios of the runs of the same round; 0 where there is none or either did not get through."""
-    if not above or not below or not _got_through([*above, *below]):
+    if not numerator or not denominator or not _got_through([*numerator, *denominator]):
         return 0.0
-    return statistics.median(a.seconds / b.seconds for a, b in zip(above, below, strict=False))
+    return statistics.median(a.seconds / b.seconds for a, b in zip(numerator, denominator, strict=False))

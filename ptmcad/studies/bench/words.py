@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from ptmcad.studies.bench.methods import TITLES, Method
 from ptmcad.studies.bench.study import (
-    SEEN,
+    SEEN_SHARE,
     Figures,
     Measurement,
     Study,
@@ -34,7 +34,7 @@ def sentences(study: Study) -> tuple[str, ...]:
             upto = f"none up to {measured[-1]} x {measured[-1]}"
             found.append(
                 f"Regions by {name}: the smallest grid with a pixel in each is {_grid(first, upto)}; with at least "
-                f"{SEEN:.0%} of each, {_grid(whole, upto)}."
+                f"{SEEN_SHARE:.0%} of each, {_grid(whole, upto)}."
             )
     ours, theirs = _fastest_exact(study), _at(study, 400)
     if ours and theirs and ours.seconds and theirs.seconds:
@@ -66,7 +66,7 @@ _HEADER = ("method", "setting", "seconds (least-largest)", "wrong or undetermine
 
 
 def rows(study: Study) -> Iterator[tuple[str, ...]]:
-    """The cells of the table, one row for each measurement, for the finest count that the method tells."""
+    """The cells of the table, one row for each measurement, for the finest count that the method gives."""
     for m in study.measurements:
         if m.seconds is None:
             yield (m.method, m.setting or "-", m.reason, *("-",) * 5)
@@ -121,9 +121,9 @@ def curves(study: Study) -> list[tuple[str, int, list[Point]]]:
     found: list[tuple[str, int, list[Point]]] = []
     for style, method in enumerate(Method):
         done = [m for m in study.measurements if m.method == method.value and m.seconds]
-        told = [(m, f) for m in done if (f := main_figures(m))]
-        if told:
-            found.append((TITLES[method], style, [(m, f.wrong, _label(m)) for m, f in told]))
+        shown = [(m, f) for m in done if (f := main_figures(m))]
+        if shown:
+            found.append((TITLES[method], style, [(m, f.wrong, _label(m)) for m, f in shown]))
         if method is Method.EXACT and done:
             widths = [(m, (m.area_width, m.area_width), "") for m in done if m.area_width]
             found.append((f"{TITLES[method]}: width of the area bounds", WIDTH_STYLE, widths))
@@ -186,7 +186,7 @@ def page(studies: Sequence[Study]) -> str:
 
 def _checked(study: Study) -> str:
     if study.verified is None:
-        return "There is no exact map of it: errors are the undetermined share, as the certified engine tells it."
+        return "There is no exact map of it: errors are the undetermined share, as the certified engine reports it."
     passed = "passed" if study.verified else "did NOT pass"
     return f"The exact map that errors are measured against {passed} `ptmcad verify`."
 

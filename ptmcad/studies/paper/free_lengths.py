@@ -137,7 +137,7 @@ def _rough_inverse(at: _Derivatives) -> tuple[arb, arb, arb]:
     return (h22 / determinant).mid(), (-h12 / determinant).mid(), (h11 / determinant).mid()
 
 
-def _apart(a: ProvedEquilibrium, b: ProvedEquilibrium) -> bool:
+def _distinct(a: ProvedEquilibrium, b: ProvedEquilibrium) -> bool:
     """Whether the two boxes are disjoint on the torus, proved: chords of the angles' differences exceed the boxes."""
     with ctx.workprec(BITS):
         for x, y in zip(a.angles, b.angles, strict=True):
@@ -153,7 +153,7 @@ def proved_equilibria(design: FreeLengthDesign) -> tuple[ProvedEquilibrium, ...]
     found: list[ProvedEquilibrium] = []
     for guess in approximate_equilibria(design):
         proved = proved_equilibrium(design, guess)
-        if proved is not None and all(_apart(proved, other) for other in found):
+        if proved is not None and all(_distinct(proved, other) for other in found):
             found.append(proved)
     return tuple(sorted(found, key=lambda e: e.angles))
 

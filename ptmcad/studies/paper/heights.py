@@ -1,4 +1,4 @@
-"""Whether the nodes of stable poses lie above the base, and why that can not change inside a cell.
+"""Whether the nodes of stable poses lie above the base, and why that cannot change inside a cell.
 
 Guarantee: exact; the identity holds for all lengths and forces, the signs are those of boxes around equilibria.
 """

@@ -88,7 +88,7 @@ def widest() -> Widest:
         "(1) the neck is narrow": NECK[1] - NECK[0] < best,
         "(2) no fold and no slope 0": never(FOLD, BRACKET, ONE, STRIP) and never(UPRIGHT, BRACKET, ONE, STRIP),
         "(2) two branches, moving apart": _number(p, Fraction(1, 2), STRIP) == 2
-        and _apart(ends[Fraction(9, 10)], ends[near[0]]),
+        and _disjoint(ends[Fraction(9, 10)], ends[near[0]]),
         "(3) two points at L2 = 1": _number(p, ONE, STRIP) == 2,
         "(3) the ends lie on the same side of 1/2": all(ends[x][1] < Fraction(1, 2) < ends[x][2] for x in near),
         "(4) no fold and no slope 1/2": never(FOLD, ONE, MIDDLE, STRIP) and never(HALF, ONE, MIDDLE, STRIP),
@@ -135,7 +135,7 @@ def _number(p: Coefficient, length2: Fraction, within: Sequence[Fraction]) -> in
     return len(isolate(trace, from_fraction(within[0]), from_fraction(within[1])))
 
 
-def _apart(first: Ends, second: Ends) -> bool:
+def _disjoint(first: Ends, second: Ends) -> bool:
     """Whether the low end falls and the high end rises."""
     return second[1] < first[0] and second[2] > first[3]
 

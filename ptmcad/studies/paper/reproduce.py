@@ -87,7 +87,7 @@ def reproduce(folder: Path, progress: Progress | None = None) -> Reproduction:
     Raises
     ------
     OutputError
-        When a file can not be written; then none is.
+        When a file cannot be written; then none is.
     """
     check_writable(folder, FILES)
     seconds: dict[str, float] = {}

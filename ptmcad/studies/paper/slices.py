@@ -107,8 +107,8 @@ def parameters_at(figure: str, at: Mapping[str, Exact]) -> dict[str, Fraction]:
     x, y = (from_fraction(rational(at[name])) for name in wanted.axis_names)
     values = {}
     for name, expression in wanted.parameters.items():
-        above, below = from_expression(expression)
-        values[name] = to_fraction(value_of(above, x, y) / value_of(below, x, y))
+        numerator, denominator = from_expression(expression)
+        values[name] = to_fraction(value_of(numerator, x, y) / value_of(denominator, x, y))
     return values
 
 

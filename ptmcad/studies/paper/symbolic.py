@@ -106,8 +106,8 @@ def cleared(expression: Expr) -> Expr:
 
 def vanishes(expression: Expr) -> bool:
     """Whether a rational function of all symbols is zero wherever c^2 + s^2 = 1 for both angles."""
-    above = sp.numer(sp.together(half_angles(sp.sympify(expression))))
-    return bool(sp.expand(above) == 0)
+    numerator = sp.numer(sp.together(half_angles(sp.sympify(expression))))
+    return bool(sp.expand(numerator) == 0)
 
 
 def equal(left: Expr, right: Expr) -> bool:

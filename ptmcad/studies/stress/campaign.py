@@ -19,7 +19,7 @@ from ptmcad.studies.stress.measure import Outcome, run
 from ptmcad.version import __version__
 
 PACKAGES = ("python-flint", "numpy", "numba")
-MOST_COST = 5.0
+MAX_COST = 5.0
 """An extreme case may cost at most so many times what its tame sibling does."""
 
 Progress = Callable[[str, int, int], None]
@@ -56,9 +56,9 @@ class Campaign:
         return tuple(o for o in self.outcomes if not o.verdict.double_right)
 
     @property
-    def dear(self) -> tuple[Outcome, ...]:
-        """What costs more than `MOST_COST` times its sibling, in processor time."""
-        return tuple(o for o in self.outcomes if o.cost.ratio > MOST_COST)
+    def expensive(self) -> tuple[Outcome, ...]:
+        """What costs more than `MAX_COST` times its sibling, in processor time."""
+        return tuple(o for o in self.outcomes if o.cost.ratio > MAX_COST)
 
 
 def campaign(

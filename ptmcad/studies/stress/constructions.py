@@ -1,7 +1,7 @@
 """Parameters at which an equilibrium is known exactly to be degenerate, and which side of them has more equilibria.
 
 Guarantee: exact. At the parameters of `fold` and `cusp` the given rational pose is an equilibrium with a singular
-Hessian; the signs that tell the sides apart are computed in rational numbers.
+Hessian; the signs that distinguish the sides are computed in rational numbers.
 
 Derivation. The potential is phi_1(th1) + phi_2(th2) + G cos(th1 + th2), with G = k3 L1 L2 and phi_i a sine wave. So at
 an equilibrium, writing h_ij for the Hessian, c12 and s12 for cosine and sine of th1 + th2,

@@ -2,7 +2,7 @@
 
 Not guaranteed: anything. Without free lengths: eigenvalues of the companion matrix of the sextic in t = tan(th2/2)
 (see `ptmcad.studies.stress.reference`), th1 from the first equation, the Hessian's signs in floats. It is treated
-kindly: th2 = pi, which t can not reach, is put back where the leading coefficients vanish. With free lengths: Newton's
+kindly: th2 = pi, which t cannot reach, is put back where the leading coefficients vanish. With free lengths: Newton's
 method from a grid of starts. Deciding which roots are real, which are one, and what is zero takes tolerances; they are
 usual ones.
 """
@@ -16,11 +16,11 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-REAL = 1e-8
+REAL_TOLERANCE = 1e-8
 """A root is taken for real when its imaginary part is at most this much of 1 + its modulus."""
-ZERO = 1e-12
+ZERO_TOLERANCE = 1e-12
 """A coefficient is taken for zero when it is at most this much of the largest."""
-SAME = 1e-6
+SAME_POSE = 1e-6
 """Poses no farther apart than this (radians) are taken for one."""
 STARTS = 24
 """Starts along each angle."""
@@ -54,29 +54,29 @@ def _companion(p: Mapping[str, float]) -> tuple[DoublePose, ...] | None:
     g, pull = p["k3"] * p["L2"], p["k3"] * p["L1"]
     square = a1 * a1 + p["F3"] ** 2 + g * g
     # highest degree first
-    above, below = np.array([-p["F3"], 2 * a1, p["F3"]]), np.array([p["F4"], 2 * a2, -p["F4"]])
+    first_moment, second_moment = np.array([-p["F3"], 2 * a1, p["F3"]]), np.array([p["F4"], 2 * a2, -p["F4"]])
     length = np.array([square + 2 * a1 * g, 4 * g * p["F3"], square - 2 * a1 * g])
-    left = pull**2 * np.convolve(np.convolve(above, above), [1.0, 0.0, 1.0])
-    right = np.convolve(np.convolve(below, below), length)
+    left = pull**2 * np.convolve(np.convolve(first_moment, first_moment), [1.0, 0.0, 1.0])
+    right = np.convolve(np.convolve(second_moment, second_moment), length)
     sextic = left - right
     largest = float(np.max(np.abs(sextic), initial=0.0))
     if not np.isfinite(largest) or largest == 0:
         return None
     leading = 0
-    while leading < 6 and abs(sextic[leading]) <= ZERO * largest:
+    while leading < 6 and abs(sextic[leading]) <= ZERO_TOLERANCE * largest:
         leading += 1
     try:
         roots = np.roots(sextic[leading:])
     except np.linalg.LinAlgError:
         return None
-    angles = [2 * float(np.arctan(r.real)) for r in roots if abs(r.imag) <= REAL * (1 + abs(r))]
+    angles = [2 * float(np.arctan(r.real)) for r in roots if abs(r.imag) <= REAL_TOLERANCE * (1 + abs(r))]
     angles += [float(np.pi)] * leading
     found: list[DoublePose] = []
     for th2 in angles:
         c2, s2 = float(np.cos(th2)), float(np.sin(th2))
         p_value, q_value = p["F3"] * c2 + a1 * s2, a2 * s2 - p["F4"] * c2
         x, y = a1 - g * c2, p["F3"] + g * s2
-        flat = abs(p_value) <= SAME * abs(a1) and abs(q_value) <= SAME * abs(a2)
+        flat = abs(p_value) <= SAME_POSE * abs(a1) and abs(q_value) <= SAME_POSE * abs(a2)
         for sign in (1.0, -1.0) if flat else (float(np.sign(p_value * q_value)),):
             _adopt(found, _pose(p, float(np.arctan2(sign * y, sign * x)), th2))
     return tuple(found)
@@ -89,7 +89,7 @@ def _pose(p: Mapping[str, float], th1: float, th2: float) -> DoublePose:
 
 
 def _adopt(found: list[DoublePose], pose: DoublePose) -> None:
-    if not any(angle_error(q.th1, pose.th1) <= SAME and angle_error(q.th2, pose.th2) <= SAME for q in found):
+    if not any(angle_error(q.th1, pose.th1) <= SAME_POSE and angle_error(q.th2, pose.th2) <= SAME_POSE for q in found):
         found.append(pose)
 
 

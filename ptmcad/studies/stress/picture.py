@@ -18,7 +18,7 @@ from ptmcad.show.render.printing import settings
 from ptmcad.studies.stress.measure import Outcome
 from ptmcad.text.numerals import magnitude
 
-FLOOR = 1e-20
+MIN_DRAWN_ERROR = 1e-20
 """Errors below are drawn here: enclosures of 12 digits have middles about 1e-19 off."""
 NOTE = "Of poses in radians, of lines relative to the window. At 1e-20: none or less; at the top: no pose found."
 COLUMNS = 4
@@ -35,8 +35,8 @@ def draw_stress(outcomes: Sequence[Outcome]) -> Figure:
         wrong = sum(not o.verdict.double_right for o in points)
         title = "Error of double precision against what is extreme"
         ours = sum(not o.verdict.right for o in points)
-        told = f"{len(points)} cases; the count of double precision is wrong in {wrong}, ptmcad's in {ours}."
-        figure.set_label(f"{title}\n{told}")
+        summary = f"{len(points)} cases; the count of double precision is wrong in {wrong}, ptmcad's in {ours}."
+        figure.set_label(f"{title}\n{summary}")
         figure.suptitle(title, fontsize=13)
         axes = [figure.add_subplot(rows, COLUMNS, k + 1) for k in range(len(families))]
         for k, (family, place) in enumerate(zip(families, axes, strict=True)):
@@ -61,7 +61,7 @@ def _family(axes: Axes, family: str, outcomes: Sequence[Outcome]) -> None:
         [exponent(o.case.stiffness) for o in outcomes], [_drawn(o.verdict.error) for o in outcomes],
         linestyle="none", marker="_", markersize=7, color=OURS,
     )  # fmt: skip
-    axes.set_ylim(FLOOR / 10, 30)
+    axes.set_ylim(MIN_DRAWN_ERROR / 10, 30)
     axes.set_yticks([1e-20, 1e-15, 1e-10, 1e-5, 1], ["1e-20", "1e-15", "1e-10", "1e-5", "1"])
     axes.minorticks_off()
     axes.margins(x=0.15)
@@ -89,4 +89,4 @@ def exponent(value: Fraction) -> float:
 
 def _drawn(error: float | None) -> float:
     """An error's height: no pose at all is as bad as can be."""
-    return 10.0 if error is None else max(error, FLOOR)
+    return 10.0 if error is None else max(error, MIN_DRAWN_ERROR)

@@ -20,7 +20,7 @@ from ptmcad.studies.stress.reference import Degenerate, sextic_poses
 from ptmcad.text.syntax import Tree
 
 KINDS = ("scaled", "mirrored", "swapped", "fold", "cusp")
-LARGEST = 30
+MAX_EXPONENT = 30
 """Scales are 10^-30 to 10^30, distances from a fold 10^-30 to 10^-3."""
 ORIGINAL = "symmetry of the equations: counts of the tame original, by the second method"
 
@@ -36,14 +36,14 @@ def random_case(seed: int, number: int) -> Case:
     kind = KINDS[number % len(KINDS)]
     name = f"random-{seed}-{number}-{kind}"
     if kind in ("fold", "cusp"):
-        at, exponent = _degenerate(dice, kind), -dice.randint(3, LARGEST)
+        at, exponent = _degenerate(dice, kind), -dice.randint(3, MAX_EXPONENT)
         beside = beside_fold if kind == "fold" else beside_cusp
         side, counts = dice.choice([(1, at.many), (-1, at.few)])
         question = PointQuestion(beside(at, side * ten(exponent)))
         sibling = PointQuestion(beside(at, side * Fraction(1, 10)))
         return Case(name, f"random {kind}", ten(exponent), question, sibling, PointAnswer(*counts), CONSTRUCTED)
     original, expected = _tame(dice)
-    exponent = dice.choice([-1, 1]) * dice.randint(3, LARGEST)
+    exponent = dice.choice([-1, 1]) * dice.randint(3, MAX_EXPONENT)
     moved = mirrored(original) if kind == "mirrored" else swapped(original) if kind == "swapped" else original
     # springs and forces together, then lengths together with forces
     stretch = dice.randint(-9, 9)

@@ -28,7 +28,7 @@ from flint import arb, ctx, fmpq, fmpq_poly
 
 DIGITS = 100
 _BITS = 400
-_MOST_BITS = 2**15
+_MAX_BITS = 2**15
 
 
 class Degenerate(ArithmeticError):
@@ -62,7 +62,7 @@ def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[ReferencePose, ...
     """
     p = {name: fmpq(v.numerator, v.denominator) for name, v in parameters.items()}
     bits = _BITS
-    while bits <= _MOST_BITS:
+    while bits <= _MAX_BITS:
         with ctx.workprec(bits):
             candidates = _candidates(p)
             poses = [_pose(p, c) for c in candidates] if candidates is not None else [None]
@@ -70,18 +70,21 @@ def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[ReferencePose, ...
             if len(found) == len(poses):
                 return found
         bits *= 2
-    raise ArithmeticError(f"{_MOST_BITS} bits do not settle the equilibria")
+    raise ArithmeticError(f"{_MAX_BITS} bits do not settle the equilibria")
 
 
 def _candidates(p: Mapping[str, fmpq]) -> list[_Candidate] | None:
     """The real roots of N with their signs; None when the precision is too low for a sign."""
     a1, a2 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
     g = p["k3"] * p["L2"]
-    above = fmpq_poly([p["F3"], 2 * a1, -p["F3"]])
-    below = fmpq_poly([-p["F4"], 2 * a2, p["F4"]])
+    first_moment = fmpq_poly([p["F3"], 2 * a1, -p["F3"]])
+    second_moment = fmpq_poly([-p["F4"], 2 * a2, p["F4"]])
     square = a1 * a1 + p["F3"] * p["F3"] + g * g
     length = fmpq_poly([square - 2 * a1 * g, 4 * g * p["F3"], square + 2 * a1 * g])
-    sextic = above * above * fmpq_poly([1, 0, 1]) * (p["k3"] * p["L1"]) ** 2 - below * below * length
+    sextic = (
+        first_moment * first_moment * fmpq_poly([1, 0, 1]) * (p["k3"] * p["L1"]) ** 2
+        - second_moment * second_moment * length
+    )
     if sextic.degree() < 0:
         raise Degenerate("the sextic vanishes")
     found: list[_Candidate] = []
@@ -96,7 +99,7 @@ def _candidates(p: Mapping[str, fmpq]) -> list[_Candidate] | None:
             raise Degenerate("th2 = pi is a multiple solution")
     for factor, multiplicity in sextic.numer().factor()[1]:
         of_factor = fmpq_poly(factor)
-        both = (above % of_factor).degree() < 0 and (below % of_factor).degree() < 0
+        both = (first_moment % of_factor).degree() < 0 and (second_moment % of_factor).degree() < 0
         for root in _real_roots(factor):
             if multiplicity != (2 if both else 1):
                 raise Degenerate("the sextic has a multiple root")
@@ -105,7 +108,7 @@ def _candidates(p: Mapping[str, fmpq]) -> list[_Candidate] | None:
             if both:
                 found += [_Candidate(root, 1), _Candidate(root, -1)]
                 continue
-            sign = _sign(_at(above, root) * _at(below, root))
+            sign = _sign(_at(first_moment, root) * _at(second_moment, root))
             if sign == 0:
                 return None
             found.append(_Candidate(root, sign))

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from math import isfinite
 from typing import Any
 
-from ptmcad.studies.stress.campaign import MOST_COST, Campaign
+from ptmcad.studies.stress.campaign import MAX_COST, Campaign
 from ptmcad.studies.stress.case import Case, LineQuestion, MapQuestion
 from ptmcad.studies.stress.measure import Outcome
 from ptmcad.text.numerals import shortest_text
@@ -88,7 +88,7 @@ def summary(campaign: Campaign) -> Iterable[str]:
         worst = max(campaign.outcomes, key=lambda o: o.cost.ratio)
         yield (
             f"an extreme case costs at most {worst.cost.ratio:.2g} times its tame sibling ({worst.case.name}); "
-            f"more than {MOST_COST:g} times: {len(campaign.dear)}"
+            f"more than {MAX_COST:g} times: {len(campaign.expensive)}"
         )
     if not campaign.complete:
         yield f"stopped: {campaign.wanted - total} cases were not run"

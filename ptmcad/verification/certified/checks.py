@@ -46,7 +46,7 @@ def verify_certified(result: RegionMap, seed: int | None, boxes: int | None) -> 
 def contradiction(result: RegionMap) -> str:
     """What in a stored map contradicts the rest of it, by checks that take no time; empty when nothing does.
 
-    It does not tell whether the counts are right, nor whether rectangles are missing that no other entry tells of.
+    It does not show whether the counts are right, nor whether rectangles are missing that no other entry points to.
     """
     claims = CertifiedClaims(result)
     for check in (check_form, check_components, check_regions):

@@ -246,7 +246,7 @@ class Energy:
         """Whether the Hessian has a negative eigenvalue wherever l3 is not zero in balls in which it may be.
 
         With G = J^T J, J being the derivative of A4 - A3 by the angles, tr(adj(G) Hess) of -p3 l3 is -p3 det G / l3 but
-        for a part of at most p3 L1^2 L2^2 (1/L1 + 1/L2); adj(G) is positive semidefinite, so a negative trace tells.
+        for a part of at most p3 L1^2 L2^2 (1/L1 + 1/L2); adj(G) is positive semidefinite, so a negative trace decides.
         All is divided by L1 L2; d.e11 ... are those without the free length of spring 3.
         """
         s12, c12 = (th1 + th2).sin_cos()

@@ -2,7 +2,7 @@
 
 Guarantee: for every choice of the parameters in the balls of the `Energy`, each of the equilibria that are returned
 exists, exactly once in its box, and there is no further one in the squares of the start; when only minima are asked
-for, none that is a minimum or degenerate without a negative eigenvalue. What can not be proved raises `Unproved`.
+for, none that is a minimum or degenerate without a negative eigenvalue. What cannot be proved raises `Unproved`.
 
 The test (Krawczyk 1969; Neumaier, Interval Methods for Systems of Equations, 5.1): with C near the inverse of e' at the
 middle m of a square X of half width R, let b bound the norm of I - C e'(X). If b < 1 then X has at most one equilibrium
@@ -28,15 +28,15 @@ from ptmcad.verification.certified.energy import Derivatives, Energy
 
 Square = tuple[float, float, float, float]
 """Middle and half width in th1, then in th2; exact dyadic numbers."""
-_HALF = 101 / 32
+_HALF_WIDTH = 101 / 32
 """A little more than pi, so that the first square has the whole torus."""
-TORUS: Square = (0.0, _HALF, 0.0, _HALF)
-SMALLEST = 2.0**-34
+TORUS: Square = (0.0, _HALF_WIDTH, 0.0, _HALF_WIDTH)
+MIN_HALF_WIDTH = 2.0**-34
 """Half the width of squares that are not halved again, unless another one is asked for."""
 _SIZES = tuple(2.0**-k for k in (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 18, 21, 25, 30, 35, 40, 43, 46))
-_NEAR = 2.0**-48
+_CONVERGED_STEP = 2.0**-48
 """Steps of Newton's method below it are not worth another one ..."""
-_ROUGH = 2.0**-20
+_MAX_STEP = 2.0**-20
 """... and above it there is nothing to be proved; rounding may keep them between."""
 
 
@@ -67,7 +67,7 @@ def equilibria(
     minima: bool,
     start: Iterable[Square] = (TORUS,),
     budget: int = 60_000,
-    smallest: float = SMALLEST,
+    smallest: float = MIN_HALF_WIDTH,
     near: Iterable[Equilibrium] = (),
 ) -> tuple[list[Equilibrium], int]:
     """The equilibria in the squares, and how many squares were looked at.
@@ -86,7 +86,7 @@ def equilibria(
     """
     waiting = list(start)
     found = [_persisting(energy, e) for e in near]
-    if not all(_apart(one, two) for one, two in combinations(found, 2)):
+    if not all(_disjoint(one, two) for one, two in combinations(found, 2)):
         raise Unproved("two equilibria may meet")
     used = 0
     while waiting:
@@ -108,7 +108,7 @@ def equilibria(
                 if _off_middle(energy, square, d, inverse):
                     continue
                 new = _settled(energy, square, found)
-                if new is not None and all(_apart(new, e) for e in found):
+                if new is not None and all(_disjoint(new, e) for e in found):
                     found.append(new)
                     if _inside(square, new):
                         continue
@@ -197,9 +197,9 @@ def _settled(energy: Energy, square: Square, found: list[Equilibrium]) -> Equili
         if max(abs(x - m1) - r1, abs(y - m2) - r2) > max(r1, r2):
             return None
         step = max(abs(step1), abs(step2))
-        if step < _NEAR:
+        if step < _CONVERGED_STEP:
             break
-    if step > _ROUGH:
+    if step > _MAX_STEP:
         return None
     if any(_within(x, y, e.th1, e.th2, e.alone) for e in found):
         return None
@@ -273,7 +273,7 @@ def _inside(square: Square, e: Equilibrium) -> bool:
     return room > 0 and _within(m1, m2, e.th1, e.th2, room)
 
 
-def _apart(one: Equilibrium, two: Equilibrium) -> bool:
+def _disjoint(one: Equilibrium, two: Equilibrium) -> bool:
     """Whether the boxes of two equilibria are surely disjoint on the torus."""
     reach = arb(one.radius) + arb(two.radius)
     full = 2 * arb.pi()
@@ -298,4 +298,4 @@ def _first(d: Derivatives, r1: float, r2: float) -> bool:
     return by1 >= by2 if max(r1, r2) < 32 * min(r1, r2) else r1 >= r2
 
 
-__all__ = ["SMALLEST", "TORUS", "Equilibrium", "Square", "Unproved", "equilibria"]
+__all__ = ["MIN_HALF_WIDTH", "TORUS", "Equilibrium", "Square", "Unproved", "equilibria"]

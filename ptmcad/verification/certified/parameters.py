@@ -51,12 +51,14 @@ def check_domain(claims: Claims) -> str:
         if Sign.UNCHECKED in (pole, sign):
             unchecked.append(name)
     if unchecked:
-        return Unchecked(f"{', '.join(unchecked)}: of too high degree, or zero at a point that could not be told")
+        return Unchecked(
+            f"{', '.join(unchecked)}: of too high degree, or zero at a point where that could not be decided"
+        )
     return f"{len(asked)} parameters"
 
 
 def _expressions(slice: Slice) -> dict[str, Expression]:
-    """The parameters, and k or l0 (or a free length that is zero) where only an axis or a text tells of it."""
+    """The parameters, and k or l0 (or a free length that is zero) where only an axis or a text mentions it."""
     named = {name: axis(index) for index, name in enumerate(slice.axis_names) if name in AUXILIARY}
     return {**named, **written(slice), **slice.parameters}
 
@@ -121,10 +123,10 @@ def _equal(one: Expression, two: Expression) -> bool:
 
 
 def _over(expression: Expression, x: arb, y: arb) -> arb:
-    below = _sum(expression.denominator, x, y)
-    if below.contains(0):
+    denominator = _sum(expression.denominator, x, y)
+    if denominator.contains(0):
         raise Unproved("a parameter may have a pole")
-    return _sum(expression.numerator, x, y) / below
+    return _sum(expression.numerator, x, y) / denominator
 
 
 def _sum(terms: Sequence[tuple[int, int, Fraction]], x: arb, y: arb) -> arb:

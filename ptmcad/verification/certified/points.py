@@ -17,7 +17,7 @@ from ptmcad.answer.regionmap import Cell, MorseIndex, Solution
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.energy import Energy
-from ptmcad.verification.certified.equilibria import SMALLEST, TORUS, Equilibrium, Square, Unproved, equilibria
+from ptmcad.verification.certified.equilibria import MIN_HALF_WIDTH, TORUS, Equilibrium, Square, Unproved, equilibria
 from ptmcad.verification.certified.parameters import Values, energy_at, exact, values_at
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
@@ -99,7 +99,7 @@ def all_equilibria(values: Values, count: Count) -> tuple[Energy, list[Equilibri
     Raises
     ------
     Unproved
-        When they can not be told even then.
+        When they cannot be decided even then.
     """
     if count not in MINIMA and (
         (values["rho"] == values["L2"] and values["l0_1"]) or (values["rho"] == values["L1"] and values["l0_2"])
@@ -127,7 +127,7 @@ def _smallest(values: Values) -> float:
         for bar, free in (("L2", "l0_1"), ("L1", "l0_2"))
         if values[free] and values["rho"] != values[bar]
     ]
-    return min([SMALLEST, *(float(gap) / 256 for gap in gaps)])
+    return min([MIN_HALF_WIDTH, *(float(gap) / 256 for gap in gaps)])
 
 
 def counts_of(energy: Energy, values: Mapping[str, Fraction], found: list[Equilibrium], count: Count) -> Counts:
@@ -199,7 +199,7 @@ def _only(energy: Energy, solution: Solution, k: int) -> Equilibrium:
     radius = float(solution.radius) * (1 + 2.0**-40) + 2.0**-50
     start: Square = (x, radius, y, radius)
     with ctx.workprec(128):
-        inside, _ = equilibria(energy, False, [start], smallest=min(SMALLEST, radius / 1024))
+        inside, _ = equilibria(energy, False, [start], smallest=min(MIN_HALF_WIDTH, radius / 1024))
         held = [e for e in inside if _in(e, solution)]
         open_ = [e for e in inside if e not in held and not _out(e, solution)]
     if len(held) != 1 or open_:

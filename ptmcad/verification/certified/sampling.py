@@ -31,18 +31,18 @@ from ptmcad.verification.certified.points import MINIMA, Counts, admissible, all
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.report import Unchecked, Violation
 
-WIDEST = 512
+FIRST_BOX_PARTS = 512
 """The first box tried has at most this part of the window's width on each side of its middle."""
 ATTEMPTS = 9
 BUDGET = 12_000
 """Squares of the torus for one box."""
-PLACES = Fraction(32, 5)
+POINTS_PER_BOX = Fraction(32, 5)
 """Places by area for each box that is asked for."""
-FINE = 2**30
+MIN_WINDOW_PARTS = 2**30
 """Parts of the window's width in which places are drawn, at least: a cover may have a coarse lattice."""
-_LOOKS = 400
+_MAX_TRIALS = 400
 """Random places looked at for one that is free."""
-_FIRST_LOOKS = 40
+_FIRST_TRIALS = 40
 """The same for places beside rectangles, of which others will do."""
 Edge = tuple[Fraction, Fraction, Fraction, Fraction]
 """A side of a rectangle within a square: left, right, bottom, top, one pair of them equal."""
@@ -109,7 +109,7 @@ def check_boxes(claims: CertifiedClaims, seed: str, number: int) -> str:
 
 def _side(number: int) -> int:
     """How many squares of the grid are side by side, for so many boxes."""
-    return isqrt(ceil(PLACES * number) - 1) + 1
+    return isqrt(ceil(POINTS_PER_BOX * number) - 1) + 1
 
 
 def _parts(claims: CertifiedClaims, number: int) -> list[Part]:
@@ -122,7 +122,7 @@ def _by_area(claims: CertifiedClaims, rng: random.Random, number: int) -> tuple[
     """A place in each square of the grid, in random order; and the number of squares in which none was met with."""
     found, without = [], 0
     for part in _parts(claims, number):
-        for _ in range(_LOOKS):
+        for _ in range(_MAX_TRIALS):
             u, v = part.u + part.width * _uniform(rng), part.v + part.width * _uniform(rng)
             place = _free(claims, u, v)
             if place is not None:
@@ -147,7 +147,7 @@ def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[Pl
         for k in list(order):
             if len(found) == number:
                 break
-            for _ in range(_FIRST_LOOKS):
+            for _ in range(_FIRST_TRIALS):
                 chosen = edges[k][bisect_right(totals[k], totals[k][-1] * _uniform(rng))]
                 place = _free(claims, *_off(chosen, Fraction(claims.sweep.steps, _side(number)), rng))
                 if place is not None:
@@ -192,20 +192,20 @@ def _off(edge: Edge, width: Fraction, rng: random.Random) -> tuple[Fraction, Fra
 
 def _uniform(rng: random.Random) -> Fraction:
     """A number from 0 to 1, not one of the two."""
-    return Fraction(2 * rng.randrange(FINE) + 1, 2 * FINE)
+    return Fraction(2 * rng.randrange(MIN_WINDOW_PARTS) + 1, 2 * MIN_WINDOW_PARTS)
 
 
 def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> Place | None:
     """The place around a point, or one next to it that is shorter to write; None when it is not in a cell."""
     steps = claims.sweep.steps
-    scale = max(1, FINE // steps)
+    scale = max(1, MIN_WINDOW_PARTS // steps)
     u, v = Fraction(round(u * scale), scale), Fraction(round(v * scale), scale)
     if not (0 < u < steps and 0 < v < steps):
         return None
     component = claims.sweep.locate(u, v)
     if component is None or component not in claims.cell_of:
         return None
-    half, least = Fraction(steps, WIDEST), Fraction(steps, FINE)
+    half, least = Fraction(steps, FIRST_BOX_PARTS), Fraction(steps, MIN_WINDOW_PARTS)
     while half and not claims.sweep.free_around(u, v, half):
         half = half / 2 if half > least else Fraction(0)
     return Place(u, v, half, claims.cell_of[component])

@@ -19,7 +19,7 @@ from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, SHORTHANDS
 from ptmcad.verification.report import Violation
 
-MOST_STEPS = 2**40
+MAX_STEPS = 2**40
 _NEEDED = {
     Count.STABLE: {"stable"},
     Count.ADMISSIBLE: {"stable", "admissible"},
@@ -107,7 +107,7 @@ def check_form(claims: CertifiedClaims) -> str:
     if r.base != 0 or r.complex_solutions != 0:
         raise Violation("a certified map has a base axis or a number of complex solutions")
     steps = r.cover.steps
-    if not 0 < steps <= MOST_STEPS or steps & (steps - 1):
+    if not 0 < steps <= MAX_STEPS or steps & (steps - 1):
         raise Violation(f"the lattice has {steps} steps, which is not a power of two up to 2^40")
     for left, right, bottom, top in r.cover.rectangles:
         if not (0 <= left < right <= steps and 0 <= bottom < top <= steps):

@@ -25,10 +25,10 @@ _LENGTHS = tuple(f"l{n}" for n in range(1, len(MECHANISM.springs) + 1))
 _CIRCLES = UNKNOWNS
 _NAMES = (*_LENGTHS, *_CIRCLES, *NAMES)
 _RING: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(_NAMES, Ordering.lex)
-_LONGEST = 5_000
+_MAX_TEXT = 5_000
 _WRITTEN = re.compile(r"(?:[0-9]++(?![A-Za-z_])|[A-Za-z][A-Za-z0-9_]*+|(?<!\*)\*|[-+/^() ])*+", re.ASCII)
 """Integers, names and signs: no comments, lines, decimals, or other things that are Python. Nothing is tried twice."""
-_MOST_TERMS, _MOST_DEGREE, _MOST_BITS = 2_000, 60, 2_000
+_MAX_TERMS, _MAX_DEGREE, _MAX_BITS = 2_000, 60, 2_000
 """Of what a part of the text stands for, so that no text takes long; the energy has some 30 terms of degree 5."""
 
 
@@ -97,12 +97,12 @@ def _energy() -> fmpq_mpoly:
 
 
 def _parsed(text: str) -> ast.expr:
-    if len(text) > _LONGEST or _WRITTEN.fullmatch(text) is None:
+    if len(text) > _MAX_TEXT or _WRITTEN.fullmatch(text) is None:
         raise Violation("the stored potential is not a formula in the names of problem records")
     try:
         return ast.parse(text.replace("^", "**"), mode="eval").body
     except (SyntaxError, RecursionError, MemoryError):
-        raise Violation(f"the stored potential can not be read: {text[:60]!r}") from None
+        raise Violation(f"the stored potential cannot be read: {text[:60]!r}") from None
 
 
 def _value(node: ast.expr) -> fmpq_mpoly:
@@ -147,14 +147,14 @@ def _shown(node: ast.expr) -> str:
 
 
 def _product(a: fmpq_mpoly, b: fmpq_mpoly) -> fmpq_mpoly:
-    if len(a) * len(b) > _MOST_TERMS:
-        raise Violation(f"the stored potential has a product of more than {_MOST_TERMS} terms")
+    if len(a) * len(b) > _MAX_TERMS:
+        raise Violation(f"the stored potential has a product of more than {_MAX_TERMS} terms")
     return _bounded(a * b)
 
 
 def _bounded(p: fmpq_mpoly) -> fmpq_mpoly:
     """A polynomial that is not too large to go on with."""
     bits = max((max(int(c.p).bit_length(), int(c.q).bit_length()) for c in p.coeffs()), default=0)
-    if len(p) > _MOST_TERMS or p.total_degree() > _MOST_DEGREE or bits > _MOST_BITS:
+    if len(p) > _MAX_TERMS or p.total_degree() > _MAX_DEGREE or bits > _MAX_BITS:
         raise Violation("the stored potential has a part of too many terms, too high a degree or too long numbers")
     return p

@@ -11,12 +11,12 @@ from typing import Any
 
 from ptmcad.errors import PtmcadError
 from ptmcad.studies.bench.scaling.families import FAMILIES, families_named
-from ptmcad.studies.bench.scaling.run import LIMIT, ROUNDS, abscissa, scaling
+from ptmcad.studies.bench.scaling.run import MAX_SECONDS, ROUNDS, abscissa, scaling
 from ptmcad.studies.bench.scaling.table import to_markdown
 
 PICTURES = ("svg", "png")
-FEWEST = 3
-"""Places along a family from which on a picture tells more than the table."""
+MIN_PICTURE_SIZES = 3
+"""Places along a family from which on a picture shows more than the table."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -31,7 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, help="folder for JSON, page and pictures; default: print only")
     parser.add_argument("--rounds", type=int, default=ROUNDS, help=f"runs of each size (default {ROUNDS})")
     parser.add_argument("--seed", type=int, default=1, help="of slices, order and resampling (default 1)")
-    parser.add_argument("--limit", type=float, default=LIMIT, help=f"seconds for one run (default {LIMIT:g})")
+    parser.add_argument(
+        "--limit", type=float, default=MAX_SECONDS, help=f"seconds for one run (default {MAX_SECONDS:g})"
+    )
     chosen = parser.parse_args(arguments)
     if chosen.rounds < 1:
         parser.error("--rounds must be at least 1")
@@ -64,7 +66,7 @@ def _draw(report: dict[str, Any], folder: Path) -> None:
     from ptmcad.studies.bench.scaling.picture import draw_scaling
 
     for family in report["families"]:
-        if len({abscissa(family["against"], run) for run in family["runs"]}) >= FEWEST:
+        if len({abscissa(family["against"], run) for run in family["runs"]}) >= MIN_PICTURE_SIZES:
             figure = draw_scaling(family)
             for suffix in PICTURES:
                 save(figure, folder / f"scaling-{family['name']}.{suffix}")

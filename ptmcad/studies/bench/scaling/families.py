@@ -49,7 +49,7 @@ class Family:
     measure : the runs for a size and a seed, in the present process.
     certified : whether it needs the certified engine's compiled code.
     expected : what theory lets expect, for the report.
-    wall : whether wall time is fitted too, which on a shared machine tells less.
+    wall : whether wall time is fitted too, which on a shared machine says less.
     """
 
     name: str

@@ -27,10 +27,10 @@ STRAIGHT, GOOD = 0.9, 0.98
 BETTER, NOTICEABLE, CURVED = 0.4, 0.05, 0.2
 """A fixed cost has to lessen the sum of squares to the first part, to be the second part of the smallest y, and the
 halves' slopes have to differ by the third: a little noise is explained by it too."""
-LEAST_SIZES = 4
+MIN_SIZES = 4
 PARTS, COARSE_PARTS = 400, 40
 """Fixed costs that are tried, and for points that were drawn for the bounds."""
-FLAT = 1.3
+MAX_FLAT_RATIO = 1.3
 """A quantity whose largest value is less than this many times its smallest does not grow."""
 
 Points = Sequence[tuple[float, float]]
@@ -55,7 +55,7 @@ class Fit:
     Attributes
     ----------
     exponent, low, high : the slope, and its 5 % and 95 % bounds.
-    factor : c, of the law that the verdict tells.
+    factor : c, of the law that the verdict gives.
     determination : R^2 of the line.
     lower, upper : slopes over the two halves of the range of log x.
     first, last : the range of x.
@@ -113,7 +113,7 @@ def fit(points: Points, seed: int = 1) -> Fit | None:
     better = misfit < min(BETTER * left, (1 - GOOD) * spread) and fixed > NOTICEABLE * middle[0][1]
     verdict = _verdict(middle, lower, upper, determination, better)
     if verdict is Verdict.FIXED_COST:
-        wanted = FEW_RESAMPLES, LEAST_SIZES
+        wanted = FEW_RESAMPLES, MIN_SIZES
         between = _bounds(points, wanted, seed, lambda p: _beyond_fixed_cost(medians(p), COARSE_PARTS)[2])
     else:
         fixed, growth, height_beyond = 0.0, slope, height
@@ -138,9 +138,9 @@ def _beyond_fixed_cost(middle: Points, parts: int) -> tuple[float, float, float,
 
 def _verdict(middle: Points, lower: float, upper: float, determination: float, fixed_cost: bool) -> Verdict:
     values = [y for _, y in middle]
-    if max(values) < FLAT * min(values):
+    if max(values) < MAX_FLAT_RATIO * min(values):
         return Verdict.FLAT
-    if len(middle) < LEAST_SIZES:
+    if len(middle) < MIN_SIZES:
         return Verdict.TOO_FEW
     bends = abs(upper - lower) > max(BEND, SHARE * max(abs(lower), abs(upper)))
     if fixed_cost and upper > lower + CURVED:

@@ -16,7 +16,7 @@ from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis, constant
 
-WIDEST = 32
+MAX_FOLDS = 32
 """Folds of the slice whose window is widened: the largest degree of a parameter."""
 
 
@@ -49,12 +49,12 @@ def regions_of_fold(n: int) -> int:
 
 
 def window_of_fold(folds: int) -> Slice:
-    """The fold of `WIDEST` with a window that holds only its innermost ``folds`` folds, an even number."""
-    if folds >= WIDEST:
-        return fold(WIDEST)
+    """The fold of `MAX_FOLDS` with a window that holds only its innermost ``folds`` folds, an even number."""
+    if folds >= MAX_FOLDS:
+        return fold(MAX_FOLDS)
     # T_n = +-1 at this point, so the zeros on both sides of it are far away: any number near it holds the same ones
-    end = Fraction(round(cos((WIDEST - folds) / 2 * pi / WIDEST) * 1000), 1000)
-    return fold(WIDEST, end)
+    end = Fraction(round(cos((MAX_FOLDS - folds) / 2 * pi / MAX_FOLDS) * 1000), 1000)
+    return fold(MAX_FOLDS, end)
 
 
 def grid(n: int) -> Slice:

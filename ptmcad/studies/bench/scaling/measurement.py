@@ -40,7 +40,7 @@ class Run:
     wall : wall time.
     stages : processor seconds by stage, in their order.
     memory : MiB by stage: the highest growth of the resident set up to its end. Empty when not measured.
-    found : numbers that tell what the run had to deal with, such as regions, cells, boxes.
+    found : numbers that show what the run had to deal with, such as regions, cells, boxes.
     """
 
     size: int
@@ -59,7 +59,7 @@ class Unmeasured:
 
 
 class Stages:
-    """A watch that a run tells when a stage begins."""
+    """A watch to which a run reports when a stage begins."""
 
     def __init__(self) -> None:
         self.started, self.wall, self.memory_before = process_time(), perf_counter(), highest_mebibytes()
@@ -88,7 +88,7 @@ class Stages:
 
 
 def highest_mebibytes() -> float:
-    """The largest resident set so far: of this process image where /proc tells it, else of the whole process."""
+    """The largest resident set so far: of this process image where /proc shows it, else of the whole process."""
     if _STATUS.exists():
         for line in _STATUS.read_text().splitlines():
             if line.startswith("VmHWM:"):

@@ -28,9 +28,9 @@ _STYLES: tuple[tuple[str, str, Any], ...] = (
     ("#56b4e9", "X", (0, (3, 1))),
 )
 _LAWS = ("power law", "fixed cost and power law", "does not grow")
-_LEAST = 2e-4
+_MIN_SECONDS = 2e-4
 """Seconds: stages that never take longer are not drawn."""
-_LEAST_PEAK = 2.0
+_MIN_PEAK = 2.0
 """MiB: memory that never grows by more is not drawn."""
 _CURVE = 60
 
@@ -57,7 +57,7 @@ def draw_scaling(family: Mapping[str, Any]) -> Figure:
         groups.setdefault(run["size"] if family["against"] == "size" else run["found"][family["against"]], []).append(
             run
         )
-    memory = any(max(run["memory"].values(), default=0.0) >= _LEAST_PEAK for run in runs)
+    memory = any(max(run["memory"].values(), default=0.0) >= _MIN_PEAK for run in runs)
     with settings():
         staged = len(_stages(runs)) > 1  # then the legend needs a column of its own
         widths = (0.8, 3.7, 2.1 if staged else 1.0, 2.7 if memory else -0.15)
@@ -77,7 +77,7 @@ def draw_scaling(family: Mapping[str, Any]) -> Figure:
 def _time(axes: Axes, groups: Groups, family: Mapping[str, Any]) -> None:
     places = sorted(groups)
     stages = _stages(family["runs"])
-    drawn = [s for s in stages if len(stages) > 1 and any(r["stages"].get(s, 0) > _LEAST for r in family["runs"])]
+    drawn = [s for s in stages if len(stages) > 1 and any(r["stages"].get(s, 0) > _MIN_SECONDS for r in family["runs"])]
     for stage, (colour, marker, dash) in zip(drawn, _STYLES, strict=False):
         heights = [max(median(run["stages"].get(stage, 0.0) for run in groups[x]), 1e-5) for x in places]
         axes.plot(

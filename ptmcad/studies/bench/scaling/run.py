@@ -20,11 +20,11 @@ from ptmcad.studies.bench.suite import machine, versions
 
 FORMAT = "ptmcad-scaling/1"
 ROUNDS = 3
-LIMIT = 300.0
+MAX_SECONDS = 300.0
 """Wall seconds for one run."""
-LEAST_SECONDS = 0.002
+MIN_SECONDS = 0.002
 """A stage that never takes longer is not fitted: that is the clock's resolution and the interpreter's start of it."""
-LEAST_MEMORY = 1.0
+MIN_MEMORY = 1.0
 """MiB: a size below is the allocator's, not the computation's."""
 
 
@@ -33,7 +33,7 @@ def scaling(
     rounds: int = ROUNDS,
     seed: int = 1,
     *,
-    limit: float = LIMIT,
+    limit: float = MAX_SECONDS,
     progress: Callable[[str], None] = lambda _: None,
 ) -> dict[str, Any]:
     """Measure families of slices and fit power laws to their cost.
@@ -43,7 +43,7 @@ def scaling(
     rounds : runs of each size, but of a family's heavy sizes.
     seed : of slices, of the order within a round, and of the fits' resampling.
     limit : wall seconds after which a run is given up; then this size and larger ones of its family are left out.
-    progress : told what runs.
+    progress : called with what runs.
 
     Returns
     -------
@@ -121,10 +121,10 @@ def quantities(family: Family, runs: Sequence[Run]) -> Iterator[tuple[str, Point
     if len(stages) > 1:
         for stage in stages:
             points = [(x, run.stages.get(stage, 0.0)) for x, run in zip(places, runs, strict=True)]
-            if any(seconds > LEAST_SECONDS for _, seconds in points):
+            if any(seconds > MIN_SECONDS for _, seconds in points):
                 yield stage, [(x, max(seconds, 1e-6)) for x, seconds in points]
     grown = [(x, max(run.memory.values())) for x, run in zip(places, runs, strict=True) if run.memory]
-    seen = [(x, mebibytes) for x, mebibytes in grown if mebibytes >= LEAST_MEMORY]
+    seen = [(x, mebibytes) for x, mebibytes in grown if mebibytes >= MIN_MEMORY]
     if len({x for x, _ in seen}) > 2:
         yield "memory", seen
     if all("boxes" in run.found for run in runs):

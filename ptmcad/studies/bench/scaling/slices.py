@@ -19,7 +19,7 @@ from ptmcad.studies.bench.scaling.folds import with_parameters
 from ptmcad.text.expressions import Expression, Term, axis
 
 SHIFT = Fraction(1, 100)
-LARGEST = 9
+MAX_COEFFICIENT = 9
 """Coefficients are drawn from -9 to 9 without 0, so no term is missing."""
 DIGITS = 400
 """Most digits; they are 1, 3, 7 or 9, so that no decimal fraction can be shortened."""
@@ -29,8 +29,8 @@ def bend(n: int, seed: int) -> Expression:
     """A dense polynomial of total degree n whose coefficients' moduli add up to at most `SHIFT`."""
     source = random.Random(f"bend {n} {seed}")
     powers = [(i, j) for i in range(n + 1) for j in range(n + 1 - i)]
-    scale = SHIFT / (LARGEST * len(powers))
-    terms: list[Term] = [(i, j, scale * source.choice((-1, 1)) * source.randint(1, LARGEST)) for i, j in powers]
+    scale = SHIFT / (MAX_COEFFICIENT * len(powers))
+    terms: list[Term] = [(i, j, scale * source.choice((-1, 1)) * source.randint(1, MAX_COEFFICIENT)) for i, j in powers]
     return Expression(tuple(sorted(terms)))
 
 

@@ -263,13 +263,13 @@ def large_minors() -> Outcome:
     h11 = sp.expand(hessian()[0].subs(VERTICAL))
     terms, whole = len(h11.args), len(sp.expand(determinant().subs(VERTICAL)).args)
     short = equal(h11, L1 * (2 * k * rho * c1 + F3 * s1 - k * L2 * printed.COS_SUM))
-    above = sp.numer(sp.together(half_angles(determinant().subs(VERTICAL))))
+    numerator = sp.numer(sp.together(half_angles(determinant().subs(VERTICAL))))
     return unchecked(
         "how long an expression has to be to be large is no question of mathematics",
         f"as trigonometric polynomials H(1,1) has {terms} terms: L1 (2 k rho cos th1 + F3 sin th1 - k L2 "
         "cos(th1 + th2)) "
         f"({'checked' if short else 'NOT the case'}), det H has {whole}",
-        f"in half angles the numerator of det H has {len(sp.Poly(above, t1, t2).terms())} terms in t1, t2",
+        f"in half angles the numerator of det H has {len(sp.Poly(numerator, t1, t2).terms())} terms in t1, t2",
     )()
 
 

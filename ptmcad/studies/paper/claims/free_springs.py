@@ -154,7 +154,7 @@ def difficult() -> Outcome:
     try:
         import_module("ptmcad.certified.compiled")
     except ConfigError as missing:
-        return unchecked(f"the map that decides it can not be computed here: {missing}")()
+        return unchecked(f"the map that decides it cannot be computed here: {missing}")()
     evidence, shares, counts = [], [], []
     whole = True
     for name, (_, axes) in _MAPS.items():

@@ -170,8 +170,8 @@ def decreasing_range() -> Outcome:
 
 def _positive_on_unit(expression: Expr, unknown: Expr) -> bool:
     """Whether a rational function is positive on the open interval (0, 1): by Sturm's count of its roots and poles."""
-    above, below = (sp.Poly(e, unknown) for e in sp.fraction(sp.cancel(expression)))
-    inner = [p.count_roots(0, 1) - sum(p.eval(end) == 0 for end in (0, 1)) for p in (above, below)]
+    numerator, denominator = (sp.Poly(e, unknown) for e in sp.fraction(sp.cancel(expression)))
+    inner = [p.count_roots(0, 1) - sum(p.eval(end) == 0 for end in (0, 1)) for p in (numerator, denominator)]
     return inner == [0, 0] and bool(expression.subs(unknown, sp.Rational(1, 2)) > 0)
 
 
@@ -207,7 +207,7 @@ def pulling_forces() -> Outcome:
         never_level and holds,
         (
             f"with F4 > 0, at the mirrored sample of every cell of fig. 3 the stable equilibria have (y3, y4) of signs "
-            f"{sorted(signs[1])} or {sorted(signs[2])}; signs can not change inside a cell",
+            f"{sorted(signs[1])} or {sorted(signs[2])}; signs cannot change inside a cell",
             "the pose with y3, y4 > 0 is the one of least energy, for reflection in the base lowers no other",
         ),
         {"patterns": tuple(str(sorted(signs[n])) for n in (1, 2)), "y3, y4 not zero": never_level},
