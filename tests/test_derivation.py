@@ -7,7 +7,7 @@ from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.exact.models.geometry import potential as energy_of_the_engine
 from ptmcad.mechanism import Mechanism, described, ptm
-from ptmcad.verification.derivation import Place, potential
+from ptmcad.verification.derivation import Configuration, potential
 from ptmcad.verification.jets import circle
 
 # coordinates with quotients, powers and sums of three angles, which the built-in mechanism does not have
@@ -32,7 +32,7 @@ def polynomial_and_ring(m: Mechanism) -> tuple[fmpq_mpoly, list[str]]:
     ring = fmpq_mpoly_ctx.get(names, Ordering.lex)
     gens = dict(zip(names, ring.gens(), strict=True))
     circles = {a: (gens[f"cos_{a}"], gens[f"sin_{a}"]) for a in m.angles}
-    return potential(Place({n: gens[n] for n in m.without_free_lengths}, circles), m), names
+    return potential(Configuration({n: gens[n] for n in m.without_free_lengths}, circles), m), names
 
 
 POINTS = ((3, 4, 5), (-5, 12, 13), (8, -15, 17))
@@ -66,7 +66,7 @@ def test_jets_have_the_derivatives_of_the_polynomial(m: Mechanism) -> None:
     with ctx.workprec(200):
         balls = [arb(x) for x in exact]
         circles = {a: circle(k, *balls[count + 2 * k : count + 2 * k + 2]) for k, a in enumerate(m.angles)}
-        jet = potential(Place(dict(zip(m.without_free_lengths, balls, strict=False)), circles), m)
+        jet = potential(Configuration(dict(zip(m.without_free_lengths, balls, strict=False)), circles), m)
         for i, first in enumerate(m.angles):
             slope = turned(energy, first)
             assert close(jet.slopes.get(i, arb(0)), slope(*exact))

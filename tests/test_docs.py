@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+import yaml
 from shipped_records import EXACT
 
 ROOT = Path(__file__).parent.parent
@@ -87,6 +88,18 @@ def test_every_page_has_its_place() -> None:
     for page in PAGES:
         name = page.relative_to(DOCS).with_suffix("").as_posix()
         assert name == "index" or f"{name}\n" in index or f"<{name}>" in index or page.parent.name == "use", name
+
+
+def test_the_citation_is_of_this_version() -> None:
+    """With the keys that the Citation File Format requires."""
+    import ptmcad
+
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert {"cff-version", "message", "title", "authors"} <= citation.keys()
+    assert citation["version"] == ptmcad.__version__
+    for entry in (citation, *citation["references"]):
+        assert all(set(author) in ({"name"}, {"family-names", "given-names"}) for author in entry["authors"])
+    assert all({"type", "title"} <= entry.keys() for entry in citation["references"])
 
 
 def test_the_manual_shows_public_names() -> None:

@@ -225,19 +225,19 @@ class Shortened:
         return KnownFibre(norm, self.result.complex_solutions, [], [])
 
 
-def places(claims: object, seed: int) -> Iterator[variety.Place]:
-    return variety.random_places(claims, str(seed), variety.BITS)  # type: ignore[arg-type]
+def points(claims: object, seed: int) -> Iterator[variety.FibrePoint]:
+    return variety.random_points(claims, str(seed), variety.BITS)  # type: ignore[arg-type]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [path.stem for path in EXACT])
 def test_no_seed_rejects_a_shipped_map(name: str, shipped: Shipped) -> None:
     claims = Claims(shipped(name))
-    _, exponents = variety.check_identity(claims, places(claims, 0))
+    _, exponents = variety.check_identity(claims, points(claims, 0))
     polynomials = [PlaneCurve.of(n, c.polynomial, 0).flint() for n, c in enumerate(claims.result.components)]
     short = Shortened(claims.result, exponents, polynomials)
     for seed in range(SEEDS):
-        assert variety.check_identity(short, places(short, seed))[1] == exponents  # type: ignore[arg-type]
+        assert variety.check_identity(short, points(short, seed))[1] == exponents  # type: ignore[arg-type]
     for seed in range(SEEDS, SEEDS + WHOLE):
         assert check_norm(claims, str(seed)).endswith(f"multiplicities {exponents}")
 

@@ -251,7 +251,7 @@ def consistent(r: RegionMap, cover: Cover, cells: tuple[Cell, ...]) -> RegionMap
 
 
 @pytest.mark.parametrize("steps", [1, 2, 2**24])
-def test_random_places_find_that_a_curve_was_left_out(steps: int, stable: RegionMap) -> None:
+def test_random_points_find_that_a_curve_was_left_out(steps: int, stable: RegionMap) -> None:
     """All else agrees: only the points and boxes in the free area can tell, however coarse the lattice is."""
     false = consistent(stable, Cover(steps, ()), stable.cells[:1])
     assert ptmcad.verify(false, boxes=0).ok
@@ -260,7 +260,7 @@ def test_random_places_find_that_a_curve_was_left_out(steps: int, stable: Region
     assert report.violation.startswith("random boxes:")
 
 
-def test_random_places_beside_rectangles_find_a_shifted_cover(stable: RegionMap) -> None:
+def test_random_points_beside_rectangles_find_a_shifted_cover(stable: RegionMap) -> None:
     assert stable.cover is not None
     steps, by = stable.cover.steps, stable.cover.steps // 64
     shifted = [(left, right, bottom + by, min(top + by, steps)) for left, right, bottom, top in stable.cover.rectangles]

@@ -30,7 +30,7 @@ SHORTHANDS = tuple(name for name in MECHANISM.shorthands if MECHANISM.kind(name)
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Configuration:
     """Values of parameters, and cosine and sine of each angle, in numbers that can be added and multiplied together."""
 
     parameters: Mapping[str, Any]
@@ -82,22 +82,22 @@ class Place:
         return {name: (self.value(x), self.value(y)) for name, (x, y) in mechanism.points.items()}
 
 
-def potential(place: Place, mechanism: Mechanism = MECHANISM) -> Any:
+def potential(configuration: Configuration, mechanism: Mechanism = MECHANISM) -> Any:
     """Half the stiffness times the squared length of each spring, without free lengths, less the work of the loads."""
-    points = place.points(mechanism)
-    energy = work(place, points, mechanism)
+    points = configuration.points(mechanism)
+    energy = work(configuration, points, mechanism)
     for spring in mechanism.springs:
         across, up = (points[spring.end][i] - points[spring.start][i] for i in (0, 1))
-        energy = energy + (across * across + up * up) * (place.value(spring.stiffness) * fmpq(1, 2))
+        energy = energy + (across * across + up * up) * (configuration.value(spring.stiffness) * fmpq(1, 2))
     return energy
 
 
-def work(place: Place, points: Mapping[str, tuple[Any, Any]], mechanism: Mechanism = MECHANISM) -> Any:
+def work(configuration: Configuration, points: Mapping[str, tuple[Any, Any]], mechanism: Mechanism = MECHANISM) -> Any:
     """What the loads contribute to the potential."""
     energy: Any = fmpq(0)
     for load in mechanism.loads:
         for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
-            energy = energy - coordinate * place.value(force)
+            energy = energy - coordinate * configuration.value(force)
     return energy
 
 

@@ -18,7 +18,7 @@ from itertools import pairwise, product
 
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
-from ptmcad.verification.derivation import ANGLES, PARAMETERS, Place, potential, rational
+from ptmcad.verification.derivation import ANGLES, PARAMETERS, Configuration, potential, rational
 
 _RATIONAL: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("s2", "c2", "s1", "c1"), Ordering.degrevlex)
 _INTEGER: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(("s2", "c2", "s1", "c1"), Ordering.degrevlex)
@@ -151,7 +151,7 @@ def fibre(values: Mapping[str, Fraction]) -> Fibre:
 
 def _potential(values: Mapping[str, Fraction]) -> fmpq_mpoly:
     circles = dict(zip(ANGLES, ((_C1, _S1), (_C2, _S2)), strict=True))
-    energy: fmpq_mpoly = potential(Place({name: rational(values[name]) for name in PARAMETERS}, circles))
+    energy: fmpq_mpoly = potential(Configuration({name: rational(values[name]) for name in PARAMETERS}, circles))
     return energy
 
 

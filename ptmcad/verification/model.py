@@ -14,7 +14,7 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
 from ptmcad.answer.regionmap import System
 from ptmcad.text.numerals import fraction_of
 from ptmcad.verification.claims import PLANE, Claims
-from ptmcad.verification.derivation import ANGLES, PARAMETERS, UNKNOWNS, Place, potential
+from ptmcad.verification.derivation import ANGLES, PARAMETERS, UNKNOWNS, Configuration, potential
 from ptmcad.verification.report import Violation
 
 _RING: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get((*UNKNOWNS, *PARAMETERS), Ordering.lex)
@@ -45,7 +45,7 @@ def _circles() -> dict[str, tuple[fmpq_mpoly, fmpq_mpoly]]:
 
 @cache
 def _potential() -> fmpq_mpoly:
-    energy: fmpq_mpoly = potential(Place({name: _variable(name) for name in PARAMETERS}, _circles()))
+    energy: fmpq_mpoly = potential(Configuration({name: _variable(name) for name in PARAMETERS}, _circles()))
     return energy
 
 

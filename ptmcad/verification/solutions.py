@@ -18,7 +18,7 @@ from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import ANGLES, PARAMETERS, Place, potential, rational
+from ptmcad.verification.derivation import ANGLES, PARAMETERS, Configuration, potential, rational
 from ptmcad.verification.jets import circle
 from ptmcad.verification.report import Violation
 
@@ -73,7 +73,7 @@ class _Energy:
     def __call__(self, x: list[arb]) -> tuple[list[arb], list[list[arb]]]:
         angles = range(len(ANGLES))
         circles = {angle: circle(k, x[2 * k], x[2 * k + 1]) for k, angle in enumerate(ANGLES)}
-        energy = potential(Place(self.parameters, circles))
+        energy = potential(Configuration(self.parameters, circles))
         zero = arb(0)
         return (
             [energy.slopes.get(i, zero) for i in angles],

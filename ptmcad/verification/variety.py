@@ -93,7 +93,7 @@ def factors(p: object) -> list[PlanePolynomial]:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class FibrePoint:
     """The fibre over a random integer point that lies on no stored component.
 
     Attributes
@@ -118,7 +118,7 @@ class Place:
         return _without(abs(self.values[k]), prod(v for j, v in enumerate(self.values) if j != k) * prod(others))
 
 
-def random_places(claims: Claims, seed: str, bits: int) -> Iterator[Place]:
+def random_points(claims: Claims, seed: str, bits: int) -> Iterator[FibrePoint]:
     """Random points, without end, of components that `check_irreducible` has accepted: of others there may be none.
 
     Components vanish on a share of at most (sum of degrees)/2^bits of the points, and on a point where one does,
@@ -133,30 +133,30 @@ def random_places(claims: Claims, seed: str, bits: int) -> Iterator[Place]:
             bits += 1
         else:
             a, b, c, d = (1 + forms.getrandbits(16) for _ in range(4))
-            yield Place(Fraction(x), Fraction(y), values, (a, b, c, d), claims.fibre_at(Fraction(x), Fraction(y)))
+            yield FibrePoint(Fraction(x), Fraction(y), values, (a, b, c, d), claims.fibre_at(Fraction(x), Fraction(y)))
 
 
 def check_norm(claims: Claims, seed: str) -> str:
     """Norm of det H and poles against the stored components."""
-    number, exponents = check_identity(claims, random_places(claims, seed, BITS))
-    _check_poles(claims, random_places(claims, seed, FAR_BITS))
+    number, exponents = check_identity(claims, random_points(claims, seed, BITS))
+    _check_poles(claims, random_points(claims, seed, FAR_BITS))
     return f"{number} points of {BITS} bits, seed {seed}; multiplicities {exponents}"
 
 
-def check_identity(claims: Claims, places: Iterator[Place]) -> tuple[int, list[int]]:
+def check_identity(claims: Claims, points: Iterator[FibrePoint]) -> tuple[int, list[int]]:
     """The number of points, and the exponents with which the norm is a product of the components."""
     result = claims.result
-    norms: list[tuple[Place, Fraction]] = []
+    norms: list[tuple[FibrePoint, Fraction]] = []
 
     def draw() -> None:
-        place = next(places)
-        if place.fibre.dimension != result.complex_solutions:
-            raise Violation(f"there are {place.fibre.dimension} complex solutions at {_at(claims, place)}, "
+        point = next(points)
+        if point.fibre.dimension != result.complex_solutions:
+            raise Violation(f"there are {point.fibre.dimension} complex solutions at {_at(claims, point)}, "
                             f"not {result.complex_solutions}")  # fmt: skip
-        norm = place.norm()
+        norm = point.norm()
         if norm == 0:
-            raise Violation(f"det H vanishes at {_at(claims, place)}, which is on no stored component")
-        norms.append((place, norm))
+            raise Violation(f"det H vanishes at {_at(claims, point)}, which is on no stored component")
+        norms.append((point, norm))
 
     draw()
     exponents: list[int] = []
@@ -172,17 +172,17 @@ def check_identity(claims: Claims, places: Iterator[Place]) -> tuple[int, list[i
     for _ in range(max(POINTS - len(norms), FRESH_POINTS)):
         draw()
     constants = [n / prod(Fraction(v) ** e for v, e in zip(p.values, exponents, strict=True)) for p, n in norms]
-    for (place, _), constant in zip(norms, constants, strict=True):
+    for (point, _), constant in zip(norms, constants, strict=True):
         if constant != constants[0]:
-            raise Violation(f"the norm of det H at {_at(claims, place)} is no constant times powers of the stored "
+            raise Violation(f"the norm of det H at {_at(claims, point)} is no constant times powers of the stored "
                             "components: a curve of the variety is missing or wrong")  # fmt: skip
     return len(norms), exponents
 
 
-_Pair = tuple[tuple[Place, Fraction], tuple[Place, Fraction], int]
+_Pair = tuple[tuple[FibrePoint, Fraction], tuple[FibrePoint, Fraction], int]
 
 
-def _separating_points(k: int, norms: Sequence[tuple[Place, Fraction]]) -> _Pair | None:
+def _separating_points(k: int, norms: Sequence[tuple[FibrePoint, Fraction]]) -> _Pair | None:
     """Two points that tell component k's exponent: its value at the first has primes that divide no other value at
     either, which are returned as their product with multiplicities. None when there are no such points yet.
 
@@ -196,7 +196,9 @@ def _separating_points(k: int, norms: Sequence[tuple[Place, Fraction]]) -> _Pair
     return None
 
 
-def _exponent(claims: Claims, k: int, first: tuple[Place, Fraction], second: tuple[Place, Fraction], own: int) -> int:
+def _exponent(
+    claims: Claims, k: int, first: tuple[FibrePoint, Fraction], second: tuple[FibrePoint, Fraction], own: int
+) -> int:
     """The exponent e of component k, if the norm is a constant times powers of the components.
 
     The norms' quotient at the two points is free of the constant, and its part with primes of ``own`` is own^e: these
@@ -220,11 +222,11 @@ def _exponent(claims: Claims, k: int, first: tuple[Place, Fraction], second: tup
     return 0
 
 
-def _check_poles(claims: Claims, places: Iterator[Place]) -> None:
+def _check_poles(claims: Claims, points: Iterator[FibrePoint]) -> None:
     result = claims.result
-    far: list[Place] = []
+    far: list[FibrePoint] = []
     while len(far) < FAR_POINTS:
-        far.append(next(places))
+        far.append(next(points))
     for k, c in enumerate(result.components):
         asked = []
         if c.kind is Kind.INFINITY:
@@ -233,11 +235,11 @@ def _check_poles(claims: Claims, places: Iterator[Place]) -> None:
             asked.append((_is_harmless, "harmless, but det H may vanish at solutions near it"))
         for holds, message in asked:
             while len(clear := [p for p in far if _far_part(k, p).bit_length() > CLEAR_BITS]) < FAR_POINTS:
-                far.append(next(places))
-            if not any(holds(k, place) for place in clear):
+                far.append(next(points))
+            if not any(holds(k, point) for point in clear):
                 text = c.polynomial.text(result.slice.axis_names)[:60]
                 raise Violation(f"component {k} is said to be {message}: {text}")
-    foreign = [_foreign_poles(claims, place) for place in far]
+    foreign = [_foreign_poles(claims, point) for point in far]
     # constant factors of denominators have their primes at every point, but for accidents
     own = [_without(f, prod(g for j, g in enumerate(foreign) if j != i)) for i, f in enumerate(foreign)]
     if all(f.bit_length() > CLEAR_BITS for f in own):  # a curve that is missing has values of some hundred bits
@@ -254,43 +256,43 @@ def _without(n: int, other: int) -> int:
     return n
 
 
-def _far_part(k: int, place: Place) -> int:
-    return place.own(k, _SMALL_PRIMES)
+def _far_part(k: int, point: FibrePoint) -> int:
+    return point.own(k, _SMALL_PRIMES)
 
 
-def _has_poles(k: int, place: Place) -> bool:
+def _has_poles(k: int, point: FibrePoint) -> bool:
     """Whether most of component k's own part of its value consists of primes in denominators of traces.
 
     For a curve without poles it would have to consist of primes of constants.
     """
-    own = _far_part(k, place)
-    return _without(own, _denominator(place)) ** 2 < own
+    own = _far_part(k, point)
+    return _without(own, _denominator(point)) ** 2 < own
 
 
-def _is_harmless(k: int, place: Place) -> bool:
+def _is_harmless(k: int, point: FibrePoint) -> bool:
     """Whether most of component k's own part is no divisor of the constant coefficient of det H's characteristic
     polynomial.
 
     That polynomial is made integral and primitive first. On a curve that divides its constant coefficient as a
     polynomial in the axes, all primes of the curve's values divide it.
     """
-    own = _far_part(k, place)
-    coefficients = place.fibre.jacobian.charpoly().coeffs()
+    own = _far_part(k, point)
+    coefficients = point.fibre.jacobian.charpoly().coeffs()
     constant = fmpq(coefficients[0]) * lcm(*(int(fmpq(c).q) for c in coefficients))
     return (own // gcd(own, int(constant.p))) ** 2 > own
 
 
-def _denominator(place: Place) -> int:
+def _denominator(point: FibrePoint) -> int:
     """The common denominator of the power traces of a linear form."""
-    return lcm(*(int(t.q) for t in place.fibre.form_traces(place.form)))
+    return lcm(*(int(t.q) for t in point.fibre.form_traces(point.form)))
 
 
-def _foreign_poles(claims: Claims, place: Place) -> int:
+def _foreign_poles(claims: Claims, point: FibrePoint) -> int:
     """Denominator of the power traces without the primes of the stored components."""
-    components = zip(claims.result.components, place.values, strict=True)
-    return _without(_denominator(place), prod(v for c, v in components if c.kind is not Kind.AUXILIARY) * _SMALL_PRIMES)
+    components = zip(claims.result.components, point.values, strict=True)
+    return _without(_denominator(point), prod(v for c, v in components if c.kind is not Kind.AUXILIARY) * _SMALL_PRIMES)
 
 
-def _at(claims: Claims, place: Place) -> str:
+def _at(claims: Claims, point: FibrePoint) -> str:
     names = claims.result.slice.axis_names
-    return f"{names[0]}={text_of(place.x)}, {names[1]}={text_of(place.y)}"
+    return f"{names[0]}={text_of(point.x)}, {names[1]}={text_of(point.y)}"

@@ -17,7 +17,7 @@ from ptmcad.verification.report import Check, VerifyReport, Violation, checked
 
 BOXES = 40
 NOT_CHECKED = (
-    ("the whole free area", "only places and boxes in it: a proof of all of it costs more than the map"),
+    ("the whole free area", "only points and boxes in it: a proof of all of it costs more than the map"),
     ("plan", "what it says of curves and unknowns is no claim about the regions"),
     ("provenance", "name, title, reference, versions, precision, timings: no claims about the regions"),
 )

@@ -1,7 +1,7 @@
 """Checks of the counts of a certified map: at every cell's sample, proved once more.
 
 Guarantee: exact at the samples. That the counts hold in the whole cells rests on the cover, of which
-`ptmcad.verification.certified.sampling` tries places.
+`ptmcad.verification.certified.sampling` tries points.
 """
 
 from __future__ import annotations

@@ -1,14 +1,14 @@
-"""Checks of the free area of a certified map: at random places, that counts are what they should be and stay so nearby.
+"""Checks of the free area of a certified map: at random points, that counts are what they should be and stay so nearby.
 
 Guarantee: over each box that is counted as proved, every equilibrium that the map counts persists with nonzero
-determinant of its Hessian, and there are no others; so no curve at which the count changes enters the box. A place
+determinant of its Hessian, and there are no others; so no curve at which the count changes enters the box. A point
 where this was not proved is counted apart, and never as proved.
 
-Places are drawn by area, whatever the rectangles are: the window is a grid of squares (in lattice steps), and each has
+Points are drawn by area, whatever the rectangles are: the window is a grid of squares (in lattice steps), and each has
 one, uniform in what of its area is in cells. A part of the window with false counts and the share s_i of the i-th
-square's cells escapes with probability prod(1 - s_i), at most (1 - mean)^n. Further places are beside rectangles,
+square's cells escapes with probability prod(1 - s_i), at most (1 - mean)^n. Further points are beside rectangles,
 spread over the same squares, and within one over the length of the rectangles' edges, so that many small rectangles
-draw no more of them than a few large ones. Half of the boxes are at places of either kind; at the other places it is
+draw no more of them than a few large ones. Half of the boxes are at points of either kind; at the other points it is
 the count alone that is looked at, which costs less. The boxes do not meet the cover.
 """
 
@@ -37,19 +37,19 @@ ATTEMPTS = 9
 BUDGET = 12_000
 """Squares of the torus for one box."""
 POINTS_PER_BOX = Fraction(32, 5)
-"""Places by area for each box that is asked for."""
+"""Points by area for each box that is asked for."""
 MIN_WINDOW_PARTS = 2**30
-"""Parts of the window's width in which places are drawn, at least: a cover may have a coarse lattice."""
+"""Parts of the window's width in which points are drawn, at least: a cover may have a coarse lattice."""
 _MAX_TRIALS = 400
-"""Random places looked at for one that is free."""
+"""Random points looked at for one that is free."""
 _FIRST_TRIALS = 40
-"""The same for places beside rectangles, of which others will do."""
+"""The same for points beside rectangles, of which others will do."""
 Edge = tuple[Fraction, Fraction, Fraction, Fraction]
 """A side of a rectangle within a square: left, right, bottom, top, one pair of them equal."""
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class SampleBox:
     """A box in lattice steps, within one cell: its middle and half its width (0 where there is no room)."""
 
     u: Fraction
@@ -59,7 +59,7 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class GridSquare:
     """A square of the grid, in lattice steps: its lower left corner and its width."""
 
     u: Fraction
@@ -68,28 +68,28 @@ class Part:
 
 
 def check_boxes(claims: CertifiedClaims, seed: str, number: int) -> str:
-    """Try so many random boxes, and more places; what was found, and for how many places nothing was proved."""
+    """Try so many random boxes, and more points; what was found, and for how many points nothing was proved."""
     if not claims.result.cells:
         return "there are no cells"
     if number <= 0:
-        return Unchecked("no places were asked for")
+        return Unchecked("no points were asked for")
     rng = random.Random(seed)
     by_area, without = _by_area(claims, rng, number)
     beside = _beside(claims, rng, number)
-    # boxes where there are places: half of them beside rectangles, if there are any
+    # boxes where there are points: half of them beside rectangles, if there are any
     near = min(len(beside), number // 2)
     far = min(len(by_area), number - near)
     proved = points = missing = 0
     area = Fraction(0)
-    tried = [(place, k < far) for k, place in enumerate(by_area)] + [(p, k < near) for k, p in enumerate(beside)]
-    for place, with_box in tried:
-        there = _check_point(claims, place, place.u, place.v)
+    tried = [(box, k < far) for k, box in enumerate(by_area)] + [(p, k < near) for k, p in enumerate(beside)]
+    for box, with_box in tried:
+        there = _check_point(claims, box, box.u, box.v)
         if there is not None:
             points += 1
         if not with_box:
             missing += there is None
             continue
-        half = None if there is None else _constant_over(claims, place, there)
+        half = None if there is None else _constant_over(claims, box, there)
         if half is not None:
             proved += 1
             area += (2 * half / claims.sweep.steps) ** 2
@@ -97,11 +97,11 @@ def check_boxes(claims: CertifiedClaims, seed: str, number: int) -> str:
         # where constancy is not proved, a change of the count would show in a corner
         for side1 in (-1, 1):
             for side2 in (-1, 1):
-                _check_point(claims, place, place.u + side1 * place.half, place.v + side2 * place.half)
+                _check_point(claims, box, box.u + side1 * box.half, box.v + side2 * box.half)
         missing += 1
     text = f"{proved} boxes, {100 * float(area):.2g} % of the window, {points} points; seed {seed}"
     if missing:
-        text += f"; {missing} places not checked"
+        text += f"; {missing} points not checked"
     if without:
         text += f"; nothing free met with in {without} of {_side(number) ** 2} squares"
     return text if points else Unchecked(text)
@@ -112,21 +112,21 @@ def _side(number: int) -> int:
     return isqrt(ceil(POINTS_PER_BOX * number) - 1) + 1
 
 
-def _parts(claims: CertifiedClaims, number: int) -> list[Part]:
+def _parts(claims: CertifiedClaims, number: int) -> list[GridSquare]:
     side = _side(number)
     width = Fraction(claims.sweep.steps, side)
-    return [Part(i * width, j * width, width) for i in range(side) for j in range(side)]
+    return [GridSquare(i * width, j * width, width) for i in range(side) for j in range(side)]
 
 
-def _by_area(claims: CertifiedClaims, rng: random.Random, number: int) -> tuple[list[Place], int]:
-    """A place in each square of the grid, in random order; and the number of squares in which none was met with."""
+def _by_area(claims: CertifiedClaims, rng: random.Random, number: int) -> tuple[list[SampleBox], int]:
+    """A point in each square of the grid, in random order; and the number of squares in which none was met with."""
     found, without = [], 0
     for part in _parts(claims, number):
         for _ in range(_MAX_TRIALS):
             u, v = part.u + part.width * _uniform(rng), part.v + part.width * _uniform(rng)
-            place = _free(claims, u, v)
-            if place is not None:
-                found.append(place)
+            box = _free(claims, u, v)
+            if box is not None:
+                found.append(box)
                 break
         else:
             without += 1
@@ -134,24 +134,24 @@ def _by_area(claims: CertifiedClaims, rng: random.Random, number: int) -> tuple[
     return found, without
 
 
-def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[Place]:
-    """Places beside rectangles, as many as boxes: from one square of the grid after the other, in random order."""
+def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[SampleBox]:
+    """Points beside rectangles, as many as boxes: from one square of the grid after the other, in random order."""
     cover = claims.result.cover
     assert cover is not None
     edges = _edges(cover.rectangles, claims.sweep.steps, _side(number))
     order = sorted(edges)
     rng.shuffle(order)
     totals = {k: list(accumulate(right - left + top - bottom for left, right, bottom, top in edges[k])) for k in order}
-    found: list[Place] = []
+    found: list[SampleBox] = []
     while order and len(found) < number:
         for k in list(order):
             if len(found) == number:
                 break
             for _ in range(_FIRST_TRIALS):
                 chosen = edges[k][bisect_right(totals[k], totals[k][-1] * _uniform(rng))]
-                place = _free(claims, *_off(chosen, Fraction(claims.sweep.steps, _side(number)), rng))
-                if place is not None:
-                    found.append(place)
+                box = _free(claims, *_off(chosen, Fraction(claims.sweep.steps, _side(number)), rng))
+                if box is not None:
+                    found.append(box)
                     break
             else:
                 # hardly anything is free beside its rectangles
@@ -195,8 +195,8 @@ def _uniform(rng: random.Random) -> Fraction:
     return Fraction(2 * rng.randrange(MIN_WINDOW_PARTS) + 1, 2 * MIN_WINDOW_PARTS)
 
 
-def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> Place | None:
-    """The place around a point, or one next to it that is shorter to write; None when it is not in a cell."""
+def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None:
+    """The box around a point, or one next to it that is shorter to write; None when it is not in a cell."""
     steps = claims.sweep.steps
     scale = max(1, MIN_WINDOW_PARTS // steps)
     u, v = Fraction(round(u * scale), scale), Fraction(round(v * scale), scale)
@@ -208,14 +208,14 @@ def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> Place | None:
     half, least = Fraction(steps, FIRST_BOX_PARTS), Fraction(steps, MIN_WINDOW_PARTS)
     while half and not claims.sweep.free_around(u, v, half):
         half = half / 2 if half > least else Fraction(0)
-    return Place(u, v, half, claims.cell_of[component])
+    return SampleBox(u, v, half, claims.cell_of[component])
 
 
-def _check_point(claims: CertifiedClaims, place: Place, u: Fraction, v: Fraction) -> list[Equilibrium] | None:
+def _check_point(claims: CertifiedClaims, box: SampleBox, u: Fraction, v: Fraction) -> list[Equilibrium] | None:
     """The counts at a point are those of the cell; its equilibria, None if they were not proved."""
     x, y = claims.off_lattice(u, v)
     values = values_at(claims, x, y)
-    cell = claims.result.cells[place.cell]
+    cell = claims.result.cells[box.cell]
     try:
         energy, found = all_equilibria(values, claims.result.slice.count)
         true = counts_of(energy, values, found, claims.result.slice.count)
@@ -223,19 +223,19 @@ def _check_point(claims: CertifiedClaims, place: Place, u: Fraction, v: Fraction
         return None
     if differs(cell, true):
         one, two = claims.result.slice.axis_names
-        raise Violation(f"at {one}={text_of(x)}, {two}={text_of(y)} in cell {place.cell}, which is said to have "
+        raise Violation(f"at {one}={text_of(x)}, {two}={text_of(y)} in cell {box.cell}, which is said to have "
                         f"{stored(cell)}, there are {true}")  # fmt: skip
     return found
 
 
-def _constant_over(claims: CertifiedClaims, place: Place, there: list[Equilibrium]) -> Fraction | None:
+def _constant_over(claims: CertifiedClaims, box: SampleBox, there: list[Equilibrium]) -> Fraction | None:
     """Half the width of the box over which the counts were proved; None when none was small enough."""
-    half = place.half
+    half = box.half
     for _ in range(ATTEMPTS):
         if half == 0:
             return None
         try:
-            _prove(claims, place, half, there)
+            _prove(claims, box, half, there)
         except Unproved:
             half /= 4
             continue
@@ -243,7 +243,7 @@ def _constant_over(claims: CertifiedClaims, place: Place, there: list[Equilibriu
     return None
 
 
-def _prove(claims: CertifiedClaims, place: Place, half: Fraction, there: list[Equilibrium]) -> None:
+def _prove(claims: CertifiedClaims, box: SampleBox, half: Fraction, there: list[Equilibrium]) -> None:
     """Prove the cell's counts for every point of the box.
 
     Raises
@@ -252,7 +252,7 @@ def _prove(claims: CertifiedClaims, place: Place, half: Fraction, there: list[Eq
         When the box is too large, or the counts change in it.
     """
     slice = claims.result.slice
-    low, high = (claims.off_lattice(place.u + d, place.v + d) for d in (-half, half))
+    low, high = (claims.off_lattice(box.u + d, box.v + d) for d in (-half, half))
     x, y = (exact(low[i]).union(exact(high[i])) for i in (0, 1))
     energy = energy_over(slice, x, y)
     # squares much smaller than the box of parameters are excluded no better than larger ones
@@ -260,7 +260,7 @@ def _prove(claims: CertifiedClaims, place: Place, half: Fraction, there: list[Eq
     found, _ = equilibria(energy, slice.count in MINIMA, budget=BUDGET, smallest=max(smallest, 2.0**-30), near=there)
     kinds = [e.signs for e in found]
     stable = kinds.count("++")
-    cell = claims.result.cells[place.cell]
+    cell = claims.result.cells[box.cell]
     if slice.count is Count.STABLE:
         true = Counts(None, stable, None, None)
     elif slice.count is Count.ADMISSIBLE:

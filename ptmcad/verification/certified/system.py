@@ -18,7 +18,7 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.verification.certified.energy import NAMES
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import ANGLES, MECHANISM, UNKNOWNS, Place, work
+from ptmcad.verification.derivation import ANGLES, MECHANISM, UNKNOWNS, Configuration, work
 from ptmcad.verification.report import Violation
 
 _LENGTHS = tuple(f"l{n}" for n in range(1, len(MECHANISM.springs) + 1))
@@ -54,20 +54,20 @@ def _variable(name: str) -> fmpq_mpoly:
 
 
 @cache
-def _place() -> Place:
+def _configuration() -> Configuration:
     circles = {angle: (_variable(f"cos_{angle}"), _variable(f"sin_{angle}")) for angle in ANGLES}
-    return Place({name: _variable(name) for name in NAMES}, circles)
+    return Configuration({name: _variable(name) for name in NAMES}, circles)
 
 
 @cache
 def _circles() -> tuple[fmpq_mpoly, ...]:
-    return tuple(c * c + s * s - 1 for c, s in _place().circles.values())
+    return tuple(c * c + s * s - 1 for c, s in _configuration().circles.values())
 
 
 @cache
 def _squares() -> tuple[fmpq_mpoly, ...]:
     """The squares of the springs' lengths in cosines and sines, in normal form."""
-    found, points = [], _place().points()
+    found, points = [], _configuration().points()
     for spring in MECHANISM.springs:
         across, up = (points[spring.end][i] - points[spring.start][i] for i in (0, 1))
         square = across * across + up * up
@@ -88,11 +88,11 @@ def _reduced(p: fmpq_mpoly) -> fmpq_mpoly:
 
 @cache
 def _energy() -> fmpq_mpoly:
-    place = _place()
-    energy: fmpq_mpoly = work(place, place.points())
+    configuration = _configuration()
+    energy: fmpq_mpoly = work(configuration, configuration.points())
     for length, spring in zip(_LENGTHS, MECHANISM.springs, strict=True):
-        stretch = _variable(length) - place.value(spring.free)
-        energy += stretch * stretch * (place.value(spring.stiffness) * fmpq(1, 2))
+        stretch = _variable(length) - configuration.value(spring.free)
+        energy += stretch * stretch * (configuration.value(spring.stiffness) * fmpq(1, 2))
     return energy
 
 
