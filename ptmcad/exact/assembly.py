@@ -19,13 +19,11 @@ from ptmcad.answer.regionmap import (
     CriticalValue,
     Merge,
     NonAdjacency,
-    Reason,
     Region,
     RegionMap,
     Solution,
     Stack,
     Status,
-    Wall,
 )
 from ptmcad.exact.cad.adjacency import Crossing
 from ptmcad.exact.cad.projection import Projection
@@ -136,7 +134,7 @@ def _non_adjacencies(stacks: Sequence[StackData], crossings: Sequence[Crossing])
                 right=tuple(range(following + slot.right[0], following + slot.right[1] + 1)),
                 below=None if slot.below is None else segment_of(slot.below),
                 above=None if slot.above is None else segment_of(slot.above),
-                reason=Reason(slot.closing.value),
+                reason=slot.reason,
             )
             for slot in crossing.slots
         ]
@@ -159,8 +157,7 @@ def _stacks(stacks: Sequence[StackData]) -> tuple[Stack, ...]:
     result, first = [], 0
     for stack in stacks:
         cells = tuple(range(first, first + len(stack.heights)))
-        walls = tuple(Wall(w.component, w.root) for w in stack.walls)
-        result.append(Stack(stack.left.critical, stack.right.critical, to_fraction(stack.sample), walls, cells))
+        result.append(Stack(stack.left.critical, stack.right.critical, to_fraction(stack.sample), stack.walls, cells))
         first += len(cells)
     return tuple(result)
 

@@ -20,7 +20,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum
 from itertools import pairwise
 
 from flint import fmpq
@@ -39,8 +38,9 @@ from ptmcad.algebra.real_roots import (
 )
 from ptmcad.algebra.resultants import Check, nothing, resultant
 from ptmcad.algebra.window import Interval
+from ptmcad.answer.regionmap import Reason, Wall
 from ptmcad.exact.cad.curves import Curve
-from ptmcad.exact.cad.stacks import BaseEnd, StackData, Wall, roots_over
+from ptmcad.exact.cad.stacks import BaseEnd, StackData, roots_over
 
 ROUNDS = 4
 """Bracketings that are tried before the exact separation; each has twice as many bits as the one before."""
@@ -60,14 +60,6 @@ class Passage:
     height: fmpq
 
 
-class Closing(Enum):
-    """Why a slot has no room for further pairs; see the module's text."""
-
-    PAIR = "two half-branches meet"
-    EDGE = "a half-branch ends on the window's edge"
-    POINT = "one point of the curves"
-
-
 @dataclass(frozen=True, slots=True)
 class Slot:
     """Heights between two barriers (None at the window's edge) which branches enter, and why no other barrier fits.
@@ -81,7 +73,7 @@ class Slot:
     right: tuple[int, int]
     below: Passage | None
     above: Passage | None
-    closing: Closing
+    reason: Reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,7 +190,7 @@ def _gaps(found: Sequence[Passage], count_left: int, count_right: int, fibre: In
     return [_Gap(a[0], b[0], a[3], b[3], (a[1], b[1]), (a[2], b[2])) for a, b in pairwise(ends)]
 
 
-def _closing(gap: _Gap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Closing | None:
+def _closing(gap: _Gap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Reason | None:
     """Why branches run into at most one point of the gap; None when that is not known.
 
     ``points`` is the polynomial of `_points_polynomial`, or None while it is not known. A gap without branches may
@@ -206,20 +198,20 @@ def _closing(gap: _Gap, curves: Sequence[Curve], end: BaseEnd, points: Univariat
     """
     branches, edges = gap.branches, gap.edges
     if branches == 0:
-        return Closing.POINT
+        return Reason.POINT
     if len(edges) == 2 or (not edges and branches % 2 == 1) or (edges and not _meets(curves, end, edges[0])):
         return None
     if branches <= 2 - len(edges):
-        return Closing.EDGE if edges else Closing.PAIR
+        return Reason.EDGE if edges else Reason.PAIR
     if points is None or len(isolate(points, gap.bottom, gap.top)) > 1 - len(edges):
         return None
-    return Closing.POINT
+    return Reason.POINT
 
 
 def _slot(gap: _Gap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Slot:
-    closing = _closing(gap, curves, end, points)
-    assert closing is not None
-    return Slot(gap.left, gap.right, gap.below, gap.above, closing)
+    reason = _closing(gap, curves, end, points)
+    assert reason is not None
+    return Slot(gap.left, gap.right, gap.below, gap.above, reason)
 
 
 def _meets(curves: Sequence[Curve], end: BaseEnd, edge: fmpq) -> bool:
