@@ -350,8 +350,7 @@ def _values(p: fmpz_poly, low: fmpq, high: fmpq, width: fmpq) -> Callable[[fmpq,
             ball = rounded(arb(at))
         if ball.rel_accuracy_bits() < pieces.bit_length() + 8:
             return fmpq(p(at))
-        mantissa, exponent = ball.mid().man_exp()
-        return fmpq(mantissa) * fmpq(2) ** int(exponent)
+        return ball.mid().fmpq()
 
     return value_at
 

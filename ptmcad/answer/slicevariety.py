@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from ptmcad.answer import with_methods
 from ptmcad.answer.regionmap import Component, Kind
 from ptmcad.question.slice import Slice
-from ptmcad.text.numerals import integer_text
+from ptmcad.text.terms import terms_text
 
 Term = tuple[tuple[int, ...], int]
 """Exponents of the unknowns, then of the two axes; and the coefficient."""
@@ -42,7 +42,7 @@ class EliminationSystem:
         ----------
         names : other names for the unknowns and axes, in this order.
         """
-        return tuple(_text(p, names or (*self.unknowns, *self.axes)) for p in self.polynomials)
+        return tuple(terms_text(p, names or (*self.unknowns, *self.axes)) for p in self.polynomials)
 
 
 @with_methods
@@ -75,14 +75,3 @@ class SliceVariety:
 
     def __str__(self) -> str:
         return self.text()
-
-
-def _text(polynomial: tuple[Term, ...], names: tuple[str, ...]) -> str:
-    text = ""
-    for exponents, c in polynomial:
-        factors = [f"{n}^{e}" if e > 1 else n for n, e in zip(names, exponents, strict=True) if e]
-        if abs(c) != 1 or not factors:
-            factors.insert(0, integer_text(abs(c)))
-        sign = ("-" if c < 0 else "") if not text else (" - " if c < 0 else " + ")
-        text += sign + "*".join(factors)
-    return text or "0"

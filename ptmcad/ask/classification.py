@@ -134,7 +134,7 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
 
 def _check_no_areas(certified: bool, options: Options) -> None:
     if certified:
-        raise ConfigError("the certified engine has areas for nothing: it can not leave them out", key="areas")
+        raise ConfigError("the certified engine has areas for nothing: it cannot leave them out", key="areas")
     if options.area_tolerance is not None:
         raise ConfigError("areas are not asked for, but a tolerance for them is given: leave one out", key="areas")
 

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction, from_plane
+from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at
 from ptmcad.answer.regionmap import CriticalValue, Location, RegionMap, Status
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.exact.cad.curves import Curve, curve
+from ptmcad.exact.cad.curves import Curve, curves_of
 from ptmcad.text.expressions import rational
 
 if TYPE_CHECKING:
@@ -41,12 +41,11 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
         return _locate_outside_cover(result, result.cover, point)
     if not result.cells:
         return Location(Status.UNDECIDED)
-    used = [(n, c) for n, c in enumerate(result.components) if not c.left_out]
-    if any(c.polynomial(*point) == 0 for _, c in used):
+    if any(c.polynomial(*point) == 0 for c in result.components if not c.left_out):
         return Location(Status.ON_VARIETY)
     base = result.base
     u, v = from_fraction(point[base]), from_fraction(point[1 - base])
-    curves = [curve(n, from_plane(c.polynomial), base) for n, c in used if c.polynomial.degrees[1 - base] > 0]
+    curves = curves_of(result.components, base)
     stack, on_critical = _stack(result, u)
     if stack >= len(result.stacks):
         raise ConfigError(f"the map contradicts itself: there is no stack {stack}; check it with ptmcad verify")

@@ -17,6 +17,7 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.certified.formula import Operation
 from ptmcad.certified.tape import Tape
+from ptmcad.text.balls import exact
 
 
 class EmptyMeet(Exception):
@@ -30,12 +31,12 @@ def ball(low: Fraction, high: Fraction) -> arb:
 
 def lower(value: arb) -> Fraction:
     """The exact lower end of a finite ball."""
-    return _exact(value.mid()) - _exact(value.rad())
+    return exact(value.mid()) - exact(value.rad())
 
 
 def upper(value: arb) -> Fraction:
     """The exact upper end of a finite ball."""
-    return _exact(value.mid()) + _exact(value.rad())
+    return exact(value.mid()) + exact(value.rad())
 
 
 def run_arb(tape: Tape, box: Sequence[arb], precision: int, stages: int | None = None) -> list[arb]:
@@ -136,9 +137,3 @@ def _hull(a: arb, b: arb) -> arb:
 
 def _fmpq(value: Fraction) -> fmpq:
     return fmpq(value.numerator, value.denominator)
-
-
-def _exact(value: arb) -> Fraction:
-    """The number that a ball of radius zero is."""
-    mantissa, exponent = value.man_exp()
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

@@ -13,7 +13,7 @@ from fractions import Fraction
 from math import isqrt
 from typing import Any
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
 from ptmcad.answer.poses import Pose, Poses, Spring
 from ptmcad.answer.regionmap import Solution, Status
@@ -25,7 +25,7 @@ from ptmcad.mechanism import ptm
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Axis, Count, Slice
-from ptmcad.text.balls import enclosed
+from ptmcad.text.balls import ball_of, enclosed
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import axis
 
@@ -144,9 +144,9 @@ def _flat(parameters: Mapping[str, Fraction], solution: Solution) -> tuple[int, 
     cosines = []
     with ctx.workprec(256):
         for center in solution.center:
-            half_turns = round(float(_arb(center) / arb.pi()))
-            distance = abs(_arb(center) - half_turns * arb.pi())
-            if not distance < _arb(solution.radius):
+            half_turns = round(float(ball_of(center) / arb.pi()))
+            distance = abs(ball_of(center) - half_turns * arb.pi())
+            if not distance < ball_of(solution.radius):
                 return None
             cosines.append(-1 if half_turns % 2 else 1)
     first, second = cosines
@@ -162,27 +162,27 @@ def _numbers(parameters: Mapping[str, Fraction], box: Box, flat: tuple[int, int]
     if flat is not None:
         zero = Fraction(0)
         exact = _quantities(dict(parameters), (Fraction(flat[0]), zero, Fraction(flat[1]), zero), abs)
-        numbers = {name: _Number(_arb(value), value) for name, value in exact.items()}
+        numbers = {name: _Number(ball_of(value), value) for name, value in exact.items()}
         for i, cosine in enumerate(flat, 1):
             exact_angle = (None if cosine < 0 else zero, Fraction(180 if cosine < 0 else 0))
             numbers[f"th{i}"] = _Number(arb.pi() if cosine < 0 else arb(0), exact_angle[0])
-            numbers[f"degrees{i}"] = _Number(_arb(exact_angle[1]), exact_angle[1])
+            numbers[f"degrees{i}"] = _Number(ball_of(exact_angle[1]), exact_angle[1])
     else:
         cosines_sines = (box[2].cos(), box[2].sin(), box[3].cos(), box[3].sin())
-        balls = _quantities({n: _arb(v) for n, v in parameters.items()}, cosines_sines, None)
+        balls = _quantities({n: ball_of(v) for n, v in parameters.items()}, cosines_sines, None)
         numbers = {name: _Number(value) for name, value in balls.items()}
         for i in (1, 2):
             angle = arb.atan2(numbers[f"s{i}"].ball, numbers[f"c{i}"].ball)
             numbers[f"th{i}"], numbers[f"degrees{i}"] = _Number(angle), _Number(angle * 180 / arb.pi())
         for name in ("A1x", "A1y", "A2y"):
             numbers[name] = _Number(arb(0), Fraction(0))
-        numbers["A2x"] = _Number(_arb(parameters["rho"]), parameters["rho"])
+        numbers["A2x"] = _Number(ball_of(parameters["rho"]), parameters["rho"])
     trace, spread = numbers.pop("trace"), numbers.pop("spread")
     root = _Number(spread.ball.sqrt() if spread.ball > 0 else spread.ball.nonnegative_part().sqrt())
     if spread.exact is not None:
         numerator, denominator = isqrt(spread.exact.numerator), isqrt(spread.exact.denominator)
         whole = Fraction(numerator, denominator)
-        root = _Number(_arb(spread.exact).sqrt(), whole if whole * whole == spread.exact else None)
+        root = _Number(ball_of(spread.exact).sqrt(), whole if whole * whole == spread.exact else None)
     for name, sign in (("low", -1), ("high", 1)):
         half_sum = (trace.ball + sign * root.ball) / 2
         if trace.exact is None or root.exact is None:
@@ -258,7 +258,3 @@ def _assembled(parameters: Mapping[str, Fraction], at: Mapping[str, Enclosure], 
         flat=flat,
         admissible=index == 0 and all(spring.force.low > 0 for spring in springs),
     )
-
-
-def _arb(value: Fraction) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))

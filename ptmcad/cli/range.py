@@ -13,6 +13,7 @@ import click
 from click.core import ParameterSource
 
 from ptmcad.cli.formats import formats_of
+from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
@@ -25,52 +26,62 @@ from ptmcad.text.expressions import rational
 FORMATS = ("json", "png", "svg", "pdf")
 
 
-def slice_and_line(
-    config: Path | None,
-    axes: str | None,
-    along: str,
-    at: dict[str, str],
-    over: str | None,
-    sets: tuple[str, ...],
-    ranges: tuple[str, ...],
-) -> tuple[Slice, dict[str, str]]:
+@dataclass(frozen=True, slots=True)
+class AskedLine:
+    """The record, what changes it, and the line in the slice, as they were typed."""
+
+    config: Path | None
+    along: str
+    at: str | None
+    axes: str | None
+    sets: tuple[str, ...]
+    ranges: tuple[str, ...]
+    over: str | None
+
+
+def slice_and_line(asked: AskedLine) -> tuple[Slice, dict[str, str]]:
     """The slice that holds the line, and the value of its other axis.
 
-    Every name of ``at`` but that of the other axis fixes a parameter. The other axis is ``over``, or the record's when
-    ``along`` is an axis of it, or else the first one of ``at``.
+    Every name of ``--at`` but that of the other axis fixes a parameter. The other axis is that of ``--over``, or the
+    record's when ``--along`` is an axis of it, or else the first one of ``--at``.
 
     Raises
     ------
     ConfigError
         For anything wrong with the record or the options.
     """
-    given = _axes(config, axes)
-    if over is not None:
-        other = over
-    elif along in given:
-        other = given[1 - given.index(along)]
-    else:
-        other = next((n for n in given if n in at), next(iter(at), ""))
+    at = {} if asked.at is None else point_of(asked.at)
+    given = _axes(asked)
+    along, other = asked.along, _other_axis(asked, given, at)
     if not other:
         raise ConfigError(f"give the values at which {along} varies, as in L2=3/2", key="--at")
     if along == other:
         raise ConfigError(f"{along} varies along the line: it has no fixed value", key="--at")
-    if over is None and other not in at:
+    if asked.over is None and other not in at:
         raise ConfigError(f"the other axis, {other}, has no value: add {other}=VALUE", key="--at")
     fixed = tuple(f"{name}={value}" for name, value in at.items() if name != other)
     for name in at:
         if name != other and name not in PARAMETERS:
             raise ConfigError(f"'{name}' is neither an axis nor a parameter", key="--at")
-    asked = None if {along, other} == set(given) else f"{along},{other}"
-    slice = slice_from_options(config, axes if asked is None else asked, (*sets, *fixed), ranges)
+    axes = asked.axes if {along, other} == set(given) else f"{along},{other}"
+    slice = slice_from_options(asked.config, axes, (*asked.sets, *fixed), asked.ranges)
     return slice, {other: at[other]} if other in at else {}
 
 
-def _axes(config: Path | None, axes: str | None) -> tuple[str, ...]:
+def _other_axis(asked: AskedLine, given: tuple[str, ...], at: Mapping[str, str]) -> str:
+    """The name of the axis that does not vary along the line; empty when nothing tells it."""
+    if asked.over is not None:
+        return asked.over
+    if asked.along in given:
+        return given[1 - given.index(asked.along)]
+    return next((n for n in given if n in at), next(iter(at), ""))
+
+
+def _axes(asked: AskedLine) -> tuple[str, ...]:
     """The axes' names before the options of the line are looked at."""
-    if axes is not None:
-        return tuple(name.strip() for name in axes.split(","))
-    return () if config is None else load(config).axis_names
+    if asked.axes is not None:
+        return tuple(name.strip() for name in asked.axes.split(","))
+    return () if asked.config is None else load(asked.config).axis_names
 
 
 def _formats(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...]:
@@ -97,6 +108,51 @@ class Request:
     pose: int | None
     digits: int
     critical: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is asked for beside the line, as it was typed; see `Request`."""
+
+    rows: int
+    start: str | None
+    pose: int | None
+    digits: int
+    critical: bool
+
+    def request(self, asked: AskedLine, at: Mapping[str, str]) -> Request:
+        """The same, checked.
+
+        Raises
+        ------
+        ConfigError
+            For an option that needs another one.
+        """
+        over, start = asked.over is not None, _start(self.start, at)
+        request = Request(asked.along, at, over, self.rows, start, self.pose, self.digits, self.critical)
+        if not over and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
+            raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
+        if self.pose is not None and self.start is None:
+            raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
+        return request
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """The files to write, and where."""
+
+    out: Path
+    name: str | None
+    formats: tuple[str, ...]
+
+    @property
+    def pictures(self) -> list[str]:
+        """Their formats."""
+        return [suffix for suffix in self.formats if suffix != "json"]
+
+    def stem(self, slice: Slice) -> str:
+        """The start of the files' names."""
+        return f"{slice.name}-range" if self.name is None else file_name(self.name, "--name")
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,25 +260,8 @@ def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
 @click.option("--critical", is_flag=True,
               help="Along the springs' free length: all critical values by elimination, with msolve.")  # fmt: skip
 @limit_options
-def command(
-    *,
-    config: Path | None,
-    along: str,
-    at: str | None,
-    axes: str | None,
-    sets: tuple[str, ...],
-    ranges: tuple[str, ...],
-    digits: int,
-    out: Path,
-    name: str | None,
-    formats: tuple[str, ...],
-    over: str | None,
-    rows: int,
-    start: str | None,
-    pose: int | None,
-    critical: bool,
-    limits: Limits,
-) -> None:
+@gathered(asked=AskedLine, wanted=Wanted, output=Output)
+def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits) -> None:
     """Find the intervals of constant count along one axis; the operation range is where two equilibria are stable.
 
     Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. With free lengths
@@ -236,48 +275,49 @@ def command(
         ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --path 7/10 --format json,svg
         ptmcad range --along rho --over L2 --range L2=0:2 --at F3=-10,F4=-10
     """
-    values = {} if at is None else point_of(at)
-    slice, other = slice_and_line(config, axes, along, values, over, sets, ranges)
-    request = Request(along, other, over is not None, rows, _start(start, other), pose, digits, critical)
-    if over is None and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
-        raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
-    if pose is not None and start is None:
-        raise ConfigError("chooses a pose to follow: give --path VALUE too", key="--pose")
-    stem = f"{slice.name}-range" if name is None else file_name(name, "--name")
+    slice, at = slice_and_line(asked)
+    request = wanted.request(asked, at)
+    stem = output.stem(slice)
     with held(limits):
-        if formats and slice.has_free_lengths:
-            from ptmcad.question.line import has_free_lengths
-
-            if has_free_lengths(slice, along, other) and set(formats) != {"json"}:
-                raise ConfigError("with a free length there is the table and JSON, no picture", key="--format")
-        pictures = [suffix for suffix in formats if suffix != "json"]
-        names = [f"{stem}{part}.{suffix}" for part in _parts(request) for suffix in pictures]
-        names += [f"{stem}.json"] * ("json" in formats)
+        enclosed = slice.has_free_lengths and _varies_free_lengths(slice, request)
+        if enclosed and set(output.formats) - {"json"}:
+            raise ConfigError("with a free length there is the table and JSON, no picture", key="--format")
+        names = [f"{stem}{part}.{suffix}" for part in _parts(request) for suffix in output.pictures]
+        names += [f"{stem}.json"] * ("json" in output.formats)
         if names:
-            check_writable(out, tuple(names))
-        if slice.has_free_lengths and over is None and start is None and not critical:
+            check_writable(output.out, tuple(names))
+        if enclosed and not request.over and request.start is None and not request.critical:
             from ptmcad.ask.classification import load_certified
-            from ptmcad.question.line import has_free_lengths
 
-            if has_free_lengths(slice, along, other):
-                with clock_stopped(limits.timeout):  # the time that compiling takes is not the computation's
-                    load_certified()
+            with clock_stopped(limits.timeout):  # the time that compiling takes is not the computation's
+                load_certified()
         found = answer(slice, request)
         click.echo(found.text)
         if names:
-            writers: dict[str, Writer] = {
-                name: picture(name, draw)
-                for part, draw in found.pictures.items()
-                for name in (f"{stem}{part}.{suffix}" for suffix in pictures)
-            }
-            if "json" in formats:
-                from ptmcad.show.ranges.document import document
+            _save(slice, found, stem, output)
 
-                text = document(slice.name, slice.mechanism, dict(found.parts))
-                writers[f"{stem}.json"] = text_writer(text)
-                write_result(out, writers, f"{stem}.json", text)
-            else:
-                write_files(out, writers)
+
+def _varies_free_lengths(slice: Slice, request: Request) -> bool:
+    from ptmcad.question.line import has_free_lengths
+
+    return has_free_lengths(slice, request.along, request.at)
+
+
+def _save(slice: Slice, found: Answer, stem: str, output: Output) -> None:
+    """Write the pictures and, last, the JSON."""
+    writers: dict[str, Writer] = {
+        name: picture(name, draw)
+        for part, draw in found.pictures.items()
+        for name in (f"{stem}{part}.{suffix}" for suffix in output.pictures)
+    }
+    if "json" in output.formats:
+        from ptmcad.show.ranges.document import document
+
+        text = document(slice.name, slice.mechanism, dict(found.parts))
+        writers[f"{stem}.json"] = text_writer(text)
+        write_result(output.out, writers, f"{stem}.json", text)
+    else:
+        write_files(output.out, writers)
 
 
 def _parts(request: Request) -> list[str]:

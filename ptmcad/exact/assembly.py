@@ -24,7 +24,6 @@ from ptmcad.answer.regionmap import (
     Solution,
     Stack,
     Status,
-    Wall,
 )
 from ptmcad.exact.cad.adjacency import Crossing
 from ptmcad.exact.cad.projection import Projection
@@ -158,8 +157,7 @@ def _stacks(stacks: Sequence[StackData]) -> tuple[Stack, ...]:
     result, first = [], 0
     for stack in stacks:
         cells = tuple(range(first, first + len(stack.heights)))
-        walls = tuple(Wall(w.component, w.root) for w in stack.walls)
-        result.append(Stack(stack.left.critical, stack.right.critical, to_fraction(stack.sample), walls, cells))
+        result.append(Stack(stack.left.critical, stack.right.critical, to_fraction(stack.sample), stack.walls, cells))
         first += len(cells)
     return tuple(result)
 

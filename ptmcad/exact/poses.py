@@ -15,6 +15,7 @@ from flint import ctx, fmpq
 
 from ptmcad.algebra.fibre import Fibre
 from ptmcad.algebra.points import RealPoint, points, real_values
+from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
@@ -44,7 +45,7 @@ def exact_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     """
     mechanism = ptm()
     system = system_from(mechanism)
-    values = {name: fmpq(v.numerator, v.denominator) for name, v in parameters.items()}
+    values = {name: from_fraction(v) for name, v in parameters.items()}
     try:
         point = point_system(system, values)
     except DegeneratePoint:

@@ -18,11 +18,9 @@ from ptmcad.algebra.polynomials import (
     Coefficient,
     Ratio,
     UnivariatePolynomial,
-    coefficients_in,
     evaluate,
     from_expression,
     from_fraction,
-    from_plane,
     to_fraction,
 )
 from ptmcad.algebra.real_roots import simplest_between
@@ -32,7 +30,7 @@ from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segme
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
 from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
 from ptmcad.exact.cad.area import region_areas
-from ptmcad.exact.cad.curves import Curve, curve
+from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
 from ptmcad.exact.counting import Counts, DegeneratePoint, Equilibria, equilibria, solutions_at
@@ -175,24 +173,11 @@ def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset()) -> Var
         found = discriminant_variety(system, parameters, window, domain_limits(system, parameters), keep)
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
         raise type(error)(f"{error}; {_witness(problem)}") from error
-    views = [seen_from(found.components, base) for base in (0, 1)]
-    costs = (predicted_cost(views[0][0]), predicted_cost(views[1][0]))
+    views = [curves_of(found.components, base) for base in (0, 1)]
+    costs = (predicted_cost(views[0]), predicted_cost(views[1]))
     base = 1 if costs[1] < costs[0] and "axis-order" not in keep else 0
-    return Variety(found.components, found.complex_solutions, base, *views[base], costs)
-
-
-def seen_from(
-    components: Sequence[Component], base: int, reason: str = ""
-) -> tuple[list[Curve], dict[int, UnivariatePolynomial]]:
-    """The components that are used, or left out for a reason: curves, and lines across the base by their numbers."""
-    curves, lines = [], {}
-    for n, c in enumerate(components):
-        if c.left_out == reason:
-            if c.polynomial.degrees[1 - base] > 0:
-                curves.append(curve(n, from_plane(c.polynomial), base))
-            else:
-                lines[n] = coefficients_in(from_plane(c.polynomial), 1 - base)[0]
-    return curves, lines
+    lines = lines_of(found.components, base)
+    return Variety(found.components, found.complex_solutions, base, views[base], lines, costs)
 
 
 def domain_limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coefficient]:
@@ -214,8 +199,8 @@ def stacks_of(problem: SliceProblem, variety: Variety, projection: Projection) -
     """The stacks between them, with samples."""
     window, base = problem.window, variety.base
     # there real solutions stay regular but complex ones are lost, and a fibre may not be finite
-    harmless, lines = seen_from(variety.components, base, HARMLESS)
-    avoided = Avoided(harmless, list(lines.values()))
+    lines = lines_of(variety.components, base, HARMLESS)
+    avoided = Avoided(curves_of(variety.components, base, HARMLESS), list(lines.values()))
     stacks = lift(variety.curves, projection.abscissae, window[base], window[1 - base], avoided)
     points = (((s.sample, height) if base == 0 else (height, s.sample)) for s in stacks for height in s.heights)
     return Stacks(stacks, tuple(points))

@@ -21,7 +21,7 @@ from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.points import RealPoint, value_at
 from ptmcad.answer.poses import Pose, Spring, Vector
 from ptmcad.exact.models.system import RationalPolynomial
-from ptmcad.text.balls import enclosed
+from ptmcad.text.balls import ball_of, enclosed
 from ptmcad.text.enclosure import Enclosure
 
 _Ring = TypeVar("_Ring", fmpq, nmod)
@@ -157,7 +157,7 @@ def _numbers(model: Model, state: State) -> Iterator[_Number]:
 
     def number(element: Element) -> _Number:
         exact = element.rational
-        return _Number(exact, element.ball(at) if exact is None else _arb(exact))
+        return _Number(exact, element.ball(at) if exact is None else ball_of(exact))
 
     yield from map(number, state.unknowns)
     for cosine, sine in (state.unknowns[:2], state.unknowns[2:]):
@@ -170,7 +170,7 @@ def _numbers(model: Model, state: State) -> Iterator[_Number]:
     for (*_, k), square in zip(model.springs, state.squares, strict=True):
         length = _square_root(number(square))
         yield length
-        yield _Number(None if length.exact is None else k * length.exact, length.ball * _arb(k))
+        yield _Number(None if length.exact is None else k * length.exact, length.ball * ball_of(k))
     yield number(state.energy)
     yield from _eigenvalues(number(state.trace), number(state.spread), state.eigenvalue)
 
@@ -212,7 +212,7 @@ def _square_root(square: _Number) -> _Number:
         return _Number(None, square.ball.sqrt())
     numerator, denominator = isqrt(square.exact.numerator), isqrt(square.exact.denominator)
     root = Fraction(numerator, denominator)
-    return _Number(root if root * root == square.exact else None, _arb(square.exact).sqrt())
+    return _Number(root if root * root == square.exact else None, ball_of(square.exact).sqrt())
 
 
 def _rational_eigenvalue(trace_element: Element, determinant_element: Element) -> Fraction | None:
@@ -249,16 +249,12 @@ def _eigenvalues(trace: _Number, spread: _Number, rational: Fraction | None) -> 
     if trace.exact is not None and root.exact is not None:
         return _Number((trace.exact - root.exact) / 2, balls[0]), _Number((trace.exact + root.exact) / 2, balls[1])
     if rational is not None:
-        if (excess := 2 * _arb(rational) - trace.ball) > 0:
+        if (excess := 2 * ball_of(rational) - trace.ball) > 0:
             return _Number(None, balls[0]), _Number(rational, balls[1])
         if excess < 0:
             return _Number(rational, balls[0]), _Number(None, balls[1])
         return _Number(None, arb.nan()), _Number(None, arb.nan())
     return _Number(None, balls[0]), _Number(None, balls[1])
-
-
-def _arb(value: Fraction) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))
 
 
 def _assembled(model: Model, state: State, numbers: Iterator[Enclosure]) -> Pose:

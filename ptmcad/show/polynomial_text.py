@@ -11,10 +11,12 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from functools import partial
 from keyword import iskeyword
 
 from ptmcad.text.numerals import integer_text
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.terms import signed_terms
 
 
 class Style(Enum):
@@ -123,12 +125,8 @@ def polynomial_lines(
 def _terms(polynomial: PlanePolynomial, spelled: tuple[str, ...], style: Style) -> Iterator[str]:
     """Each term with its sign; the first one without when it is positive."""
     notation = _NOTATIONS[style]
-    for n, (i, j, c) in enumerate(polynomial.terms):
-        factors = [notation.power.format(s, e) if e > 1 else s for s, e in zip(spelled, (i, j), strict=True) if e]
-        if abs(c) != 1 or not factors:
-            factors.insert(0, _number(abs(c), style))
-        sign = ("-" if c < 0 else "") if n == 0 else ("- " if c < 0 else "+ ")
-        yield sign + notation.times.join(factors)
+    terms = (((i, j), c) for i, j, c in polynomial.terms)
+    return signed_terms(terms, spelled, notation.power, notation.times, partial(_number, style=style))
 
 
 def _number(natural: int, style: Style) -> str:

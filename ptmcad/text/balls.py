@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from flint import arb
+from flint import arb, fmpq
 
 from ptmcad.text.enclosure import Enclosure
 
@@ -20,10 +20,10 @@ def enclosed(ball: arb, digits: int) -> Enclosure | None:
     if not ball.is_finite() or ball.contains(0) or 10 * ball.rel_accuracy_bits() < 33 * (digits + _GUARD - 2):
         return None  # the test of the radius below would say so too; most balls that are too wide end here
     mantissa, exponent = (int(n) for n in ball.mid().man_exp())
-    radius = _fraction(ball.rad())
+    radius = exact(ball.rad())
     # the place of the first digit, to within one: 0.30103 is the logarithm of 2
     first = (abs(mantissa).bit_length() + exponent - 1) * 30103 // 100000
-    middle = _fraction(ball.mid())
+    middle = exact(ball.mid())
     guard = _GUARD
     while True:
         unit = Fraction(10) ** (first - digits - guard)
@@ -35,7 +35,18 @@ def enclosed(ball: arb, digits: int) -> Enclosure | None:
         guard *= 2
 
 
-def _fraction(ball: arb) -> Fraction:
-    """The number that a ball of radius zero is."""
-    mantissa, exponent = (int(n) for n in ball.man_exp())
-    return Fraction(mantissa * 2**exponent) if exponent >= 0 else Fraction(mantissa, 2**-exponent)
+def ball_of(value: Fraction) -> arb:
+    """A ball that contains the number, at the context's precision."""
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+def exact(ball: arb) -> Fraction:
+    """The number that a ball of radius zero is.
+
+    Raises
+    ------
+    ValueError
+        When the radius is not zero, or the ball not finite.
+    """
+    value = ball.fmpq()
+    return Fraction(int(value.p), int(value.q))

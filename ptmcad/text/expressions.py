@@ -25,6 +25,7 @@ from ptmcad.text.numerals import text_of
 from ptmcad.text.syntax import Call, Name, Number, Power, Step, interpret, unknown_name
 from ptmcad.text.syntax import names_in as names_in_text
 from ptmcad.text.syntax import parse as tree_of
+from ptmcad.text.terms import terms_text
 
 Term = tuple[int, int, Fraction]
 _Polynomial = dict[tuple[int, int], Fraction]
@@ -108,10 +109,10 @@ class Expression:
 
     def to_text(self, names: tuple[str, str] = ("x", "y")) -> str:
         """The expression as text that `parse` reads back."""
-        numerator = _polynomial_text(self.numerator, names)
+        numerator = _terms_text(self.numerator, names)
         if self.is_polynomial:
             return numerator
-        return f"({numerator})/({_polynomial_text(self.denominator, names)})"
+        return f"({numerator})/({_terms_text(self.denominator, names)})"
 
     def __str__(self) -> str:
         return self.to_text()
@@ -267,15 +268,8 @@ def _exact_quotient(numerator: _Polynomial, divisor: _Polynomial) -> _Polynomial
     return quotient
 
 
-def _polynomial_text(terms: tuple[Term, ...], names: tuple[str, str]) -> str:
-    text = ""
-    for i, j, c in terms:
-        factors = [f"{name}^{n}" if n > 1 else name for name, n in zip(names, (i, j), strict=True) if n]
-        if abs(c) != 1 or not factors:
-            factors.insert(0, str(abs(c)))
-        sign = ("-" if c < 0 else "") if not text else (" - " if c < 0 else " + ")
-        text += sign + "*".join(factors)
-    return text or "0"
+def _terms_text(terms: tuple[Term, ...], names: tuple[str, str]) -> str:
+    return terms_text((((i, j), c) for i, j, c in terms), names)
 
 
 # ------------------------------------------------------------------------------------------------------ from a text

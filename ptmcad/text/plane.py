@@ -13,7 +13,8 @@ from fractions import Fraction
 from math import gcd
 from typing import Any
 
-from ptmcad.text.numerals import MAX_DIGITS, integer_of, integer_text
+from ptmcad.text.numerals import MAX_DIGITS, integer_of
+from ptmcad.text.terms import terms_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,16 +45,9 @@ class PlanePolynomial:
         """The exact value at a rational point."""
         return sum((c * x**i * y**j for i, j, c in self.terms), Fraction(0))
 
-    def text(self, names: tuple[str, str] = ("x", "y"), power: str = "^") -> str:
+    def text(self, names: tuple[str, str] = ("x", "y")) -> str:
         """The polynomial as text, such as ``2*x^2*y - 1``."""
-        text = ""
-        for i, j, c in self.terms:
-            factors = [f"{n}{power}{e}" if e > 1 else n for n, e in zip(names, (i, j), strict=True) if e]
-            if abs(c) != 1 or not factors:
-                factors.insert(0, integer_text(abs(c)))
-            sign = ("-" if c < 0 else "") if not text else (" - " if c < 0 else " + ")
-            text += sign + "*".join(factors)
-        return text or "0"
+        return terms_text((((i, j), c) for i, j, c in self.terms), names)
 
     def to_sympy(self, names: tuple[str, str] = ("x", "y")) -> Any:
         """The polynomial as a SymPy expression in symbols of these names."""

@@ -20,7 +20,7 @@ from math import gcd, isqrt, prod
 from flint import fmpq
 
 from ptmcad.answer.regionmap import Kind
-from ptmcad.verification.claims import Claims
+from ptmcad.verification.claims import Claims, fraction
 from ptmcad.verification.fibre import Fibre, Monomial, standard_monomials
 from ptmcad.verification.plan import switched_off
 from ptmcad.verification.report import Violation
@@ -72,7 +72,7 @@ def _values(claims: Claims, seed: str, savings: Sequence[str]) -> tuple[list[Val
             monomials = standard_monomials(claims.parameters_at(x, y))
         at = tuple(int(c.polynomial(x, y)) for c in claims.result.components)
         found = {"": fibre.norm()} | {name: _function(name, fibre, monomials) for name in savings}
-        exact = {name: Fraction(int(value.p), int(value.q)) for name, value in found.items()}
+        exact = {name: fraction(value) for name, value in found.items()}
         if 0 in at or 0 in exact.values():
             raise Violation(f"a function that defines curves vanishes at the random point {x}, {y}")
         norms.append((exact[""], at))

@@ -240,8 +240,7 @@ def _series(d: Sequence[arb_poly], start: arb_series, order: int) -> list[arb]:
 def _enclosed(branch: Branch, middle: fmpq, half: fmpq, height: arb, effort: Effort) -> tuple[fmpq, fmpq]:
     """Heights below and above the branch at which the curve does not meet the panel."""
     low, high = effort.heights
-    mantissa, exponent = (int(n) for n in height.mid().man_exp())
-    center = fmpq(mantissa) * (fmpq(2) ** exponent)
+    center = height.mid().fmpq()
     start = (high - low) * min(fmpq(1, 16), half / effort.shut / 2**8)
     bounds = []
     for edge, direction in ((low, -1), (high, 1)):

@@ -34,7 +34,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_poly
 from ptmcad.answer.regionmap import HARMLESS, Kind
 from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import PlanePolynomial
-from ptmcad.verification.claims import Claims, PlaneCurve
+from ptmcad.verification.claims import Claims, PlaneCurve, fraction
 from ptmcad.verification.fibre import Fibre
 from ptmcad.verification.report import Violation
 
@@ -110,8 +110,7 @@ class FibrePoint:
 
     def norm(self) -> Fraction:
         """The product of det H over the solutions."""
-        n = self.fibre.norm()
-        return Fraction(int(n.p), int(n.q))
+        return fraction(self.fibre.norm())
 
     def own(self, k: int, *others: int) -> int:
         """The value of component k without the primes of the other components' values here, and of other numbers."""

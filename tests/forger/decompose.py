@@ -15,6 +15,7 @@ from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.regionmap import Component, RegionMap
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.assembly import Reached, assemble
+from ptmcad.exact.cad.curves import curves_of, lines_of
 from ptmcad.exact.counting import Equilibria
 from ptmcad.exact.stages import (
     Cells,
@@ -25,7 +26,6 @@ from ptmcad.exact.stages import (
     neighbours_of,
     problem_of,
     projection_of,
-    seen_from,
     stacks_of,
     with_keys,
 )
@@ -36,7 +36,9 @@ def decomposed(r: RegionMap, components: Sequence[Component], without: frozenset
     """The map with these components, over the same base, and with all that follows from them."""
     problem = problem_of(r.slice)
     base, without = r.base, switched_off(r) if without is None else without
-    variety = Variety(tuple(components), r.complex_solutions, base, *seen_from(components, base), (1, 2))
+    variety = Variety(
+        tuple(components), r.complex_solutions, base, curves_of(components, base), lines_of(components, base), (1, 2)
+    )
     projection = projection_of(problem, variety, without)
     stacks = stacks_of(problem, variety, projection)
     known = [_equilibria(problem, at) for at in stacks.points]

@@ -38,9 +38,9 @@ from ptmcad.algebra.real_roots import (
 )
 from ptmcad.algebra.resultants import Check, nothing, resultant
 from ptmcad.algebra.window import Interval
-from ptmcad.answer.regionmap import Reason
+from ptmcad.answer.regionmap import Reason, Wall
 from ptmcad.exact.cad.curves import Curve
-from ptmcad.exact.cad.stacks import BaseEnd, StackData, Wall, roots_over
+from ptmcad.exact.cad.stacks import BaseEnd, StackData, roots_over
 
 ROUNDS = 4
 """Bracketings that are tried before the exact separation; each has twice as many bits as the one before."""

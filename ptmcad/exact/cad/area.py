@@ -25,6 +25,7 @@ from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_betwee
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.exact.cad.stacks import StackData
+from ptmcad.text.balls import exact
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +69,7 @@ class _Panel:
     @property
     def width(self) -> Fraction:
         """Twice the enclosure's radius."""
-        return 2 * _exact(self.integral.rad())
+        return 2 * exact(self.integral.rad())
 
 
 def region_areas(
@@ -312,15 +313,9 @@ def _bounds(panels: Sequence[_Panel], fixed: Sequence[fmpq], lost: fmpq) -> tupl
         totals[p.above] -= p.integral
     result = []
     for total in totals:
-        low, high = _exact(total.lower()), _exact(total.upper())
+        low, high = exact(total.lower()), exact(total.upper())
         result.append((max(low, Fraction(0)), high + to_fraction(lost)))
     return tuple(result)
-
-
-def _exact(value: arb) -> Fraction:
-    """An exact ball's midpoint as a fraction."""
-    mantissa, exponent = value.man_exp()
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
 def _halves(p: _Panel, fibre: Interval, effort: _Effort, wanted: fmpq) -> tuple[_Panel, _Panel]:

@@ -11,7 +11,8 @@ from math import gcd
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, univariate
+from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coefficients_in, from_plane, univariate
+from ptmcad.answer.regionmap import Component
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +42,24 @@ class Curve:
 def curve(component: int, p: Coefficient, base: int) -> Curve:
     """The curve of a component, for the base axis 0 or 1."""
     return Curve(component, coefficients_in(p, 1 - base), coefficients_in(p, base))
+
+
+def curves_of(components: Sequence[Component], base: int, reason: str = "") -> list[Curve]:
+    """The components that are used, or left out for a reason, as curves over the base; lines across it are none."""
+    return [
+        curve(n, from_plane(c.polynomial), base)
+        for n, c in enumerate(components)
+        if c.left_out == reason and c.polynomial.degrees[1 - base] > 0
+    ]
+
+
+def lines_of(components: Sequence[Component], base: int, reason: str = "") -> dict[int, UnivariatePolynomial]:
+    """The other ones: lines across the base, as polynomials in u by the components' numbers."""
+    return {
+        n: coefficients_in(from_plane(c.polynomial), 1 - base)[0]
+        for n, c in enumerate(components)
+        if c.left_out == reason and c.polynomial.degrees[1 - base] == 0
+    }
 
 
 def deflation(coefficients: Sequence[UnivariatePolynomial]) -> int:

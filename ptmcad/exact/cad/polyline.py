@@ -20,10 +20,11 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.branches import local_coefficients
 from ptmcad.algebra.chords import slope_over
-from ptmcad.algebra.polynomials import to_fraction
+from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import isolate, refine
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
+from ptmcad.text.balls import exact
 
 _BITS = 128
 _GRID_STEPS = 2**60
@@ -82,7 +83,7 @@ def chords(
 
     def place(share: Fraction) -> Fraction:
         if share not in heights:
-            u = base[0] + width * fmpq(share.numerator, share.denominator)
+            u = base[0] + width * from_fraction(share)
             at = refine(isolate(curve.fibre(u), *fibre)[root], height / _GRID_STEPS)
             rounded = ((at.middle - fibre[0]) / height * _GRID_STEPS + fmpq(1, 2)).floor()
             heights[share] = Fraction(int(rounded), _GRID_STEPS)
@@ -112,13 +113,12 @@ def _distance(
     """A bound for the distance between the wall and its chord over a panel, as a share of the fibre; None: unproved."""
     width, height = base[1] - base[0], fibre[1] - fibre[0]
     middle, half = (left + right) / 2, (right - left) / 2
-    u = base[0] + width * fmpq(middle.numerator, middle.denominator)
-    radius = width * fmpq(half.numerator, half.denominator)
+    u = base[0] + width * from_fraction(middle)
+    radius = width * from_fraction(half)
     slope = slope_over(curve.in_v, isolate(curve.fibre(u), *fibre)[root], u, radius)
     if slope is None:
         return None
-    mantissa, exponent = (abs(slope.second) * arb(radius * radius / 2 / height)).upper().man_exp()
-    distance = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    distance = exact((abs(slope.second) * arb(radius * radius / 2 / height)).upper())
     return -((-distance * _GRID_STEPS).__floor__()) * Fraction(1, _GRID_STEPS)
 
 
@@ -130,8 +130,8 @@ def _between_heights(
     The wall does not leave the window, and it cannot cross a height at which p has no zero over the panel.
     """
     width, height = base[1] - base[0], fibre[1] - fibre[0]
-    u = base[0] + width * fmpq((panel[0] + panel[1]).numerator, (panel[0] + panel[1]).denominator) / 2
-    radius = width * fmpq((panel[1] - panel[0]).numerator, (panel[1] - panel[0]).denominator) / 2
+    u = base[0] + width * from_fraction(panel[0] + panel[1]) / 2
+    radius = width * from_fraction(panel[1] - panel[0]) / 2
     found = []
     for end, side in ((min(ends), -1), (max(ends), 1)):
         margin = max(abs(ends[1] - ends[0]), ROUNDING)
@@ -140,7 +140,7 @@ def _between_heights(
             if not 0 < at < 1:
                 found.append(min(max(at, Fraction(0)), Fraction(1)))
                 break
-            if _absent(curve, u, radius, fibre[0] + height * fmpq(at.numerator, at.denominator), fmpq(0)):
+            if _absent(curve, u, radius, fibre[0] + height * from_fraction(at), fmpq(0)):
                 found.append(at)
                 break
             margin *= 4
@@ -161,13 +161,13 @@ def reaching(
     """
     width, height = base[1] - base[0], fibre[1] - fibre[0]
     middle, half = (span[0] + span[1]) / 2, (span[1] - span[0]) / 2
-    u = base[0] + width * fmpq(middle.numerator, middle.denominator)
-    radius = width * fmpq(half.numerator, half.denominator)
+    u = base[0] + width * from_fraction(middle)
+    radius = width * from_fraction(half)
     waiting = [(Fraction(0), Fraction(1), depth)]
     while waiting:
         low, high, left = waiting.pop()
-        centre = fibre[0] + height * fmpq((low + high).numerator, (low + high).denominator) / 2
-        tall = height * fmpq((high - low).numerator, (high - low).denominator) / 2
+        centre = fibre[0] + height * from_fraction(low + high) / 2
+        tall = height * from_fraction(high - low) / 2
         if _absent(curve, u, radius, centre, tall):
             continue
         if left == 0:

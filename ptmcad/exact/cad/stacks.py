@@ -15,15 +15,8 @@ from flint import fmpq
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, sign_at, simplest_between
 from ptmcad.algebra.window import Interval
+from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.curves import Curve
-
-
-@dataclass(frozen=True, slots=True)
-class Wall:
-    """The ``root``-th real root (from 0, within the window) of a component over a stack."""
-
-    component: int
-    root: int
 
 
 @dataclass(frozen=True, slots=True)

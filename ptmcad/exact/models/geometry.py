@@ -13,6 +13,7 @@ from functools import lru_cache
 
 from flint import fmpq
 
+from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
 from ptmcad.exact.models.system import ParametricSystem, from_potential
 from ptmcad.mechanism import Mechanism
@@ -44,7 +45,7 @@ class _Evaluation:
     ring: TrigonometricRing
 
     def constant(self, value: Fraction) -> TrigonometricPolynomial:
-        return self.ring.context.constant(fmpq(value.numerator, value.denominator))
+        return self.ring.context.constant(from_fraction(value))
 
     def parameter(self, name: str) -> TrigonometricPolynomial:
         return self.ring.parameter(name)

@@ -29,6 +29,7 @@ from ptmcad.exact.ranges.line import critical_values
 from ptmcad.exact.ranges.tracking import BITS, Family, Pair, Reached, at_value, bridge, follow
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Slice
+from ptmcad.text.balls import exact
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
 DIGITS = 12
@@ -216,7 +217,7 @@ def _energy(family: Family, line: Line, reached: Reached) -> Enclosure:
                 for _ in range(e):
                     term = term * value
             total += term
-        return Enclosure(_rational(total.lower()), _rational(total.upper()))
+        return Enclosure(exact(total.lower()), exact(total.upper()))
 
 
 def _close(first: Pair, second: Pair) -> bool:
@@ -227,10 +228,5 @@ def _close(first: Pair, second: Pair) -> bool:
 
 def _point(reached: Reached) -> PathPoint:
     with ctx.workprec(BITS):
-        first, second = (Enclosure(_rational(a.lower()), _rational(a.upper())) for a in reached.angles)
+        first, second = (Enclosure(exact(a.lower()), exact(a.upper())) for a in reached.angles)
     return PathPoint(reached.value, (first, second))
-
-
-def _rational(ball: arb) -> Fraction:
-    mantissa, exponent = (int(n) for n in ball.man_exp())
-    return Fraction(mantissa) * Fraction(2) ** exponent

@@ -13,10 +13,10 @@ from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine
-from ptmcad.answer.regionmap import MorseIndex
-from ptmcad.exact.cad.curves import Curve
-from ptmcad.exact.cad.stacks import BaseEnd, StackData, Wall
-from ptmcad.exact.stages import Variety, domain_limits, problem_of, projection_of, seen_from, stacks_of
+from ptmcad.answer.regionmap import MorseIndex, Wall
+from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
+from ptmcad.exact.cad.stacks import BaseEnd, StackData
+from ptmcad.exact.stages import Variety, domain_limits, problem_of, projection_of, stacks_of
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.question.slice import Slice, without_free_lengths
 
@@ -83,7 +83,7 @@ def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
     found = discriminant_variety(
         problem.system, problem.parameters, window, domain_limits(problem.system, problem.parameters)
     )
-    curves, lines = seen_from(found.components, base)
+    curves, lines = curves_of(found.components, base), lines_of(found.components, base)
     variety = Variety(found.components, found.complex_solutions, base, curves, lines, (0, 0))
     stacks = stacks_of(problem, variety, projection_of(problem, variety)).stacks
     by_number = {c.component: c for c in curves}

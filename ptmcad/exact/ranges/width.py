@@ -237,7 +237,7 @@ class _Search:
                 break
             low, high = (middle, high) if at > 0 else (low, middle)
         width = self.width_at(piece.strip, (low + high) / 2)
-        slack = _rational_above(steepest * arb(high - low))
+        slack = (steepest * arb(high - low)).upper().fmpq()
         self.candidates.append(_Candidate(Place.SMOOTH, (low, high), (width[0], width[1] + slack)))
         return True
 
@@ -283,11 +283,6 @@ def _bounds(end: End) -> Interval:
     if isinstance(end, Fraction):
         return from_fraction(end), from_fraction(end)
     return as_interval(end)
-
-
-def _rational_above(value: arb) -> fmpq:
-    mantissa, exponent = (int(n) for n in value.upper().man_exp())
-    return fmpq(mantissa) * fmpq(2) ** exponent
 
 
 def limit(branch: Branch, strip: Strip, end: fmpq, width: fmpq) -> End | None:

@@ -175,6 +175,6 @@ def critical_table(found: Sequence[CriticalFreeLength], digits: int) -> str:
         return "no critical free length in the window, by elimination"
     rows = [["critical by elimination", "signs of l1, l2, l3", ""]]
     for c in found:
-        decimal = next((c.free.text(n) for n in range(digits, 0, -1) if c.free.settles(n)), "near 0")
+        decimal = settled(c.free, digits) or "near 0"
         rows.append([decimal, " ".join("+" if s > 0 else "-" for s in c.signs), "fold" if c.fold else ""])
     return "\n".join(aligned(rows))

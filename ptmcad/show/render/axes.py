@@ -13,6 +13,7 @@ from typing import Any
 
 from ptmcad.mechanism import Kind
 from ptmcad.question.slice import Slice
+from ptmcad.text.numerals import magnitude
 
 _UNITS = {Kind.LENGTH: "length", Kind.BASE: "length", Kind.STIFFNESS: "force/length", Kind.FORCE: "force"}
 _GREEK = {"rho": "ρ", "alpha": "α", "beta": "β", "theta": "θ", "lambda": "λ", "mu": "μ", "phi": "φ", "kappa": "κ"}
@@ -54,10 +55,10 @@ def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
     largest, width = max(abs(low), abs(high)), high - low
     offset = Fraction(0)
     if largest > width * 10**digits:
-        unit = Fraction(10) ** (_magnitude(width) + 1)
+        unit = Fraction(10) ** (magnitude(width) + 1)
         offset = low // unit * unit
     largest = max(abs(low - offset), abs(high - offset))
-    exponent = _magnitude(largest)
+    exponent = magnitude(largest)
     if -min(digits, 3) <= exponent <= digits:
         exponent = 0
     power = Fraction(10) ** exponent
@@ -104,12 +105,6 @@ def dress(axes: Any, slice: Slice, x: tuple[Fraction, Fraction], y: tuple[Fracti
 
 def _cut(text: str, most: int) -> str:
     return text if len(text) <= most else text[: most - 1] + "…"
-
-
-def _magnitude(value: Fraction) -> int:
-    """The largest e with 10^e <= value, for value > 0."""
-    e = len(str(value.numerator)) - len(str(value.denominator))
-    return e if Fraction(10) ** e <= value else e - 1
 
 
 def _decimal(value: Fraction) -> str:

@@ -16,11 +16,11 @@ from typing import Any
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_fraction, from_plane
+from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, refine, sign_at
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Cell, RegionMap, Status
-from ptmcad.exact.cad.curves import Curve, curve
+from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
 from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Chord, chords, reaching, to_share
 from ptmcad.exact.cad.stacks import roots_over
 from ptmcad.exact.regions import Link, merge
@@ -101,10 +101,8 @@ def reference(result: RegionMap) -> Reference:
         raise ValueError("errors are measured against an exact map with regions distinguished by the index")
     axes = result.slice.axes
     base, fibre = ((from_fraction(axes[k].low), from_fraction(axes[k].high)) for k in (result.base, 1 - result.base))
-    used = [(n, from_plane(c.polynomial)) for n, c in enumerate(result.components) if not c.left_out]
-    across = 1 - result.base
-    curves = tuple(curve(n, p, result.base) for n, p in used if int(p.degrees()[across]) > 0)
-    lines = tuple(coefficients_in(p, across)[0] for _, p in used if int(p.degrees()[across]) == 0)
+    curves = tuple(curves_of(result.components, result.base))
+    lines = tuple(lines_of(result.components, result.base).values())
     critical = tuple(
         RealRoot(UnivariatePolynomial(list(c.polynomial)), from_fraction(c.low), from_fraction(c.high))
         for c in result.critical_values

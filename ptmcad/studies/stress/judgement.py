@@ -27,6 +27,7 @@ from ptmcad.studies.stress.case import (
 from ptmcad.studies.stress.doubles import DoublePose, angle_error, double_poses, scale
 from ptmcad.studies.stress.measure import Verdict, as_float
 from ptmcad.studies.stress.reference import ReferencePose, newton_pose, sextic_poses
+from ptmcad.text.balls import exact
 from ptmcad.text.enclosure import Enclosure
 
 GRID = 16
@@ -139,16 +140,11 @@ def _arb(value: Fraction) -> fmpq:
     return fmpq(value.numerator, value.denominator)
 
 
-def _exact(value: arb) -> Fraction:
-    mantissa, exponent = value.mid().man_exp()
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-
-
 def _distance(pose: Pose, reference: ReferencePose) -> Fraction:
     """The largest error of an angle, between the enclosure's middle and the reference."""
-    turn = _exact(2 * arb.pi())
+    turn = exact((2 * arb.pi()).mid())
     return max(
-        min(abs(enclosure.center - _exact(angle) + n * turn) for n in (-1, 0, 1))
+        min(abs(enclosure.center - exact(angle.mid()) + n * turn) for n in (-1, 0, 1))
         for enclosure, angle in zip(pose.angles, (reference.th1, reference.th2), strict=True)
     )
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from flint import arb, fmpq
+from flint import arb
 
 from ptmcad.mechanism import Kind
 from ptmcad.question.slice import Slice
@@ -16,7 +16,7 @@ from ptmcad.text.expressions import Expression, axis
 from ptmcad.verification.certified.energy import NAMES, Energy
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, POSITIVE
+from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, POSITIVE, rational
 from ptmcad.verification.parameters import AUXILIARY, written
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.signs import Sign, has_no_pole, is_in_domain
@@ -34,7 +34,7 @@ def check_domain(claims: Claims) -> str:
     What was proved, and of which parameters it was not.
     """
     slice = claims.result.slice
-    window = [(_rational(a.low), _rational(a.high)) for a in slice.axes]
+    window = [(rational(a.low), rational(a.high)) for a in slice.axes]
     here, unchecked = (window[0], window[1]), []
     asked = _expressions(slice)
     for name, expression in asked.items():
@@ -65,11 +65,7 @@ def _expressions(slice: Slice) -> dict[str, Expression]:
 
 def exact(value: Fraction) -> arb:
     """The ball of a rational number, as narrow as the precision allows."""
-    return arb(_rational(value))
-
-
-def _rational(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)
+    return arb(rational(value))
 
 
 def values_at(claims: Claims, x: Fraction, y: Fraction) -> Values:
