@@ -1,4 +1,4 @@
-"""Hostile input at the command line, each case in a process of its own whose memory is limited.
+"""Hostile input at the command line, each case in a forked process of its own whose memory is limited.
 
 What is asked of each: exit status 2, one message of bounded length without a character that a terminal obeys, no code
 of the input run. The limit of the child's address space turns a blow-up of memory into a failure; a hang never ends.
@@ -6,44 +6,45 @@ of the input run. The limit of the child's address space turns a blow-up of memo
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
-import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
+from limited import Limited
 
 from ptmcad.cli import run
 
-ROOT = Path(__file__).resolve().parents[1]
+Refused = Callable[[list[str]], str]
 AXES = "axes: {rho: [0, 2], L2: [0, 2]}\n"
 MEMORY = 300 << 20
-"""Bytes of address space, of which FLINT and its threads take a good part."""
-CODE = (
-    "import json, resource, sys\n"
-    "resource.setrlimit(resource.RLIMIT_AS, (int(sys.argv[1]),) * 2)\n"
-    "from ptmcad.cli import run\n"
-    "sys.exit(run(json.load(sys.stdin)))\n"
-)
+"""Bytes of address space, of which the interpreter and its libraries take a good part."""
 
 
-def refused(arguments: list[str], folder: Path) -> str:
-    """The message with which the command line refuses its arguments."""
-    done = subprocess.run(
-        [sys.executable, "-c", CODE, str(MEMORY)], cwd=folder, input=json.dumps(arguments).encode(),
-        capture_output=True, check=False, env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )  # fmt: skip
-    text = done.stderr.decode("utf-8")
-    assert done.returncode == 2, (done.returncode, text[-2000:], done.stdout[-500:])
-    assert text.startswith("error: ")
-    assert text.endswith("\n")
-    assert text[:-1].isprintable()
-    assert len(text) < 1100
-    assert not (folder / "pwned").exists()
-    return text
+@pytest.fixture(scope="session")
+def limited(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Limited]:
+    with Limited(MEMORY, tmp_path_factory.mktemp("limited")) as command_line:
+        yield command_line
+
+
+@pytest.fixture(name="refused")
+def refused_fixture(limited: Limited, tmp_path: Path) -> Callable[[list[str]], str]:
+    """The message with which the command line refuses its arguments, in the test's folder."""
+
+    def refused(arguments: list[str]) -> str:
+        done = limited.run(arguments, tmp_path)
+        text = done.err.decode("utf-8")
+        assert done.status == 2, (done.status, text[-2000:], done.out[-500:])
+        assert text.startswith("error: ")
+        assert text.endswith("\n")
+        assert text[:-1].isprintable()
+        assert len(text) < 1100
+        assert not (tmp_path / "pwned").exists()
+        return text
+
+    return refused
 
 
 def yaml_bomb() -> str:
@@ -132,10 +133,10 @@ RECORDS: dict[str, tuple[str | bytes, str]] = {
 
 
 @pytest.mark.parametrize("case", RECORDS)
-def test_records(tmp_path: Path, case: str) -> None:
+def test_records(tmp_path: Path, refused: Refused, case: str) -> None:
     content, part = RECORDS[case]
     (tmp_path / "record.yaml").write_bytes(content if isinstance(content, bytes) else content.encode())
-    message = refused(["classify", "record.yaml"], tmp_path)
+    message = refused(["classify", "record.yaml"])
     assert message.startswith("error: record.yaml")
     assert part in message
 
@@ -163,9 +164,9 @@ OPTIONS: dict[str, tuple[list[str], str]] = {
 
 
 @pytest.mark.parametrize("case", OPTIONS)
-def test_options(tmp_path: Path, case: str) -> None:
+def test_options(refused: Refused, case: str) -> None:
     arguments, part = OPTIONS[case]
-    assert part in refused(arguments, tmp_path)
+    assert part in refused(arguments)
 
 
 PARSER = {
@@ -189,10 +190,15 @@ def test_what_the_parser_of_options_refuses(case: str, capfd: pytest.CaptureFixt
     assert all(line.isprintable() and len(line) < 1100 for line in lines)
 
 
+@cache
+def good_text(shipped: Callable[..., Any]) -> str:
+    return shipped("fig2").to_json()
+
+
 @pytest.fixture(name="files")
 def odd_files(tmp_path: Path, shipped: Callable[..., Any]) -> dict[str, str]:
     """Files that are none, by what they are; and a good result."""
-    (tmp_path / "good.json").write_text(shipped("fig2").to_json(), encoding="utf-8")
+    (tmp_path / "good.json").write_text(good_text(shipped), encoding="utf-8")
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "loop").symlink_to("loop")
     with (tmp_path / "sparse").open("wb") as file:
@@ -211,9 +217,9 @@ def odd_files(tmp_path: Path, shipped: Callable[..., Any]) -> dict[str, str]:
     [["classify", ""], ["verify", ""], ["locate", "", "--at", "rho=1,L2=1"], ["locate", "good.json", "--csv", ""]],
     ids=["record", "verify", "locate", "points"],
 )
-def test_files_that_are_none(tmp_path: Path, files: dict[str, str], command: list[str], kind: str) -> None:
+def test_files_that_are_none(refused: Refused, files: dict[str, str], command: list[str], kind: str) -> None:
     """A pipe has no writer: a plain open() would wait for one for ever."""
-    message = refused([part or files[kind] for part in command], tmp_path)
+    message = refused([part or files[kind] for part in command])
     assert message.startswith(f"error: {files[kind]}")
     if kind in ("pipe", "null", "zero", "full"):
         assert "is a device or a pipe" in message
@@ -237,10 +243,10 @@ def result_texts() -> dict[str, str | bytes]:
 
 @pytest.mark.parametrize("case", result_texts())
 @pytest.mark.parametrize("command", [["verify"], ["locate", "--at", "rho=1,L2=1"]], ids=["verify", "locate"])
-def test_results(tmp_path: Path, command: list[str], case: str) -> None:
+def test_results(tmp_path: Path, refused: Refused, command: list[str], case: str) -> None:
     content = result_texts()[case]
     (tmp_path / "r.json").write_bytes(content if isinstance(content, bytes) else content.encode())
-    assert refused([command[0], "r.json", *command[1:]], tmp_path).startswith("error: r.json")
+    assert refused([command[0], "r.json", *command[1:]]).startswith("error: r.json")
 
 
 POINTS: dict[str, tuple[str | bytes, str]] = {
@@ -264,10 +270,10 @@ POINTS: dict[str, tuple[str | bytes, str]] = {
 
 
 @pytest.mark.parametrize("case", POINTS)
-def test_points(tmp_path: Path, files: dict[str, str], case: str) -> None:
+def test_points(tmp_path: Path, refused: Refused, files: dict[str, str], case: str) -> None:
     content, part = POINTS[case]
     (tmp_path / "points.csv").write_bytes(content if isinstance(content, bytes) else content.encode())
-    assert part in refused(["locate", "good.json", "--csv", "points.csv"], tmp_path)
+    assert part in refused(["locate", "good.json", "--csv", "points.csv"])
 
 
 @pytest.mark.parametrize(
@@ -275,5 +281,5 @@ def test_points(tmp_path: Path, files: dict[str, str], case: str) -> None:
     ["rho=\x1b[31m,L2=1", "\x1b[31m\n", ",".join(f"a{n}=1" for n in range(10_000)), "rho=1,L2=\udcff", "rho=1e9999"],
     ids=["escape codes", "nothing but", "10^4 names", "not UTF-8", "huge"],
 )  # fmt: skip
-def test_points_as_options(tmp_path: Path, files: dict[str, str], at: str) -> None:
-    refused(["locate", "good.json", "--at", at], tmp_path)
+def test_points_as_options(refused: Refused, files: dict[str, str], at: str) -> None:
+    refused(["locate", "good.json", "--at", at])
