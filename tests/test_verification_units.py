@@ -16,7 +16,10 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import LimitReached
 from ptmcad.text.numerals import decimal, fraction_of, integer_of, integer_text, shortest_text, text_of
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.counts import check_counts
 from ptmcad.verification.elimination import discriminant, resultant
+from ptmcad.verification.solutions import check_solutions
 
 PLANE = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
 
@@ -129,8 +132,12 @@ def test_boxes_near_a_cusp_are_disjoint_and_verified(exponent: int) -> None:
         assert len(cell.solutions) == cell.total
         for a, b in combinations(cell.solutions, 2):
             assert any(abs(x - y) > a.radius + b.radius for x, y in zip(a.center, b.center, strict=True))
-    report = ptmcad.verify(RegionMap.from_json(result.to_json()))
-    assert report.ok, report.violation
+    stored = RegionMap.from_json(result.to_json())
+    check_counts(Claims(stored))
+    check_solutions(Claims(stored))
+    if exponent == 3:  # the areas at a cusp take most of the time, and are no matter of digits
+        report = ptmcad.verify(stored)
+        assert report.ok, report.violation
 
 
 def test_points_are_drawn_from_the_claims(shipped: Callable[..., RegionMap]) -> None:

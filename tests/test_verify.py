@@ -7,23 +7,52 @@ import random
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import mutations
 import pytest
+from forger.judge import violation
 from mutations import put
 from shipped_records import EXACT
 
 import ptmcad
-from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.question.slice import Point
+from ptmcad.verification.areas import check_areas
+from ptmcad.verification.claims import Claims
 
 CONFIGS = [path.stem for path in EXACT]
+
+
+LIKELY = {
+    "walls and samples": "sample_of_another_cell sample_beyond_a_wall root_index stack_sample",
+    "variety complete": "changed_component critical_kind complex_solutions smooth_line_at_infinity",
+    "counts": "count morse_index swapped_index box_invented",
+    "merges": "separates merge_kind",
+    "critical values": "moved_critical_value invented_critical_value critical_polynomial origin",
+    "adjacencies": "adjacency_removed adjacency_added adjacency_component segment_end",
+    "areas": "area_bound area_order window area_shifted area_too_narrow area_beyond_the_window "
+             "partial_with_false_areas",
+    "regions": "region_number region_cells region_count region_sample",
+    "plan": "base_axis plan_cost",
+    "solutions": "box_moved box_shrunk box_blown_up box_dropped box_twice solutions_of_another_cell sign "
+                 "signs_exchanged",
+    "non-adjacencies": "non_adjacency_dropped non_adjacency_twice non_adjacency_invented non_adjacency_reason "
+                       "non_adjacency_cells non_adjacency_segment",
+}  # fmt: skip
+"""The alterations that a check is likely to reject: it is tried first, which makes the tests faster, and no weaker."""
+FIRST = {name: check for check, names in LIKELY.items() for name in names.split()}
 
 
 def stored(result: RegionMap) -> RegionMap:
     """What a reader of the file has."""
     return RegionMap.from_json(result.to_json())
+
+
+@cache
+def stored_shipped(shipped: Callable[..., RegionMap], name: str) -> RegionMap:
+    return stored(shipped(name))
 
 
 @pytest.mark.parametrize("name", CONFIGS)
@@ -50,7 +79,7 @@ def test_shipped_results_are_accepted(name: str, shipped: Callable[..., RegionMa
 def test_false_alterations_are_rejected(
     name: str, seeds: int, mutation: mutations.Mutation, shipped: Callable[..., RegionMap]
 ) -> None:
-    true = stored(shipped(name))
+    true = stored_shipped(shipped, name)
     for seed in range(seeds):
         rng = random.Random(f"{name} {mutation.__name__} {seed}")
         try:
@@ -58,9 +87,11 @@ def test_false_alterations_are_rejected(
         except IndexError:  # from an empty choice: this result makes no claim of this kind
             assert (name, mutation.__name__) in NOTHING_TO_ALTER
             continue
-        report = ptmcad.verify(false)
-        assert not report.ok, f"seed {seed}"
-        assert report.violation
+        assert violation(false, FIRST.get(mutation.__name__, "")) is not None, f"seed {seed}"
+
+
+def test_each_alteration_that_a_check_is_likely_to_reject_is_one() -> None:
+    assert FIRST.keys() <= {mutation.__name__ for mutation in mutations.ALL}
 
 
 NOTHING_TO_ALTER: set[tuple[str, str]] = set()
@@ -98,6 +129,19 @@ def changed(value: Any, rng: random.Random) -> Any:
     return rng.choice([value + "1", "-" + value, value[:-1], None, 7]) if value else "x"
 
 
+FIRST_OF = {
+    "components": "variety complete", "critical_values": "critical values", "stacks": "walls and samples",
+    "cells": "solutions", "adjacencies": "adjacencies", "non_adjacencies": "non-adjacencies", "regions": "regions",
+}  # fmt: skip
+"""The check that is tried first, by the table in which an entry is changed."""
+
+
+def is_accepted(altered: RegionMap, table: str) -> bool:
+    if altered.status is not Status.EXACT or altered.cover is not None:  # it is not said to be an exact map any more
+        return ptmcad.verify(altered).ok
+    return violation(altered, FIRST_OF.get(table, "")) is None
+
+
 @pytest.mark.parametrize(
     ("name", "number"),
     [
@@ -122,19 +166,21 @@ def test_any_changed_entry_of_the_file_is_rejected(name: str, number: int, shipp
             altered = RegionMap.from_json(json.dumps(data))
         except ValueError:
             continue
-        if ptmcad.verify(altered).ok and altered != shipped(name):
+        if is_accepted(altered, path[0]) and altered != shipped(name):
             accepted.append((path, old, new))
     assert not accepted
 
 
 def test_a_tiny_change_of_an_area_is_rejected(shipped: Callable[..., RegionMap]) -> None:
     true = stored(shipped("fig4", area_tolerance="1e-9"))
-    assert ptmcad.verify(true).ok
+    check_areas(Claims(true))
     low, high = true.regions[1].area
     shift = Fraction(2, 10**9)
     first = replace(true.regions[0], area=(true.regions[0].area[0] - shift, true.regions[0].area[1] - shift))
     second = replace(true.regions[1], area=(low + shift, high + shift))
-    assert not ptmcad.verify(replace(true, regions=(first, second))).ok
+    found = violation(replace(true, regions=(first, second)), "areas")
+    assert found is not None
+    assert found[0] == "areas"
 
 
 def test_bounds_too_narrow_to_be_confirmed_are_rejected(shipped: Callable[..., RegionMap]) -> None:
