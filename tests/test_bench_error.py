@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import shipped
 from flint import fmpq
 from hypothesis import given
 from hypothesis import strategies as st
@@ -36,7 +37,7 @@ shares = st.fractions(0, 1, max_denominator=60)
 
 @cache
 def exact(name: str) -> tuple[Reference, dict[str, Walls]]:
-    found = reference(ptmcad.classify(ptmcad.load(CONFIGS / f"{name}.yaml"), count="index"))
+    found = reference(shipped(name, "index"))
     return found, walls(found)
 
 
@@ -187,7 +188,7 @@ def _changes(source: object, u: fmpq, low: fmpq, high: fmpq) -> bool:
 @pytest.mark.parametrize(("name", "n"), [("fig3", 9), ("fig4", 8), ("fig2", 2), ("fig2", 50)])
 def test_centres_are_where_locate_finds_them(name: str, n: int) -> None:
     """fig2 with two or fifty columns has centres over a critical value and on walls."""
-    found = reference(ptmcad.classify(ptmcad.load(CONFIGS / f"{name}.yaml"), count="index"))
+    found = reference(shipped(name, "index"))
     columns = centres(found, n)
     axes = found.result.slice.axes
     base = found.result.base
@@ -276,7 +277,7 @@ def test_companion_and_scipy_agree_where_both_are_right() -> None:
 )
 def test_companion_is_right_at_centres(name: str, n: int) -> None:
     """A rival worth beating: where no wall is near, floats do."""
-    found = reference(ptmcad.classify(ptmcad.load(CONFIGS / f"{name}.yaml"), count="index"))
+    found = reference(shipped(name, "index"))
     stable, total = grid(name, n)
     for k, runs in enumerate(centres(found, n)):
         for cell, first, end in runs:

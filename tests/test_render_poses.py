@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 import matplotlib
 import numpy as np
 import pytest
+from conftest import shipped
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -277,9 +278,8 @@ def test_the_edges_of_the_torus_are_one() -> None:
 # ------------------------------------------------------------------------------------------- the map and the poses
 
 
-@cache
 def classified(name: str, count: str) -> ptmcad.RegionMap:
-    return ptmcad.classify(ptmcad.load(ROOT / "configs" / f"{name}.yaml"), count=count)
+    return shipped(name, None if count == "stable" else count)
 
 
 @pytest.mark.parametrize(("name", "count", "panels"), [("fig4", "stable", 2), ("fig3", "index", 2)])
