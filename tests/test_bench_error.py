@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import shipped
 from flint import fmpq
 from hypothesis import given
 from hypothesis import strategies as st
+from maps import shipped
 
 import ptmcad
 from ptmcad.algebra.polynomials import from_fraction, from_plane

@@ -7,10 +7,10 @@ from fractions import Fraction
 
 import oracle
 import pytest
-from conftest import CONFIGS, shipped
 from flint import fmpq
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from maps import CONFIGS, shipped
 from shipped_records import EXACT
 
 from ptmcad import load

@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 import sympy
-from conftest import shipped
+from maps import shipped
 from programs import ProgramError, needs_msolve, real_solutions
 from singular_slice import SHIPPED, axes, parameters
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import cache
 
 import pytest
-from conftest import shipped
+from maps import shipped
 from programs import ProgramError, needs_qepcad, needs_singular, qepcad_session
 from qepcad_cells import DISPLAY, Decomposition, compare, decided, decomposition, exactly, indices, window_cad
 from singular_slice import SHIPPED, axes, counting_formulas

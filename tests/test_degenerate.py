@@ -7,7 +7,7 @@ from typing import Any
 
 import oracle
 import pytest
-from conftest import CONFIGS
+from maps import CONFIGS
 from structure import check_structure
 
 from ptmcad import RegionMap, classify, load, slice_from_mapping

@@ -7,10 +7,10 @@ from itertools import combinations, pairwise
 from math import prod
 
 import pytest
-from conftest import CONFIGS, shipped
 from flint import Ordering, fmpq, fmpq_mat, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_mpoly_vec, fmpz_poly
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from maps import CONFIGS, shipped
 
 from ptmcad import load
 from ptmcad.algebra.fibre import evaluate as multiplication

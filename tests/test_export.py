@@ -14,7 +14,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 import sympy
-from conftest import CONFIGS, shipped
+from maps import CONFIGS, shipped
 from programs import (
     ProgramError,
     eliminated,

@@ -10,8 +10,8 @@ import pytest
 
 pytest.importorskip("numba")
 
-from conftest import shipped, shipped_certified
 from dense_search import dense_search
+from maps import shipped, shipped_certified
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status

@@ -9,8 +9,8 @@ from typing import Any
 
 import oracle
 import pytest
-from conftest import shipped
 from flint import fmpq
+from maps import shipped
 from shipped_records import EXACT
 from structure import check_structure, key
 

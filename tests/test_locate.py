@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import oracle
 import pytest
-from conftest import CONFIGS, shipped
+from maps import CONFIGS, shipped
 from shipped_records import EXACT
 
 from ptmcad import RegionMap, load

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from conftest import shipped
+from maps import shipped
 
 from ptmcad.text.numerals import (
     MAX_DIGITS,

@@ -10,8 +10,8 @@ from typing import Any
 
 import jsonschema
 import pytest
-from conftest import CONFIGS
 from flint import arb, ctx
+from maps import CONFIGS
 
 import ptmcad
 from ptmcad.ask.ranges import Fate, PosePath, pose_paths

@@ -13,7 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from conftest import shipped_certified
+from maps import shipped_certified
 
 import ptmcad
 from ptmcad.cli import run

@@ -14,9 +14,9 @@ from xml.etree import ElementTree
 import matplotlib
 import numpy as np
 import pytest
-from conftest import shipped
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from maps import shipped
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure

@@ -13,8 +13,8 @@ from typing import Any
 import browser as chromium
 import pytest
 from browser import Browser
-from conftest import CONFIGS
-from conftest import shipped as computed
+from maps import CONFIGS
+from maps import shipped as computed
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
