@@ -9,7 +9,7 @@ import tempfile
 
 import pytest
 from hypothesis import HealthCheck, settings
-from maps import FOLDER, shipped
+from support.maps import FOLDER, shipped
 
 settings.register_profile(
     "ptmcad",

@@ -14,7 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from shipped_records import EXACT
+from support.shipped_records import EXACT
 
 from ptmcad.cli import run
 

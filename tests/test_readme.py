@@ -13,7 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from maps import shipped_certified
+from support.maps import shipped_certified
 
 import ptmcad
 from ptmcad.cli import run
