@@ -65,8 +65,9 @@ $(VENV)/.installed-docs: $(VENV)/.installed
 demo: $(VENV)/.installed
 	$(BIN)/ptmcad classify configs/fig4.yaml --format json,png,svg --out out
 
+# Tests of one module read the same maps: each process takes them in a row, and from the other's rest when it has none.
 test: $(VENV)/.installed-test
-	$(BIN)/python -m pytest --numprocesses $(JOBS)
+	$(BIN)/python -m pytest --numprocesses $(JOBS) --dist worksteal
 
 test-slow: $(VENV)/.installed-test
 	$(BIN)/python -m pytest --numprocesses $(JOBS) -m slow

@@ -1,15 +1,15 @@
-"""Hypothesis repeats the same examples in every run, and the region maps of the shipped slices are computed once."""
+"""Hypothesis repeats the same examples in every run, and the processes of a run have a folder in common."""
 
 from __future__ import annotations
 
+import os
+import shutil
 import signal
-from functools import cache
-from pathlib import Path
+import tempfile
 
 import pytest
 from hypothesis import HealthCheck, settings
-
-import ptmcad
+from support.maps import FOLDER, shipped
 
 settings.register_profile(
     "ptmcad",
@@ -27,13 +27,14 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 if hasattr(signal, "SIGHUP"):
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-CONFIGS = Path(__file__).parent.parent / "configs"
 
-
-@cache
-def shipped(name: str, count: str | None = None, area_tolerance: str = "1e-4") -> ptmcad.RegionMap:
-    """The region map of a shipped slice."""
-    return ptmcad.classify(ptmcad.load(CONFIGS / f"{name}.yaml"), count=count, area_tolerance=area_tolerance)
+def pytest_configure(config: pytest.Config) -> None:
+    # the first process of a run; those that it starts find the folder in their environment
+    if FOLDER not in os.environ and os.name == "posix":
+        folder = tempfile.mkdtemp(prefix="ptmcad-maps-")
+        os.environ[FOLDER] = folder
+        config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
+        config.add_cleanup(lambda: os.environ.pop(FOLDER, None))
 
 
 @pytest.fixture(name="shipped")

@@ -15,7 +15,9 @@ from pathlib import Path
 
 import pytest
 import yaml
-from shipped_records import EXACT
+from support.shipped_records import EXACT
+
+from ptmcad.cli import run
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -34,7 +36,7 @@ def blocks(language: str) -> list[str]:
     return [text for found, text in BLOCKS if found == language]
 
 
-def test_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
     """Its record, every command in its order, the files it names, and its Python with the values it shows."""
     monkeypatch.chdir(tmp_path)
     (record,) = blocks("yaml")
@@ -45,11 +47,10 @@ def test_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for line in lines:
         program, command, *arguments = shlex.split(line)
         assert program == ".venv/bin/ptmcad"
-        done = subprocess.run(
-            [sys.executable, "-m", "ptmcad", command, *arguments], capture_output=True, text=True, check=False
-        )
-        assert (done.returncode, done.stderr) == (0, ""), line
-        assert SAYS[command] in done.stdout, line
+        status = run([command, *arguments])
+        out, err = capfd.readouterr()
+        assert (status, err) == (0, ""), line
+        assert SAYS[command] in out, line
     assert {path.name for path in Path("mine").iterdir()} == {
         "mine.json", "mine.pdf", "mine.svg", "variety.py", "variety.tex",
     }  # fmt: skip

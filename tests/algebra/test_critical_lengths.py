@@ -1,0 +1,139 @@
+"""Critical free lengths by algebra: the system against balls, msolve's answers read, and the counts on both sides."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+from math import cos, hypot, sin
+from pathlib import Path
+from random import Random
+
+import pytest
+import sympy
+from support.programs import needs_msolve
+
+from ptmcad.algebra import msolve
+from ptmcad.algebra.critical_lengths import NAMES, critical_system
+from ptmcad.algebra.signed import signed_solutions
+from ptmcad.certified.intervals import certified_intervals
+from ptmcad.errors import ConfigError
+from ptmcad.exact.ranges.free_lengths import critical_free_lengths, critical_on_line
+from ptmcad.question.config import slice_from_options
+
+RHO, RODS, LOADS = Fraction(7, 10), (Fraction(1), Fraction(3, 2)), (Fraction(-1, 10), Fraction(-1, 10))
+
+
+def potential(rho: float, l1: float, l2: float, l0: float, f3: float, f4: float, a: float, b: float) -> float:
+    x3, y3, x4, y4 = l1 * cos(a), l1 * sin(a), rho - l2 * cos(b), l2 * sin(b)
+    lengths = hypot(x4, y4), hypot(x3 - rho, y3), hypot(x3 - x4, y3 - y4)
+    return sum((x - l0) ** 2 for x in lengths) / 2 - f3 * y3 - f4 * y4
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_equations_are_derivatives_of_the_potential(seed: int) -> None:
+    """Difference quotients of U/k from the nodes' coordinates; each polynomial up to one positive factor."""
+    random = Random(seed)
+    exact = [Fraction(random.randint(1, 30), 10) for _ in range(5)]
+    rho, l1, l2, f3, f4 = map(float, exact)
+    texts = critical_system(exact[0], (exact[1], exact[2]), (exact[3], exact[4]))
+    equations = [sympy.sympify(text.replace("^", "**")) for text in texts]
+    ratios = []
+    for _ in range(3):
+        free, a, b = random.uniform(0.5, 3), random.uniform(-3, 3), random.uniform(-3, 3)
+        x3, y3, x4, y4 = l1 * cos(a), l1 * sin(a), rho - l2 * cos(b), l2 * sin(b)
+        inverses = 1 / hypot(x4, y4), 1 / hypot(x3 - rho, y3), 1 / hypot(x3 - x4, y3 - y4)
+        at = dict(zip(NAMES, (*inverses, cos(a), sin(a), cos(b), sin(b), free), strict=True))
+        values = [float(e.subs(at)) for e in equations]
+        assert max(map(abs, values[:5])) < 1e-7
+        h = 1e-3
+
+        def u(i: int, j: int, free: float = free, a: float = a, b: float = b, h: float = h) -> float:
+            return potential(rho, l1, l2, free, f3, f4, a + i * h, b + j * h)
+
+        h11, h22 = ((u(i, j) - 2 * u(0, 0) + u(-i, -j)) / h**2 for i, j in ((1, 0), (0, 1)))
+        h12 = (u(1, 1) - u(1, -1) - u(-1, 1) + u(-1, -1)) / (4 * h * h)
+        wanted = (u(1, 0) - u(-1, 0)) / (2 * h), (u(0, 1) - u(0, -1)) / (2 * h), h11 * h22 - h12**2
+        ratios.append([w / v for w, v in zip(wanted, values[5:], strict=True)])
+    for same in zip(*ratios, strict=True):
+        assert min(same) > 0
+        assert max(same) == pytest.approx(min(same), rel=1e-2)
+
+
+ANSWERS = {
+    "[-1]:": (),
+    "[0, [1,\n[[[1 / 2^2, 3 / 2], [-1, 0]], [[5 / 2^520, 5 / 2^519], [2, 2]]]\n]]:": (
+        ((Fraction(1, 4), Fraction(3, 2)), (Fraction(-1), Fraction(0))),
+        ((Fraction(5, 2**520), Fraction(5, 2**519)), (Fraction(2), Fraction(2))),
+    ),
+    "[0, [1,\n[]\n]]:": (),
+}
+
+
+@pytest.mark.parametrize("answer", ANSWERS)
+def test_answers_are_read(answer: str) -> None:
+    assert msolve.parsed(answer, 2) == ANSWERS[answer]
+
+
+@pytest.mark.parametrize("answer", [
+    "", "[1, 2, -1, []]:", "[0, [1, [[[1, 2]]]]]:", "[0, [1, [[[2, 1], [1, 1]]]]]:", "[0, [1, [[[1, 2], [3, 4",
+], ids=["empty", "infinitely many", "one variable missing", "ends swapped", "cut off"])  # fmt: skip
+def test_what_is_no_answer_is_an_error(answer: str) -> None:
+    with pytest.raises(msolve.MsolveError):
+        msolve.parsed(answer, 2)
+
+
+def test_a_missing_program_is_one_message(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(msolve, "program", lambda: None)
+    with pytest.raises(msolve.MsolveError, match="not installed"):
+        critical_free_lengths(RHO, RODS, LOADS)
+
+
+def test_a_length_that_is_not_positive_is_refused() -> None:
+    with pytest.raises(ConfigError, match="positive"):
+        critical_free_lengths(Fraction(0), RODS, LOADS)
+
+
+@needs_msolve
+def test_real_solutions_of_a_small_system() -> None:
+    boxes = msolve.real_solutions(("x", "y"), ("x^2-2", "y-x-1"))
+    assert len(boxes) == 2
+    assert all(low**2 <= 2 <= high**2 or high**2 <= 2 <= low**2 for (low, high), _ in boxes)
+    assert msolve.real_solutions(("x", "y"), ("x^2+2", "y-x")) == ()
+    with pytest.raises(msolve.MsolveError):
+        msolve.real_solutions(("x", "y"), ("x*y-y",))
+
+
+@needs_msolve
+def test_a_time_limit_is_kept() -> None:
+    with pytest.raises(msolve.MsolveError, match="did not end"):
+        critical_free_lengths(RHO, RODS, LOADS, timeout=0.2)
+
+
+@needs_msolve
+@pytest.mark.slow
+def test_fifty_two_critical_lengths_and_the_counts_around_them() -> None:
+    """52 real ones at rho = 7/10, L2 = 3/2, f = -1/10; over all signs exact counts change by 2 at each positive one."""
+    found = critical_free_lengths(RHO, RODS, LOADS)
+    assert len(found) == 52
+    signed = {(round(c.free.center, 20), c.signs) for c in found}
+    assert signed == {(-free, tuple(-s for s in signs)) for free, signs in signed}
+    positive = [c for c in found if c.free.low > 0]
+    samples = [positive[0].free.center / 2]
+    samples += [((a.free.center + b.free.center) / 2).limit_denominator(10**6) for a, b in pairwise(positive)]
+    counts = [signed_solutions((RHO, RODS, free, LOADS)) for free in samples]
+    for critical, (before, after) in zip(positive, pairwise(counts), strict=False):
+        assert abs(after.real - before.real) == 2, critical
+
+
+@needs_msolve
+@pytest.mark.slow
+def test_elimination_and_intervals_find_the_same_folds() -> None:
+    """Along l0 in (0, 2) at rho = 7/10, L2 = 3/2, F = -10: seven, to ten digits."""
+    pytest.importorskip("numba")
+    axes = {"slice": "rho,l0", "ranges": ["l0=0:2"], "sets": ["L2=3/2", "F3=-10", "F4=-10"]}
+    slice = slice_from_options(**axes)  # type: ignore[arg-type]
+    algebra = [c.free for c in critical_on_line(slice, "l0", {"rho": "7/10"}) if c.fold]
+    line = certified_intervals(slice, "l0", {"rho": "7/10"}, 10)
+    folds = [c.at for c in line.changes if c.names == ("fold",)]
+    assert len(algebra) == 7
+    assert [c.text(10) for c in algebra] == [c.text(10) for c in folds]

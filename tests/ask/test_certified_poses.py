@@ -1,0 +1,164 @@
+"""solve and range with free lengths: certified poses, and critical values along a line."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction as Q
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from support.dense_search import dense_search, derivatives
+
+from ptmcad import Poses, solve
+from ptmcad.answer.poses import Pose
+from ptmcad.answer.regionmap import Status
+from ptmcad.certified.intervals import certified_intervals
+from ptmcad.cli.range import command
+from ptmcad.errors import ConfigError
+from ptmcad.question.config import slice_from_options
+from ptmcad.show.ranges.certified import table
+from ptmcad.show.render.landscape import energy_of
+
+SCHEMA = json.loads((Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8"))
+POINTS: list[dict[str, Any]] = [
+    {"rho": "7/10", "L2": "3/2", "F3": -10, "F4": -10, "l0": "4/5"},
+    {"rho": "7/10", "L2": "3/2", "l0": "1/5"},
+    {"rho": "7/10", "L2": 1, "F3": -10, "F4": -10, "l0": "1/5"},
+    {"rho": 1, "L2": "3/2", "l0": "1/5"},
+    {"rho": 1, "L2": 1, "F3": -10, "l0": "2/5"},
+    {"rho": "1/3", "L2": "6/5", "k1": 50, "k3": 150, "F3": 3, "F4x": -7, "l0_1": "1/2", "l0_3": "3/10"},
+]
+
+
+@pytest.mark.parametrize("point", POINTS)
+def test_poses_agree_with_the_energy_written_out_again(point: dict[str, Any]) -> None:
+    poses = solve(**point)
+    assert poses.status is Status.CERTIFIED
+    values = {name: float(value) for name, value in poses.parameters.items()}
+    seen = dense_search(values, 60)
+    assert (seen["total"], seen["stable"]) == (len(poses.equilibria), poses.stable)
+    assert seen["admissible"] == sum(pose.admissible is True for pose in poses.equilibria)
+    energy = energy_of(poses.parameters)
+    for pose in poses.equilibria:
+        a, b = (np.array([float(x.center)]) for x in pose.angles)
+        g1, g2, h11, h12, h22, lengths = derivatives(values, a, b)
+        assert abs(g1[0]) + abs(g2[0]) < 1e-8
+        eigenvalues = np.linalg.eigvalsh([[h11[0], h12[0]], [h12[0], h22[0]]])
+        assert eigenvalues == pytest.approx([float(x.center) for x in pose.eigenvalues], rel=1e-8)
+        assert lengths[:, 0] == pytest.approx([float(s.length.center) for s in pose.springs], abs=1e-9)
+        assert energy(a, b)[0] == pytest.approx(energy.scaled(pose.energy.center), abs=1e-9)
+        for spring in pose.springs:
+            force = spring.stiffness * (spring.length.center - spring.free_length)
+            assert float(force) == pytest.approx(float(spring.force.center), abs=1e-7)
+
+
+@pytest.mark.parametrize("point", POINTS)
+def test_document_and_table(point: dict[str, Any]) -> None:
+    poses = solve(**point)
+    text = poses.to_json()
+    assert Poses.from_json(text) == poses
+    jsonschema.Draft202012Validator(SCHEMA).validate(json.loads(text))
+    assert "tense" in poses.table() and "certified" in poses.table()
+
+
+def numbers(pose: Pose) -> list[Any]:
+    springs = [x for s in pose.springs for x in (s.length, s.force)]
+    nodes = [x for at in pose.nodes.values() for x in at]
+    return [*pose.angles, *pose.degrees, *pose.cosines_sines, *nodes, *springs, pose.energy, *pose.eigenvalues]
+
+
+def test_many_digits_and_few_agree() -> None:
+    few, many = solve(**POINTS[0]), solve(digits=150, **POINTS[0])
+    for a, b in zip(few.equilibria, many.equilibria, strict=True):
+        for x, y in zip(numbers(a), numbers(b), strict=True):
+            assert y.settles(150) and x.low <= y.high and y.low <= x.high
+
+
+def test_flat_poses_are_exact() -> None:
+    poses = solve(**POINTS[1])
+    flat = [pose for pose in poses.equilibria if pose.flat]
+    assert len(flat) == 4
+    # at th1 = pi, th2 = 0 spring A3A4 has its free length exactly: no force
+    assert any(spring.force.low == spring.force.high == 0 for pose in flat for spring in pose.springs)
+    assert all(pose.energy.low == pose.energy.high for pose in flat)
+
+
+def test_without_free_lengths_nothing_changes() -> None:
+    plain, zero = solve(rho=1, L2="3/2"), solve(rho=1, L2="3/2", l0=0)
+    assert plain == zero and plain.status is Status.EXACT
+    assert all(pose.admissible is None for pose in plain.equilibria)
+    assert "admissible" not in plain.to_json() and "l0" not in plain.to_json() and "tense" not in plain.table()
+
+
+def test_infinitely_many_equilibria_are_undecided() -> None:
+    poses = solve(rho=0, L2="3/2", l0="1/5")
+    assert poses.status is Status.UNDECIDED and not poses.equilibria and poses.remark
+    assert poses.remark in " ".join(poses.table().split())
+    assert Poses.from_json(poses.to_json()) == poses
+
+
+def test_a_negative_free_length_is_refused() -> None:
+    with pytest.raises(ConfigError, match="l0"):
+        solve(rho=1, L2="3/2", l0="-1/5")
+
+
+# --------------------------------------------------------------------------------------------------------------- range
+
+
+def test_critical_free_lengths_enclosed() -> None:
+    """Known: folds at rho = 7/10, L2 = 3/2, f = -1/10 are among the 52 of REFERENCE; counts are proved between."""
+    slice = slice_from_options(None, "l0,rho", ("L2=3/2", "F3=-10", "F4=-10"), ("l0=0:1", "rho=0:2"))
+    found = certified_intervals(slice, "l0", {"rho": "7/10"}, 20)
+    assert [change.names[0] for change in found.changes] == ["cone", "cone", "fold", "fold"]
+    assert all(change.proved and change.at.settles(20) for change in found.changes)
+    assert [interval.index for interval in found.intervals] == [
+        (2, 3, 1), (2, 4, 1), (2, 5, 1), (3, 6, 1), (3, 7, 2)
+    ]  # fmt: skip
+    for interval in found.intervals:
+        values = {"rho": 0.7, "L2": 1.5, "L1": 1.0, "F3": -0.1, "F4": -0.1, "F3x": 0.0, "F4x": 0.0}
+        free = float(interval.sample)
+        values |= {f"{name}{i}": value for i in (1, 2, 3) for name, value in (("k", 1.0), ("l0_", free))}
+        assert dense_search(values, 80)["index"] == interval.index
+    assert "0.38821735322286586534" in table(found, 20)
+
+
+def test_the_cone_s_critical_length_by_hand() -> None:
+    """It solves A1^2 + A2^2 + 2 A1 A2 c12 = s12^2 l0^2 (REFERENCE) at the triangle rho, L1, L2."""
+    slice = slice_from_options(None, "l0,rho", ("L2=3/2", "F3=-10", "F4=-10"), ("l0=1/3:1/2", "rho=0:2"))
+    found = certified_intervals(slice, "l0", {"rho": "7/10"}, 10)
+    (cone,) = found.changes
+    rho, p, q, free = 0.7, 1.0, 1.5, float(cone.at.center)
+    c1, c2 = (rho**2 + p**2 - q**2) / (2 * rho * p), (rho**2 + q**2 - p**2) / (2 * rho * q)
+    residues = []
+    for side in (1, -1):
+        s1, s2 = side * (1 - c1**2) ** 0.5, side * (1 - c2**2) ** 0.5
+        a1 = (1 - free / q) * rho * s1 + 0.1 * c1
+        a2 = (1 - free / p) * rho * s2 + 0.1 * c2
+        c12, s12 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2
+        residues.append(a1**2 + a2**2 + 2 * a1 * a2 * c12 - s12**2 * free**2)
+    assert min(map(abs, residues)) < 1e-12
+
+
+@pytest.mark.slow
+def test_the_issue_s_line() -> None:
+    slice = slice_from_options(None, "rho,L2", ("l0=1/5", "F3=-10", "F4=-10"), ("rho=0:4", "L2=0:4"))
+    found = certified_intervals(slice, "rho", {"L2": "3/2"}, 10)
+    stable = [interval.index[0] for interval in found.intervals if interval.index]
+    assert stable == [1, 2, 2, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2, 2, 1]
+
+
+def test_range_on_the_command_line() -> None:
+    options = ["--along", "l0", "--at", "rho=7/10,L2=3/2", "--range", "l0=1/3:1/2", "--set", "F3=-10"]
+    done = CliRunner().invoke(command, options)
+    assert done.exit_code == 0 and "min-saddle-max" in done.output
+    for more in (["--path", "2/5"], ["--format", "svg"]):
+        assert isinstance(CliRunner().invoke(command, [*options, *more]).exception, ConfigError)
+
+
+def test_energy_has_no_free_length_unless_asked_for() -> None:
+    plain = solve(rho=Q(1), L2=Q(3, 2))
+    assert energy_of(plain.parameters).roots == ()

@@ -1,0 +1,154 @@
+"""``ptmcad range`` from the command line."""
+
+from __future__ import annotations
+
+import json
+from itertools import pairwise
+from pathlib import Path
+
+import jsonschema
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ptmcad.cli import run
+from ptmcad.show.render.ranges import spread
+
+ROOT = Path(__file__).resolve().parents[2]
+FIG4 = str(ROOT / "configs" / "fig4.yaml")
+FIG3 = str(ROOT / "configs" / "fig3.yaml")
+SCHEMA = json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8"))
+
+
+def test_a_record(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["range", FIG4, "--along", "rho", "--at", "L2=3/2"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("Equal loads, L1 = 1, F3 = F4 = -10, k = 100\n")
+    assert "operation range: 0.4981306959 to 1.041432630, width 0.5433019346\n" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["--along", "rho", "--at", "L2=3/2"], "operation range: 0.25 to 1.25, width 1"),
+        (["--along", "rho", "--at", "L2=3/2,F3=-10,F4=-10"], "operation range: 0.4981306959 to 1.041432630"),
+        (["--along", "L2", "--at", "rho=1/2"], "operation range: 0 to 2, width 2 (its lower end is the window's edge)"),
+        ([FIG4, "--along", "F3", "--at", "L2=3/2,rho=1"], "operation range: -16.51890610 to 0"),
+        ([FIG4, "--along", "k", "--at", "rho=1,L2=3/2", "--digits", "4"], "operation range: 75.22 to 200"),
+        ([FIG3, "--along", "rho", "--at", "F=-10"], "operation range: 0.2149411958 to 0.8034910267"),
+        ([FIG4, "--along", "rho", "--at", "L2=1", "--range", "rho=1/2:3/5"], "width 0.1 (the whole window)"),
+        (["--along", "rho", "--at", "L2=9/10", "--range", "rho=3:4"], "operation range: none"),
+    ],
+    ids=lambda v: " ".join(v) if isinstance(v, list) else "",
+)
+def test_lines_of_all_kinds(arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["range", *arguments]) == 0
+    assert line in capsys.readouterr().out
+
+
+def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["--along", "rho", "--at", "L2=3/2", "--over", "L2", "--rows", "3", "--path", "7/10", "--pose", "1"]
+    assert run(["range", FIG4, *arguments, "--format", "json,png,svg", "--out", str(tmp_path), "--name", "x"]) == 0
+    assert {p.name for p in tmp_path.iterdir()} == {
+        "x.json", "x.png", "x.svg", "x-over.png", "x-over.svg", "x-path.png", "x-path.svg",
+    }  # fmt: skip
+    data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
+    jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
+    assert {"line", "over", "path"} <= set(data)
+    assert data["over"]["maxima"][0]["at"]["decimal"] == "1"
+    assert "Intervals of rho: 0 to 0.4981307: 1 stable of 4" in (tmp_path / "x.svg").read_text(encoding="utf-8")
+    out = capsys.readouterr().out
+    assert "widest operation range: width 0.5885498309 at L2 = 1" in out
+    assert "pose 1 at rho = 0.7" in out and "pose 2" not in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([FIG4], "Missing option '--along'"),
+        ([FIG4, "--along", "rho"], "--at: the other axis, L2, has no value: add L2=VALUE"),
+        (["--along", "rho"], "--at: give the values"),
+        ([FIG4, "--along", "rho", "--at", "rho=1"], "has no value"),
+        ([FIG4, "--along", "rho", "--at", "L2=1,rho=1"], "rho is an axis and cannot be fixed too"),
+        ([FIG4, "--along", "rho", "--at", "L2"], "is not NAME=VALUE"),
+        ([FIG4, "--along", "rho", "--at", "L2=1,F=2"], "'F' is neither an axis nor a parameter"),
+        ([FIG4, "--along", "rho", "--at", "L2=0"], "infinitely many"),
+        ([FIG4, "--along", "rho", "--at", "L2=-1"], "L2 = -1"),
+        ([FIG4, "--along", "rho", "--at", "L2=nan"], "at L2"),
+        ([FIG4, "--along", "rho", "--at", "L2=1", "--pose", "1"], "--pose: chooses a pose to follow"),
+        ([FIG4, "--along", "rho", "--at", "L2=1", "--path", "x"], "--path"),
+        ([FIG4, "--along", "rho", "--at", "L2=1", "--path", "7"], "--path: 7 is outside the window"),
+        ([FIG4, "--along", "rho", "--over", "L2", "--path", "1"], "--path: needs the value of the other axis too"),
+        ([FIG4, "--along", "rho", "--over", "rho"], "rho"),
+        ([FIG4, "--along", "q", "--at", "L2=1"], "q"),
+        ([FIG4, "--along", "rho", "--at", "L2=1", "--format", "gif"], "gif is not among"),
+        ([FIG4, "--along", "rho", "--at", "L2=1", "--digits", "0"], "--digits"),
+        (["none.yaml", "--along", "rho", "--at", "L2=1"], "none.yaml: there is no such file"),
+    ],
+    ids=lambda v: " ".join(v[-4:]) if isinstance(v, list) else "",
+)
+def test_bad_input(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["range", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert message in captured.err
+    assert "Traceback" not in captured.err
+    assert captured.out == ""
+
+
+@given(st.lists(st.floats(0, 1), min_size=1, max_size=14), st.floats(0.001, 0.03))
+def test_labels_keep_apart_and_inside(places: list[float], half: float) -> None:
+    """Centres are in order, two halves apart, and whole labels lie within the bar, where there is room for all."""
+    centers = spread(sorted(places), half)
+    if 2 * half * len(places) <= 1:
+        assert all(b - a >= 2 * half - 1e-9 for a, b in pairwise(centers))
+        assert centers[0] >= half - 1e-9 and centers[-1] <= 1 - half + 1e-9
+        for place, center in zip(sorted(places), centers, strict=True):
+            if len(places) == 1 and half <= place <= 1 - half:
+                assert center == place
+
+
+FREE02 = str(ROOT / "configs" / "free02.yaml")
+
+
+def test_a_line_with_free_lengths_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("numba")
+    arguments = [FREE02, "--along", "rho", "--at", "L2=3/2", "--range", "rho=3/10:3/5", "--format", "json"]
+    assert run(["range", *arguments, "--out", str(tmp_path), "--name", "x"]) == 0
+    data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
+    jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
+    intervals = data["enclosed"]["intervals"]
+    assert [(i["total"], i["stable"], i["index"]) for i in intervals] == [(4, 1, [1, 2, 1]), (6, 2, [2, 3, 1])]
+    assert intervals[0]["high"] == intervals[1]["low"] == data["enclosed"]["changes"][0]["at"]
+    assert intervals[0]["high"]["decimal"] == "0.4634527060"
+    assert run(["range", *arguments[:-1], "json,svg", "--out", str(tmp_path), "--name", "y"]) == 2
+    assert "no picture" in capsys.readouterr().err
+    assert not (tmp_path / "y.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--slice", "rho,L2", "--along", "rho", "--at", "L2=3/2"], "springs with a free length"),
+        ([FREE02, "--along", "rho", "--at", "L2=3/2"], "the free length of all three springs"),
+        (["--slice", "rho,l0", "--along", "l0", "--range", "l0=0:1", "--at", "rho=1,k1=2"], "springs of one stiffness"),
+        (["--slice", "rho,l0", "--along", "l0", "--range", "l0=0:1", "--at", "rho=1,F3x=2"], "horizontal"),
+        (["--slice", "rho,l0", "--along", "l0", "--range", "l0=0:1", "--at", "rho=1", "--set", "F3=l0"], "F3"),
+    ],
+    ids=["no free length", "another axis", "unequal springs", "horizontal load", "load that varies"],
+)
+def test_what_elimination_can_not_do_is_told(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["range", *arguments, "--critical"]) == 2
+    assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("at", [[], ["--at", "L2=3/2"]], ids=["over alone", "with a line"])
+def test_widths_with_free_lengths_are_refused_and_the_line_is_named(
+    at: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Ranges along one axis are computed, so it is not said that none are."""
+    assert run(["range", FIG4, "--along", "rho", "--over", "L2", *at, "--set", "l0=1/5"]) == 2
+    message = capsys.readouterr().err
+    assert "widths over a second axis (--over) are not computed for springs with a free length" in message
+    assert "is enclosed where the other has a value (--at)" in message

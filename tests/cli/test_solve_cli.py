@@ -1,0 +1,133 @@
+"""``ptmcad solve``: what it prints and writes, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from ptmcad import Poses, solve
+from ptmcad.cli import run
+
+FIG3 = str(Path(__file__).resolve().parents[2] / "configs" / "fig3.yaml")
+FIG4 = str(Path(__file__).resolve().parents[2] / "configs" / "fig4.yaml")
+
+
+def test_the_table_is_printed_and_nothing_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(["solve", "--at", "rho=1,L2=3/2"]) == 0
+    assert capsys.readouterr().out == solve(digits=10, rho=1, L2="3/2").table() + "\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_record_gives_what_is_left_open(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["solve", FIG4, "--at", "rho=7/10,L2=3/2", "--digits", "20"]) == 0
+    expected = solve(digits=20, rho="7/10", L2="3/2", F3=-10, F4=-10).table()
+    assert capsys.readouterr().out == expected + "\n"
+    assert run(["solve", FIG4, "--at", "rho=7/10,L2=3/2,F3=5", "--set", "k=2*50+1"]) == 0
+    assert capsys.readouterr().out == solve(digits=10, rho="7/10", L2="3/2", F3=5, F4=-10, k=101).table() + "\n"
+
+
+def test_an_axis_that_is_no_parameter_is_part_of_the_point(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["solve", FIG3, "--at", "rho=1/5,F=-10"]) == 0
+    assert capsys.readouterr().out == solve(digits=10, rho="1/5", F3=-10, F4=-10).table() + "\n"
+
+
+def test_json_is_written_with_the_digits_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["solve", "--at", "rho=1,L2=3/2", "--digits", "30", "--format", "json", "--out", str(tmp_path / "new")]
+    assert run(arguments) == 0
+    assert capsys.readouterr().out == ""
+    written = (tmp_path / "new" / "poses.json").read_text(encoding="utf-8")
+    assert Poses.from_json(written) == solve(digits=30, rho=1, L2="3/2")
+    assert run([*arguments, "--name", "other"]) == 0
+    assert (tmp_path / "new" / "other.json").read_text(encoding="utf-8") == written
+
+
+def test_pictures_are_written_beside_the_json(tmp_path: Path) -> None:
+    arguments = [
+        "solve",
+        "--at",
+        "rho=7/10,L2=3/2,F3=-10",
+        "--format",
+        "json,svg",
+        "--landscape",
+        "--out",
+        str(tmp_path),
+    ]
+    assert run(arguments) == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"poses.json", "poses.svg", "poses-landscape.svg"}
+    assert "<svg" in (tmp_path / "poses.svg").read_text(encoding="utf-8")
+    assert (tmp_path / "poses.svg").read_bytes() != (tmp_path / "poses-landscape.svg").read_bytes()
+
+
+@pytest.mark.parametrize("at", ["rho=0", "L2=4/3,rho=2/5,F3=-320/3,F4=-60"], ids=["infinitely-many", "degenerate"])
+def test_special_points_are_answers(at: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["solve", "--at", at, "--landscape", "--out", str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    assert "infinitely many equilibria" in out or "1 degenerate, on the variety" in out
+    assert [path.name for path in tmp_path.iterdir()] == ["poses-landscape.png"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "error: give a point, as in --at rho=1,L2=3/2"),
+        (["--at", "rho"], "error: --at: 'rho' is not NAME=VALUE"),
+        (["--at", "rho=1,rho=2"], "error: --at: 'rho=2' is not NAME=VALUE"),
+        (["--at", "roh=1"], "did you mean 'rho'"),
+        (["--at", "rho=0.1.2"], "error: --at rho: "),
+        (["--at", "rho=1/0"], "error: --at rho: division by zero"),
+        (["--at", "rho=nan"], "'nan' is not a number"),
+        (["--at", "rho=x"], "unknown name 'x'"),
+        (["--at", "L1=0"], "L1 is 0, but a length must be positive"),
+        (["--at", "rho=1", "--set", "rho=2"], "error: --at rho: is given with --set too"),
+        (["--at", "rho=1", "--set", "k"], "is not NAME=VALUE"),
+        (["--at", "l0=-1/5"], "l0 is -1/5, but a free length must be not negative"),
+        (["--at", "rho=1", "--digits", "0"], "'--digits'"),
+        (["--at", "rho=1", "--digits", "1001"], "'--digits'"),
+        (["--at", "rho=1", "--format", "gif"], "gif is not among table, json, png, svg, pdf"),
+        (["--at", "rho=1", "--format", "json", "--name", "../x"], "error: --name: '../x' cannot name a file"),
+        (["--at", "rho=1", "--format", "json", "--name", "COM1"], "error: --name: 'COM1' cannot name a file: Windows"),
+        (["missing.yaml", "--at", "rho=1"], "missing.yaml"),
+        ([FIG4, "--at", "rho=1"], "error: --at: L2 is an axis of "),
+        ([FIG3, "--at", "rho=1,F=L2"], "error: --at F: the value of this axis is a number"),
+        ([FIG3, "--at", "rho=1,G=1"], "error: --at G: unknown parameter 'G'"),
+    ],
+    ids=lambda value: " ".join(Path(part).name for part in value) if isinstance(value, list) else "",
+)
+def test_bad_input_gets_one_message(
+    arguments: list[str],
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(["solve", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert message in captured.err
+    assert "Traceback" not in captured.err
+    assert captured.out == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unwritable_folder_is_told_before_anything_is_computed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("here already")
+    assert run(["solve", "--at", "rho=1", "--format", "table,json", "--out", str(tmp_path / "file")]) == 2
+    captured = capsys.readouterr()
+    assert "cannot be made" in captured.err
+    assert captured.out == ""
+
+
+def test_the_json_is_the_same_every_time(tmp_path: Path) -> None:
+    texts = set()
+    for name in ("a", "b"):
+        assert run(["solve", "--at", "F3=-10,F4x=3", "--format", "json", "--out", str(tmp_path), "--name", name]) == 0
+        texts.add((tmp_path / f"{name}.json").read_text(encoding="utf-8"))
+    assert len(texts) == 1
+    assert json.loads(texts.pop())["parameters"]["F4x"] == "3"

@@ -1,0 +1,202 @@
+"""Paths of stable poses: against a continuation and a descent that are not certified, and the paper's reverse pose."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from math import cos, pi, sin
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+from flint import arb, ctx
+from support.maps import CONFIGS
+
+import ptmcad
+from ptmcad.ask.ranges import Fate, PosePath, pose_paths
+from ptmcad.errors import ConfigError
+from ptmcad.exact.models import system_of
+from ptmcad.exact.ranges.tracking import BITS, Family, Reached, at_value, bridge, enclose, follow
+from ptmcad.question.line import line_of
+from ptmcad.question.slice import Slice
+from ptmcad.show.ranges.document import document, path_data
+from ptmcad.show.ranges.table import path_table, sine_sign
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def record(name: str) -> Slice:
+    return ptmcad.load(ROOT / "configs" / f"{name}.yaml")
+
+
+class Numbers:
+    """The paper's equations in floating point, written down anew."""
+
+    def __init__(self, slice: Slice, along: str, at: dict[str, str]):
+        self.line = line_of(slice, along, at)
+
+    def values(self, x: float) -> tuple[float, ...]:
+        at = Fraction(x)
+        p = {n: float(e.evaluate(at, Fraction(0))) for n, e in self.line.parameters.items()}
+        assert p["k1"] == p["k2"] == p["k3"] and p["F3x"] == p["F4x"] == 0
+        return p["L1"], p["L2"], p["rho"], p["F3"] / p["k1"], p["F4"] / p["k1"]
+
+    def slopes(self, x: float, a: float, b: float) -> tuple[float, float]:
+        """The energy's derivatives, over the stiffness."""
+        l1, l2, rho, f3, f4 = self.values(x)
+        first = l2 * sin(a + b) - 2 * rho * sin(a) + f3 * cos(a)
+        second = l1 * sin(a + b) - 2 * rho * sin(b) + f4 * cos(b)
+        return -l1 * first, -l2 * second
+
+    def descend(self, x: float, a: float, b: float) -> tuple[float, float]:
+        for _ in range(60000):
+            da, db = self.slopes(x, a, b)
+            a, b = a - 0.05 * da, b - 0.05 * db
+            if abs(da) + abs(db) < 1e-13:
+                break
+        return a, b
+
+
+def turn(angle: float) -> float:
+    return (angle + pi) % (2 * pi) - pi
+
+
+CASES = [
+    ("fig4", "rho", {"L2": "3/2"}, "7/10"),
+    ("fig3", "rho", {"F": "-10"}, "1/2"),
+    pytest.param("fig5-text", "rho", {"F4": "-20"}, "7/10", marks=pytest.mark.slow),
+    pytest.param("fig5-caption", "rho", {"F4": "-29"}, "1/2", marks=pytest.mark.slow),
+]
+
+
+@pytest.mark.parametrize(("name", "along", "at", "start"), CASES)
+def test_an_upright_pose_snaps_to_the_reverse_one(name: str, along: str, at: dict[str, str], start: str) -> None:
+    """Section 4.2 of the paper; ends agree with the ranges, poses with a descent in floating point."""
+    slice, numbers = record(name), Numbers(record(name), along, at)
+    found = pose_paths(slice, along, at, Fraction(start))
+    (operation,) = ptmcad.ask.ranges.intervals(slice, along, at).operation
+    upright = [p for p in found.paths if p.upright]
+    reverse = [p for p in found.paths if p.reverse]
+    assert len(upright) == len(reverse) == 1
+    assert [e.fate for e in (reverse[0].low, reverse[0].high)] == [Fate.WINDOW] * 2
+    for end, wall in ((upright[0].low, operation.low), (upright[0].high, operation.high)):
+        assert end.fate is Fate.SNAP and end.at.polynomial == wall.polynomial  # type: ignore[union-attr]
+        assert end.meeting[:2] == (0, 1) and end.target is not None
+        assert [sine_sign(a) for a in end.target.angles] == [-1, -1]
+        assert end.energy is not None and end.target_energy is not None and end.energy.low > end.target_energy.high
+        # a little further, because a descent takes long where the pose has just vanished
+        beyond = float(end.target.value) + (0.01 if end is upright[0].high else -0.01)
+        first, second = (float(a) for a in end.last.angles)
+        reached = numbers.descend(beyond, first + 1e-3, second - 1e-3)  # off the symmetry, in which a saddle lies
+        for got, want in zip(reached, end.target.angles, strict=True):
+            assert abs(turn(got - float(want))) < 0.1
+    for path in found.paths:
+        check_points(numbers, path)
+
+
+def check_points(numbers: Numbers, path: PosePath) -> None:
+    """Each point is an equilibrium, and neighbours are near each other."""
+    for before, point in zip(path.points, path.points[1:], strict=False):
+        slopes = numbers.slopes(float(point.value), *(float(a) for a in point.angles))
+        assert max(map(abs, slopes)) < 1e-9
+        assert before.value < point.value
+        jumps = [abs(float(a) - float(b)) for a, b in zip(point.angles, before.angles, strict=True)]
+        assert max(jumps) < 0.4
+
+
+@pytest.mark.slow
+def test_unloaded_poses_merge_into_the_flat_one() -> None:
+    """At 2 rho = L2 + 1 the mirror images and the flat saddle between them become the flat stable pose."""
+    found = pose_paths(record("fig2"), "rho", {"L2": "3/2"}, Fraction(6, 5), 1)
+    (path,) = found.paths
+    assert path.upright and path.high.fate is Fate.MERGE
+    assert path.high.at.exact == Fraction(5, 4)  # type: ignore[union-attr]
+    assert path.high.meeting == (0, 0, 1) and path.high.leaving == (0,)
+    assert path.high.target is not None
+    assert all(a.low <= 0 <= a.high for a in path.high.target.angles)
+
+
+def test_a_pair_that_meets_elsewhere_does_not_stop_a_path() -> None:
+    """Fig. 3 at F = -10: a saddle and a maximum meet at rho = 0.0025, the stable pose goes on."""
+    found = pose_paths(record("fig3"), "rho", {"F": "-10"}, Fraction(1, 10))
+    (path,) = found.paths
+    assert path.low.fate is path.high.fate is Fate.WINDOW
+    assert path.points[0].value < Fraction(1, 1000) and path.points[-1].value > Fraction(19, 10)
+
+
+def family() -> Family:
+    line = line_of(record("fig4"), "rho", {"L2": "3/2"})
+    return Family(system_of("ptm"), line.parameters)
+
+
+def test_a_tube_holds_one_branch_only() -> None:
+    """Two stable poses at rho = 7/10: their tubes are apart, and no tube spans the fold."""
+    mechanism = family()
+    places = []
+    for pose in ptmcad.solve(L2="3/2", F3=-10, F4=-10, rho="7/10").equilibria:
+        place = at_value(mechanism, Fraction(7, 10), tuple(arb(float(a)) for a in pose.angles))  # type: ignore[arg-type]
+        assert place is not None
+        places.append(place)
+        for got, want in zip(place.at(Fraction(7, 10)), pose.angles, strict=True):
+            with ctx.workprec(BITS):
+                assert abs(got - float(want)) < 1e-12
+    for k, a in enumerate(places):
+        for b in places[k + 1 :]:
+            assert not a.holds(b, Fraction(7, 10))
+    upright = next(
+        Reached(Fraction(7, 10), p, p)
+        for p, pose in zip(places, ptmcad.solve(L2="3/2", F3=-10, F4=-10, rho="7/10").equilibria, strict=True)
+        if pose.stable and float(pose.angles[0]) > 0
+    )
+    steps, done = follow(mechanism, upright, Fraction(103, 100), Fraction(1, 10))
+    assert done
+    assert bridge(mechanism, steps[-1], Fraction(105, 100)) is None
+    assert not follow(mechanism, steps[-1], Fraction(105, 100), Fraction(1, 10))[1]
+    assert enclose(mechanism, Fraction(1), Fraction(11, 10), steps[-1].angles) is None
+
+
+@pytest.mark.parametrize(
+    ("start", "number", "message"),
+    [
+        ("5", None, "outside the window"),
+        ("2", None, "outside"),
+        ("7/10", 3, "none of the 2 stable"),
+        ("7/10", 0, "none"),
+    ],
+)
+def test_bad_starts(start: str, number: int | None, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        pose_paths(record("fig4"), "rho", {"L2": "3/2"}, Fraction(start), number)
+
+
+def test_a_critical_start_is_refused() -> None:
+    with pytest.raises(ConfigError, match="critical value"):
+        pose_paths(record("fig2"), "rho", {"L2": "3/2"}, Fraction(5, 4))
+
+
+def test_text_and_document() -> None:
+    schema: dict[str, Any] = json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8"))
+    found = pose_paths(record("fig4"), "rho", {"L2": "3/2"}, Fraction(7, 10), 2)
+    text = path_table(found)
+    assert "pose 2 at rho = 0.7: th1 = 75.907444" in text and "y3 > 0 and y4 > 0 on the path" in text
+    assert "up: rho = 1.041432630: a minimum + a saddle meet and leave nothing; snaps to th1 = -47.52" in text
+    assert "(reverse: y3 < 0, y4 < 0)" in text
+    data = json.loads(document("x", "ptm", {"path": path_data(found)}))
+    jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
+    assert data["path"]["paths"][0]["high"]["fate"] == "snap"
+
+
+def test_a_path_towards_infinitely_many_equilibria_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Unloaded equal rods: near rho = 0 the steps shrink like rho^2, so they are counted, and the rest is undecided."""
+    monkeypatch.setattr("ptmcad.exact.ranges.tracking._MAX_STEPS", 40)
+    slice = ptmcad.load(CONFIGS / "fig3.yaml")
+    paths = pose_paths(slice, "rho", {"F": Fraction(0)}, Fraction(1, 2), 1)
+    assert paths.paths[0].low.fate is Fate.UNDECIDED
+    assert paths.paths[0].low.last.value > 0
+
+
+def test_a_start_that_can_not_be_enclosed_is_refused() -> None:
+    slice = ptmcad.load(CONFIGS / "fig2.yaml")
+    with pytest.raises(ConfigError, match="start farther away"):
+        pose_paths(slice, "rho", {"L2": Fraction(1)}, Fraction(1, 10**24), 1)

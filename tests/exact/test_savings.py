@@ -1,0 +1,406 @@
+"""Savings: with any of them, or all, switched off the answer is the same, and the plan says which were."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from itertools import chain
+from pathlib import Path
+
+import pytest
+from flint import fmpq
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support.random_slices import drawn
+from support.shipped_records import EXACT
+
+import ptmcad
+from ptmcad.algebra import quotient
+from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
+from ptmcad.algebra.polynomials import (
+    ONE,
+    PLANE,
+    Coefficient,
+    UnivariatePolynomial,
+    from_expression,
+    irreducible_factors,
+)
+from ptmcad.algebra.quotient import (
+    QuotientAlgebra,
+    bounded_away_from_zero,
+    multiples,
+    multiplication_denominator,
+    multiplicity,
+    norm,
+    poles_at_points,
+    power_trace_denominators,
+    quotient_algebra,
+)
+from ptmcad.answer.regionmap import HARMLESS, Kind, RegionMap
+from ptmcad.cli import run
+from ptmcad.errors import ConfigError, HypothesisError
+from ptmcad.exact.cad.stacks import heights_between
+from ptmcad.exact.models import system_of
+from ptmcad.exact.models.system import on_slice
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.savings import ALL, SAVINGS, Engine, switched_off
+from ptmcad.question.slice import Slice
+from ptmcad.studies.bench import ablation
+from ptmcad.studies.bench.sameness import difference
+
+ROOT = Path(__file__).resolve().parents[2]
+NAMES = tuple(s.name for s in SAVINGS if s.engine is Engine.EXACT)
+CERTIFIED = tuple(s.name for s in SAVINGS if s.engine is Engine.CERTIFIED)
+Shipped = Callable[..., RegionMap]
+
+
+def record(name: str) -> Slice:
+    return ptmcad.load(ROOT / "configs" / f"{name}.yaml")
+
+
+# ------------------------------------------------------------------------------------------------------ the same answer
+
+
+@pytest.mark.parametrize("without", [*NAMES, ALL])
+@pytest.mark.parametrize("name", ["fig2", "fig3"])
+def test_without_a_saving_the_map_says_the_same(name: str, without: str, shipped: Shipped) -> None:
+    result = ptmcad.classify(record(name), without=[without])
+    assert difference(shipped(name), result) == ""
+    done = {step.saving for step in result.plan if step.saving and step.done}
+    assert done <= (switched_off([without], certified=False) if without == ALL else {without})
+    assert RegionMap.from_json(result.to_json()) == result
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("without", [*NAMES, ALL])
+@pytest.mark.parametrize("path", EXACT, ids=lambda p: p.stem)
+def test_without_a_saving_every_shipped_map_says_the_same(path: Path, without: str, shipped: Shipped) -> None:
+    result = ptmcad.classify(ptmcad.load(path), without=[without])
+    assert difference(shipped(path.stem), result) == ""
+    assert ptmcad.verify(result).ok
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", EXACT, ids=lambda p: p.stem)
+def test_the_first_axis_serves_as_well_when_the_axes_are_exchanged(path: Path) -> None:
+    slice = ablation.exchanged(ptmcad.load(path))
+    assert difference(ptmcad.classify(slice), ptmcad.classify(slice, without=["axis-order"])) == ""
+
+
+SMALL = st.fractions(Fraction(1, 4), Fraction(2), max_denominator=6)
+LOADS = st.fractions(Fraction(-20), Fraction(20), max_denominator=3)
+
+
+@st.composite
+def slices(draw: st.DrawFn) -> Slice:
+    """Small rational slices: two lengths, or a length and a load; unloaded ones among them."""
+    axes = draw(st.sampled_from([("rho", "L2"), ("L2", "rho"), ("rho", "F"), ("F3", "F4"), ("L1", "L2")]))
+    parameters = {"L1": "1", "L2": str(draw(SMALL)), "rho": str(draw(SMALL)), "k": "100"}
+    parameters |= {"F3": str(draw(LOADS)), "F4": str(draw(LOADS))} if draw(st.booleans()) else {}
+    if "F" in axes:
+        parameters |= {"F3": "F", "F4": draw(st.sampled_from(["F", "-F", "2*F"]))}
+    windows = {}
+    for axis in axes:
+        low = draw(LOADS if axis.startswith("F") else SMALL)
+        windows[axis] = [str(low), str(low + draw(SMALL) * (20 if axis.startswith("F") else 1))]
+    rest = {name: value for name, value in parameters.items() if name not in axes}
+    return slice_from_mapping(
+        {"axes": windows, "parameters": rest, "count": draw(st.sampled_from(["stable", "index"]))}
+    )
+
+
+def both_ways(slice: Slice) -> None:
+    try:
+        result = ptmcad.classify(slice)
+    except HypothesisError as refused:
+        with pytest.raises(type(refused)):
+            ptmcad.classify(slice, without=ALL)
+        return
+    assert difference(result, ptmcad.classify(slice, without=ALL)) == ""
+
+
+@given(slices())
+@settings(max_examples=6)
+def test_the_plain_pipeline_says_the_same_on_random_slices(slice: Slice) -> None:
+    both_ways(slice)
+
+
+@pytest.mark.slow
+@given(slices())
+@settings(max_examples=60)
+def test_the_plain_pipeline_says_the_same_on_many_random_slices(slice: Slice) -> None:
+    both_ways(slice)
+
+
+def test_maps_that_differ_are_told_apart(shipped: Shipped) -> None:
+    one = shipped("fig2")
+    region = one.regions[0]
+    larger = replace(region, area=(region.area[1] * 2, region.area[1] * 2))
+    assert "area" in difference(one, replace(one, regions=(larger, *one.regions[1:])))
+    assert "regions" in difference(shipped("fig3"), shipped("fig3", "index"))
+    cell = replace(one.cells[0], stable=2, index=(2, 3, 1))
+    assert "counts" in difference(one, replace(one, cells=(cell, *one.cells[1:])))
+    joined = tuple(a for a in one.adjacencies if {a.first, a.second} != {0, 1})
+    assert "neighbours" in difference(one, replace(one, adjacencies=joined))
+
+
+# --------------------------------------------------------------------------------------------------- curves at infinity
+
+
+def algebra_of(slice: Slice) -> QuotientAlgebra:
+    system = system_of("ptm")
+    parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
+    found = quotient_algebra(groebner_basis(on_slice(system, parameters).equations, MonomialOrder((0, 1, 2, 3))))
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "horizontal"])
+def test_poles_at_integer_points_are_those_over_the_plane(name: str) -> None:
+    """Two methods: denominators of traces at two integer points, and over Q(x, y)."""
+    algebra = algebra_of(record(name))
+    every = irreducible_factors(multiplication_denominator(algebra))
+    poles = [power_trace_denominators(algebra, k) for k in (0, 2)]
+    assert poles_at_points(algebra, every, 4) == [f for f in every if any(p.gcd(f).total_degree() > 0 for p in poles)]
+
+
+def test_points_that_tell_nothing_hide_no_poles(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where values are 1, or a factor vanishes, further points are asked."""
+    algebra = algebra_of(record("fig4"))
+    every = irreducible_factors(multiplication_denominator(algebra))
+    expected = poles_at_points(algebra, every, 4)
+    assert expected
+    usual = quotient._points
+    monkeypatch.setattr(quotient, "_points", lambda: chain([(0, 0), (0, 0)], usual()))
+    assert poles_at_points(algebra, every, 4) == expected
+
+
+X, Y = PLANE.gens()
+
+
+@pytest.mark.parametrize(
+    ("constant", "expected"),
+    [(ONE, True), (Y, False), (X, True)],
+    ids=["the other root stays", "the other root vanishes on the curve", "it vanishes elsewhere"],
+)
+def test_away_from_zero_where_a_root_is_lost(constant: Coefficient, expected: bool) -> None:
+    """Roots of y u^2 - u + c near y = 0: one is about 1/y, the other about c; with c = y their product is 1."""
+    basis = groebner_basis([{(2,): Y, (1,): -ONE, (0,): constant}], MonomialOrder((0,)))
+    algebra = quotient_algebra(basis)
+    assert algebra is not None
+    unknown = {(1,): ONE}
+    assert bounded_away_from_zero(multiples(algebra, unknown), norm(algebra, unknown), Y) is expected
+
+
+def test_multiplicity_of_a_factor() -> None:
+    assert multiplicity(X**3 * (Y + 1) * 6, X) == 3
+    assert multiplicity(X + 1, X) == 0
+
+
+@pytest.mark.parametrize("number", [157, 161, 164])
+def test_real_curves_over_which_complex_solutions_are_lost_are_no_walls(number: int) -> None:
+    slice = slice_from_mapping(drawn(number).record)
+    result = ptmcad.classify(slice)
+    plain = ptmcad.classify(slice, without=["infinity"])
+    (harmless,) = (c for c in result.components if c.left_out == HARMLESS)
+    assert next(c for c in plain.components if c.polynomial == harmless.polynomial).left_out == ""
+    assert len(plain.cells) > len(result.cells)
+    assert difference(result, plain) == ""
+    assert ptmcad.verify(result).ok
+    # a critical curve that is said to be harmless is noticed
+    k = next(n for n, c in enumerate(result.components) if c.kind is Kind.CRITICAL)
+    lie = replace(result.components[k], kind=Kind.INFINITY, left_out=HARMLESS)
+    assert not ptmcad.verify(replace(result, components=(*result.components[:k], lie, *result.components[k + 1 :]))).ok
+
+
+def test_samples_keep_off_curves_that_are_no_walls() -> None:
+    half = UnivariatePolynomial([-1, 2])
+    third = UnivariatePolynomial([-1, 3])
+    assert heights_between((), (fmpq(0), fmpq(1))) == (fmpq(1, 2),)
+    (height,) = heights_between((), (fmpq(0), fmpq(1)), [half, third])
+    assert 0 < height < 1
+    assert height not in (fmpq(1, 2), fmpq(1, 3))
+
+
+# ------------------------------------------------------------------------------------------------------------- the plan
+
+
+def test_every_saving_is_in_the_plan_once(shipped: Shipped) -> None:
+    result = shipped("fig3")
+    made = [step.saving for step in result.plan if step.saving and not step.done]
+    assert set(made) == {*NAMES, "imports"}
+    assert not [step for step in result.plan if step.saving and step.done]
+    plain = ptmcad.classify(record("fig3"), without=ALL)
+    assert {step.saving for step in plain.plan if step.done and step.saving} == {*NAMES, "imports"}
+    assert not [step for step in plain.plan if step.saving and not step.done]
+    assert {c.left_out for c in plain.components} == {""}
+    assert Kind.AUXILIARY in {c.kind for c in plain.components}
+
+
+def test_areas_that_nobody_asks_for(shipped: Shipped) -> None:
+    whole = shipped("fig4")
+    result = ptmcad.classify(record("fig4"), areas=False)
+    assert {region.area for region in result.regions} == {(0, 4)}
+    assert "areas     not computed" in result.table()
+    assert result.status is whole.status
+    assert difference(whole, result) == ""
+    assert ptmcad.verify(result).ok
+    assert not ptmcad.verify(replace(whole, plan=result.plan)).ok
+    with pytest.raises(ConfigError, match="leave one out"):
+        ptmcad.classify(record("fig4"), areas=False, area_tolerance="1e-3")
+    with pytest.raises(ConfigError, match="for nothing"):
+        ptmcad.classify(record("free02"), areas=False)
+
+
+def test_verify_checks_what_the_plan_says_was_kept(shipped: Shipped) -> None:
+    honest = shipped("fig2")
+    plain = ptmcad.classify(record("fig2"), without=ALL)
+    assert ptmcad.verify(plain).ok
+    for one, other in ((honest, plain), (plain, honest)):
+        report = ptmcad.verify(replace(one, plan=other.plan))
+        assert not report.ok
+        assert "plan" in str(report).split("FALSE")[1]
+    auxiliary = replace(honest.components[-1], kind=Kind.AUXILIARY)
+    assert not ptmcad.verify(replace(honest, components=(*honest.components[:-1], auxiliary))).ok
+
+
+@pytest.mark.parametrize(
+    ("names", "part"),
+    [
+        (("axis-ordr",), "did you mean 'axis-order'?; there are sign-curve, "),
+        (("leading", "all"), "'leading' is no saving"),
+        (("cones-and-creases",), "a saving of the certified engine, and this slice is the exact engine's"),
+        ("", "'' is no saving"),
+    ],
+    ids=str,
+)
+def test_names_that_no_saving_has_are_refused(names: tuple[str, ...] | str, part: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        ptmcad.classify(record("fig2"), without=names)
+    assert caught.value.key == "without"
+    assert part in caught.value.message
+
+
+def test_the_older_name_is_taken(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.warns(DeprecationWarning, match="without"):
+        older = ptmcad.classify(record("fig2"), areas=False, keep=["axis-order"])
+    assert older.plan == ptmcad.classify(record("fig2"), areas=False, without=["axis-order"]).plan
+    with pytest.raises(ConfigError, match="give one of them"):
+        ptmcad.classify(record("fig2"), without=["axis-order"], keep=["sign-curve"])
+
+    fig2 = str(ROOT / "configs" / "fig2.yaml")
+    command = ["classify", fig2, "--no-areas", "--format", "json", "--out", str(tmp_path), "--explain"]
+    assert run([*command, "--keep", "axis-order", "--without", "sign-curve"]) == 0
+    shown = capsys.readouterr().out
+    assert "(the first axis, as asked for)" in shown
+    assert "computed: projection of H11 = 0 (kept, as asked for)" in shown
+    assert run(["classify", "--help"]) == 0
+    page = capsys.readouterr().out
+    assert "--without NAME" in page and "--keep" not in page
+
+
+def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    fig2 = str(ROOT / "configs" / "fig2.yaml")
+    common = ["classify", fig2, "--format", "json", "--out", str(tmp_path)]
+    assert run([*common, "--without", "infinty"]) == 2
+    assert "--without: 'infinty' is no saving; did you mean 'infinity'?" in capsys.readouterr().err
+    assert run([*common, "--without", "unloaded-factor"]) == 2
+    assert "saving of the certified engine" in capsys.readouterr().err
+    assert run([*common, "--keep", "infinty"]) == 2
+    assert "--keep: 'infinty' is no saving; did you mean 'infinity'?" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+    assert run([*common, "--explain", "--without", "axis-order", "--without", "sign-curve"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "plan of fig2, exact engine, before it starts:"
+    at = lines.index("decided on the way:")
+    assert "computed: projection of H11 = 0 (kept, as asked for)" in lines[:at]
+    assert "left out: terms of F3, F4, F3x, F4x (they are zero on this slice)" in lines[:at]
+    assert "to be decided on the way: infinity, no-real-points, even-powers" in lines[:at]
+    assert "computed: decomposition over L2 (the first axis, as asked for)" in lines[at:]
+    assert len(lines) == len(set(lines))
+    plan = json.loads((tmp_path / "fig2.json").read_text())["plan"]
+    assert {step["saving"] for step in plan if step["done"] and "saving" in step} == {"axis-order", "sign-curve"}
+
+
+# ------------------------------------------------------------------------------------------------- the certified engine
+
+
+def test_curves_of_the_certified_engine() -> None:
+    pytest.importorskip("numba")
+    from ptmcad.certified.curves import curves
+
+    def found(slice: Slice, *without: str) -> dict[str, tuple[int, ...]]:
+        """Names of the curves, with the number of formulas beside the equations that vanish."""
+        return {
+            c.name: tuple(len(v) for v in c.system.vanishing) for c in curves(slice, slice.count, frozenset(without))
+        }
+
+    slice = record("free02")
+    assert list(found(slice)) == ["fold of a stable equilibrium", "fold of a stable equilibrium, spring 3 short"]
+    assert list(found(slice, "folds-of-saddles")) == ["fold", "fold, spring 3 short"]
+    assert {"cone", "crease l1 = 0"} <= found(slice, "cones-and-creases").keys() - found(slice).keys()
+    assert {v[2] for v in found(slice, *CERTIFIED).values()} == {0}
+    assert all(v[2] > 0 for v in found(slice).values())
+    unloaded = record("free02-unloaded")
+    # the factor rho is what allows to do without a second chart
+    assert list(found(unloaded)) == ["fold of a stable equilibrium"]
+    assert len(found(unloaded, "unloaded-factor")) == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("without", [*CERTIFIED, ALL])
+def test_certified_maps_without_a_saving_do_not_contradict(without: str) -> None:
+    """A window that is easy, so that every variant decides most of it."""
+    pytest.importorskip("numba")
+    slice = ptmcad.slice_from_options(
+        slice="rho,L2", ranges=["rho=1/2:1", "L2=3/2:2"], sets=["l0=1/5", "F3=-10", "F4=-10"]
+    )
+    result = ptmcad.classify(slice, tolerance="1/10", jobs=1)
+    plain = ptmcad.classify(slice, tolerance="1/2", jobs=1, without=without, timeout=200)
+    assert difference(result, plain) == ""
+    assert {step.saving for step in plain.plan if step.saving and step.done} <= switched_off([without], certified=True)
+    assert ptmcad.verify(plain).ok
+
+
+# -------------------------------------------------------------------------------------------------------- the benchmark
+
+
+def test_ablation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One round on the smallest slice, without whole processes."""
+    monkeypatch.setattr(ablation, "PAPER", ())
+    found = [ablation.ablation([ROOT / "configs" / "fig2.yaml"], rounds=1, seed=2) for _ in range(2)]
+    first, second = (without_times(f) for f in found)
+    assert first == second
+    row, exchanged = found[0]["exact"]
+    assert (row["record"], exchanged["record"]) == ("fig2", "fig2, axes exchanged")
+    assert set(row["switched off"]) == {*NAMES, ALL}
+    assert {v["difference"] for v in row["switched off"].values()} == {""}
+    page = ablation.to_markdown(found[0])
+    assert "| fig2 | " in page
+    assert page.count("| yes |") == 2
+    row["switched off"][ALL]["difference"] = "other neighbours"
+    assert "| no |" in ablation.to_markdown(found[0])
+
+
+def without_times(value: object) -> object:
+    if isinstance(value, dict):
+        timed = {"least", "median", "most", "ratio", "machine", "all made"}
+        return {key: without_times(part) for key, part in value.items() if key not in timed}
+    return [without_times(part) for part in value] if isinstance(value, list) else value
+
+
+def test_ablation_refuses(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert ablation.main([str(tmp_path / "none.yaml")]) == 2
+    assert "none.yaml" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        ablation.main(["--rounds", "0"])
+
+
+@pytest.mark.slow
+def test_whole_processes() -> None:
+    found = ablation._processes(ROOT / "configs" / "fig2.yaml", "fig2", 1, random.Random(1))
+    assert set(found["switched off"]) == {"imports", ALL}

@@ -1,0 +1,102 @@
+"""Where the built-in mechanism's own names are still typed in: a list that only gets shorter."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from ptmcad.mechanism import ptm
+
+PACKAGE = Path(__file__).resolve().parents[2] / "ptmcad"
+FILES = sorted(p for p in PACKAGE.rglob("*") if p.suffix in {".py", ".js"} and p.parent.name != "mechanism")
+OWN = {*ptm().parameters, *ptm().unknowns, *ptm().points}
+VAGUE = {"k", "l0"}
+"""Also short names of other things: as identifiers they say nothing, nor does k in a text."""
+TEXT = re.compile(r"(?<![\w.])(?:" + "|".join(sorted(OWN - {"k"})) + r")(?!\w)")
+
+
+def own_names(path: Path) -> Iterator[tuple[int, str]]:
+    """Lines and names in code and in texts; docstrings are prose, and so are comments."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".js":
+        for number, line in enumerate(text.splitlines(), 1):
+            yield from ((number, name) for name in TEXT.findall(line.partition("//")[0]))
+        return
+    tree = ast.parse(text)
+    prose = set()
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if isinstance(body, list):
+            prose |= {id(s.value) for s in body if isinstance(s, ast.Expr) and isinstance(s.value, ast.Constant)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in prose:
+            yield from ((node.lineno, name) for name in TEXT.findall(node.value))
+        for name in (getattr(node, "id", None), getattr(node, "arg", None), getattr(node, "attr", None)):
+            if isinstance(name, str) and name in OWN - VAGUE:
+                yield getattr(node, "lineno", 0), name
+
+
+STUDIES = "studies/"
+"""They study this mechanism: constructions, published equations and rival methods are its own."""
+KERNELS = {
+    "certified/cones.py",
+    "certified/curves.py",
+    "certified/engine.py",
+    "certified/equilibria.py",
+    "certified/mechanism.py",
+    "certified/parameters.py",
+    "certified/points.py",
+    "certified/poses.py",
+}
+"""The certified engine's formulas, made by hand for this mechanism."""
+CHECKER = {
+    "verification/certified/energy.py",
+    "verification/certified/equilibria.py",
+    "verification/certified/parameters.py",
+    "verification/certified/points.py",
+}
+"""The checker's formulas for springs with free lengths, written down once more."""
+ELIMINATION = {
+    "algebra/critical_lengths.py",
+    "algebra/signed.py",
+    "algebra/signed_equations.py",
+    "algebra/simple_roots.py",
+    "algebra/squared.py",
+    "exact/ranges/free_lengths.py",
+}
+"""The paper's elimination of free lengths, signs and simple roots."""
+MESSAGES = {
+    "cli/locate.py",
+    "cli/range.py",
+    "cli/solve.py",
+    "question/config/__init__.py",
+    "question/config/options.py",
+    "question/config/record.py",
+    "question/config/resolution.py",
+    "show/polynomial_text.py",
+    "show/render/axes.py",
+    "question/savings.py",
+    "text/syntax.py",
+    "text/yamltree.py",
+}
+"""Examples in messages, and Greek letters as names."""
+STILL_HOLDING = KERNELS | CHECKER | ELIMINATION | MESSAGES
+
+
+def test_own_names_are_typed_in_the_description_and_where_the_list_says() -> None:
+    """A file that is new here has to read the description; one that is free of the names leaves the list."""
+    held = {p.relative_to(PACKAGE).as_posix(): found for p in FILES if (found := list(own_names(p)))}
+    new = {name: found for name, found in held.items() if name not in STILL_HOLDING and not name.startswith(STUDIES)}
+    assert not new
+    assert held.keys() >= STILL_HOLDING, f"take off the list: {sorted(STILL_HOLDING - held.keys())}"
+
+
+def test_the_reader_sees_names_in_code_and_texts_but_not_in_prose(tmp_path: Path) -> None:
+    module = tmp_path / "module.py"
+    module.write_text('"""About rho."""\nrho = p["L1"]  # and th1\nx.th2 = f"-{k}*A3 F3x"\nk = flow = "rhombus"\n')
+    assert sorted(name for _, name in own_names(module)) == ["A3", "F3x", "L1", "rho", "th2"]
+    script = tmp_path / "script.js"
+    script.write_text("// about rho\nconst a = cell.L1 + at['A3'];\n")
+    assert [name for _, name in own_names(script)] == ["A3"]

@@ -1,0 +1,81 @@
+"""What needs a package that is not installed says so before it computes anything."""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from ptmcad.cli import run
+from ptmcad.studies.bench import ablation
+from ptmcad.studies.stress import campaign
+from ptmcad.studies.stress.case import Case, PointAnswer
+from ptmcad.studies.stress.named import chosen
+from ptmcad.studies.stress.points import point
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(autouse=True)
+def without_numba(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in sys.modules if name.startswith("ptmcad.certified.")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "numba", None)
+
+
+def refuse(*_: object, **__: object) -> None:
+    raise AssertionError("something was computed")
+
+
+@pytest.mark.parametrize("names", [("all",), ("free length",), ("units", "free-length-1e-3")])
+def test_stress_refuses_before_the_first_case(
+    names: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(campaign, "run", refuse)
+    assert run(["stress", *names, "--out", str(tmp_path)]) == 2
+    assert "runs on the package numba" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_stress_needs_numba_for_free_lengths_only() -> None:
+    """Of questions and of their siblings, at points, on lines and on maps."""
+    free = {case.name for case in chosen(()) if case.has_free_lengths}
+    assert {name for name in free if "free" in name}
+    for case in chosen(()):
+        given = {**case.question.parameters, **case.sibling.parameters}
+        assert (case.name in free) == any(k.startswith("l0") for k in given), case.name
+    plain = Case("plain", "units", Fraction(1), point(), point(), PointAnswer(), "none")
+    assert not plain.has_free_lengths
+    done = campaign.campaign((plain,), seed=1, repeats=1)
+    assert len(done.outcomes) == 1
+
+
+def test_ablation_refuses_before_the_exact_slices(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(ablation, "_exact", refuse)
+    records = [str(ROOT / "configs" / f"{name}.yaml") for name in ("fig2", *ablation.CERTIFIED)]
+    assert ablation.main([*records, "--rounds", "1"]) == 2
+    assert "runs on the package numba" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["classify", "configs/free02.yaml"],
+        ["solve", "--set", "l0=1/5", "--at", "rho=1,L2=3/2"],
+        ["range", "configs/free02.yaml", "--along", "rho", "--at", "L2=3/2"],
+    ],
+)
+def test_commands_on_free_lengths_refuse(
+    arguments: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "configs").symlink_to(ROOT / "configs")
+    (tmp_path / "out").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert run(arguments) == 2
+    message = capsys.readouterr().err
+    assert "runs on the package numba" in message
+    assert message.count("\n") == 1

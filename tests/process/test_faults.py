@@ -1,0 +1,868 @@
+"""Signals, kills, limits and full disks, all from outside: a real process, what it leaves, and how it ends.
+
+Where a test says "in C code", the computation is one call of FLINT that would last for many minutes and never returns
+to the interpreter meanwhile: the primality proof of a number of a thousand digits.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import random
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import ptmcad
+from ptmcad.cli import run
+from ptmcad.errors import ConfigError
+from ptmcad.process.commit import recover
+from ptmcad.process.handover import Receiver, Topic, connect, disconnect, send
+from ptmcad.process.memory import bound_of, default_bound
+from ptmcad.process.output import check_writable, save_stopped, text_writer, write_files
+
+ROOT = Path(__file__).resolve().parents[2]
+FIG2 = ROOT / "configs" / "fig2.yaml"
+PARTIAL = json.dumps({"status": "partial", "stage": "variety"})
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="counts on Linux's signals for pipes, or on its limits")
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="without fork the command line is not watched")
+
+# A command line whose engine hands over a partial result, informs the test that it is there, and then does `work`.
+STAND_IN = """
+import os, signal, sys, time, types
+signal.signal(signal.SIGINT, lambda *_: os._exit(130))
+import flint
+from pathlib import Path
+here = Path(sys.argv.pop(1))
+class Result:
+    plan, cover = (), None
+    def __init__(self, state):
+        self.status = types.SimpleNamespace(value=state)
+    def to_json(self, timings=True):
+        return '{"status": "' + self.status.value + '", "stage": "variety"}'
+    def table(self):
+        return "table"
+def arrived():
+    (here / "pid").write_text(str(os.getpid()))
+    (here / "pid").rename(here / "arrived")
+def for_long_in_c():
+    flint.fmpz(10**999 + 7).is_prime()
+def engine(progress, partial):
+    pass
+def draw(result, path, samples):
+    path.write_text("half a picture")
+{work}
+def region_map(slice, options):
+    options.partial(Result("partial"))
+    engine(options.progress, options.partial)
+    options.partial(Result("exact"))
+    return Result("exact")
+pipeline, render = types.ModuleType("ptmcad.ask.classification"), types.ModuleType("ptmcad.show.render")
+pipeline.region_map, pipeline.prepare, render.draw = region_map, lambda *_: None, draw
+sys.modules.update({"ptmcad.ask.classification": pipeline, "ptmcad.show.render": render})
+from ptmcad.__main__ import main
+main()
+"""
+
+IN_C = "def engine(progress, partial):\n    arrived()\n    for_long_in_c()\n"
+FILLING = """
+def engine(progress, partial):
+    with open(here / "out" / "filler", "wb", buffering=0) as file:
+        try:
+            while file.write(bytes(4096)):
+                pass
+        except OSError:
+            for_long_in_c()
+"""
+DRAWING = "def draw(result, path, samples):\n    path.write_text('half')\n    arrived()\n"
+
+
+class Running:
+    """A command line with a stand-in engine, in a folder ``out`` with an old result."""
+
+    def __init__(self, folder: Path, work: str, *options: str, formats: str = "json", **popen: Any) -> None:
+        self.folder = folder
+        self.out = folder / "out"
+        self.out.mkdir(exist_ok=True)
+        arguments = ["classify", str(FIG2), "--out", str(self.out), "--format", formats, *options]
+        program = STAND_IN.replace("{work}", work)
+        popen = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **popen}
+        self.process = subprocess.Popen([sys.executable, "-c", program, str(folder), *arguments], cwd=ROOT, **popen)
+
+    def arrive(self) -> int:
+        """Wait until the computation has come to where it stays, and return the process that computes."""
+        until(lambda: (self.folder / "arrived").exists() or self.process.poll() is not None)
+        assert self.process.poll() is None, self.process.communicate()
+        return int((self.folder / "arrived").read_text())
+
+    def end(self) -> tuple[int, str]:
+        """The exit status and what was printed on standard error; nothing may be left of the process."""
+        _, errors = self.process.communicate(timeout=60)
+        assert not [name for name in os.listdir(self.out) if name.startswith(".")]
+        return self.process.returncode, (errors or b"").decode()
+
+    def files(self) -> dict[str, str]:
+        return {path.name: path.read_text() for path in sorted(self.out.iterdir())}
+
+
+def until(condition: Callable[[], bool]) -> None:
+    """Wait for something that the requirement itself is to happen."""
+    deadline = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < deadline, "it did not happen"
+        time.sleep(0.01)
+
+
+def lives(process: int) -> bool:
+    """Whether a process runs; one that has ended and waits for its parent's notice does not."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def put(folder: Path, **files: str) -> dict[str, str]:
+    """Old files ``fig2.SUFFIX`` in the folder ``out``."""
+    (folder / "out").mkdir()
+    old = {f"fig2.{suffix}": text for suffix, text in files.items()}
+    for name, text in old.items():
+        (folder / "out" / name).write_text(text)
+    return old
+
+
+# Signals
+
+
+@linux
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+@pytest.mark.parametrize("to", ["the process", "its group, twice"])
+def test_a_signal_stops_c_code(tmp_path: Path, number: signal.Signals, status: int, to: str) -> None:
+    """Ctrl-C in a terminal goes to the whole group, and people press it twice."""
+    old = put(tmp_path, json="old")
+    running = Running(tmp_path, IN_C, start_new_session=True)
+    computing = running.arrive()
+    for _ in range(1 if to == "the process" else 2):
+        (os.kill if to == "the process" else os.killpg)(running.process.pid, number)
+    assert running.end() == (status, "")
+    assert not lives(computing)
+    assert running.files() == old
+
+
+CERTIFIED = "Result.cover, Result.undetermined = 'of a certified map', 0.25\n"
+
+
+@linux
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+@pytest.mark.parametrize("stay", ["for_long_in_c()", "time.sleep(3600)"], ids=["in C code", "in Python"])
+def test_a_signal_saves_a_map_that_can_be_gone_on_from(
+    tmp_path: Path, number: signal.Signals, status: int, stay: str
+) -> None:
+    old = put(tmp_path, json='{"status": "certified"}', png="old picture")
+    work = f"{CERTIFIED}def engine(progress, partial):\n    arrived()\n    {stay}\n"
+    running = Running(tmp_path, work, "--engine", "certified", formats="png,json")
+    running.arrive()
+    running.process.send_signal(number)
+    place = running.out / "fig2.partial.json"
+    message = (
+        f"stopped: by {number.name}; the partial result, 25 % of it undetermined, is in {place}, because fig2.json "
+        f"holds an older result that is not partial; --resume {place} goes on from there\n"
+    )
+    assert running.end() == (status, message)
+    assert running.files() == {**old, "fig2.partial.json": PARTIAL}
+
+
+@linux
+def test_the_map_saved_by_a_signal_replaces_the_one_it_went_on_from(tmp_path: Path) -> None:
+    """And without JSON among the formats nothing is saved, as nothing was asked for."""
+    put(tmp_path, json='{"status": "partial", "stage": "earlier"}')
+    work = f"{CERTIFIED}def engine(progress, partial):\n    arrived()\n    time.sleep(3600)\n"
+    running = Running(tmp_path, work, "--engine", "certified")
+    running.arrive()
+    running.process.send_signal(signal.SIGINT)
+    place = running.out / "fig2.json"
+    assert running.end() == (
+        130,
+        f"stopped: by SIGINT; the partial result, 25 % of it undetermined, is in {place}; "
+        f"--resume {place} goes on from there\n",
+    )
+    assert running.files() == {"fig2.json": PARTIAL}
+    (tmp_path / "arrived").unlink()
+    again = Running(tmp_path, work, "--engine", "certified", formats="png")
+    again.arrive()
+    again.process.send_signal(signal.SIGINT)
+    assert again.end() == (130, "")
+    assert again.files() == {"fig2.json": PARTIAL}
+
+
+@linux
+@pytest.mark.parametrize("stay", ["    for_long_in_c()\n", "    time.sleep(3600)\n"], ids=["in C code", "in Python"])
+def test_a_signal_stops_drawing(tmp_path: Path, stay: str) -> None:
+    old = put(tmp_path, json="old", png="old picture")
+    running = Running(tmp_path, DRAWING + stay, formats="png,json")
+    computing = running.arrive()
+    assert len(running.files()) == 3
+    running.process.send_signal(signal.SIGTERM)
+    status, errors = running.end()
+    assert status == 143
+    assert errors.startswith("stopped: by SIGTERM; the complete result is in ")
+    assert not lives(computing)
+    assert running.files() == {**old, "fig2.complete.json": NEW["fig2.json"]}
+
+
+@linux
+def test_a_signal_to_the_computing_process_alone(tmp_path: Path) -> None:
+    running = Running(tmp_path, "def engine(progress, partial):\n    arrived()\n    time.sleep(3600)\n")
+    os.kill(running.arrive(), signal.SIGTERM)
+    assert running.end() == (143, "")
+
+
+@linux
+def test_what_is_cleaned_up_is_cleaned_up_silently_and_to_the_end(tmp_path: Path) -> None:
+    """A second signal does not interrupt it; and what interrupted code has to say is nobody's concern."""
+    work = (
+        "def engine(progress, partial):\n"
+        "    try:\n"
+        "        arrived()\n"
+        "        time.sleep(3600)\n"
+        "    finally:\n"
+        "        print('interrupted', file=sys.stderr)\n"
+        "        os.kill(os.getpid(), signal.SIGINT)\n"
+        "        os.kill(os.getpid(), signal.SIGTERM)\n"
+        "        (here / 'clean').touch()\n"
+    )
+    running = Running(tmp_path, work)
+    os.kill(running.arrive(), signal.SIGINT)
+    assert running.end() == (130, "")
+    assert (tmp_path / "clean").exists()
+
+
+@linux
+def test_an_ignored_hang_up_stays_ignored(tmp_path: Path) -> None:
+    """As nohup asks for."""
+    wait = "while not (here / 'go').exists(): time.sleep(0.01)"
+    work = f"def engine(progress, partial):\n    arrived()\n    {wait}\n"
+    running = Running(tmp_path, work, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+    computing = running.arrive()
+    running.process.send_signal(signal.SIGHUP)
+    os.kill(computing, signal.SIGHUP)
+    (tmp_path / "go").touch()
+    assert running.end() == (0, "")
+
+
+@linux
+def test_signals_at_any_moment_of_the_start(tmp_path: Path) -> None:
+    """Also while modules are imported: no traceback, the right status, the old file or the new one."""
+    program = (
+        "import os, signal, sys\n"
+        "signal.signal(signal.SIGINT, lambda *_: os._exit(130))\n"  # the interpreter's own start is not the program's
+        "signal.signal(signal.SIGTERM, lambda *_: os._exit(143))\n"
+        "os.write(1, b'.')\n"
+        "from ptmcad.__main__ import main\n"
+        "main()\n"
+    )
+    arguments = [sys.executable, "-c", program, "classify", str(FIG2), "--out", str(tmp_path), "--format", "json"]
+    moments = random.Random(2)
+    for _ in range(16):
+        number = moments.choice((signal.SIGINT, signal.SIGTERM))
+        process = subprocess.Popen(arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        assert process.stdout is not None
+        assert process.stdout.read(1) == b"."
+        time.sleep(moments.uniform(0, 0.25))
+        process.send_signal(number)
+        _, errors = process.communicate(timeout=60)
+        assert process.returncode in (0, 128 + number)
+        # what was computed by then, and is not yet in place, is saved
+        assert errors == b"" or (process.returncode and errors.startswith(b"stopped: by SIG")), errors
+        assert not [name for name in os.listdir(tmp_path) if name.startswith(".")]
+
+
+@linux
+def test_the_progress_bar_leaves_no_half_line(tmp_path: Path) -> None:
+    work = (
+        "import ptmcad.cli.progress\n"
+        "ptmcad.cli.progress.PATIENCE = 0\n"
+        "def engine(progress, partial):\n    progress('counts', 1, 2)\n    arrived()\n    for_long_in_c()\n"
+    )
+    terminal, other = os.openpty()
+    running = Running(tmp_path, work, stderr=other)
+    running.arrive()
+    os.close(other)
+    running.process.send_signal(signal.SIGINT)
+    assert running.end()[0] == 130
+    shown = os.read(terminal, 10_000)
+    os.close(terminal)
+    assert b"counts 1/2" in shown
+    assert shown.endswith(b"\r\x1b[K")
+
+
+# Waiting for the folder
+
+WAITING = """
+flock = fcntl.flock
+def waiting(descriptor, operation):
+    if stat.S_ISDIR(os.fstat(descriptor).st_mode) and draws:
+        arrived()
+    return flock(descriptor, operation)
+fcntl.flock, draws = waiting, []
+def draw(result, path, samples):
+    path.write_text("half a picture")
+    draws.append(path)
+"""
+"""The computation says when it has drawn and waits for the folder's lock."""
+
+
+ENDS = ("SIGINT", "SIGTERM", "SIGHUP", "time limit", "kill -9", "kill -9 of the program")
+OLDER = {"json": "old", "png": "old picture"}
+
+
+@linux
+@pytest.mark.parametrize(
+    ("ended", "certified", "old"),
+    [
+        ("SIGINT", False, OLDER),
+        ("SIGTERM", True, OLDER),
+        *(
+            pytest.param(*case, marks=pytest.mark.slow)
+            for case in product(ENDS, (False, True), ({}, OLDER))
+            if case not in (("SIGINT", False, OLDER), ("SIGTERM", True, OLDER))
+        ),
+    ],
+)
+def test_waiting_for_the_folder(tmp_path: Path, ended: str, certified: bool, old: dict[str, str]) -> None:
+    """Nothing is put into place without the lock; what was computed goes to a new name."""
+    before = put(tmp_path, **old)
+    held = os.open(tmp_path / "out", os.O_RDONLY)
+    work = "import fcntl, stat\n" + WAITING + (CERTIFIED if certified else "")
+    options = [
+        *(["--timeout", "1"] if ended == "time limit" else []),
+        *(["--engine", "certified"] if certified else []),
+    ]
+    running = Running(tmp_path, work, *options, formats="png,json")
+    fcntl.flock(held, fcntl.LOCK_EX)  # meanwhile the program starts; it can look at the folder later, too
+    try:
+        computing = running.arrive()
+        if ended == "kill -9":
+            os.kill(computing, signal.SIGKILL)
+        elif ended == "kill -9 of the program":
+            running.process.kill()
+        elif ended != "time limit":
+            running.process.send_signal(signal.Signals[ended])
+        _, errors = running.process.communicate(timeout=60)
+        until(lambda: not lives(computing))
+    finally:
+        os.close(held)
+    files = {name: text for name, text in running.files().items() if not name.startswith(".")}
+    saved = {"fig2.complete.json": NEW["fig2.json"]}
+    if ended == "kill -9 of the program":
+        assert (files, errors) == (before, b"")
+    else:
+        assert files == {**before, **saved}
+        assert b"; the complete result" in errors
+        assert b"fig2.complete.json, because " in errors
+    check_writable(running.out, ("fig2.png", "fig2.json"))
+    assert set(os.listdir(running.out)) == set(files)
+
+
+# kill -9
+
+
+@linux
+def test_a_killed_program_takes_its_computation_along(tmp_path: Path) -> None:
+    running = Running(tmp_path, IN_C)
+    computing = running.arrive()
+    running.process.kill()
+    running.process.communicate(timeout=60)
+    until(lambda: not lives(computing))
+
+
+KILLER = """
+from ptmcad.process import commit
+program = os.getpid()
+class Killing(commit.Disk):
+    steps = 0
+    def __getattribute__(self, name):
+        if name not in ("replace", "link", "unlink") or os.getpid() == program:
+            return object.__getattribute__(self, name)
+        Killing.steps += 1
+        if Killing.steps == {step}:
+            arrived()
+            for process in ({victims}):
+                os.kill(process, signal.SIGKILL)
+            time.sleep(0.5)
+        return object.__getattribute__(self, name)
+commit.disk = Killing()
+def engine(progress, partial):
+    pass
+"""
+OLD = {"fig2.json": "old", "fig2.png": "old picture", "fig2.svg": "old picture"}
+"""Eleven steps: the journal, two old pictures, the old JSON's second name, JSON, two pictures, and four removals."""
+NEW = {
+    "fig2.json": '{"status": "exact", "stage": "variety"}',
+    "fig2.png": "half a picture",
+    "fig2.svg": "half a picture",
+}
+
+
+def killed_before_step(folder: Path, step: int, victims: str) -> tuple[Running, int, bytes]:
+    """Kill processes before one of the steps that put a result into place."""
+    put(folder, json="old", png="old picture", svg="old picture")
+    work = KILLER.replace("{step}", str(step)).replace("{victims}", victims)
+    running = Running(folder, work, formats="png,svg,json")
+    running.process.wait(timeout=60)
+    until((folder / "arrived").exists)
+    computing = int((folder / "arrived").read_text())
+    until(lambda: not lives(computing))
+    _, errors = running.process.communicate(timeout=60)
+    return running, running.process.returncode, errors
+
+
+@linux
+@pytest.mark.parametrize("step", [1, 5, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3, 4, 6, 7, 8, 11))])
+def test_a_killed_computation_between_two_steps(tmp_path: Path, step: int) -> None:
+    """The program completes what was begun, or saves the result beside the older one, and says which."""
+    running, status, errors = killed_before_step(tmp_path, step, "os.getpid(),")
+    assert status == 3
+    place = running.out / ("fig2.complete.json" if step == 1 else "fig2.json")
+    why = ", because fig2.json holds an older result that is not partial" if step == 1 else ""
+    assert errors.decode().endswith(f"; the complete result is in {place}{why}\n")
+    assert running.files() == (OLD | {"fig2.complete.json": NEW["fig2.json"]} if step == 1 else NEW)
+
+
+@linux
+@pytest.mark.parametrize("step", [5, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 3, 4, 6, 7, 8, 11))])
+def test_a_killed_program_between_two_steps(tmp_path: Path, step: int) -> None:
+    """The computation completes what was begun, and ends then."""
+    running, _, _ = killed_before_step(tmp_path, step, "os.getppid(),")
+    assert running.files() == NEW
+
+
+@linux
+@pytest.mark.parametrize("step", [1, 6, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3, 4, 5, 7, 8, 9, 11))])
+def test_a_kill_of_both_between_two_steps(tmp_path: Path, step: int) -> None:
+    """Never a picture beside the JSON of another run; and who comes next completes the set."""
+    running, _, _ = killed_before_step(tmp_path, step, "os.getppid(), os.getpid()")
+    files = {name: text for name, text in running.files().items() if not name.startswith(".")}
+    assert "fig2.json" in files
+    assert files.items() <= (OLD if files["fig2.json"] == "old" else NEW).items()
+    recover(running.out)
+    assert {name: text for name, text in running.files().items() if not name.startswith(".")} == (
+        OLD if step == 1 else NEW
+    )
+    check_writable(running.out, tuple(NEW))
+    assert running.files() == (OLD if step == 1 else NEW)
+
+
+def killed_at_random(folder: Path, formats: str, times: int, seed: int) -> None:
+    """Replace one result by another and kill the program meanwhile, over and over.
+
+    The span of the moments follows the run time, whatever the machine's load: longer after a run that was killed too
+    early to change anything, shorter after one that came to its end.
+    """
+    out = folder / "out"
+    kinds: dict[str, dict[str, bytes]] = {}
+    span = 0.0
+    for count in ("total", "stable"):
+        started = time.monotonic()
+        assert subprocess.run(command(out, formats, count), cwd=ROOT, capture_output=True, check=False).returncode == 0
+        span = time.monotonic() - started
+        kinds[count] = contents(out)
+    assert kinds["total"] != kinds["stable"]
+    moments = random.Random(seed)
+    seen = []
+    for k in range(times):
+        before = contents(out)["fig2.json"]
+        then = "total" if before == kinds["stable"]["fig2.json"] else "stable"
+        process = subprocess.Popen(
+            command(out, formats, then), cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+            start_new_session=True,
+        )  # fmt: skip
+        time.sleep(moments.uniform(0, span))
+        (os.killpg if k % 2 else os.kill)(process.pid, signal.SIGKILL)
+        process.communicate(timeout=60)  # standard error is closed when both processes have ended
+        after = contents(out)
+        whole = {name: [kind for kind, files in kinds.items() if files[name] == text] for name, text in after.items()}
+        assert any(after.items() <= files.items() for files in kinds.values()), (k, whole)
+        assert "fig2.json" in after
+        changed = after["fig2.json"] != before
+        span *= 0.8 if changed else 1.1
+        seen.append(changed)
+    assert set(seen) == {True, False}, "the moments were all too early or all too late to show anything"
+    assert subprocess.run(command(out, formats, "total"), cwd=ROOT, capture_output=True, check=False).returncode == 0
+    assert sorted(os.listdir(out)) == sorted(kinds["total"])
+
+
+def command(out: Path, formats: str, count: str) -> list[str]:
+    options = ["--out", str(out), "--format", formats, "--count", count, "--no-timings"]
+    return [sys.executable, "-m", "ptmcad", "classify", str(FIG2), *options]
+
+
+def contents(out: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in out.iterdir() if not path.name.startswith(".")}
+
+
+@linux
+def test_killed_at_50_random_moments(tmp_path: Path) -> None:
+    """The old result or the new one, whole; and a later run clears what was left."""
+    killed_at_random(tmp_path, "json", times=50, seed=1)
+
+
+@linux
+@pytest.mark.slow
+def test_killed_at_50_random_moments_with_pictures(tmp_path: Path) -> None:
+    killed_at_random(tmp_path, "json,svg,png", times=50, seed=3)
+
+
+def test_stale_temporary_files_go_and_live_ones_stay(tmp_path: Path) -> None:
+    stale = [".fig2.0123abcd.tmp.json", ".probe.0123abcd.tmp"]
+    others = [".fig3.0123abcd.tmp.json", ".fig2.0123abcd.tmp.yaml", ".fig2.mine.tmp.json", "fig2.json"]
+    for name in (*stale, *others, ".fig2.00000000.tmp.json"):
+        (tmp_path / name).touch()
+    with (tmp_path / ".fig2.00000000.tmp.json").open() as live:
+        fcntl.flock(live, fcntl.LOCK_EX)
+        check_writable(tmp_path, ("fig2.json",))
+    assert set(os.listdir(tmp_path)) == {*others, ".fig2.00000000.tmp.json"}
+
+
+def test_a_live_writer_keeps_its_file(tmp_path: Path) -> None:
+    """Another run for the same name, which clears the folder while this one writes."""
+
+    def write(path: Path) -> None:
+        path.write_text("new")
+        check_writable(tmp_path, ("fig2.json",))
+        assert path.read_text() == "new"
+
+    write_files(tmp_path, {"fig2.json": write})
+    assert os.listdir(tmp_path) == ["fig2.json"]
+
+
+# Limits
+
+
+@linux
+def test_a_time_limit_stops_c_code(tmp_path: Path) -> None:
+    running = Running(tmp_path, IN_C, "--timeout", "0.2")
+    status, errors = running.end()
+    assert status == 3
+    assert errors == (
+        f"stopped: the time limit of 0.2 s was reached; the partial result is in {tmp_path / 'out' / 'fig2.json'}\n"
+    )
+    assert running.files() == {"fig2.json": PARTIAL}
+
+
+@linux
+def test_a_time_limit_while_drawing_loses_no_result(tmp_path: Path) -> None:
+    work = f"{DRAWING}    for_long_in_c()\n"
+    running = Running(tmp_path, work, "--timeout", "0.2", formats="png,json")
+    status, errors = running.end()
+    assert (status, errors.count("\n")) == (3, 1)
+    assert "the complete result is in" in errors
+    assert list(running.files()) == ["fig2.json"]
+
+
+@linux
+@pytest.mark.parametrize(
+    ("old", "place"),
+    [(PARTIAL, "fig2.json"), ('{"status": "exact"}', "fig2.partial.json"), ("[" * 10**6, "fig2.partial.json")],
+    ids=["older partial result", "whole result", "something else"],
+)
+def test_a_stopped_run_replaces_no_whole_result(tmp_path: Path, old: str, place: str) -> None:
+    put(tmp_path, json=old)
+    running = Running(tmp_path, IN_C, "--timeout", "0.2")
+    status, errors = running.end()
+    assert status == 3
+    assert str(tmp_path / "out" / place) in errors
+    assert ("because fig2.json holds" in errors) == (place != "fig2.json")
+    assert running.files() == {"fig2.json": old} | {place: PARTIAL}
+
+
+@linux
+def test_a_time_limit_before_there_is_anything(tmp_path: Path) -> None:
+    work = "class Result:\n    def __init__(self, state):\n        arrived()\n        for_long_in_c()\n"
+    running = Running(tmp_path, work, "--timeout", "0.2")
+    assert running.end() == (
+        3,
+        "stopped: the time limit of 0.2 s was reached; there was no partial result to save yet\n",
+    )
+
+
+@linux
+@pytest.mark.parametrize(
+    "allocate",
+    [
+        "flint.fmpz(3) ** (1 << 34)",
+        "flint.fmpz_poly([1, 1]) ** 100_000",
+        "flint.fmpq_mat(5000, 5000)",
+        "[0] * (1 << 30)",
+        "[bytes(k) for k in range(10**6)]",
+    ],
+)
+def test_a_memory_limit(tmp_path: Path, allocate: str) -> None:
+    """C code that aborts and Python's MemoryError end alike: one message, the partial result, status 3."""
+    work = f"def engine(progress, partial):\n    {allocate}\n"
+    running = Running(tmp_path, work, "--max-memory", "150M")
+    status, errors = running.end()
+    assert status == 3
+    place = tmp_path / "out" / "fig2.json"
+    assert errors == f"stopped: the memory limit of 150M was reached; the partial result is in {place}\n"
+    assert running.files() == {"fig2.json": PARTIAL}
+
+
+@linux
+@pytest.mark.parametrize("name", ["verify", "locate"])
+def test_limits_of_the_other_commands(shipped: Callable[..., Any], tmp_path: Path, name: str) -> None:
+    result = tmp_path / "fig2.json"
+    result.write_text(shipped("fig2").to_json())
+    options = ["--at", "rho=1,L2=1"] if name == "locate" else []
+    arguments = [sys.executable, "-m", "ptmcad", name, str(result), *options]
+    for limit in (["--max-memory", "1G"], ["--timeout", "1000"]):
+        assert subprocess.run([*arguments, *limit], cwd=ROOT, capture_output=True, check=False).returncode == 0
+    done = subprocess.run([*arguments, "--timeout", "1e-9"], cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode != 0:  # a process that is done within the grace is not stopped any more
+        assert (done.returncode, done.stderr) == (3, "stopped: the time limit of 1e-09 s was reached\n")
+
+
+@pytest.mark.parametrize(
+    "size", ["", "lots", "500", "-1G", "1e3M", "nan", "1M", "0G", "1GG", "٥٠٠M", "9" * 10**6, "99999999999T", "1/2G"]
+)
+def test_nonsense_for_a_size(capfd: pytest.CaptureFixture[str], size: str) -> None:
+    with pytest.raises(ConfigError):
+        bound_of(size)
+    assert run(["classify", str(FIG2), "--max-memory", size]) == 2
+    errors = capfd.readouterr().err
+    assert errors.startswith("error: --max-memory: ")
+    assert errors.count("\n") == 1
+    assert len(errors) < 200
+
+
+@linux
+def test_the_memory_limit_is_taken_back(tmp_path: Path) -> None:
+    """The command line as a function leaves its caller's limits as they were."""
+    before = resource.getrlimit(resource.RLIMIT_DATA)
+    assert run(["classify", str(FIG2), "--out", str(tmp_path), "--format", "json", "--max-memory", "8G"]) == 0
+    assert resource.getrlimit(resource.RLIMIT_DATA) == before
+
+
+@linux
+def test_the_default_bound_is_below_the_machine() -> None:
+    bound = default_bound()
+    assert bound is not None
+    assert 0 < bound.size < os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+
+@linux
+def test_a_computation_that_the_system_kills(tmp_path: Path) -> None:
+    running = Running(tmp_path, IN_C)
+    os.kill(running.arrive(), signal.SIGKILL)
+    status, errors = running.end()
+    assert (status, errors.count("\n")) == (3, 1)
+    assert "most likely because memory ran out" in errors
+    assert running.files() == {"fig2.json": PARTIAL}
+
+
+@linux
+@pytest.mark.parametrize(("number", "said"), [(signal.SIGSEGV, ""), (signal.SIGABRT, "impossible inverse")])
+def test_a_crash_is_not_taken_for_a_limit(tmp_path: Path, number: signal.Signals, said: str) -> None:
+    """What the library said last is shown; the old result stays."""
+    old = put(tmp_path, json="old")
+    work = (
+        "import resource\n"
+        "def engine(progress, partial):\n"
+        "    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))\n"
+        f"    os.write(2, {said!r}.encode())\n"
+        f"    os.kill(os.getpid(), {number})\n"
+    )
+    running = Running(tmp_path, work)
+    status, errors = running.end()
+    assert status == 128 + number
+    assert errors.startswith(said)
+    assert f"crashed ({number.name})" in errors
+    assert running.files() == old
+
+
+@linux
+@pytest.mark.slow
+@pytest.mark.parametrize("options", [["--timeout", "3"], []], ids=["time", "SIGINT"])
+def test_a_slice_of_high_degree(tmp_path: Path, options: list[str]) -> None:
+    """A real one: lengths that are quadratic in the axes; its projection takes ten seconds."""
+    sets = ["--set", "rho=1+F3^2", "--set", "L1=1+F4^2", "--set", "L2=2+F3*F4"]
+    slice = ["--slice", "F3,F4", "--range", "F3=-1:1", "--range", "F4=-1:1", *sets]
+    arguments = [sys.executable, "-m", "ptmcad", "classify", *slice, "--out", str(tmp_path), "--format", "json"]
+    process = subprocess.Popen(
+        [*arguments, *options], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    if not options:
+        time.sleep(4)
+        process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=60)
+    assert output == ""
+    if not options:
+        assert (process.returncode, errors, os.listdir(tmp_path)) == (130, "", [])
+        return
+    assert process.returncode == 3
+    assert errors.startswith("stopped: ")
+    assert errors.count("\n") == 1
+    for path in tmp_path.iterdir():
+        assert ptmcad.RegionMap.from_json(path.read_text()).status.value == "partial"
+
+
+# Full disks and closed pipes
+
+
+@pytest.fixture
+def full_disk(tmp_path: Path) -> Iterator[Path]:
+    """A folder of a file system without room, with an old result in it."""
+    folder = tmp_path / "full"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=16k", "tmpfs", str(folder)]
+    done = subprocess.run(mount, capture_output=True, text=True, check=False) if os.geteuid() == 0 else None
+    if done is None or done.returncode:
+        pytest.skip(f"no small file system can be mounted: {done.stderr.strip() if done else 'this is not root'}")
+    try:
+        (folder / "fig2.json").write_text("old")
+        yield folder
+    finally:
+        subprocess.run(["umount", str(folder)], check=True)
+
+
+def fill(folder: Path, left: int) -> None:
+    """Take all room but so many bytes."""
+    room = os.statvfs(folder)
+    (folder / "filler").write_bytes(bytes(max(0, room.f_bavail * room.f_frsize - left)))
+
+
+def classified(folder: Path, *options: str, formats: str = "json", **popen: Any) -> tuple[int, str]:
+    arguments = ["classify", str(FIG2), "--out", str(folder), "--format", formats, *options]
+    process = [sys.executable, "-m", "ptmcad", *arguments]
+    done = subprocess.run(process, cwd=ROOT, capture_output=True, text=True, check=False, **popen)
+    return done.returncode, done.stderr
+
+
+@linux
+@pytest.mark.parametrize("left", [0, 4096], ids=["from the start", "while writing"])
+def test_a_full_disk(full_disk: Path, left: int) -> None:
+    fill(full_disk, left)
+    status, errors = classified(full_disk)
+    assert (status, errors.count("\n")) == (2, 1)
+    assert "No space left on device" in errors
+    assert sorted(os.listdir(full_disk)) == ["fig2.json", "filler"]
+    assert (full_disk / "fig2.json").read_text() == "old"
+
+
+@linux
+def test_a_full_disk_for_a_stopped_result(full_disk: Path, tmp_path: Path) -> None:
+    (full_disk / "fig2.json").unlink()
+    (tmp_path / "out").symlink_to(full_disk)
+    running = Running(tmp_path, FILLING, "--timeout", "0.2")
+    status, errors = running.end()
+    assert (status, errors.count("\n")) == (2, 1)
+    assert "No space left on device" in errors
+    assert os.listdir(full_disk) == ["filler"]
+
+
+@linux
+def test_a_file_that_may_not_grow(tmp_path: Path) -> None:
+    """The same without root: the process may write files of 2000 bytes at most."""
+    (tmp_path / "fig2.json").write_text("old")
+    limit = (2000, 2000)
+    status, errors = classified(tmp_path, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit))
+    assert (status, errors.count("\n")) == (2, 1)
+    assert "File too large" in errors
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"fig2.json": "old"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reader", "statuses"),
+    [
+        ("--help", "true", {0}),
+        ("classify --help", "head -1", {0}),
+        (f"classify {FIG2} --format json --out new", "head -1", {0}),
+        (f"classify {FIG2} --format json --out new", "true", {0}),
+        ("verify fig2.json", "true", {0}),
+        ("verify wrong.json", "true", {1}),
+        ("locate fig2.json --csv points.csv", "head -1", {0}),
+        ("classify nothing.yaml 2>&1", "true", {2}),
+    ],
+)
+def test_a_reader_that_leaves(
+    shipped: Callable[..., Any], tmp_path: Path, arguments: str, reader: str, statuses: set[int]
+) -> None:
+    """Quietly, with the files saved, and with the status that it would have had."""
+    text = shipped("fig2").to_json()
+    (tmp_path / "fig2.json").write_text(text)
+    stored = json.loads(text)
+    stored["cells"][0]["total"] += 2
+    (tmp_path / "wrong.json").write_text(json.dumps(stored))
+    (tmp_path / "points.csv").write_text("rho,L2\n" + "7/10,3/2\n" * 3000)
+    script = f"{{ '{sys.executable}' -m ptmcad {arguments}; echo $? >status; }} | {reader}"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        ["sh", "-c", script], cwd=tmp_path, capture_output=True, text=True, check=True, env=environment
+    )
+    assert int((tmp_path / "status").read_text()) in statuses
+    assert done.stderr.replace("violated", "").count("\n") <= (1 in statuses)
+    assert "Traceback" not in done.stderr
+    assert "Exception" not in done.stderr
+    if "--out new" in arguments:
+        assert ptmcad.RegionMap.from_json((tmp_path / "new" / "fig2.json").read_text()).regions
+
+
+@pytest.mark.skipif(not Path("/dev/stdin").exists(), reason="needs a name for standard input")
+def test_a_reader_that_leaves_ends_an_endless_table(shipped: Callable[..., Any], tmp_path: Path) -> None:
+    (tmp_path / "fig2.json").write_text(shipped("fig2").to_json())
+    program = f"'{sys.executable}' -m ptmcad locate fig2.json --csv /dev/stdin"
+    script = f"{{ echo rho,L2; yes 7/10,3/2; }} | {program} | head -1"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        ["sh", "-c", script], cwd=tmp_path, capture_output=True, text=True, check=True, env=environment
+    )
+    assert done.stdout.startswith("rho,L2,status") or done.stdout.startswith("L2,rho,status")
+    assert "Traceback" not in done.stderr
+
+
+# The parts
+
+
+@given(
+    st.lists(st.tuples(st.sampled_from(Topic), st.lists(st.text("aä\n ", max_size=5), min_size=1, max_size=3))),
+    st.integers(1, 40),
+    st.integers(0, 60),
+)
+def test_messages_arrive_whole_or_not_at_all(messages: list[tuple[Topic, list[str]]], chunk: int, lost: int) -> None:
+    """In whatever pieces they come, and wherever the sender was killed."""
+    with tempfile.TemporaryFile() as file:
+        connect(file.fileno())
+        try:
+            for topic, texts in messages:
+                send(topic, *texts)
+        finally:
+            disconnect()
+        file.seek(0)
+        data = file.read()
+    receiver = Receiver()
+    kept = data[: max(0, len(data) - lost)]
+    received = [m for k in range(0, len(kept), chunk) for m in receiver.feed(kept[k : k + chunk])]
+    assert received == messages[: len(received)]
+    if lost == 0:
+        assert received == messages
+
+
+@pytest.mark.parametrize("old", [{}, {"fig2.json": "old"}, {"fig2.json": PARTIAL}])
+def test_where_a_stopped_result_goes(tmp_path: Path, old: Mapping[str, str]) -> None:
+    for name, text in old.items():
+        write_files(tmp_path, {name: text_writer(text)})
+    place = save_stopped(tmp_path / "fig2.json", "new")
+    assert place.name == ("fig2.partial.json" if "old" in old.values() else "fig2.json")
+    assert place.read_text() == "new"

@@ -1,0 +1,342 @@
+"""Slices from records and options; each kind of bad input with its file, line and key."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from ptmcad.cli import run
+from ptmcad.errors import ConfigError
+from ptmcad.question.config import PARAMETERS, load, point_from_mapping, slice_from_mapping, slice_from_options
+from ptmcad.question.slice import FREE_LENGTHS, Count
+from ptmcad.text.expressions import axis, constant
+
+CONFIGS = sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml"))
+SHIPPED = ["fig2", "fig3", "fig4", "fig5-caption", "fig5-text", "forces", "free-l0-L1", "free-l0-L32", "free-load",
+           "free02-unloaded", "free02", "free05", "free08", "horizontal", "rods", "stiffness",
+           "unequal-springs"]  # fmt: skip
+AXES = "axes: {rho: [0, 2], L2: [0, 2]}\n"
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / "record.yaml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_all_records_are_shipped() -> None:
+    assert [path.stem for path in CONFIGS] == SHIPPED
+
+
+@pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
+def test_shipped_records_load(path: Path) -> None:
+    slice = load(path)
+    assert slice.name == path.stem
+    assert slice.title
+    assert slice.reference["source"]
+    assert slice.has_free_lengths == path.stem.startswith("free")
+
+
+def test_numbers_are_exact(tmp_path: Path) -> None:
+    digits = "3.141592653589793238462643383279502884197"
+    slice = load(write(tmp_path, AXES + f"parameters: {{L1: {digits}, F3: -0.1, F4: 1e-30, k: '3/4', F3x: -1/10}}"))
+    values = {name: slice.parameters[name].constant() for name in ("L1", "F3", "F4", "k", "F3x")}
+    assert values["L1"] == Fraction(digits)
+    assert values["F3"] == values["F3x"] == Fraction(-1, 10)
+    assert values["F4"] == Fraction(1, 10**30)
+    assert values["k"] == Fraction(3, 4)
+
+
+def test_expressions_and_defaults(tmp_path: Path) -> None:
+    text = "axes: {rho: [0, 2], F: [-1e1, 0]}\nparameters: {F3: F, F4: F3, L2: 2*rho, k2: 2*k}\ncount: index\n"
+    slice = load(write(tmp_path, text))
+    assert slice.name == "record"
+    assert slice.count is Count.INDEX
+    assert slice.axis_names == ("rho", "F")
+    assert slice.parameters["F3"] == slice.parameters["F4"] == axis(1)
+    assert slice.parameters["L2"] == 2 * axis(0)
+    assert slice.parameters["k1"] == constant(100)
+    assert slice.parameters["k2"] == constant(200)
+    assert slice.text["F4"] == "F3"
+    assert list(slice.parameters) == ["L1", "L2", "rho", "k", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x"]
+
+
+def test_a_free_length_of_zero_is_accepted(tmp_path: Path) -> None:
+    assert "l0" not in load(write(tmp_path, AXES + "parameters: {l0: 0, l0_1: 0.0}")).parameters
+
+
+def test_free_lengths_fixed_as_axes_and_as_expressions(tmp_path: Path) -> None:
+    fixed = load(write(tmp_path, AXES + "parameters: {l0: 1/5, l0_2: 2*l0}\ncount: admissible\n"))
+    assert fixed.count is Count.ADMISSIBLE
+    assert fixed.has_free_lengths
+    assert [fixed.parameters[n].constant() for n in FREE_LENGTHS] == [Fraction(1, 5), Fraction(2, 5), Fraction(1, 5)]
+    assert list(fixed.parameters)[-3:] == list(FREE_LENGTHS)
+    assert "l0" not in fixed.parameters
+    assert [fixed.text[n] for n in FREE_LENGTHS] == ["1/5", "2*l0", "1/5"]
+    window = slice_from_options(slice="rho,l0", sets=["F3=-10"])
+    assert (window.axes[1].low, window.axes[1].high) == (0, 1)
+    assert [window.parameters[n] for n in FREE_LENGTHS] == [axis(1)] * 3
+    one = slice_from_options(slice="l0_3,rho", ranges=["l0_3=1/10:1/2"])
+    assert [one.parameters[n] for n in FREE_LENGTHS] == [constant(0), constant(0), axis(0)]
+    varying = load(write(tmp_path, AXES + "parameters: {l0: rho/10, l0_1: (rho-1)^2/4}"))
+    assert varying.parameters["l0_2"] == axis(0) * Fraction(1, 10)
+    assert varying.parameters["l0_1"].evaluate(Fraction(1), Fraction(1)) == 0  # zero inside the window is a length too
+
+
+def test_free_lengths_that_cancel_leave_an_exact_slice(tmp_path: Path) -> None:
+    exact, cancelled = (load(write(tmp_path, AXES + text)) for text in ("", "parameters: {l0_1: rho - rho, l0: 0}"))
+    assert not cancelled.has_free_lengths
+    assert cancelled == exact
+
+
+def test_a_heading_names_the_free_length_once() -> None:
+    assert "l0 = 1/5" in slice_from_options(slice="rho,L2", sets=["l0=1/5"]).heading
+    assert "l0_2 = 1/5" in slice_from_options(slice="rho,L2", sets=["l0_2=1/5"]).heading
+    assert "l0" not in slice_from_options(slice="rho,l0").heading
+
+
+BAD = [
+    ("unknown key", AXES + "paramters: {F3: 1}", 2, "paramters", "did you mean 'parameters'?"),
+    ("unknown key, nothing close", AXES + "zzz: 1", 2, "zzz", "the keys are"),
+    ("unknown parameter", AXES + "parameters:\n  Rho: 1", 3, "parameters.Rho", "did you mean 'rho'?"),
+    ("unknown parameter, nothing close", AXES + "parameters: {F5: 1}", 2, "parameters.F5", "the parameters are L1"),
+    ("duplicate key", AXES + AXES, 2, "axes", "twice; first in line 1"),
+    ("duplicate parameter", AXES + "parameters:\n  F3: 1\n  F3: 2", 4, "parameters.F3", "twice"),
+    ("axis also fixed", AXES + "parameters: {rho: 1}", 2, "parameters.rho", "fixed too"),
+    ("empty range", "axes:\n  rho: [0, 2]\n  L2: [1, 1.0]", 3, "axes.L2", "empty"),
+    ("reversed range", "axes:\n  rho: [2, 0]\n  L2: [0, 1]", 2, "axes.rho", "reversed: write [0, 2]"),
+    ("length below zero", "axes:\n  rho: [-1, 2]\n  L2: [0, 1]", 2, "axes.rho", "below zero"),
+    ("stiffness below zero", "axes:\n  rho: [0, 2]\n  k: [-1, 1]", 3, "axes.k", "below zero"),
+    ("zero length", AXES + "parameters: {L1: 0}", 2, "parameters.L1", "must be positive"),
+    ("negative length", AXES + "parameters: {L1: -1}", 2, "parameters.L1", "L1 is -1"),
+    ("negative base", "axes: {L1: [0, 2], L2: [0, 2]}\nparameters: {rho: -1}", 2, "parameters.rho", "not negative"),
+    ("zero stiffness", AXES + "parameters: {k3: 0}", 2, "parameters.k3", "must be positive"),
+    ("length negative in the window", AXES + "parameters: {L1: rho - 1/2}", 2, "parameters.L1", "narrow the window"),
+    ("division by zero", AXES + "parameters:\n  F3: 1/(2-2)", 3, "parameters.F3", "division by zero (character 2"),
+    ("pole in the window", AXES + "parameters:\n  F3: 1/(rho-1)", 3, "parameters.F3", "division by zero inside"),
+    ("cycle", AXES + "parameters:\n  F3: F4\n  F4: 2*F3", 3, "parameters.F3", "F3 -> F4 -> F3"),
+    ("self-cycle", AXES + "parameters: {F3: F3}", 2, "parameters.F3", "F3 -> F3"),
+    ("unknown name", AXES + "parameters: {F3: 2*roh}", 2, "parameters.F3", "did you mean 'rho'?"),
+    ("null", AXES + "parameters:\n  F3:", 3, "parameters.F3", "no value"),
+    ("boolean", AXES + "parameters: {F3: yes}", 2, "parameters.F3", "yes-or-no"),
+    ("list as value", AXES + "parameters: {F3: [1]}", 2, "parameters.F3", "expected a number"),
+    ("nan", AXES + "parameters: {F3: .nan}", 2, "parameters.F3", "cannot be used"),
+    ("comma", AXES + "parameters:\n  F3: 0,5", 3, "parameters.F3", "decimal point"),
+    ("huge exponent", AXES + "parameters: {F3: rho**1000000000}", 2, "parameters.F3", "at most 64"),
+    ("negative free length", AXES + "parameters: {l0: -0.2}", 2, "parameters.l0", "must be not negative"),
+    ("free length axis below zero", "axes: {rho: [0, 2], l0: [-1, 1]}", 1, "axes.l0", "not negative: start it at 0"),
+    (
+        "free length negative in the window",
+        AXES + "parameters: {l0_2: 1/8 - rho/4}",
+        2,
+        "parameters.l0_2",
+        "must not be",
+    ),
+    ("pole of a free length", AXES + "parameters: {l0: 1/(rho-1)}", 2, "parameters.l0", "division by zero inside"),
+    ("l0 without use", AXES + "parameters: {l0: 1, l0_1: 1, l0_2: 1, l0_3: 1}", 2, "parameters.l0", "no effect"),
+    (
+        "axis l0 without use",
+        "axes: {rho: [0, 1], l0: [0, 1]}\nparameters: {l0_1: 0, l0_2: 1, l0_3: 1}",
+        1,
+        "axes.l0",
+        "l0_1, l0_2 and l0_3 are all given",
+    ),
+    ("one axis", "axes: {rho: [0, 2]}", 1, "axes", "1 axes"),
+    ("three axes", "axes: {rho: [0, 2], L1: [0, 2], L2: [0, 2]}", 1, "axes", "3 axes"),
+    ("no axes", "name: a", 1, "axes", "is missing"),
+    ("axes as a list", "axes: [rho, L2]", 1, "axes", "expected two axes"),
+    ("unused axis", "axes: {roh: [0, 2], L2: [0, 2]}", 1, "axes.roh", "did you mean 'rho'?"),
+    ("cancelled axis", AXES.replace("rho", "F") + "parameters: {F3: F-F}", 1, "axes.F", "not used"),
+    ("axis k without use", "axes: {k: [0, 1], L2: [0, 2]}\nparameters: {k1: 1, k2: 1, k3: 1}", 1, "axes.k", "not used"),
+    ("k without use", AXES + "parameters: {k: 1, k1: 1, k2: 1, k3: 1}", 2, "parameters.k", "no effect"),
+    ("bad axis name", "axes: {2x: [0, 2], L2: [0, 2]}", 1, "axes.2x", "cannot name an axis"),
+    ("range of three", "axes: {rho: [0, 1, 2], L2: [0, 2]}", 1, "axes.rho", "expected a range"),
+    ("range with a name", "axes: {rho: [0, L2], L2: [0, 2]}", 1, "axes.rho", "not an expression in L2"),
+    ("count", AXES + "count: all", 2, "count", "stable, total, index or admissible"),
+    ("mechanism", AXES + "mechanism: {rods: 3}", 2, "mechanism", "unknown mechanism"),
+    ("name with a path", AXES + "name: ../x", 2, "name", "cannot name a file"),
+    ("name that hides", AXES + "name: .x", 2, "name", "cannot name a file"),
+    *(
+        (f"device {name}", f'{AXES}name: "{name}"', 2, "name", "cannot name a file: Windows keeps")
+        for name in ("con", "NUL", "Com1", "aux", "LPT1.x", "lpt0", "PRN", "com³", "nul.tar.gz")
+    ),
+    *((f"end of {name!r}", f'{AXES}name: "{name}"', 2, "name", "cannot name a file") for name in ("a.", "a ", "con ")),
+    ("reference as text", AXES + "reference: text", 2, "reference", "expected a mapping"),
+    ("parameters as a list", AXES + "parameters: [F3]", 2, "parameters", "expected a mapping"),
+    ("anchor", AXES + "parameters: {F3: &a 1, F4: *a}", 2, "parameters.F3", "anchors"),
+    ("alias alone", AXES + "parameters: {F4: *a}", 2, "parameters.F4", "aliases"),
+    ("tag", AXES + "parameters: {F3: !!python/object:os.system 1}", 2, "parameters.F3", "tag"),
+    ("merge key", AXES + "parameters: {<<: {F3: 1}}", 2, "parameters.<<", "merge"),
+    ("two documents", AXES + "---\n" + AXES, 2, None, "second document"),
+    ("nested deep", AXES + "reference: {a: " + "[" * 500 + "]" * 500 + "}", 2, "reference.a", "levels of nesting"),
+    ("not YAML", AXES + "parameters: {F3: 1", 3, None, "is not YAML"),
+    ("tab", AXES + "parameters:\n\tF3: 1", 3, None, "is not YAML"),
+    ("empty", "", None, None, "is empty"),
+    ("a sentence", "hello world", None, None, "not a mapping"),
+    ("a list", "- 1\n- 2", None, None, "not a mapping"),
+    ("control character", "a: \x07", None, None, "is not YAML"),
+]
+
+
+@pytest.mark.parametrize(("text", "line", "key", "part"), [case[1:] for case in BAD], ids=[case[0] for case in BAD])
+def test_bad_records_are_refused_with_their_place(
+    tmp_path: Path, text: str, line: int | None, key: str | None, part: str
+) -> None:
+    path = write(tmp_path, text)
+    with pytest.raises(ConfigError) as caught:
+        load(path)
+    error = caught.value
+    assert part in error.message
+    assert (error.file, error.line, error.key) == (str(path), line, key)
+    assert "\n" not in str(error)
+
+
+def test_files_that_are_no_records(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="no such file"):
+        load(tmp_path / "missing.yaml")
+    with pytest.raises(ConfigError, match="is a folder"):
+        load(tmp_path)
+    with pytest.raises(ConfigError, match="cannot be read"):
+        load("a\0b")
+    binary = tmp_path / "picture.yaml"
+    binary.write_bytes(b"\x89PNG\r\n\x1a\n\xff\xfe")
+    with pytest.raises(ConfigError, match="not UTF-8"):
+        load(binary)
+    binary.write_bytes(b"axes: \xff\n")
+    with pytest.raises(ConfigError, match=r"picture\.yaml:1: is not UTF-8"):
+        load(binary)
+    binary.write_bytes(b"#" * 200_001)
+    with pytest.raises(ConfigError, match="larger than"):
+        load(binary)
+    binary.write_bytes("\ufeff".encode() + AXES.encode())
+    assert load(binary).axis_names == ("rho", "L2")
+
+
+@pytest.mark.parametrize("file", ["con.yaml", "Aux.v2.yaml", "COM1.yaml"])
+def test_a_record_whose_name_is_a_device_has_to_give_another(tmp_path: Path, file: str) -> None:
+    """Its results would have names that Windows cannot read."""
+    (tmp_path / file).write_text(AXES)
+    with pytest.raises(ConfigError, match="Windows keeps") as caught:
+        load(tmp_path / file)
+    assert (caught.value.key, caught.value.file) == ("name", str(tmp_path / file))
+    (tmp_path / file).write_text(f"name: mine\n{AXES}")
+    assert load(tmp_path / file).name == "mine"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "key"),
+    [
+        (["variety", "--slice", "L2,rho", "--out", "nul.mpl"], "--out"),
+        (["variety", "--slice", "L2,rho", "--out", "curves."], "--out"),
+        (["variety", "--slice", "L2,rho", "--out", "curves.mpl "], "--out"),
+        (["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", "lpt9"], "--name"),
+        (["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", "../x"], "--name"),
+        (["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", ""], "--name"),
+    ],
+)
+def test_options_that_cannot_name_a_file(capfd: pytest.CaptureFixture[str], arguments: list[str], key: str) -> None:
+    assert run(arguments) == 2
+    assert capfd.readouterr().err.startswith(f"error: {key}: ")
+
+
+def test_options_alone() -> None:
+    slice = slice_from_options(slice="L2,rho")
+    assert slice.name == "slice-L2-rho"
+    assert [(a.name, a.low, a.high) for a in slice.axes] == [("L2", 0, 4), ("rho", 0, 4)]
+    assert slice.parameters["F3"] == constant(0)
+    forces = slice_from_options(slice="F3,k", ranges=["k=1/2:1e2"], sets=["L2=3/2"], count="total")
+    assert [(a.low, a.high) for a in forces.axes] == [(-30, 0), (Fraction(1, 2), 100)]
+    assert forces.count is Count.TOTAL
+
+
+def test_options_over_a_record() -> None:
+    path = next(path for path in CONFIGS if path.stem == "fig5-text")
+    swapped = slice_from_options(path, slice="F4,rho")
+    assert swapped.axis_names == ("F4", "rho")
+    assert [(a.low, a.high) for a in swapped.axes] == [(-30, 0), (0, 2)]
+    other = slice_from_options(path, slice="rho,L2", sets=["F4=-20"], ranges=["rho=0:1"])
+    assert other.parameters["F3"] == constant(-10)
+    assert other.parameters["F4"] == constant(-20)
+    assert other.axes[0].high == 1
+    assert not other.reference
+    assert slice_from_options(path, count="index").reference
+
+
+@pytest.mark.parametrize(
+    ("options", "key", "part"),
+    [
+        ({}, None, "--slice L2,rho"),
+        ({"slice": "L2"}, "--slice", "is not X,Y"),
+        ({"slice": "L2,L2"}, "--slice", "both L2"),
+        ({"slice": "L2,roh"}, "--slice", "did you mean 'rho'?"),
+        ({"slice": "L2,F"}, "--slice", "--range F=LO:HI"),
+        ({"slice": "L2,rho", "sets": ["rho=1"]}, "--set rho", "is an axis"),
+        ({"slice": "L2,rho", "sets": ["F3"]}, "--set", "is not NAME=VALUE"),
+        ({"slice": "L2,rho", "sets": ["F9=1"]}, "--set F9", "unknown parameter"),
+        ({"slice": "L2,rho", "sets": ["F3=1", "F3=2"]}, "--set F3", "given twice"),
+        ({"slice": "L2,rho", "sets": ["L1=-1"]}, "--set L1", "must be positive"),
+        ({"slice": "L2,rho", "ranges": ["F3=0:1"]}, "--range F3", "is not an axis"),
+        ({"slice": "L2,rho", "ranges": ["rho=0"]}, "--range", "is not NAME=LO:HI"),
+        ({"slice": "L2,rho", "ranges": ["rho=2:1"]}, "--range rho", "reversed"),
+        ({"slice": "L2,rho", "count": "some"}, "--count", "is not a count"),
+        ({"config": "fig4", "sets": ["rho=1"]}, "--set rho", "choose other axes"),
+        ({"config": "fig4", "slice": "F3,F4", "sets": ["L2=1"]}, "--slice", "add --set rho=VALUE"),
+    ],
+    ids=str,
+)
+def test_bad_options_name_the_option(options: dict[str, object], key: str | None, part: str) -> None:
+    if "config" in options:
+        options = options | {"config": next(path for path in CONFIGS if path.stem == options["config"])}
+    with pytest.raises(ConfigError) as caught:
+        slice_from_options(**options)  # type: ignore[arg-type]
+    assert caught.value.key == key
+    assert part in caught.value.message
+
+
+def test_mappings() -> None:
+    slice = slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["1/2", Fraction(3, 2)]}, "reference": {"regions": 2}})
+    assert slice.axes[1].low == Fraction(1, 2)
+    assert slice.reference == {"regions": 2}
+    with pytest.raises(ConfigError, match=r"axes\.rho: 0\.5 of type float"):
+        slice_from_mapping({"axes": {"rho": [0, 0.5], "L2": [0, 2]}})
+
+
+def test_every_parameter_can_be_an_axis() -> None:
+    for name, parameter in PARAMETERS.items():
+        if name != "L1":
+            assert parameter.window is not None
+            low, high = parameter.window
+            assert slice_from_options(slice=f"L1,{name}").axes[1].low == Fraction(low) < Fraction(high)
+
+
+@pytest.mark.parametrize(
+    "title", ["title: >\n  Two lines\n  folded", "title: |\n  Two lines\n  folded", 'title: "Two\\tlines\\u00a0folded"']
+)
+def test_titles_of_several_lines_become_one(tmp_path: Path, title: str) -> None:
+    """Their results were refused by every command that reads one."""
+    path = tmp_path / "title.yaml"
+    path.write_text(f"name: t\n{title}\naxes: {{rho: [3, 4], L2: [0, 1]}}\n", encoding="utf-8")
+    assert load(path).title == "Two lines folded"
+
+
+def test_a_title_with_a_hidden_character_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "title.yaml"
+    path.write_text('name: t\ntitle: "a\\u202Eb"\naxes: {rho: [3, 4], L2: [0, 1]}\n', encoding="utf-8")
+    with pytest.raises(ConfigError, match="U\\+202E"):
+        load(path)
+
+
+@pytest.mark.parametrize(("shorthand", "names"), [("k", ("k1", "k2", "k3")), ("l0", FREE_LENGTHS)])
+def test_a_value_for_all_springs_that_none_takes_is_refused_at_points_too(
+    shorthand: str, names: tuple[str, ...]
+) -> None:
+    given = dict.fromkeys(names, "1")
+    assert point_from_mapping(given)[names[0]] == 1
+    with pytest.raises(
+        ConfigError, match=f"{names[0]}, {names[1]} and {names[2]} are all given: leave it out"
+    ) as caught:
+        point_from_mapping(given | {shorthand: "2"})
+    assert caught.value.key == shorthand
+    assert point_from_mapping(given | {shorthand: "2", names[2]: f"{shorthand}/2"})[names[2]] == 1

@@ -1,0 +1,286 @@
+"""Signs over the window: known by construction, against Sturm's theorem in sympy, and against exact values."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+from math import comb
+
+import pytest
+import sympy
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from support.dips import AXES, DIPS, NAMES, Q, X, Y, random_square, thin_dip
+
+from ptmcad.algebra import definite
+from ptmcad.question.positivity import (
+    PROVED,
+    Need,
+    Proved,
+    Undecided,
+    Witness,
+    bernstein,
+    decide,
+    named,
+    number,
+    place,
+    polynomial_value,
+)
+from ptmcad.question.slice import Axis
+from ptmcad.text.expressions import Expression, constant, parse
+
+coefficients = st.dictionaries(
+    st.tuples(st.integers(0, 3), st.integers(0, 3)), st.integers(-5, 5).filter(bool), min_size=1, max_size=6
+)
+units = st.fractions(min_value=0, max_value=1, max_denominator=9)
+
+
+@given(coefficients, units, units)
+@settings(max_examples=50)
+def test_the_bernstein_form_has_the_polynomial_values(
+    polynomial: dict[tuple[int, int], int], s: Fraction, t: Fraction
+) -> None:
+    terms = tuple((i, j, Fraction(c)) for (i, j), c in sorted(polynomial.items()))
+    (m, n) = (max(i for i, _ in polynomial), max(j for _, j in polynomial))
+    x, y = 2 * s, -3 + 4 * t
+    form = bernstein(terms, ((AXES[0].low, AXES[0].high), (AXES[1].low, AXES[1].high)))
+    total = sum(
+        comb(m, p) * s**p * (1 - s) ** (m - p) * comb(n, q) * t**q * (1 - t) ** (n - q) * form[p][q]
+        for p in range(m + 1)
+        for q in range(n + 1)
+    )
+    assert total == sum(c * x**i * y**j for i, j, c in terms)
+
+
+def check(expression: Expression, need: Need, axes: tuple[Axis, Axis] = AXES) -> str:
+    """``proved``, ``refuted`` or ``undecided``; a witness is checked by exact evaluation."""
+    verdict = decide(expression, axes, need)
+    if isinstance(verdict, Undecided):
+        assert verdict.boxes
+        return "undecided"
+    if isinstance(verdict, Proved):
+        return "proved"
+    for value, a in zip(verdict.point, axes, strict=True):
+        assert a.low < value < a.high
+    if need is Need.NO_POLE:
+        seen = polynomial_value(expression.denominator, *verdict.point)
+        if verdict.other is not None:
+            assert polynomial_value(expression.denominator, *verdict.other) * seen < 0
+        else:
+            assert verdict.value == 0
+    else:
+        seen = expression.evaluate(*verdict.point)
+        assert verdict.value < 0 or (verdict.value == 0 and need is Need.POSITIVE)
+    assert seen == verdict.value or (verdict.value == 0 and 0 < verdict.distance < Q(1, 10**9))
+    return "refuted"
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [("rho", False), ("rho*(2-rho)", False), ("1+F^2", False), ("4+F", False), ("rho-1", True), ("F", True),
+     ("1/(1+rho)", False), ("1/(-1-rho)", True), ("rho^2-rho+1/5", True), ("-rho", True), ("0*rho", True),
+     # a denominator that is negative in the window
+     ("1/(rho-2)", True), ("-1/(rho-2)", False), ("(rho-2)/(F-1)", False), ("1/((rho-3)*(F+4))", True),
+     # zeros at the edges and corners of the window are allowed, inside of it they are not
+     ("(F+3)*(1-F)*rho", False), ("rho^2+(F+3)^2", False), ("rho+(F+1/3)^2", False), ("(F+1/3)^2+(rho-2)^2", False),
+     ("rho^2+(F^2-2)^2", False), ("(2-rho)^3+(F^2-2)^2", False), ("(rho-2/3)^2", True), ("(rho^2-2)^2", True),
+     ("(rho-2/3)^2+(F+1/7)^2", True), ("(F-rho)^2", True), ("(F^2-rho)^2*(1+rho)", True),
+     ("rho^3+(F+1/3)^2*(F-2)^2", False), ("(rho-1)^2 + 1e-40", False), ("(rho-F-1/3)^2+1e-40", False),
+     # zero along a side of the first halves, whose corners are on the window's edge
+     ("(rho-1)^2*(F+4)", True), ("(F+1)^2*(rho+1)", True), ("(rho-1)^2*(F+4)+1e-30", False),
+     # reducible: each factor is definite, or two change sign together
+     ("(rho-2/3)^2*(F+1/7)^4+1e-30", False), ("(rho-2/3)*(3*rho-2)", True), ("(rho-F-3)*(rho-F-3)*(rho+1)", True)],
+)  # fmt: skip
+def test_lengths(text: str, found: bool) -> None:
+    assert check(parse(text, NAMES), Need.POSITIVE) == ("refuted" if found else "proved")
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [("0*rho", False), ("(rho-1)^2", False), ("rho*(F+3)", False), ("rho-1/8", True), ("(rho-1)^2-1/1000", True),
+     ("1/(-1-rho)", True), ("(rho-1)^2/(-1-rho)", True), ("rho-2", True), ("(rho-1)^2/(rho-2)", True),
+     ("(rho-1/3)^2/(2-rho)", False), ("(rho-1/3)^2*(F+1/7)^2", False), ("(rho^2-2)^2+(F^2-3)^2", False),
+     ("(rho^2-2)^2*(F+3)", False), ("(rho^2-2)^3", True), ("(F-rho+1/3)^2*(F+2)^2*rho", False),
+     ("(F-rho+1/3)^2*(F+2)", True), ("(F-1)*(F-1)*(F-1)", True), ("(1-F)^3*rho^5", False)],
+)  # fmt: skip
+def test_free_lengths_may_be_zero(text: str, found: bool) -> None:
+    assert check(parse(text, NAMES), Need.NOT_NEGATIVE) == ("refuted" if found else "proved")
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [("1/rho", False), ("1/(rho-2)", False), ("1/(rho-1)", True), ("1/(rho^2+F^2)", True), ("1/(rho+F)", True),
+     ("1/(rho-1)^2", True), ("rho", False), ("1/(rho-1/3)^2", True), ("1/((rho-1/3)^2+(F+1/3)^2)", True),
+     ("1/(rho^2+(F+1/3)^2)", False), ("1/((rho-2)^2+F^4)", False), ("1/((rho-2)*(F-1))", False),
+     ("1/((rho-1/3)^2-1e-18)", True), ("1/((rho-1/3)^2+1e-18)", False), ("1/(1e-18-(rho-1/3)^2-(F+1/3)^2)", True)],
+)  # fmt: skip
+def test_poles(text: str, found: bool) -> None:
+    # rho^2+F^2 vanishes at (0, 0), on the window's edge
+    found = found and text != "1/(rho^2+F^2)"
+    assert check(parse(text, NAMES), Need.NO_POLE) == ("refuted" if found else "proved")
+
+
+@pytest.mark.parametrize("need", Need)
+@pytest.mark.parametrize("kind", DIPS)
+def test_a_thin_dip_is_found_and_a_near_miss_is_proved(kind: str, need: Need) -> None:
+    """Each hypothesis broken narrowly: looking at some points, or at no degree over 12, took these for positive."""
+    dip, fine = thin_dip(kind)
+    if need is Need.NO_POLE:
+        dip, fine = 1 / dip, 1 / fine
+    assert check(dip, need) == "refuted"
+    assert check(fine, need) == "proved"
+    negative = -1 / (X - 3)  # the same with a denominator that is negative in the window
+    assert check(dip * negative, need) == "refuted"
+    assert check(fine * negative, need) == "proved"
+
+
+def test_what_is_too_much_work_is_undecided_and_never_proved(monkeypatch: pytest.MonkeyPatch) -> None:
+    valley = parse("(rho^3+F^3-rho*F-1/7)^2 + 1e-40", NAMES)
+    decide.cache_clear()
+    with monkeypatch.context() as patch:
+        patch.setattr(definite, "MAX_WORK", 0)
+        verdict = decide(valley, AXES, Need.NOT_NEGATIVE)
+        assert isinstance(verdict, Undecided)
+        assert decide(valley, AXES, Need.NOT_NEGATIVE, 0) == verdict
+        for (x0, x1), (y0, y1) in verdict.boxes:
+            assert 0 <= x0 < x1 <= 2
+            assert -3 <= y0 < y1 <= 1
+        assert place(verdict, AXES).startswith("near rho = ")
+    decide.cache_clear()
+    assert decide(valley, AXES, Need.NOT_NEGATIVE) is PROVED
+
+
+@pytest.mark.parametrize(
+    ("text", "x", "y"),
+    [
+        pytest.param("(rho^2 - 2)^2 + (F^2 - 1/3)^2", (2, 2), (2, Q(1, 3)), id="two square roots"),
+        pytest.param("(rho^2 - 2)^2 + (F^2 - 4 + 2*rho)^2", (2, 2), None, id="one over the other"),
+        pytest.param("(rho^3 - 2)^2 + (F^5 + rho - 1)^4", (3, 2), None, id="a quintic over a cubic, of order 4"),
+        pytest.param("(rho^2 - 2)^2*(F^2 + 1) + (F^2 - 1/3)^2*(rho + 1)", (2, 2), (2, Q(1, 3)), id="with weights"),
+    ],
+)
+def test_a_zero_at_a_point_with_algebraic_coordinates_is_found(
+    text: str, x: tuple[int, Q], y: tuple[int, Q] | None
+) -> None:
+    touching = parse(text, NAMES)
+    verdict = decide(touching, AXES, Need.POSITIVE)
+    assert isinstance(verdict, Witness)
+    assert verdict.value == 0 < verdict.distance < Q(1, 10**9)
+    for place_of, power in zip(verdict.point, (x, y), strict=True):
+        if power is not None:
+            assert abs(place_of ** power[0] - power[1]) < Q(1, 10**9)
+    assert abs(float(touching.evaluate(*verdict.point))) < 1e-9
+    assert decide(touching, AXES, Need.NOT_NEGATIVE) is PROVED
+    assert isinstance(decide(1 / touching, AXES, Need.NO_POLE), Witness)
+    assert decide(touching + Q(1, 10**30), AXES, Need.POSITIVE) is PROVED
+
+
+@pytest.mark.parametrize("high", [Fraction(0), Fraction(-1)])
+def test_a_zero_over_an_irrational_abscissa_on_the_edge_is_none_inside(high: Fraction) -> None:
+    """At F = 0 or F = -1, which ends the fibre or lies inside of it."""
+    axes = (AXES[0], Axis("F", Fraction(-3), high))
+    touching = parse("(rho^2 - 2)^2 + F^2*(F + 1)^2*(F^2 + 1)", NAMES)
+    assert isinstance(decide(touching, axes, Need.POSITIVE), Witness) == (high == 0)
+    assert decide(parse("(rho^2 - 2)^2 + F^2*(F^2 + 1)", NAMES), axes, Need.POSITIVE) is PROVED
+
+
+def test_zeros_are_told_with_their_place() -> None:
+    verdict = decide((X - Q(1, 3)) ** 2 + (Y + Q(1, 7)) ** 2, AXES, Need.POSITIVE)
+    assert verdict == Witness((Q(1, 3), Q(-1, 7)), Q(0))
+    assert place(verdict, AXES) == "at rho = 1/3, F = -1/7"
+    crossing = decide((X**2 - 2) ** 2, AXES, Need.POSITIVE)
+    assert isinstance(crossing, Witness)
+    assert crossing.value == 0 < crossing.distance
+    assert place(crossing, AXES).startswith("near rho = ")
+
+
+def test_a_value_too_long_to_be_written_out_is_named() -> None:
+    """A 17th power at a point of 400 digits has 6800 of them, more than Python converts."""
+    axes = (Axis("rho", Fraction(1), 1 + Fraction(1, 10**400)), Axis("F", Fraction(1), Fraction(4)))
+    found = decide(parse("0 - rho^17", NAMES), axes, Need.POSITIVE)
+    assert isinstance(found, Witness)
+    assert number(found.value) == "about -1"
+    assert number(Q(10**40 - 1)) == "9" * 40
+    assert number(Q(10**40)) == "about 1.0e40"
+    assert number(Q(-(10**40))) == "about -1.0e40"
+    assert number(Q(1, 10**40 - 1)) == "1/" + "9" * 40
+    assert number(Q(1, 10**40)) == "about 1.0e-40"
+    assert named((Q(1), Q(1, 10**50)), axes) == "rho = 1, F = about 1.0e-50"
+
+
+small = st.integers(-4, 4)
+univariate = st.lists(small, min_size=1, max_size=5)
+
+
+def horner(values: list[int], variable: Expression) -> Expression:
+    total = constant(0)
+    for c in values:
+        total = total * variable + c
+    return total
+
+
+@given(univariate, univariate, st.integers(0, 1))
+@example([1, -1], [1, -1], 0)
+@settings(deadline=None, max_examples=50)
+def test_one_variable_agrees_with_sturm_in_sympy(a: list[int], b: list[int], which: int) -> None:
+    """Decided completely: never undecided, and as Sturm's theorem counts the roots of the squarefree factors."""
+    p = horner(a, (X, Y)[which]) ** 2 * horner(b, (X, Y)[which])
+    t = sympy.Symbol("t")
+    q = sympy.Poly(sum(c * t**k for k, c in enumerate(reversed(a))), t) ** 2
+    q *= sympy.Poly(sum(c * t**k for k, c in enumerate(reversed(b))), t)
+    low, high = AXES[which].low, AXES[which].high
+
+    def roots(f: sympy.Poly) -> int:
+        """In the open interval, by Sturm sequences."""
+        ends = sum(f.eval(sympy.Rational(e.numerator, e.denominator)) == 0 for e in (low, high))
+        return int(f.count_roots(int(low), int(high))) - ends
+
+    if q.is_zero:
+        assert check(p, Need.POSITIVE) == "refuted"
+        assert check(p, Need.NOT_NEGATIVE) == "proved"
+        return
+    factors = q.sqf_list()[1]
+    changes = any(k % 2 and f.degree() > 0 and roots(f) for f, k in factors)
+    zeros = any(f.degree() > 0 and roots(f) for f, _ in factors)
+    sample = next(v for v in (low + (high - low) * Q(k, 97) for k in range(1, 97)) if q.eval(sympy.Rational(v)) != 0)
+    negative = bool(q.eval(sympy.Rational(sample)) < 0)
+    assert (check(p, Need.NOT_NEGATIVE) == "refuted") == (changes or negative)
+    assert (check(p, Need.POSITIVE) == "refuted") == (zeros or negative)
+
+
+def dips_and_squares(seed: int, degree: int) -> None:
+    rng = random.Random(seed)
+    positive = random_square(rng, degree)
+    assert check(positive + Q(1, 10**12), Need.POSITIVE) == "proved"
+    assert check(positive, Need.NOT_NEGATIVE) == "proved"
+    # a square of a distance to a point, times a positive factor, below zero in a tiny disc
+    a, b = (w.low + (w.high - w.low) * Q(rng.randint(1, 996), 997) for w in AXES)
+    well = ((X - a) ** 2 + rng.randint(1, 5) * (Y - b) ** 2) * (positive + 1)
+    depth = Q(1, 10 ** rng.randint(6, 24))
+    assert polynomial_value((well - depth).numerator, a, b) == -depth
+    for need in (Need.POSITIVE, Need.NOT_NEGATIVE):
+        assert check(well - depth, need) == "refuted"
+    assert check(well, Need.POSITIVE) == "refuted"
+    assert check(well, Need.NOT_NEGATIVE) == "proved"
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_random_dips_are_found_and_random_sums_of_squares_proved(seed: int) -> None:
+    dips_and_squares(seed, 4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("degree", [4, 6, 8])
+@pytest.mark.parametrize("seed", range(60))
+def test_many_random_dips_and_squares(seed: int, degree: int) -> None:
+    dips_and_squares(1000 * degree + seed, degree)
+
+
+@given(coefficients, st.sampled_from(list(Need)[:2]))
+@settings(deadline=None, max_examples=40)
+def test_a_proof_is_never_contradicted_by_values(polynomial: dict[tuple[int, int], int], need: Need) -> None:
+    p = sum((c * X**i * Y**j for (i, j), c in polynomial.items()), constant(0))
+    proved = check(p, need) == "proved"
+    values = [p.evaluate(Q(2 * k, 11), -3 + Q(4 * m, 13)) for k in range(1, 11) for m in range(1, 13)]
+    if proved:
+        assert min(values) > 0 or (need is Need.NOT_NEGATIVE and min(values) == 0)

@@ -1,0 +1,400 @@
+"""The discriminant variety in every format: each text is put to its program, or to another reader of its language."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import jsonschema
+import pytest
+import sympy
+from support.maps import CONFIGS, shipped
+from support.programs import (
+    ProgramError,
+    eliminated,
+    monomials,
+    needs_msolve,
+    needs_qepcad,
+    needs_singular,
+    qepcad_session,
+    singular,
+)
+from support.qepcad_cells import Decomposition, decomposition
+from support.singular_slice import SHIPPED
+from sympy.parsing.mathematica import parse_mathematica
+from test_polynomial_text import of_sympy, read_latex, read_maple
+
+import ptmcad
+from ptmcad.answer.regionmap import Kind, Status
+from ptmcad.answer.slicevariety import SliceVariety
+from ptmcad.cli import run
+from ptmcad.errors import ConfigError, InfiniteSolutionsError
+from ptmcad.show.export import FORMATS
+from ptmcad.show.polynomial_text import Style, symbols
+from ptmcad.text.plane import PlanePolynomial
+
+ROOT = Path(__file__).resolve().parents[2]
+QUICK = ("fig2", "fig3", "fig4", "rods")
+
+
+@cache
+def variety(name: str) -> SliceVariety:
+    return ptmcad.slice_variety(ptmcad.load(CONFIGS / f"{name}.yaml"))
+
+
+def polynomials(of: SliceVariety) -> list[PlanePolynomial]:
+    return [c.polynomial for c in of.components]
+
+
+@pytest.mark.parametrize(
+    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in SHIPPED]
+)
+def test_components_are_those_of_the_region_map(name: str) -> None:
+    expected = [(c.polynomial, c.kind, c.left_out) for c in shipped(name).components]
+    assert [(c.polynomial, c.kind, c.left_out) for c in variety(name).components] == expected
+    assert variety(name).complex_solutions == shipped(name).complex_solutions
+
+
+def test_kinds_and_degrees_of_figure_4() -> None:
+    """Reference: one curve of degree 24 in rho and 12 in L2 with 70 terms (the paper's section 4.3, corrected)."""
+    (critical,) = variety("fig4").critical
+    assert (critical.polynomial.degrees, len(critical.polynomial.terms)) == ((24, 12), 70)
+    assert "critical, degree 24 (24 in rho, 12 in L2), 70 terms" in variety("fig4").text()
+
+
+# ------------------------------------------------------------------------------------------------ programs as text
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_sympy_program_defines_the_variety(name: str) -> None:
+    found: dict[str, list[sympy.Expr]] = {}
+    exec(variety(name).text("sympy"), found)  # type: ignore[arg-type]
+    names = variety(name).slice.axis_names
+    assert [of_sympy(p, names) for p in found["variety"]] == polynomials(variety(name))
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_maple_commands_define_the_variety(name: str) -> None:
+    of = variety(name)
+    code = re.sub(r"#.*", "", of.text("maple"))
+    found = re.fullmatch(r"\s*variety\s*:=\s*\[(.*)\]\s*:\s*", code, re.DOTALL)
+    assert found is not None
+    joined = (" ".join(entry.split()) for entry in found.group(1).split(","))
+    assert [read_maple(entry, of.slice.axis_names) for entry in joined] == polynomials(of)
+
+
+@pytest.mark.parametrize("name", ["fig2", "fig3", pytest.param("fig5-text", marks=pytest.mark.slow)])
+def test_mathematica_expression_defines_the_variety(name: str) -> None:
+    of = variety(name)
+    code = re.sub(r"\(\*.*?\*\)", "", of.text("mathematica"))
+    found = re.fullmatch(r"\s*variety = (\{.*\});\s*", code, re.DOTALL)
+    assert found is not None
+    read = parse_mathematica(" ".join(found.group(1).split()))
+    assert [of_sympy(p, of.slice.axis_names) for p in read] == polynomials(of)
+
+
+LATEX_DISPLAY = re.compile(r"^% (\d+): [^\n]*\n\\begin\{align\*\}\n(.*?)\n\\end\{align\*\}$", re.MULTILINE | re.DOTALL)
+
+
+def latex_displays(of: SliceVariety) -> list[list[str]]:
+    """The right sides of each display, row by row."""
+    names = symbols(of.slice.axis_names, Style.LATEX)
+    displays = []
+    for number, body in LATEX_DISPLAY.findall(of.text("latex")):
+        rows = re.split(r" \\\\\n", body)
+        left, first = rows[0].split("&")
+        assert left.strip() == f"V_{{{number}}}({names[0]}, {names[1]}) ={{}}"
+        others = [re.fullmatch(r"\s*& \\quad \{\} ([+-] .*)", row) for row in rows[1:]]
+        displays.append([first.strip(), *(match.group(1) for match in others if match)])
+        assert all(others)
+    return displays
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_latex_has_every_monomial(name: str) -> None:
+    """The structure, since no TeX is asked for: one display a component, its rows joined are the polynomial."""
+    of = variety(name)
+    assert all(
+        line.startswith(("%", "  ", r"\begin{align*}", r"\end{align*}")) for line in of.text("latex").splitlines()
+    )
+    spelled = symbols(of.slice.axis_names, Style.LATEX)
+    read = [read_latex(" ".join(rows), (spelled[0], spelled[1])) for rows in latex_displays(of)]
+    assert read == polynomials(of)
+
+
+@pytest.mark.parametrize("name", ["fig3", "fig5-text"])
+def test_latex_rows_are_set_and_of_like_width(name: str, tmp_path: Path) -> None:
+    """matplotlib's mathtext, which knows no alignment, sets each row; none would leave a page of a single column."""
+    from matplotlib.mathtext import MathTextParser
+
+    parser = MathTextParser("path")
+    for rows in latex_displays(variety(name)):
+        for row in rows:
+            assert 0 < parser.parse(f"${row}$").width < 480  # points, at 12 pt
+
+
+LONG = f"F3: -1/3 + {10**30 + 1}/{10**31 + 7}*L2"
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_titles_and_long_values_break_nothing(format: str, tmp_path: Path) -> None:
+    """A title may have any characters, a value may be long; both appear in comments at most."""
+    record = tmp_path / "odd.yaml"
+    title = "'ends *) ] #\u2026'"
+    record.write_text(f"title: {title}\naxes: {{rho: [1, 2], L2: [1, 2]}}\nparameters:\n  {LONG}\n", encoding="utf-8")
+    text = ptmcad.slice_variety(ptmcad.load(record)).text(format)
+    assert text.endswith("\n")
+    assert text.isascii()
+    if format == "sympy":
+        exec(text, {})
+    if format == "mathematica":
+        bare = re.sub(r"\(\*.*?\*\)", "", text)
+        assert re.fullmatch(r"[\w\s{}=;,^*+-]+", bare)
+    if format not in ("json", "msolve"):
+        assert re.search(r"F3 = .{60}\.\.\.", text)
+
+
+def test_json_is_described_by_its_schema() -> None:
+    schema = json.loads((ROOT / "docs" / "variety.schema.json").read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator.check_schema(schema)
+    for name in SHIPPED:
+        of = variety(name)
+        document = json.loads(of.text("json"))
+        jsonschema.validate(document, schema, cls=jsonschema.Draft202012Validator)
+        names = of.slice.axis_names
+        assert [PlanePolynomial.parse(c["polynomial"], names) for c in document["components"]] == polynomials(of)
+        assert [c["kind"] for c in document["components"]] == [c.kind.value for c in of.components]
+        document["components"][0]["kind"] = "other"
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate(document, schema, cls=jsonschema.Draft202012Validator)
+
+
+# ---------------------------------------------------------------------------------------------------- QEPCAD
+
+
+@cache
+def qepcad_cells(name: str) -> Decomposition:
+    text = variety(name).text("qepcad")
+    assert text.endswith("\nquit\n")
+    (output,) = qepcad_session([text.removesuffix("quit\n")])
+    return decomposition(output, symbols(variety(name).slice.axis_names, Style.QEPCAD))
+
+
+@needs_qepcad
+@pytest.mark.parametrize(
+    "name", [name if name in ("fig2", "fig3") else pytest.param(name, marks=pytest.mark.slow) for name in SHIPPED]
+)
+def test_qepcad_decomposes_the_window(name: str) -> None:
+    """Its true cells lie off the variety and in the window, and there is one in each cell of the region map.
+
+    The map may stand over the other axis; then the numbers of cells may differ, but each region is met all the same.
+    """
+    result, found = shipped(name), qepcad_cells(name)
+    used = {c.polynomial for c in variety(name).components if not c.left_out}
+    assert used <= set(found.factors.values())
+    true = [cell for index, cell in found.cells.items() if len(index) == 2 and cell.truth == "T"]
+    located = []
+    for cell in true:
+        x, y = cell.sample
+        assert x is not None and y is not None
+        at = result.locate(**dict(zip(result.slice.axis_names, (x, y), strict=True)))
+        assert at.status is Status.EXACT
+        located.append(at)
+    assert {at.region for at in located} == set(range(len(result.regions)))
+    if result.base == 0:
+        assert sorted(at.cell for at in located if at.cell is not None) == list(range(len(result.cells)))
+
+
+@needs_qepcad
+def test_qepcad_reads_a_variety_without_a_curve_in_the_window() -> None:
+    of = variety("fig3")
+    none = replace(of, components=tuple(replace(c, left_out="no point in the window") for c in of.components))
+    (output,) = qepcad_session([none.text("qepcad").removesuffix("quit\n")])
+    assert re.search(r"Truth value\s*: T", output)
+
+
+@needs_qepcad
+def test_a_name_that_qepcad_can_not_spell(tmp_path: Path) -> None:
+    record = tmp_path / "names.yaml"
+    record.write_text("axes: {a_b: [0, 2], ab: [1, 2]}\nparameters: {rho: a_b, L2: ab}\n")
+    text = ptmcad.slice_variety(ptmcad.load(record)).text("qepcad")
+    assert qepcad_session([text.removesuffix("quit\n")])
+
+
+# ------------------------------------------------------------------------------------------- the elimination system
+
+
+def divided_out(generator: PlanePolynomial, of: SliceVariety) -> tuple[set[PlanePolynomial], PlanePolynomial]:
+    """The components that divide a polynomial, and what is left when they are divided out."""
+    x, y = sympy.symbols("x y")
+
+    def poly(p: PlanePolynomial) -> sympy.Poly:
+        return sympy.Poly.from_dict({(i, j): c for i, j, c in p.terms}, x, y)
+
+    rest, found = poly(generator), set()
+    for component in of.components:
+        factor = poly(component.polynomial)
+        while rest.total_degree() >= factor.total_degree():
+            quotient, remainder = rest.div(factor)
+            if remainder:
+                break
+            found.add(component.polynomial)
+            rest = quotient
+    return found, PlanePolynomial.of((int(i), int(j), int(c)) for (i, j), c in rest.clear_denoms()[1].terms())
+
+
+def check_elimination(generators: Iterable[str], of: SliceVariety, names: tuple[str, str]) -> None:
+    """One generator, whose factors are the CRITICAL components and at most BOUNDARY ones besides."""
+    (generator,) = generators
+    whole = monomials(generator, names)
+    assert all(c.denominator == 1 for c in whole.values())
+    found, rest = divided_out(PlanePolynomial.of((e[0], e[1], int(c)) for e, c in whole.items()), of)
+    assert rest.total_degree == 0
+    critical = {c.polynomial for c in of.critical}
+    assert critical <= found
+    assert found - critical <= {c.polynomial for c in of.components if c.kind is Kind.BOUNDARY}
+
+
+@needs_msolve
+@pytest.mark.parametrize(
+    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in SHIPPED]
+)
+def test_msolve_eliminates_to_the_critical_curves(name: str) -> None:
+    of = variety(name)
+    check_elimination(eliminated(of.text("msolve"), len(of.system.unknowns)), of, of.slice.axis_names)
+
+
+@needs_msolve
+def test_a_missing_curve_is_noticed_by_msolve() -> None:
+    of = variety("fig3")
+    generators = eliminated(of.text("msolve"), 4)
+    with pytest.raises(AssertionError):
+        check_elimination(generators, replace(of, components=of.components[1:]), of.slice.axis_names)
+
+
+@needs_msolve
+def test_what_msolve_can_not_eliminate_is_an_error() -> None:
+    with pytest.raises(ProgramError):
+        eliminated("x,y\n0\nx*\n", 5)
+
+
+@needs_singular
+@pytest.mark.parametrize("name", ["fig2", "fig3", "fig4"])
+def test_singular_eliminates_the_same_system(name: str) -> None:
+    """The text for msolve, put to another program."""
+    of = variety(name)
+    variables, characteristic, *lines = of.text("msolve").splitlines()
+    names = variables.split(",")
+    product = "*".join(names[: len(of.system.unknowns)])
+    output = singular(
+        f"ring r = {characteristic}, ({variables}), dp;\nideal i = {''.join(lines)};\n"
+        f"ideal e = eliminate(std(i), {product});\nprint(string(e));"
+    )
+    check_elimination("".join(output.split()).split(","), of, of.slice.axis_names)
+
+
+def test_the_system_is_that_of_the_paper() -> None:
+    """Equations (3) and (4) with the errata, for fig. 4 and divided by k: L2 s12 - 2 rho s1 + f3 c1, f3 = -1/10."""
+    of = variety("fig4")
+    names = [sympy.Symbol(n) for n in (*of.system.unknowns, *of.system.axes)]
+    c1, s1, c2, s2, rho, l2 = names
+    read = [sympy.sympify(text.replace("^", "**"), locals={str(n): n for n in names}) for text in of.system.texts()]
+    f = -sympy.Rational(1, 10)
+    first = l2 * (s1 * c2 + c1 * s2) - 2 * rho * s1 + f * c1
+    second = (s1 * c2 + c1 * s2) - 2 * rho * s2 + f * c2
+    h11 = 2 * rho * c1 + f * s1 - l2 * (c1 * c2 - s1 * s2)
+    h22 = l2 * (2 * rho * c2 + f * s2 - (c1 * c2 - s1 * s2))
+    h12 = -l2 * (c1 * c2 - s1 * s2)
+    circles = [c1**2 + s1**2 - 1, c2**2 + s2**2 - 1]
+    assert [sympy.expand(a - b) for a, b in zip(read[2:4], circles, strict=True)] == [0, 0]
+    for found, expected in zip((read[0], read[1]), (first, second), strict=True):
+        assert sympy.cancel(found / expected).is_number
+    _, remainder = sympy.reduced(sympy.expand(h11 * h22 - h12**2), circles, c1, c2, s1, s2, rho, l2)
+    _, stored = sympy.reduced(read[4], circles, c1, c2, s1, s2, rho, l2)
+    assert sympy.cancel(stored / remainder).is_number
+
+
+# --------------------------------------------------------------------------------------------- the command line
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_command_prints_or_writes_the_same(
+    format: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    arguments = ["variety", str(CONFIGS / "fig3.yaml"), "--format", format]
+    assert run(arguments) == 0
+    printed = capsys.readouterr()
+    assert printed.out == variety("fig3").text(format)
+    assert printed.err == ""
+    assert run([*arguments, "--out", "sub/fig3.txt"]) == 0
+    assert capsys.readouterr().out == "written   sub/fig3.txt\n"
+    assert (tmp_path / "sub" / "fig3.txt").read_text(encoding="utf-8") == printed.out
+    assert [path.name for path in (tmp_path / "sub").iterdir()] == ["fig3.txt"]
+
+
+def test_command_takes_the_options_of_classify(capsys: pytest.CaptureFixture[str]) -> None:
+    """Reference: the three lines of the unloaded slice, which the paper gives as its boundaries (fig. 2)."""
+    assert run(["variety", "--slice", "L2,rho"]) == 0
+    printed = capsys.readouterr().out
+    for line in ("L2 - 2*rho + 1", "L2 - 2*rho - 1", "L2 + 2*rho - 1"):
+        assert f"\n          {line}\n" in printed
+    assert run(["variety", str(CONFIGS / "fig4.yaml"), "--set", "F3=-20", "--range", "rho=1:2"]) == 0
+    printed = capsys.readouterr().out
+    assert "F3 = -20" in printed and "1 < rho < 2" in printed
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["variety"], "--slice L2,rho"),
+        (["variety", "nowhere.yaml"], "nowhere.yaml"),
+        (["variety", "--slice", "L2,rho", "--format", "fortran"], "fortran"),
+        (["variety", "--slice", "L2,rho", "--out", "."], "is a folder"),
+        (["variety", "--slice", "L2,rho", "--set", "L3=1"], "L3"),
+        (["variety", "--slice", "L1,L2", "--set", "rho=(L1+L2)/2"], "lies inside"),
+    ],
+)
+def test_bad_input_is_one_message(
+    arguments: list[str],
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(arguments) == 2
+    shown = capsys.readouterr()
+    assert message in shown.err and shown.out == ""
+    assert not list(tmp_path.iterdir())
+
+
+def test_unknown_format_in_python() -> None:
+    with pytest.raises(ConfigError, match="maple"):
+        variety("fig3").text("mapel")
+
+
+def test_degenerate_slice_has_no_variety() -> None:
+    with pytest.raises(InfiniteSolutionsError):
+        ptmcad.slice_variety(ptmcad.slice_from_options(slice="L1,L2", sets=["rho=0"]))
+
+
+def test_nothing_large_is_loaded_and_a_time_limit_ends_it(tmp_path: Path) -> None:
+    code = "import sys; from ptmcad.cli import run; run(sys.argv[1:]); print(sorted(sys.modules), file=sys.stderr)"
+    arguments = ["variety", str(CONFIGS / "fig4.yaml"), "--format", "sympy"]
+    done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True)
+    assert not {"'sympy'", "'matplotlib'", "'numpy'"} & set(re.findall(r"'\w+'", done.stderr))
+    hard = ["--slice", "rho,L2", "--set", "F3=rho^3-L2", "--set", "F4=L2^3+rho", "--set", "F3x=rho^2*L2"]
+    stopped = subprocess.run(
+        [sys.executable, "-m", "ptmcad", "variety", *hard, "--timeout", "0.5", "--out", str(tmp_path / "out.txt")],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert stopped.returncode == 3
+    assert stopped.stderr.startswith("stopped: ") and len(stopped.stderr.splitlines()) == 1
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,242 @@
+"""Enclosures and algebraic numbers as text; poses as JSON and as a table."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from decimal import ROUND_HALF_EVEN, Context, Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ptmcad import AlgebraicNumber, Enclosure, Poses, solve
+from ptmcad.mechanism import ptm
+from ptmcad.show.document.poses import FORMAT
+from ptmcad.show.posetable import WIDTH
+from ptmcad.text.enclosure import exact_text
+from ptmcad.text.numerals import fraction_of
+
+SCHEMA = json.loads((Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8"))
+VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
+POINTS: list[dict[str, Any]] = [
+    {"rho": 1, "L2": "3/2"},
+    {"rho": "7/10", "L2": "3/2", "F3": -10, "F4": -10},
+    {"L2": "4/3", "rho": "2/5", "F3": "-320/3", "F4": -60},
+    {"rho": 0},
+    {"rho": "1e-12", "F3": "1e30", "k": "1e12", "digits": 30},
+    {"rho": "1/3", "L2": "7/3", "k1": "1/3", "digits": 1},
+]
+rationals = st.fractions().filter(bool) | st.builds(
+    lambda m, e: m * Fraction(10) ** e, st.fractions(max_denominator=50).filter(bool), st.integers(-40, 40)
+)
+
+
+# ---------------------------------------------------------------------------------------------------------- enclosures
+
+
+def exactly(value: Fraction) -> Enclosure:
+    return Enclosure(value, value)
+
+
+@given(rationals, st.integers(1, 30))
+def test_text_is_the_number_rounded_to_nearest(value: Fraction, digits: int) -> None:
+    """Against Python's decimal arithmetic, whose division rounds once, and half to even."""
+    rounded = Context(prec=digits, rounding=ROUND_HALF_EVEN).divide(
+        Decimal(value.numerator), Decimal(value.denominator)
+    )
+    text = exactly(value).text(digits)
+    assert Decimal(text) == rounded
+    assert fraction_of(text) == Fraction(rounded)
+    if Fraction(rounded) != value:
+        assert len(Decimal(text).as_tuple().digits) == digits
+
+
+@given(rationals, st.integers(1, 12), st.integers(1, 20))
+def test_an_enclosure_that_settles_digits_settles_fewer_and_gives_the_exact_number_s(
+    value: Fraction, digits: int, narrow: int
+) -> None:
+    radius = abs(value) / 10**narrow
+    around = Enclosure(value - radius * 2 / 3, value + radius / 3)
+    if around.settles(digits):
+        for fewer in range(1, digits + 1):
+            ends = {exactly(end).text(fewer) for end in (around.low, around.high)}
+            assert {Fraction(Decimal(text)) for text in ends} == {Fraction(Decimal(around.text(fewer)))}
+    else:
+        with pytest.raises(ValueError, match="does not determine"):
+            around.text(digits)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [("0", "0"), ("1/4", "0.25"), ("-1/3", "-0.3333"), ("99999", "1.000e5"), ("9999.5", "1.000e4"), ("12000", "12000"),
+     ("1e-9", "1e-9"), ("1/300000000", "3.333e-9"), ("1e40", "1e40"), ("-2/3", "-0.6667"), ("1/70000", "0.00001429"),
+     ("1234.5", "1234"), ("1235.5", "1236")],
+)  # fmt: skip
+def test_texts_of_four_digits(value: str, text: str) -> None:
+    assert exactly(Fraction(value)).text(4) == text
+
+
+def test_zero_is_settled_only_when_it_is_exact() -> None:
+    assert not Enclosure(Fraction(-1, 10**9), Fraction(1, 10**9)).settles(1)
+    assert not Enclosure(Fraction(0), Fraction(1, 10**9)).settles(1)
+    assert exactly(Fraction(0)).settles(1000)
+
+
+@given(st.fractions())
+def test_exact_text_is_read_back(value: Fraction) -> None:
+    assert fraction_of(exact_text(value)) == value
+
+
+ROOT2 = AlgebraicNumber((-2, 0, 1), Fraction(1), Fraction(2))
+
+
+def test_the_root_of_two() -> None:
+    assert ROOT2.text(50) == "1.4142135623730950488016887242096980785696718753769"
+    assert ROOT2.exact is None
+    assert ROOT2.compare(Fraction(7, 5)) == 1
+    assert ROOT2.compare(Fraction(3, 2)) == ROOT2.compare(Fraction(3)) == -1
+    narrow = ROOT2.refined(Fraction(1, 10**60))
+    assert narrow.high - narrow.low <= Fraction(1, 10**60)
+    assert narrow.low**2 < 2 < narrow.high**2
+
+
+@given(st.fractions(max_denominator=1000), st.integers(1, 8))
+def test_a_rational_algebraic_number(value: Fraction, width: int) -> None:
+    number = AlgebraicNumber((-value.numerator, value.denominator), value - 1, value + Fraction(width))
+    assert number.exact == value
+    assert number.compare(value) == 0
+    assert number.compare(value - 1) == 1
+    assert number.text(9) == exactly(value).text(9)
+
+
+@given(st.integers(2, 10**6), st.integers(2, 7), st.integers(1, 40))
+def test_integer_roots_as_algebraic_numbers(n: int, degree: int, digits: int) -> None:
+    """The text lies within half a unit of the root: its neighbours at half a unit raised to the power enclose n."""
+    if any(round(n ** (1 / d)) ** d == n for d in range(2, degree + 1)):
+        return
+    number = AlgebraicNumber((-n, *[0] * (degree - 1), 1), Fraction(0), Fraction(n))
+    text = Decimal(number.text(digits))
+    exponent = text.as_tuple().exponent
+    assert isinstance(exponent, int)
+    assert (Fraction(text) - Fraction(10) ** exponent / 2) ** degree < n
+    assert n < (Fraction(text) + Fraction(10) ** exponent / 2) ** degree
+
+
+# ---------------------------------------------------------------------------------------------------------------- JSON
+
+
+def test_the_schema_is_valid_and_names_the_format() -> None:
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    assert SCHEMA["properties"]["format"]["const"] == FORMAT
+
+
+@pytest.mark.parametrize("point", POINTS, ids=str)
+def test_poses_validate_and_are_read_back_equal(point: dict[str, Any]) -> None:
+    poses = solve(**point)
+    text = poses.to_json()
+    VALIDATOR.validate(json.loads(text))
+    again = Poses.from_json(text)
+    assert again == poses
+    assert again.to_json() == text
+    assert tuple(poses.parameters) == ptm().without_free_lengths
+
+
+FREE_KEYS = {"parameters", "nodes"}
+
+
+def entries(data: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], str]]:
+    """Places of all entries of objects whose keys are fixed: one in each list."""
+    if isinstance(data, dict):
+        for key, value in data.items():
+            yield path, key
+            if key not in FREE_KEYS:
+                yield from entries(value, (*path, key))
+    elif isinstance(data, list) and data:
+        yield from entries(data[0], (*path, 0))
+
+
+def test_schema_and_reader_agree_on_the_keys() -> None:
+    text = solve(rho=1, L2="3/2").to_json()
+    places = list(entries(json.loads(text)))
+    assert len(places) > 40
+    for path, key in places:
+        for change in ("drop", "add"):
+            data = json.loads(text)
+            place = data
+            for step in path:
+                place = place[step]
+            if change == "drop":
+                del place[key]
+            else:
+                place["one more"] = 1
+            assert not VALIDATOR.is_valid(data), (path, key, change)
+            with pytest.raises(ValueError, match=r"lacks|unknown|format"):
+                Poses.from_json(json.dumps(data))
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "fault"),
+    [
+        (("energy", "text"), "112.500000001", "energy is not its enclosure rounded to 12 digits"),
+        (("energy", "center"), "112.6", "is not its enclosure rounded"),
+        (("energy", "radius"), "-1", "is negative"),
+        (("energy", "radius"), "1", "is not its enclosure rounded"),
+        (("energy", "center"), "1/0", "zero denominator"),
+        (("angles", 0), {}, "lacks the key"),
+        (("angles",), [], "has 0 entries, not 2"),
+        (("stable",), 1, "is not true or false"),
+        (("index",), -1, "is not between"),
+        (("nodes",), {"A 1": []}, "is not a name"),
+        (("springs", 0, "name"), "k\n1", "printable"),
+    ],
+    ids=str,
+)
+def test_a_changed_document_is_refused_with_its_place(place: tuple[Any, ...], value: object, fault: str) -> None:
+    data = json.loads(solve(rho=1, L2="3/2").to_json())
+    target = data["equilibria"][0]
+    for step in place[:-1]:
+        target = target[step]
+    target[place[-1]] = value
+    with pytest.raises(ValueError, match=r"equilibria\[0\]") as refused:
+        Poses.from_json(json.dumps(data))
+    assert fault in str(refused.value)
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"format": "ptmcad-poses/0"}', "[" * 100_000, '{"a": 1, "a": 2}'])
+def test_what_is_no_document_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match=r"."):
+        Poses.from_json(text)
+
+
+# --------------------------------------------------------------------------------------------------------------- table
+
+
+@pytest.mark.parametrize("point", POINTS, ids=str)
+def test_the_table_has_a_row_for_each_pose_in_each_block_and_fits(point: dict[str, Any]) -> None:
+    poses = solve(**point)
+    lines = str(poses).splitlines()
+    assert max(map(len, lines)) <= WIDTH
+    blocks = [block.splitlines() for block in str(poses).split("\n\n")[1:-1]]
+    assert all(len(block) == 1 + len(poses.equilibria) for block in blocks)
+    assert all(len({len(line) for line in block}) == 1 for block in blocks)
+    for pose in poses.equilibria:
+        assert any(pose.energy.text(poses.digits) in line.split() for line in lines)
+
+
+def test_the_table_of_a_degenerate_point_names_it() -> None:
+    table = solve(**POINTS[2]).table(6)
+    assert "1 stable, 1 maximum, 1 degenerate, on the variety" in table
+    assert "2  degenerate    no      -      4" in table
+    assert "F3 = -320/3, F4 = -60" in table
+
+
+def test_the_table_with_fewer_digits_rounds_once() -> None:
+    poses = solve(rho="7/10", L2="3/2", F3=-10, F4=-10, digits=40)
+    for digits in (3, 9, 20, 40):
+        assert poses.equilibria[0].energy.text(digits) in poses.table(digits)
+        assert str(solve(rho="7/10", L2="3/2", F3=-10, F4=-10, digits=digits)) == poses.table(digits)

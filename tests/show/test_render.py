@@ -1,0 +1,474 @@
+"""Pictures: what is drawn is what the map says, nothing is hidden, and the bytes are the same every time."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from fractions import Fraction
+from itertools import combinations, pairwise
+from pathlib import Path
+from xml.etree import ElementTree
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
+from matplotlib.image import imread
+from matplotlib.text import Annotation
+from support.maps import shipped
+
+import ptmcad
+from ptmcad.answer.regionmap import Cell, Component, Kind, Region, RegionMap, Stack, Status, System, Wall
+from ptmcad.question.slice import Axis, Count, Point, Slice
+from ptmcad.show.render import draw
+from ptmcad.show.render.axes import scale_of, symbol, unit
+from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of
+from ptmcad.show.render.labels import place
+from ptmcad.show.render.outline import outline
+from ptmcad.show.render.regionmap import figure_of
+from ptmcad.show.render.slivers import thin_regions, zooms
+from ptmcad.show.render.view import View
+from ptmcad.text.plane import PlanePolynomial
+
+ROOT = Path(__file__).resolve().parents[2]
+MAPS = [("fig2", "stable"), ("fig3", "stable"), ("fig3", "index"), ("fig4", "index"), ("forces", "total")]
+HALF = Fraction(1, 2)
+
+
+def classified(name: str, count: str) -> RegionMap:
+    return shipped(name, None if count == "stable" else count)
+
+
+def bands(
+    heights: list[Fraction],
+    slope: Fraction = HALF,
+    counts: list[int] | None = None,
+    window: tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]] = ((Fraction(0), Fraction(1)),) * 2,
+    title: str = "",
+    names: tuple[str, str] = ("a", "b"),
+    base: int = 0,
+) -> RegionMap:
+    """A map whose walls are parallel lines, v = height + slope u in fractions of the window's sides.
+
+    Its regions' areas are those of the bands in fractions of the window (where the bands do not leave it).
+    """
+    (p, q), (r, t) = window[base], window[1 - base]
+    lines = []
+    for h in heights:
+        m = (t - r) * slope / (q - p)
+        c = r + (t - r) * h - m * p
+        d = m.denominator * c.denominator
+        terms = [(0, 1, d), (1, 0, -m * d), (0, 0, -c * d)]
+        turned = PlanePolynomial.of((j, i, int(k)) if base else (i, j, int(k)) for i, j, k in terms)
+        lines.append(Component(turned, Kind.CRITICAL, "", True))
+    levels = [-slope / 2, *heights, 1 - slope / 2]
+    counts = counts or [1 + k % 2 for k in range(len(heights) + 1)]
+
+    def sample(k: int) -> Point:
+        u, v = (p + q) / 2, r + (t - r) * ((levels[k] + levels[k + 1]) / 2 + slope / 2)
+        return Point(names, *((v, u) if base else (u, v)))
+
+    numbers = range(len(counts))
+    return RegionMap(
+        slice=Slice("bands", "other", (Axis(names[0], *window[0]), Axis(names[1], *window[1])), {}, title=title),
+        status=Status.EXACT,
+        system=System((), (), "0", (), ()),
+        base=base,
+        complex_solutions=0,
+        components=tuple(lines),
+        critical_values=(),
+        stacks=(Stack(None, None, (p + q) / 2, tuple(Wall(k, 0) for k in range(len(heights))), tuple(numbers)),),
+        cells=tuple(Cell(0, k, sample(k), k, None, counts[k], None) for k in numbers),
+        adjacencies=(),
+        non_adjacencies=(),
+        regions=tuple(
+            Region(counts[k], None, None, (levels[k + 1] - levels[k],) * 2, (k,), sample(k)) for k in numbers
+        ),
+        plan=(),
+        undetermined=Fraction(0),
+        versions={},
+        precision={},
+    )
+
+
+def svg(result: RegionMap, folder: Path, **options: object) -> str:
+    draw(result, folder / "map.svg", **options)  # type: ignore[arg-type]
+    return (folder / "map.svg").read_text(encoding="utf-8")
+
+
+def area(polygon: np.ndarray) -> float:
+    x, y = polygon.T
+    return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2
+
+
+# ------------------------------------------------------------------------------------------------------ the outline
+
+
+@pytest.mark.parametrize(("name", "count"), MAPS)
+def test_polygons_have_the_certified_areas(name: str, count: str) -> None:
+    result = classified(name, count)
+    whole = outline(result)
+    sides = [a.high - a.low for a in result.slice.axes]
+    for number, region in enumerate(result.regions):
+        parts = [area(p) for p in whole.polygons(number)]
+        assert all(a >= 0 for a in parts) or all(a <= 0 for a in parts), "all parts turn the same way"
+        drawn = abs(sum(parts)) * float(sides[0] * sides[1])
+        assert drawn == pytest.approx(float(region.area[0]), rel=2e-3, abs=2e-4 * float(sides[0] * sides[1]))
+
+
+@pytest.mark.parametrize("view", [None, View((Fraction(0), Fraction(1, 300)), (Fraction(4, 5), Fraction(6, 5)))])
+def test_vertices_lie_on_the_curve(view: View | None) -> None:
+    """The stored polynomial changes its sign near every vertex."""
+    result = classified("fig4", "index")
+    seen = outline(result, view)
+    (left, right), (bottom, top) = seen.view.x, seen.view.y
+    e = 3e-5
+    tested = 0
+    for component, _, line in seen.walls():
+        polynomial = result.components[component].polynomial
+        for x, y in line[2:-2]:
+            if 0.01 < x < 0.99 and 0.01 < y < 0.99:
+                signs = {
+                    polynomial(
+                        left + Fraction(x + dx) * (right - left), bottom + Fraction(y + dy) * (top - bottom)
+                    ) > 0
+                    for dx in (-e, e)
+                    for dy in (-e, e)
+                }  # fmt: skip
+                assert len(signs) == 2
+                tested += 1
+    assert tested > 20
+
+
+@pytest.mark.parametrize(("name", "count"), MAPS)
+def test_the_raster_agrees_with_locate(name: str, count: str) -> None:
+    result = classified(name, count)
+    image = outline(result).raster(23, 19)
+    assert image.shape == (19, 23)
+    (x, y) = result.slice.axes
+    names = result.slice.axis_names
+    for row in range(0, 19, 2):
+        for column in range(0, 23, 3):
+            at = (
+                x.low + (x.high - x.low) * Fraction(2 * column + 1, 46),
+                y.low + (y.high - y.low) * Fraction(2 * row + 1, 38),
+            )
+            located = result.locate(**dict(zip(names, at, strict=True)))
+            if located.region is not None:
+                assert image[row, column] == located.region
+
+
+def test_neighbouring_stacks_meet() -> None:
+    """Branches that end at a turning point meet there: no gap is left at a stack's end."""
+    seen = outline(classified("fig4", "index"))
+    ends = [line[k] for _, _, line in seen.walls() for k in (0, -1)]
+    inner = [p for p in ends if (p > 1e-6).all() and (p < 1 - 1e-6).all()]
+    assert inner
+    for k, p in enumerate(inner):
+        assert min(np.abs(p - q).max() for j, q in enumerate(inner) if j != k) < 1e-5
+
+
+def test_vertical_lines_are_drawn(tmp_path: Path) -> None:
+    """Without load the boundaries do not depend on k: over rho they are vertical lines."""
+    record = tmp_path / "record.yaml"
+    record.write_text("name: lines\nmechanism: ptm\nparameters: {L1: 1, L2: 3/2}\naxes: {rho: [0, 2], k: [1, 200]}\n")
+    result = ptmcad.classify(ptmcad.load(record))
+    assert len(result.regions) == 3
+    strong = [line for _, separates, line in outline(result).walls() if separates]
+    across = sorted({round(float(x), 6) for line in strong for x in line[:, 0]})
+    assert across == [0.125, 0.625], "rho = 1/4 and 5/4"
+    for x in across:
+        covered = sum(abs(line[-1, 1] - line[0, 1]) for line in strong if abs(line[0, 0] - x) < 1e-5)
+        assert covered == pytest.approx(1, abs=1e-6)
+
+
+# ------------------------------------------------------------------------------------------------------ the slivers
+
+
+def test_no_sliver_where_all_is_seen(tmp_path: Path) -> None:
+    text = svg(classified("fig3", "stable"), tmp_path)
+    assert 'id="sliver-' not in text
+    assert 'id="arrow-' not in text
+
+
+@pytest.mark.parametrize(("name", "x_end"), [("fig3", "0.004"), ("fig4", "0.004")])
+def test_the_sliver_has_an_arrow_and_an_inset(name: str, x_end: str, tmp_path: Path) -> None:
+    result = classified(name, "index")
+    thin = [n for n, r in enumerate(result.regions) if r.index == (1, 3, 2)]
+    text = svg(result, tmp_path)
+    assert len(thin) == 1
+    assert f'id="sliver-{thin[0]}"' in text
+    assert f'id="sliver-{thin[0]}-region-{thin[0]}"' in text
+    assert f'id="arrow-{thin[0]}"' in text
+    (zoom,) = zooms(outline(result), thin)
+    assert zoom.outline.view.x[1] < Fraction(x_end)
+    assert result.locate(**dict(zip(result.slice.axis_names, zoom.slivers[0].at, strict=True))).region == thin[0]
+
+
+@pytest.mark.parametrize("exponent", [3, 7, 15, 30, 100])
+@pytest.mark.parametrize("base", [0, 1])
+def test_slanting_slivers_of_any_thinness_are_shown(exponent: int, base: int) -> None:
+    result = bands([Fraction(1, 4), Fraction(1, 4) + Fraction(1, 10**exponent)], base=base)
+    whole = outline(result)
+    assert thin_regions(whole, 200) == (1,)
+    (zoom,) = zooms(whole, (1,))
+    image = zoom.outline.raster(60, 60)
+    assert np.count_nonzero(image == 1) > 0.02 * image.size
+    assert set(np.unique(image)) == {0, 1, 2}
+
+
+def test_every_region_can_be_zoomed() -> None:
+    result = classified("fig4", "index")
+    whole = outline(result)
+    found = zooms(whole, range(len(result.regions)))
+    assert sorted(s.region for z in found for s in z.slivers) == list(range(len(result.regions)))
+
+
+def test_labels_and_texts_do_not_overlap() -> None:
+    heights = [Fraction(k // 2 + 1, 17) + (k % 2) * Fraction(1, 10**5) for k in range(14)]
+    with matplotlib.rc_context({"text.parse_math": False, "font.family": ["DejaVu Sans"]}):
+        figure = figure_of(bands(heights, title="word " * 50), samples=False, dpi=100)
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        renderer = canvas.get_renderer()
+        marks = [t for t in figure.axes[0].texts if isinstance(t, Annotation)]
+        assert len(marks) == 7
+        boxes = [t.get_bbox_patch().get_window_extent(renderer) for t in marks]
+        boxes += [t.get_window_extent(renderer) for t in figure.texts]
+        boxes += [a.get_tightbbox(renderer) for a in figure.axes[1:]]
+        for first, second in combinations(boxes, 2):
+            assert not first.overlaps(second)
+        width, height = figure.canvas.get_width_height()
+        for box in boxes:
+            assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height
+
+
+def test_labels_of_crowded_tips_are_apart() -> None:
+    tips = [(0.5 + 0.01 * k, 0.5) for k in range(8)]
+    marks = place(tips, ["A: (1, 3, 2)"] * len(tips), outline(bands([])), side=331.0)
+    for first, second in combinations(marks, 2):
+        dx, dy = (331 * abs(a - b) for a, b in zip(first.label, second.label, strict=True))
+        assert dx > 60 or dy > 14
+    assert all(0 < c < 1 for m in marks for c in m.label)
+
+
+# ----------------------------------------------------------------------------------------------------- the picture
+
+
+@pytest.mark.parametrize(("name", "count", "dpi"), [(*m, 100) for m in MAPS] + [("fig4", "index", 300)])
+def test_every_colour_is_in_the_picture(name: str, count: str, dpi: int, tmp_path: Path) -> None:
+    result = classified(name, count)
+    draw(result, tmp_path / "map.png", dpi=dpi)
+    image = imread(tmp_path / "map.png")[:, :, :3]
+    legend = image[:, int(image.shape[1] * 0.665) :]
+    for region in result.regions:
+        face = np.array(to_rgb(fill_of(region, result.slice.count).face))
+        everywhere = (np.abs(image - face).max(axis=2) < 0.01).sum()
+        # a swatch in the legend is not enough
+        swatch = 0.26 * 0.14 * dpi**2
+        assert everywhere > 2 * swatch
+        assert (np.abs(legend - face).max(axis=2) < 0.01).sum() > 0.7 * swatch
+
+
+def test_no_seams_between_the_cells_of_a_region(tmp_path: Path) -> None:
+    """Within a region every pixel away from walls has exactly its colour."""
+    result = classified("fig4", "stable")
+    figure = figure_of(result, samples=False, dpi=100)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    image = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255
+    box = figure.axes[0].get_window_extent()
+    part = image[round(box.y0) + 2 : round(box.y1) - 2, round(box.x0) + 2 : round(box.x1) - 2]
+    faces = {tuple(np.round(255 * np.array(to_rgb(fill_of(r, Count.STABLE).face))).astype(int)) for r in result.regions}
+    pixels = np.round(255 * part).astype(int)
+    known = np.zeros(pixels.shape[:2], dtype=bool)
+    for face in faces:
+        known |= (pixels == face).all(axis=2)
+    # the rest is the walls, whose anti-aliasing makes pixels darker than the lighter face, never lighter
+    lightest = max(sum(face) for face in faces)
+    assert known.mean() > 0.97
+    assert pixels.sum(axis=2).max() == lightest
+
+
+@pytest.mark.parametrize("dpi", [72, 150, 300])
+def test_png_has_the_size_that_dpi_tells(dpi: int, tmp_path: Path) -> None:
+    draw(classified("fig2", "stable"), tmp_path / "map.png", dpi=dpi)
+    data = (tmp_path / "map.png").read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    width, height = (int.from_bytes(data[k : k + 4], "big") for k in (16, 20))
+    assert width == pytest.approx(8.45 * dpi, abs=1.5)
+    assert height == pytest.approx(5.77 * dpi, abs=1.5)
+    physical = data.index(b"pHYs") + 4
+    assert int.from_bytes(data[physical : physical + 4], "big") == pytest.approx(dpi / 0.0254, abs=1)
+    assert b"Software" not in data and b"Matplotlib" not in data
+
+
+@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
+def test_the_same_bytes_twice(suffix: str, tmp_path: Path) -> None:
+    for k in range(2):
+        draw(classified("fig3", "index"), tmp_path / f"{k}.{suffix}")
+    assert (tmp_path / f"0.{suffix}").read_bytes() == (tmp_path / f"1.{suffix}").read_bytes()
+
+
+def test_the_same_bytes_in_another_process_without_pyplot(tmp_path: Path) -> None:
+    """Nor does a user's matplotlibrc change them."""
+    (tmp_path / "map.json").write_text(classified("fig3", "index").to_json(), encoding="utf-8")
+    code = (
+        "import sys; from pathlib import Path\n"
+        "from ptmcad.answer.regionmap import RegionMap\n"
+        "from ptmcad.show.render import draw\n"
+        "draw(RegionMap.from_json(Path('map.json').read_text()), Path(sys.argv[1]))\n"
+        "assert 'matplotlib.pyplot' not in sys.modules\n"
+    )
+    (tmp_path / "matplotlibrc").write_text(
+        "font.family: serif\naxes.grid: True\nxtick.color: red\nsvg.fonttype: none\n"
+    )
+    arguments = [sys.executable, "-W", "error", "-c", code, "other.svg"]
+    done = subprocess.run(arguments, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    (tmp_path / "matplotlibrc").unlink()
+    own = svg(classified("fig3", "index"), tmp_path)
+    assert (tmp_path / "other.svg").read_text() == own
+
+
+@pytest.mark.parametrize(("name", "count"), MAPS)
+def test_svg_is_described_small_and_named(name: str, count: str, tmp_path: Path) -> None:
+    result = classified(name, count)
+    text = svg(result, tmp_path)
+    assert len(text) < 400_000
+    root = ElementTree.fromstring(text)
+    namespace = "{http://www.w3.org/2000/svg}"
+    assert root.findtext(f"{namespace}title") == result.slice.title
+    assert "Regions of equal count" in (root.findtext(f"{namespace}desc") or "")
+    identifiers = [e.get("id") for e in root.iter() if e.get("id")]
+    assert len(identifiers) == len(set(identifiers))
+    assert {f"region-{n}" for n in range(len(result.regions))} <= set(identifiers)
+    assert any(re.fullmatch(r"curve-\d+", i) for i in identifiers)
+    assert "dc:date" not in text and "Matplotlib v" not in text
+
+
+def test_global_state_is_left_alone(tmp_path: Path) -> None:
+    before = dict(matplotlib.rcParams)
+    draw(classified("fig2", "stable"), tmp_path / "map.svg")
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_samples_are_drawn_when_asked_for(tmp_path: Path) -> None:
+    result = classified("fig4", "stable")
+    assert 'id="samples"' not in svg(result, tmp_path)
+    text = svg(result, tmp_path, samples=True)
+    samples = text[text.index('id="samples"') :].split("</g>\n  </g>")[0]
+    assert samples.count("<use ") >= len(result.cells)
+
+
+def test_walls_that_separate_nothing_are_thin(tmp_path: Path) -> None:
+    """With counts of stable equilibria the (1, 3, 2) sliver's boundary separates nothing."""
+    stable, index = svg(classified("fig3", "stable"), tmp_path), svg(classified("fig3", "index"), tmp_path)
+    assert re.search(r'id="curve-\d+-thin"', stable)
+    assert not re.search(r'id="curve-\d+-thin"', index)
+
+
+def test_dollars_are_no_mathematics(tmp_path: Path) -> None:
+    assert "Oblique" not in svg(bands([], title="$x_1$"), tmp_path), "the font of mathematics"
+
+
+def test_another_format_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="gif"):
+        draw(classified("fig2", "stable"), tmp_path / "map.gif")
+
+
+@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
+@pytest.mark.parametrize(
+    "result",
+    [
+        pytest.param(bands([]), id="one region"),
+        pytest.param(bands([Fraction(0)], slope=Fraction(1)), id="corner to corner"),
+        pytest.param(bands([HALF], title="$5 & <b>x_1^{ \\frac \x07 ü ρ 弹 % #"), id="special characters"),
+        pytest.param(bands([HALF], names=("rho_very_long_" * 9, "b_$c")), id="long names"),
+        pytest.param(bands([HALF], title="word " * 200), id="long title"),
+        pytest.param(
+            bands([HALF / 2], window=((Fraction(0), Fraction(1, 10**20)), (Fraction(-(10**20)), Fraction(10**20)))),
+            id="1e-20 and 1e20",
+        ),
+        pytest.param(
+            bands([HALF / 2], window=((Fraction(10**20), 10**20 + Fraction(1)), (Fraction(0), Fraction(10**400)))),
+            id="beyond floats",
+        ),
+        pytest.param(bands([Fraction(k, 40) for k in range(1, 20)], counts=list(range(20))), id="many counts"),
+    ],
+)
+def test_degenerate_maps_are_drawn(result: RegionMap, suffix: str, tmp_path: Path) -> None:
+    draw(result, tmp_path / f"map.{suffix}", samples=True)
+    assert (tmp_path / f"map.{suffix}").stat().st_size > 1000
+    if suffix == "svg":
+        ElementTree.parse(tmp_path / "map.svg")
+
+
+# ------------------------------------------------------------------------------------------------ colours and names
+
+
+def lightness(colour: str) -> float:
+    """CIE L*."""
+    channels = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
+    return 116 * float(np.dot((0.2126, 0.7152, 0.0722), channels)) ** (1 / 3) - 16
+
+
+@pytest.mark.parametrize("row", [ONE_MAXIMUM, TWO_MAXIMA])
+def test_the_palette_falls_in_lightness(row: tuple[str, ...]) -> None:
+    for first, second in pairwise(row):
+        assert lightness(first) - lightness(second) >= 6
+
+
+def test_index_colours_differ_on_grey_prints() -> None:
+    shades = [lightness(fill_of(region(index=i), Count.INDEX).face) for i in ((1, 2, 1), (2, 3, 1), (1, 3, 2))]
+    assert min(abs(a - b) for a, b in combinations(shades, 2)) > 10
+
+
+def region(stable: int = 0, total: int = 0, index: tuple[int, int, int] = (0, 0, 0), admissible: int = 0) -> Region:
+    at = Point(("a", "b"), HALF, HALF)
+    return Region(stable, total, index, (Fraction(1), Fraction(1)), (0,), at, admissible)
+
+
+@pytest.mark.parametrize("count", list(Count))
+def test_different_counts_have_different_fills(count: Count) -> None:
+    regions = {
+        Count.STABLE: [region(stable=n) for n in range(40)],
+        Count.TOTAL: [region(total=n) for n in range(40)],
+        Count.ADMISSIBLE: [region(admissible=n) for n in range(40)],
+        Count.INDEX: [region(index=(a, a + b, b)) for a in range(9) for b in range(9)],
+    }[count]
+    fills = [fill_of(r, count) for r in regions]
+    assert len(set(fills)) == len(fills)
+
+
+def test_the_same_count_has_the_same_colour_in_every_picture() -> None:
+    assert fill_of(region(stable=1), Count.STABLE) == fill_of(region(index=(1, 2, 1)), Count.INDEX)
+    assert fill_of(region(stable=2), Count.STABLE) == fill_of(region(index=(2, 3, 1)), Count.INDEX)
+    assert fill_of(region(stable=2), Count.STABLE) == fill_of(region(total=6), Count.TOTAL)
+
+
+@pytest.mark.parametrize(
+    ("name", "printed"), [("rho", "ρ"), ("L2", "L₂"), ("F3x", "F₃ₓ"), ("k", "k"), ("k1", "k₁"), ("load", "load")]
+)
+def test_symbols(name: str, printed: str) -> None:
+    assert symbol(name) == printed
+
+
+def test_units() -> None:
+    assert [unit(ptmcad.load(ROOT / "configs" / "fig3.yaml"), k) for k in (0, 1)] == ["length", "force"]
+    assert [unit(ptmcad.load(ROOT / "configs" / "stiffness.yaml"), k) for k in (0, 1)] == ["force/length", "length"]
+    assert unit(replace(ptmcad.load(ROOT / "configs" / "fig3.yaml"), mechanism="other"), 0) == ""
+
+
+@pytest.mark.parametrize("low", ["0", "-1", "1e-20", "-1e20", "123456.789", "1e400"])
+@pytest.mark.parametrize("width", ["1", "1e-20", "1e20", "7e-400"])
+def test_scales_are_exact_and_small(low: str, width: str) -> None:
+    start, end = Fraction(low), Fraction(low) + Fraction(width)
+    scale = scale_of(start, end)
+    assert scale.low < scale.high
+    assert max(abs(scale.low), abs(scale.high)) < 1e5 * (scale.high - scale.low)
+    assert 1e-4 < max(abs(scale.low), abs(scale.high)) < 1e5
+    assert float((end - scale.offset) / Fraction(10) ** scale.exponent) == scale.high

@@ -1,0 +1,235 @@
+"""Pictures and pages of certified maps: what is undetermined is seen, at its size, and the rest as in exact maps."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from fractions import Fraction
+from html import unescape
+from math import ceil, pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from matplotlib.colors import to_rgb
+from matplotlib.image import imread
+from matplotlib.path import Path as Curve
+from support.certified_maps import certified, circle, crossing, cusp
+
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.cli import run
+from ptmcad.cover.rectangles import Cover
+from ptmcad.errors import ConfigError
+from ptmcad.question.slice import Count, Point
+from ptmcad.show.render import draw
+from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED, fill_of
+from ptmcad.show.render.coveroutline import TOLERANCE, simplified
+from ptmcad.show.render.legend import RIM
+from ptmcad.show.render.regionmap import LEFT, MARGIN, SIDE, TITLE_LINE, figure_of
+from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.view import View
+from ptmcad.show.report import page
+
+STEPS = 2**20
+
+
+def tube(low: float, high: float) -> RegionMap:
+    """An upright strip that is undetermined, between two regions of two stable equilibria."""
+    return certified(Cover(STEPS, ((int(low * STEPS), int(high * STEPS), 0, STEPS),)), lambda x, y: 2)
+
+
+def map_pixels(result: RegionMap, folder: Path, dpi: int) -> np.ndarray:
+    """The map's part of the picture, from the top, shape (n, n, 3)."""
+    draw(result, folder / "map.png", dpi=dpi)
+    image = imread(folder / "map.png")[:, :, :3]
+    left, top = round(LEFT * dpi), round((2 * MARGIN + TITLE_LINE) * dpi)
+    return image[top : top + int(SIDE * dpi), left : left + int(SIDE * dpi)]
+
+
+def test_what_is_undetermined_looks_like_no_count() -> None:
+    grey = np.array(to_rgb(UNDETERMINED.face))
+    for face in (*ONE_MAXIMUM, *TWO_MAXIMA, "#ffffff"):
+        assert np.abs(np.array(to_rgb(face)) - grey).max() > 0.1
+
+
+@pytest.mark.parametrize("result", [circle(7), crossing(7)], ids=["circle", "crossing"])
+@pytest.mark.parametrize("dpi", [100, 300])
+def test_a_picture_shows_counts_where_they_are_and_grey_elsewhere(result: RegionMap, dpi: int, tmp_path: Path) -> None:
+    image = map_pixels(result, tmp_path, dpi)
+    n = len(image)
+    raster = shapes(result).raster(n, n)[::-1]
+    same = np.ones_like(raster, dtype=np.bool_)
+    for i in range(-3, 4):  # away from the rims
+        for j in range(-3, 4):
+            same &= np.roll(raster, (i, j), (0, 1)) == raster
+    same[:6] = same[-6:] = same[:, :6] = same[:, -6:] = False
+    for number in range(-1, len(result.regions)):
+        fill = UNDETERMINED if number < 0 else fill_of(result.regions[number], Count.STABLE)
+        inside = image[same & (raster == number)]
+        if len(inside):
+            assert np.abs(inside - np.array(to_rgb(fill.face))).max() < 0.01, number
+    assert (same & (raster >= 0)).sum() > 0.5 * n * n
+
+
+@pytest.mark.parametrize("dpi", [100, 150, 300])
+@pytest.mark.parametrize("width", [1e-5, 1e-4, 1e-3])
+def test_a_narrow_tube_is_seen_as_a_hairline(dpi: int, width: float, tmp_path: Path) -> None:
+    """Some pixel across it is clearly darker, and no more of them than a line of the rim's width touches."""
+    row = map_pixels(tube(0.4, 0.4 + width), tmp_path, dpi)[int(SIDE * dpi) // 2]
+    dark = 1 - row.mean(axis=1) / np.median(row.mean(axis=1))
+    middle = dark[10:-10]
+    assert middle.max() > 0.15
+    assert (middle > 0.02).sum() <= ceil(RIM * dpi / 72 + width * SIDE * dpi) + 1
+
+
+@pytest.mark.parametrize("dpi", [100, 300])
+def test_a_wide_strip_is_as_wide_as_it_is(dpi: int, tmp_path: Path) -> None:
+    image = map_pixels(tube(0.25, 0.5), tmp_path, dpi)
+    grey = np.abs(image[len(image) // 2] - np.array(to_rgb(UNDETERMINED.face))).max(axis=1) < 0.02
+    assert abs(int(grey.sum()) - SIDE * dpi / 4) <= 3
+
+
+def test_the_legend_tells_the_undetermined_share(tmp_path: Path) -> None:
+    result = tube(0.25, 0.25 + 2**-11)  # 1/2048 of the window
+    texts = [text.get_text() for text in figure_of(result, False, 100).texts]
+    assert "undetermined 0.049 %" in texts
+    assert "the count changes" not in texts
+    draw(result, tmp_path / "map.svg")
+    assert "</svg>" in (tmp_path / "map.svg").read_text()
+
+
+def test_admissible_counts_have_colours_and_a_legend() -> None:
+    made = circle(6)
+    result = replace(made, slice=replace(made.slice, count=Count.ADMISSIBLE))
+    texts = [text.get_text() for text in figure_of(result, False, 100).texts]
+    assert "Stable, all springs taut" in texts
+    assert "3   of 8 equilibria" in texts
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+def test_the_same_map_gives_the_same_bytes(suffix: str, tmp_path: Path) -> None:
+    for name in ("first", "second"):
+        draw(crossing(6), tmp_path / f"{name}.{suffix}")
+    assert (tmp_path / f"first.{suffix}").read_bytes() == (tmp_path / f"second.{suffix}").read_bytes()
+
+
+def test_the_svg_of_many_rectangles_is_small(tmp_path: Path) -> None:
+    result = crossing(10)
+    assert result.cover is not None
+    assert len(result.cover.rectangles) > 30_000
+    draw(result, tmp_path / "map.svg")
+    assert (tmp_path / "map.svg").stat().st_size < 500_000
+
+
+def test_a_thin_region_is_marked_and_zoomed() -> None:
+    cover = Cover(STEPS, ((STEPS // 2, STEPS // 2 + 64, 0, STEPS), (STEPS // 2 + 2000, STEPS // 2 + 2064, 0, STEPS)))
+    figure = figure_of(certified(cover, lambda x, y: 3 if 0.5 < x < 0.502 else 1), False, 150)
+    assert [axes.get_gid() for axes in figure.axes] == ["map", "sliver-2"]
+
+
+@pytest.mark.parametrize("result", [circle(6), crossing(6), cusp(7)], ids=["circle", "crossing", "cusp"])
+def test_polygons_and_raster_agree_with_the_exact_answer(result: RegionMap) -> None:
+    """At points that are farther from any outline than simplification moves it."""
+    seen = shapes(result).in_view(View((Fraction(1, 3), Fraction(3, 2)), (Fraction(2, 5), Fraction(7, 4))))
+    n = 41
+    raster = seen.raster(n, n)
+    polygons = [list(seen.polygons(number)) for number in range(len(result.regions))]
+    edges = np.concatenate([np.concatenate(p) for p in polygons if p])
+    for i in range(n):
+        for j in range(n):
+            at = np.array([(j + 0.5) / n, (i + 0.5) / n])
+            x = seen.view.x[0] + (seen.view.x[1] - seen.view.x[0]) * Fraction(2 * j + 1, 2 * n)
+            y = seen.view.y[0] + (seen.view.y[1] - seen.view.y[0]) * Fraction(2 * i + 1, 2 * n)
+            number = seen.complement.locate(*(v / 2 * seen.complement.cover.steps for v in (x, y)))  # type: ignore[attr-defined]
+            exact = -1 if number is None else int(seen.region_at[number])  # type: ignore[attr-defined]
+            assert raster[i, j] == exact
+            if np.abs(edges - at).max(axis=1).min() < 0.02:
+                continue
+            inside = [k for k, p in enumerate(polygons) if sum(Curve(c).contains_point(at) for c in p) % 2]
+            assert inside == ([exact] if exact >= 0 else [])
+
+
+@settings(deadline=None)
+@given(st.lists(st.tuples(st.integers(0, 60), st.integers(0, 60)), min_size=1, max_size=60))
+def test_simplified_polygons_stay_near_and_keep_their_corners(corners: list[tuple[int, int]]) -> None:
+    points = np.array(corners, dtype=float) * 0.4 * TOLERANCE
+    few = simplified(points, TOLERANCE)
+    assert {tuple(p) for p in few.tolist()} <= {tuple(p) for p in points.tolist()}
+    if len(few) < 2:
+        return
+    for p in points:
+        a, b = few, np.roll(few, -1, axis=0)
+        along = b - a
+        share = np.clip(((p - a) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1)
+        assert np.hypot(*(p - a - share[:, None] * along).T).min() <= TOLERANCE * 1.000001
+
+
+# ------------------------------------------------------------------------------------------------------- the page
+
+
+def test_the_page_tells_status_undetermined_area_and_bounds() -> None:
+    result = circle(8)
+    text = page(result)
+    plain = unescape(re.sub("<[^>]*>", " ", text))
+    assert "Certified result." in plain
+    share = f"{float(result.undetermined) * 100:.2f}"[:3]
+    assert f"Undetermined: {share}" in plain
+    bounds = [tuple(map(Fraction, pair)) for pair in re.findall(r"proved: ([0-9.]+) to ([0-9.]+)", plain)]
+    for (low, high), region in zip(bounds, result.regions, strict=True):
+        assert low <= region.area[0] < region.area[1] <= high
+        assert high - low < region.area[1] - region.area[0] + Fraction(1, 10**5)
+    assert bounds[1][0] < pi / 4 < bounds[1][1]
+    assert "Boundary curves" not in text and "polynomial" not in plain
+    data = json.loads(text.partition('<script type="application/json" id="data">')[2].partition("</script>")[0])
+    assert [cell["stack"] for cell in data["cells"]] == [None, None]
+    assert text.count('class="cell" data-cell=') == 2
+    assert 'class="undetermined"' in text and 'class="rim"' in text
+
+
+def test_a_partial_map_says_so_on_its_page() -> None:
+    text = page(certified(Cover(8, ((0, 4, 0, 8),)), lambda x, y: 2, status=Status.PARTIAL))
+    assert "Partial result." in text
+    assert "Undetermined: 50 %" in text
+
+
+def test_a_map_without_any_cell_is_drawn_and_reported(tmp_path: Path) -> None:
+    result = certified(Cover(4, ((0, 4, 0, 4),)), lambda x, y: 2, status=Status.PARTIAL)
+    assert "No regions are known yet." in page(result)
+    draw(result, tmp_path / "map.png")
+
+
+@pytest.mark.parametrize("fault", ["in the cover", "twice", "stack"])
+def test_a_damaged_certified_map_has_no_page(fault: str) -> None:
+    result = circle(6)
+    first, second = result.cells
+    if fault == "in the cover":
+        damaged = replace(first, sample=Point(result.slice.axis_names, Fraction(1, 2), Fraction(1)))
+    elif fault == "twice":
+        damaged = replace(first, sample=second.sample)
+    else:
+        damaged = replace(first, stack=0)
+    with pytest.raises(ConfigError, match="contradicts itself"):
+        page(replace(result, cells=(damaged, second)))
+
+
+def test_a_stored_certified_map_has_a_page_and_pictures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "map.json"
+    path.write_text(circle(6).to_json(), encoding="utf-8")
+    assert run(["report", str(path)]) == 0
+    assert "Certified result." in (tmp_path / "map.html").read_text(encoding="utf-8")
+    assert run(["plot", str(path), "--format", "png,svg", "--dpi", "100"]) == 0
+    assert capsys.readouterr().out.splitlines()[1:] == [str(tmp_path / "map.png"), str(tmp_path / "map.svg")]
+    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_damaged_certified_map_has_no_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made = circle(6)
+    first = replace(made.cells[0], sample=Point(made.slice.axis_names, Fraction(1, 2), Fraction(1)))
+    (tmp_path / "map.json").write_text(replace(made, cells=(first, made.cells[1])).to_json(), encoding="utf-8")
+    assert run(["plot", str(tmp_path / "map.json")]) == 2
+    message = capsys.readouterr().err
+    assert "contradicts itself" in message and message.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["map.json"]

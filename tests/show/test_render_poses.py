@@ -1,0 +1,389 @@
+"""Pictures of poses, of the energy over the torus, and of a map with poses: all is drawn, clear, and the same again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from itertools import combinations, pairwise
+from math import cos, radians, sin
+from pathlib import Path
+from xml.etree import ElementTree
+
+import matplotlib
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from support.maps import shipped
+
+import ptmcad
+from ptmcad.answer.poses import Poses
+from ptmcad.answer.regionmap import Status
+from ptmcad.ask.solving import solve
+from ptmcad.show.render import printing
+from ptmcad.show.render.clearance import Label, Stroke, crosses, overlap, place, polyline
+from ptmcad.show.render.figure import draw_figure, point_of
+from ptmcad.show.render.landscape import contour_levels, copies, draw_landscape, energy_of
+from ptmcad.show.render.mechanism import PALE, STRONG
+from ptmcad.show.render.poses import draw_poses, in_order, printed_number, value_text
+from ptmcad.show.render.sketch import BAR_WIDTHS, PIN, TURNS, arrow_lengths, frame_of, sketch
+from ptmcad.text.enclosure import Enclosure
+
+ROOT = Path(__file__).resolve().parents[2]
+POINTS = {
+    "paper, fig. 2": {"rho": "1", "L2": "3/2"},
+    "paper, fig. 3": {"rho": "3/4", "F3": "-10", "F4": "-10"},
+    "paper, fig. 4": {"rho": "7/10", "L2": "3/2", "F3": "-10", "F4": "-10"},
+    "flat, springs of no length": {"rho": "1"},
+    "fold": {"rho": "5/4", "L2": "3/2"},
+    "all loads": {"rho": "4/5", "F3": "-3", "F4": "7", "F3x": "20", "F4x": "-1"},
+    "rho = 1e-12": {"rho": "1e-12", "L2": "3/2", "F3": "-10", "F4": "-10", "F3x": "3"},
+    "lengths 1e9 apart, loads 1e30": {"L2": "1e9", "F3": "1e30", "F4": "-1e29", "F4x": "1e30"},
+    "lengths of 1e400": {"L1": "1e400", "L2": "2e400", "rho": "1e400"},
+}
+CASES = pytest.mark.parametrize("name", POINTS)
+DRAWN: list[Callable[[Poses], Figure]] = [draw_poses, draw_landscape]
+
+
+@cache
+def poses(name: str) -> Poses:
+    return solve(**POINTS[name])
+
+
+def identifiers(figure: Figure, start: str) -> list[str]:
+    return [a.get_gid() for a in figure.findobj() if a.get_gid() and a.get_gid().startswith(start)]  # type: ignore[misc]
+
+
+# ------------------------------------------------------------------------------------------------------ the poses
+
+
+@CASES
+def test_every_pose_has_a_panel_with_all_its_parts(name: str) -> None:
+    found = poses(name)
+    figure = draw_poses(found)
+    assert len(figure.axes) == len(found.equilibria) >= 4 or found.status is Status.ON_VARIETY
+    for number, axes in enumerate(figure.axes, 1):
+        prefix = f"pose-{number}-"
+        parts = [a.get_gid() for a in axes.get_children() if a.get_gid()]
+        assert sum(p.startswith(f"{prefix}bar-") for p in parts) == 2
+        assert sum(p.startswith(f"{prefix}spring-") for p in parts) == 3
+        assert sum(p.startswith(f"{prefix}node-") for p in parts) == 4
+        loads = {p.removeprefix(f"{prefix}load-") for p in parts if p.startswith(f"{prefix}load-")}
+        assert loads == {n for n, v in found.parameters.items() if n.startswith("F") and v}
+        labels = "".join(p.removeprefix(f"{prefix}label-") for p in parts if p.startswith(f"{prefix}label-"))
+        assert sorted(labels.replace(", ", "")) == sorted("A₁A₂A₃A₄")
+
+
+def test_stable_ones_come_first_and_are_strong() -> None:
+    figure = draw_poses(poses("paper, fig. 4"))
+    colours = [
+        next(a.get_color() for a in axes.get_children() if str(a.get_gid()).endswith("bar-A1A3"))
+        for axes in figure.axes
+    ]
+    assert colours == [STRONG.bars[0]] * 2 + [PALE.bars[0]] * 4
+    texts = [t.get_text() for t in figure.texts]
+    kinds = ["stable (minimum)"] * 2 + ["saddle"] * 3 + ["maximum"]
+    assert [t for t in texts if t[0].isdigit() and "  " in t[:3]] == [f"{n}  {k}" for n, k in enumerate(kinds, 1)]
+
+
+def test_a_degenerate_pose_is_named_with_its_multiplicity() -> None:
+    figure = draw_poses(poses("fold"))
+    assert any("degenerate, multiplicity 3, flat" in t.get_text() for t in figure.texts)
+
+
+@CASES
+def test_nodes_are_where_the_angles_put_them(name: str) -> None:
+    """Recomputed from the angles in floating point; the tolerance is a tenth of a point on paper."""
+    found = poses(name)
+    frame = frame_of(found.equilibria)
+    l1, l2, rho = (float(found.parameters[n] * frame.scale) for n in ("L1", "L2", "rho"))
+    for pose in found.equilibria:
+        at = frame.nodes(pose)
+        th1, th2 = (radians(float(d)) for d in pose.degrees)
+        x, y = at["A1"]
+        expected = {
+            "A2": (x + rho, y),
+            "A3": (x + l1 * cos(th1), y + l1 * sin(th1)),
+            "A4": (x + rho - l2 * cos(th2), y + l2 * sin(th2)),
+        }
+        for node, (u, v) in expected.items():
+            assert at[node] == pytest.approx((u, v), abs=0.1)
+
+
+@CASES
+def test_labels_are_clear_of_all_strokes_and_of_each_other(name: str) -> None:
+    labels_are_clear(poses(name))
+
+
+@settings(max_examples=12, deadline=None)
+@example(["7/10", "12", "-1/50", "35", "-29/10", "0"])  # three nodes within a few points
+@given(st.tuples(*[st.fractions(0, 30, max_denominator=100)] * 2, *[st.fractions(-60, 60, max_denominator=9)] * 4))
+def test_labels_of_any_mechanism_are_clear(values: Sequence[Fraction | str]) -> None:
+    rho, l2, *loads = values
+    given_loads = dict(zip(("F3", "F4", "F3x", "F4x"), loads, strict=True))
+    labels_are_clear(solve(rho=rho, L2=l2 or 1, **given_loads))
+
+
+def labels_are_clear(found: Poses) -> None:
+    if not found.equilibria:
+        return
+    frame, arrows = frame_of(found.equilibria), arrow_lengths(found)
+    for pose in found.equilibria:
+        seen = sketch(pose, frame, arrows)
+        strokes = [Stroke(a, b, w / 2) for (a, b), w in zip(seen.bars, BAR_WIDTHS, strict=True)]
+        strokes += [s for line in seen.springs for s in polyline(line, 0.4)]
+        strokes += [Stroke(a.start, a.end, 2.0) for a in seen.arrows]
+        boxes = [placed.box for placed in seen.labels]
+        for box in boxes:
+            assert not any(crosses(stroke, box) for stroke in strokes)
+            assert not any(overlap(box, (x - PIN, y - PIN, x + PIN, y + PIN)) for x, y in seen.nodes.values())
+            assert box[0] >= 0 and box[1] >= 0 and box[2] <= frame.width and box[3] <= frame.height
+        assert not any(overlap(a, b) for a, b in combinations(boxes, 2))
+        inside = [*seen.nodes.values(), *(p for line in seen.springs for p in line)]
+        inside += [p for a in seen.arrows for p in (a.start, a.end)]
+        assert all(0 <= x <= frame.width and 0 <= y <= frame.height for x, y in inside)
+
+
+@CASES
+def test_a_spring_has_all_its_turns_at_any_length(name: str) -> None:
+    found = poses(name)
+    frame = frame_of(found.equilibria)
+    for pose in found.equilibria:
+        seen = sketch(pose, frame, {})
+        for spring, line in zip(pose.springs, seen.springs, strict=True):
+            assert (line[0], line[-1]) == (seen.nodes[spring.start], seen.nodes[spring.end])
+            assert len(line) == 2 * TURNS + 4
+            xs, ys = np.diff(np.array(line[1:-1]), axis=0).T
+            assert np.hypot(xs, ys)[1:-1].min() > 1.5, "a turn's edge is longer than its line is wide"
+            assert np.hypot(xs.sum(), ys.sum()) > 1.4 * 2 * TURNS, "and so is the way from turn to turn"
+
+
+def test_springs_on_bars_are_drawn_aside() -> None:
+    """In a flat pose all is on one line, but no spring hides under a bar or on another spring."""
+    found = poses("paper, fig. 2")
+    frame = frame_of(found.equilibria)
+    flat = [p for p in found.equilibria if p.flat]
+    assert len(flat) == 4
+    for pose in flat:
+        seen = sketch(pose, frame, {})
+        middles = [np.mean(line[1:-1], axis=0)[1] - seen.nodes["A1"][1] for line in seen.springs]
+        bars = [(min(a[0], b[0]), max(a[0], b[0])) for a, b in seen.bars]
+        for line, middle in zip(seen.springs, middles, strict=True):
+            if any(low < np.mean(line, axis=0)[0] < high for low, high in bars):
+                assert abs(middle) > 5
+
+
+def test_arrows_are_as_long_as_forces() -> None:
+    lengths = arrow_lengths(solve(rho="1", F3="-10", F4="5", F3x="1e-20"))
+    assert lengths["F3"] == -2 * lengths["F4"]
+    assert 5 < lengths["F3x"] < lengths["F4"], "short ones are lengthened"
+    assert "F4x" not in lengths
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(st.floats(5, 195), st.floats(5, 145)), min_size=1, max_size=5))
+def test_labels_of_any_points_are_apart(points: list[tuple[float, float]]) -> None:
+    labels = [Label("A₁", at, (7, 6), (1.0, 0.0)) for at in points]
+    boxes = [p.box for p in place(labels, [], [], (0, 0, 200, 150))]
+    assert not any(overlap(a, b) for a, b in combinations(boxes, 2))
+
+
+@given(st.tuples(*[st.floats(-9, 9)] * 4), st.floats(0, 2))
+def test_a_stroke_meets_a_box_where_one_of_its_points_does(ends: tuple[float, ...], half: float) -> None:
+    box = (-3.0, -2.0, 3.0, 2.0)
+    a, b = ends[:2], ends[2:]
+    points = np.linspace(a, b, 400)
+    inner = (np.abs(points) < np.array([3.0, 2.0]) + half - 0.06).all(axis=1)
+    outer = (np.abs(points) < np.array([3.0, 2.0]) + half + 0.06).all(axis=1)
+    hit = crosses(Stroke((a[0], a[1]), (b[0], b[1]), half), box)
+    if a != b:
+        assert hit or not inner.any()
+        assert outer.any() or not hit
+
+
+# -------------------------------------------------------------------------------------------------- the landscape
+
+
+@CASES
+def test_every_equilibrium_is_marked_and_numbered_once(name: str) -> None:
+    found = poses(name)
+    figure = draw_landscape(found)
+    n = len(found.equilibria)
+    assert sorted(identifiers(figure, "equilibrium-")) == [f"equilibrium-{k}" for k in range(1, n + 1)]
+    assert sorted(identifiers(figure, "number-")) == [f"number-{k}" for k in range(1, n + 1)]
+    markers = {a.get_gid(): a for a in figure.findobj() if str(a.get_gid()).startswith("equilibrium-")}
+    symbols = {0: "o", 1: "X", 2: "^", None: "*"}
+    for number, pose in enumerate(in_order(found), 1):
+        marker = markers[f"equilibrium-{number}"]
+        assert marker.get_marker() == symbols[pose.index]
+        for shown, degrees in zip((marker.get_xdata()[0], marker.get_ydata()[0]), pose.degrees, strict=True):
+            assert min(abs(shown - float(degrees) + turn) for turn in (-360, 0, 360)) < 0.3
+
+
+@CASES
+def test_the_drawn_energy_is_that_of_the_poses(name: str) -> None:
+    """Two ways to the same number: the potential over the torus, and the certified energy of each equilibrium."""
+    found = poses(name)
+    energy = energy_of(found.parameters)
+    h = 1e-4
+    for pose in found.equilibria:
+        th1, th2 = (np.radians(float(d)) for d in pose.degrees)
+        value = float(energy(np.array(th1), np.array(th2)))
+        assert value == pytest.approx(energy.scaled(pose.energy.center), abs=1e-9)
+        for d1, d2 in ((h, 0), (0, h)):
+            slope = energy(np.array(th1 + d1), np.array(th2 + d2)) - energy(np.array(th1 - d1), np.array(th2 - d2))
+            assert abs(float(slope)) / (2 * h) < 1e-6
+
+
+def test_contours_pass_through_saddles() -> None:
+    found = poses("paper, fig. 4")
+    figure = draw_landscape(found)
+    energy = energy_of(found.parameters)
+    saddles = sorted(energy.scaled(p.energy.center) for p in found.equilibria if p.index == 1)
+    drawn = [list(c.levels) for c in figure.findobj() if hasattr(c, "levels")]
+    assert any(levels == pytest.approx(saddles) for levels in drawn)
+
+
+@given(st.lists(st.floats(-1, 1), min_size=1, max_size=6))
+def test_levels_separate_critical_energies(critical: list[float]) -> None:
+    levels = contour_levels(sorted(set(critical)), -1.0, 1.0)
+    assert all(a < b for a, b in pairwise(levels))
+    assert levels[0] == -1 and levels[-1] == pytest.approx(1, abs=1e-8)
+    for value in critical:
+        assert min(abs(value - level) for level in levels) <= 2e-9
+
+
+def test_equilibria_on_the_same_place_stay_visible() -> None:
+    """At 1e-20 from the fold of fig. 2: two stable ones and a saddle, drawn over each other with falling sizes."""
+    figure = draw_landscape(solve(rho=Fraction(5, 4) - Fraction(1, 10**20), L2="3/2"))
+    found = {a.get_gid(): a for a in figure.findobj() if str(a.get_gid()).startswith("equilibrium-")}
+    sizes = [found[f"equilibrium-{k}"].get_markersize() for k in (1, 2, 3)]
+    assert sizes[0] > sizes[1] + 3 > sizes[2] + 6
+
+
+def test_the_edges_of_the_torus_are_one() -> None:
+    assert copies(180.0) == copies(-179.9) == (180.0, -180.0)
+    assert copies(0.0) == (0.0,)
+    figure = draw_landscape(poses("paper, fig. 2"))
+    (maximum,) = [a for a in figure.findobj() if a.get_gid() == "equilibrium-6"]
+    same = [a for a in figure.axes[0].lines + figure.axes[0].artists if a.get_marker() == maximum.get_marker()]
+    assert {(a.get_xdata()[0], a.get_ydata()[0]) for a in same} == {(x, y) for x in (180, -180) for y in (180, -180)}
+
+
+# ------------------------------------------------------------------------------------------- the map and the poses
+
+
+def classified(name: str, count: str) -> ptmcad.RegionMap:
+    return shipped(name, None if count == "stable" else count)
+
+
+@pytest.mark.parametrize(("name", "count", "panels"), [("fig4", "stable", 2), ("fig3", "index", 2)])
+def test_the_figure_has_the_map_and_the_stable_poses(name: str, count: str, panels: int) -> None:
+    result = classified(name, count)
+    figure = draw_figure(result, poses(f"paper, fig. {name[-1]}"))
+    assert figure.axes[0].get_gid() == "map"
+    assert sum(str(a.get_gid()).startswith("pose-") for a in figure.axes) == panels
+    (point,) = [a for a in figure.findobj() if a.get_gid() == "point"]
+    x, y = {"fig4": (0.35, 0.75), "fig3": (0.375, 0.0)}[name]
+    assert (point.get_xdata()[0], point.get_ydata()[0]) == pytest.approx((x, y))
+
+
+def test_poses_of_another_mechanism_are_refused() -> None:
+    result = classified("fig4", "stable")
+    assert point_of(result.slice, poses("paper, fig. 4")) == (Fraction(7, 10), Fraction(3, 2))
+    with pytest.raises(ValueError, match="F3"):
+        draw_figure(result, poses("paper, fig. 2"))
+    with pytest.raises(ValueError, match="window"):
+        draw_figure(result, solve(rho="7", F3="-10", F4="-10"))
+
+
+# -------------------------------------------------------------------------------------------------- all of them
+
+
+def boxes_of(figure: Figure) -> list[matplotlib.transforms.Bbox]:
+    with printing.settings():
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        renderer = canvas.get_renderer()
+        return [t.get_window_extent(renderer) for t in figure.texts + [t for a in figure.axes for t in a.texts]]
+
+
+@pytest.mark.parametrize("draw", DRAWN)
+@CASES
+def test_texts_do_not_overlap_and_are_on_the_page(name: str, draw: Callable[[Poses], Figure]) -> None:
+    figure = draw(poses(name))
+    boxes = boxes_of(figure)
+    width, height = figure.canvas.get_width_height()
+    assert not [1 for a, b in combinations(boxes, 2) if a.overlaps(b)]
+    for box in boxes:
+        assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height
+
+
+@pytest.mark.parametrize(("name", "count"), [("fig4", "stable"), ("fig3", "index")])
+def test_texts_of_the_figure_do_not_overlap(name: str, count: str) -> None:
+    boxes = boxes_of(draw_figure(classified(name, count), poses(f"paper, fig. {name[-1]}")))
+    assert not [1 for a, b in combinations(boxes, 2) if a.overlaps(b)]
+
+
+@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
+@pytest.mark.parametrize("draw", DRAWN)
+def test_the_same_bytes_twice(draw: Callable[[Poses], Figure], suffix: str, tmp_path: Path) -> None:
+    before = dict(matplotlib.rcParams)
+    for k in range(2):
+        printing.save(draw(poses("paper, fig. 4")), tmp_path / f"{k}.{suffix}", dpi=(100, 300)[suffix != "png"])
+    assert (tmp_path / f"0.{suffix}").read_bytes() == (tmp_path / f"1.{suffix}").read_bytes()
+    assert dict(matplotlib.rcParams) == before
+
+
+@pytest.mark.parametrize("draw", DRAWN)
+def test_svg_is_valid_described_and_small(draw: Callable[[Poses], Figure], tmp_path: Path) -> None:
+    printing.save(draw(poses("paper, fig. 4")), tmp_path / "picture.svg")
+    text = (tmp_path / "picture.svg").read_text(encoding="utf-8")
+    assert len(text) < 900_000
+    root = ElementTree.fromstring(text)
+    namespace = "{http://www.w3.org/2000/svg}"
+    assert (root.findtext(f"{namespace}title") or "").startswith("6 equilibria, 2 stable")
+    assert "6: maximum" in (root.findtext(f"{namespace}desc") or "")
+    named = [e.get("id") for e in root.iter() if e.get("id")]
+    assert len(named) == len(set(named))
+
+
+@pytest.mark.parametrize("draw", DRAWN)
+def test_infinitely_many_equilibria_are_said_so(draw: Callable[[Poses], Figure]) -> None:
+    found = solve(rho="0")
+    assert found.status is Status.UNDECIDED and not found.equilibria
+    figure = draw(replace(found, remark="infinitely many equilibria"))
+    assert not figure.axes
+    assert any("infinitely many" in t.get_text() for t in figure.texts)
+
+
+def lightness(colour: str) -> float:
+    """CIE L*."""
+    channels = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
+    return 116 * float(np.dot((0.2126, 0.7152, 0.0722), channels)) ** (1 / 3) - 16
+
+
+def test_strong_and_pale_differ_on_grey_prints() -> None:
+    pairs = [*zip(STRONG.bars, PALE.bars, strict=True), (STRONG.spring, PALE.spring), (STRONG.load, PALE.load)]
+    assert all(lightness(pale) - lightness(strong) >= 25 for strong, pale in pairs)
+    for style in (STRONG, PALE):
+        assert abs(lightness(style.bars[0]) - lightness(style.bars[1])) >= 10
+    assert lightness(PALE.text) < 50, "pale poses stay readable"
+
+
+@pytest.mark.parametrize(
+    ("text", "printed"), [("-1.5", "−1.5"), ("1e-12", "10⁻¹²"), ("-2.5e30", "−2.5·10³⁰"), ("-1e3", "−10³")]
+)
+def test_numbers_are_printed(text: str, printed: str) -> None:
+    assert printed_number(text) == printed
+
+
+def test_rounded_values_say_so() -> None:
+    assert value_text(Fraction(1, 4)).startswith("=")
+    assert value_text(1 + Fraction(1, 10**20)).startswith("≈")
+    assert Enclosure(Fraction(1, 3), Fraction(1, 3)).text(7) in value_text(Fraction(10**30 + 1, 3 * 10**30))

@@ -1,0 +1,405 @@
+"""The HTML report in a real headless Chromium: pointer, touch, keyboard, themes, phones, print, no network, no errors.
+
+Screenshots are kept in out/screenshots; nothing is compared with them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support import browser as chromium
+from support.browser import Browser
+from support.maps import CONFIGS
+from support.maps import shipped as computed
+
+import ptmcad
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.show.report import page
+
+pytestmark = pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
+
+SHOTS = Path(__file__).resolve().parents[2] / "out" / "screenshots"
+PAPER = ("fig2", "fig3", "fig4", "fig5-text", "fig5-caption")
+FEW = """(() => { const shown = document.querySelector('#poses');
+  return { head: (shown.querySelector('h3') || {}).textContent || '',
+    poses: shown.querySelectorAll('.pose').length, stable: shown.querySelectorAll('.pose.stable').length,
+    marks: shown.querySelectorAll('.equilibrium').length, contours: shown.querySelectorAll('.contour').length }; })()"""
+
+
+@pytest.fixture(scope="module", name="pages")
+def written_pages(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    folder = tmp_path_factory.mktemp("pages")
+
+    def file(name: str, count: str | None = None) -> Path:
+        path = folder / f"{name}-{count}.html"
+        if not path.exists():
+            path.write_text(page(computed(name, count)), encoding="utf-8")
+        return path
+
+    return file
+
+
+@pytest.fixture(scope="module", name="one")
+def one_browser() -> Iterator[Browser]:
+    with chromium.browser() as found:
+        yield found
+
+
+@pytest.fixture(name="view")
+def fresh_view(one: Browser, pages: Callable[..., Path]) -> Callable[..., Browser]:
+    """Opens a page on a desktop in light colours; afterwards nothing may have complained or asked for anything else."""
+
+    def open_page(name: str, count: str | None = None) -> Browser:
+        one.media(prefers_color_scheme="light")
+        one.size(1200, 900)
+        one.open(pages(name, count))
+        return one
+
+    return open_page
+
+
+def quiet(view: Browser, name: str, count: str | None = None) -> None:
+    assert view.complaints() == []
+    assert [r.rpartition("/")[2] for r in view.requests()] == [f"{name}-{count}.html"]
+
+
+def place(view: Browser, number: int) -> tuple[float, float]:
+    """Where a cell's sample is, in the window."""
+    found = view.run(
+        f"(() => {{ const box = document.querySelector('#map .frame').getBoundingClientRect();"
+        f" const at = DATA.cells[{number}].at;"
+        f" return [box.left + at[0] / DATA.side * box.width, box.top + at[1] / DATA.side * box.height]; }})()"
+    )
+    return found[0], found[1]
+
+
+def test_pointing_at_a_cell_tells_what_it_is(view: Callable[..., Browser]) -> None:
+    """Counts, sample, region and area; and the map is where the data says, at every sample."""
+    b = view("fig4")
+    result = computed("fig4")
+    assert b.run("document.querySelector('#readout').textContent") == "No cell is pointed at."
+    b.run("document.querySelector('#map').scrollIntoView({ behavior: 'instant' })")
+    hit = 0
+    for number, cell in enumerate(result.cells):
+        x, y = place(b, number)
+        around = {
+            b.run(f"Number(document.elementFromPoint({x + dx}, {y + dy}).dataset.cell)")
+            for dx, dy in ((0, 0), (2, 0), (-2, 0), (0, 2), (0, -2))
+        }
+        if len(around) > 1:
+            continue  # so thin that the mouse can hardly hit it: its button in the table and the arrows reach it
+        assert around == {number}
+        hit += 1
+        b.point_at(x, y)
+        told = b.run("document.querySelector('#readout').textContent")
+        assert f"Cell {number}, region {cell.region}: {cell.stable} stable of {cell.total}" in told
+        assert f"rho = {cell.sample['rho']}" in told
+        assert "Area of the region: " + {0: "3.2536", 1: "0.7464"}[cell.region] in told
+    assert hit >= 12
+    b.point_at(1, 1)
+    assert b.run("document.querySelector('#readout').textContent") == "No cell is pointed at."
+    quiet(b, "fig4")
+
+
+def test_a_click_draws_poses_and_landscape(view: Callable[..., Browser]) -> None:
+    b = view("fig4")
+    b.run("document.querySelector('#map').scrollIntoView({ behavior: 'instant' })")
+    cells = computed("fig4").cells
+    number = next(n for n, c in enumerate(cells) if c.stable == 2 and c.sample["rho"] > 0.3)
+    b.click(*place(b, number))
+    shown = b.run(FEW)
+    assert shown["head"] == f"Cell {number}: 2 stable of 6 equilibria"
+    assert (shown["poses"], shown["stable"]) == (6, 2)
+    assert shown["marks"] >= 6 + 3  # in the picture, and in the legend
+    assert shown["contours"] >= 15 + 3
+    assert b.run(f"document.querySelector('#map [data-cell=\"{number}\"]').getAttribute('aria-pressed')") == "true"
+    ink = "(() => { const c = document.querySelector('#poses canvas'); const d = c.getContext('2d')"
+    ink += ".getImageData(0, 0, c.width, c.height).data; return new Set(d).size; })()"
+    assert b.run(ink) > 10
+    # each pose: two rods, three springs, four nodes, two loads
+    for what, many in (("bar", 2), ("spring", 3), ("node", 4), ("load-head", 2)):
+        assert b.run(f"document.querySelectorAll('.pose')[0].querySelectorAll('.{what}').length") == many
+    b.picture(SHOTS / "fig4-light.png")
+    b.run("document.querySelector('#close').click()")
+    assert b.run(FEW)["poses"] == 0
+    quiet(b, "fig4")
+
+
+def test_lowest_energy_is_where_the_picture_is_darkest(view: Callable[..., Browser]) -> None:
+    """The landscape that the browser computes has its least value at the stable pose of least certified energy."""
+    b = view("fig4")
+    for number in (8, 21):
+        b.run(f"choose({number}, false)")
+        least, at, pose, level = b.run(
+            f"""(() => {{
+              const cell = DATA.cells[{number}], table = energyTable(cell.potential, 360);
+              let least = Infinity, at = [0, 0];
+              for (const [j, row] of table.entries()) for (const [i, value] of row.entries()) {{
+                if (value < least) {{ least = value; at = [i - 180, j - 180]; }}
+              }}
+              const [c1, s1, c2, s2] = cell.equilibria[0].at;
+              const pose = [Math.atan2(s1, c1) * 180 / Math.PI, Math.atan2(s2, c2) * 180 / Math.PI];
+              return [least, at, pose, cell.equilibria[0].level];
+            }})()"""
+        )
+        assert least == pytest.approx(level, rel=1e-3)
+        assert at == pytest.approx(pose, abs=2)
+
+
+def test_the_keyboard_does_all_of_it(view: Callable[..., Browser]) -> None:
+    b = view("fig4")
+    stops = []
+    for _ in range(6):
+        b.press("Tab")
+        stops.append(b.run("document.activeElement.getAttribute('class') || document.activeElement.id"))
+        if stops[-1].startswith("cell"):
+            break
+    assert stops[-1].startswith("cell"), stops
+    assert b.run("getComputedStyle(document.activeElement).strokeWidth") == "4px"  # the focus is seen
+    visited = {b.run("Number(document.activeElement.dataset.cell)")}
+    # every cell can be reached with the arrows
+    stacks = computed("fig4").stacks
+    for stack in range(len(stacks)):
+        for _ in stacks[stack].cells:
+            b.press("ArrowDown")
+        for _ in stacks[stack].cells:
+            visited.add(b.run("Number(document.activeElement.dataset.cell)"))
+            b.press("ArrowUp")
+        b.press("ArrowRight")
+    assert visited == set(range(len(computed("fig4").cells)))
+    assert b.run("document.querySelectorAll('.cell[tabindex=\"0\"]').length") == 1
+    b.press("Home", "Enter")
+    assert b.run(FEW)["head"].startswith("Cell 0:")
+    b.press("End", " ")
+    assert b.run(FEW)["head"].startswith("Cell 21:")
+    assert b.run("document.activeElement.dataset.cell") == "21"
+    b.press("Tab")
+    b.press("Escape")
+    assert b.run(FEW)["poses"] == 0
+    quiet(b, "fig4")
+
+
+@pytest.mark.parametrize(("axes", "base"), [("rho,L2", 0), ("L2,rho", 1)])
+def test_the_arrows_follow_the_map(one: Browser, tmp_path: Path, axes: str, base: int) -> None:
+    """Also where the stacks stand over the vertical axis: up is up; and samples are drawn within their cells."""
+    result = ptmcad.classify(ptmcad.slice_from_options(CONFIGS / "fig4.yaml", slice=axes))
+    assert result.base == base
+    file = tmp_path / "map.html"
+    file.write_text(page(result), encoding="utf-8")
+    one.media(prefers_color_scheme="light")
+    one.size(1200, 900)
+    one.open(file)
+    moves = 0
+    for number in range(len(result.cells)):
+        for key, axis, sign in (("ArrowRight", 0, 1), ("ArrowLeft", 0, -1), ("ArrowUp", 1, -1), ("ArrowDown", 1, 1)):
+            step = one.run(
+                f"(() => {{ const n = neighbour({number}, '{key}');"
+                f" return n === undefined ? null : DATA.cells[n].at[{axis}] - DATA.cells[{number}].at[{axis}]; }})()"
+            )
+            if step is not None:
+                assert step * sign > 0
+                moves += 1
+        inside = f"""(() => {{
+          const area = document.querySelector('#map [data-cell="{number}"]');
+          const point = area.ownerSVGElement.createSVGPoint();
+          [point.x, point.y] = DATA.cells[{number}].at;
+          const box = area.getBBox();
+          return Math.min(box.width, box.height) < 3 || area.isPointInFill(point);
+        }})()"""
+        assert one.run(inside)
+    assert moves >= 2 * (len(result.cells) - 1)
+    assert one.complaints() == []
+
+
+def test_light_dark_and_the_button(view: Callable[..., Browser]) -> None:
+    b = view("fig3", "index")
+    background = "getComputedStyle(document.body).backgroundColor"
+    light = b.run(background)
+    b.run("choose(0, false)")
+    shade = "(() => { const copy = document.createElement('canvas').getContext('2d', { willReadFrequently: true });"
+    shade += "copy.drawImage(document.querySelector('#poses canvas'), 0, 0);"
+    shade += "return copy.getImageData(128, 128, 1, 1).data[0]; })()"
+    light_shade = b.run(shade)
+    b.media(prefers_color_scheme="dark")
+    dark = b.run(background)
+    assert light == "rgb(255, 255, 255)" != dark
+    b.until(f"{shade} !== {light_shade}")
+    b.picture(SHOTS / "fig3-index-dark.png")
+    assert b.run("document.querySelector('#theme').getAttribute('aria-pressed')") == "true"
+    b.run("document.querySelector('#theme').click()")
+    assert b.run(background) == light
+    b.media(prefers_color_scheme="light")
+    b.run("document.querySelector('#theme').click()")
+    assert b.run(background) == dark
+    quiet(b, "fig3", "index")
+
+
+CONTRAST = """(() => {
+  const parts = (c) => c.match(/[\\d.]+/g).map(Number);
+  const light = (c) => { const [r, g, b] = parts(c).map((v) => { v /= 255;
+    return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; }); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+  let least = Infinity, where = '';
+  const texts = 'p, dt, dd, th, td, li, small, h1, h2, button, summary, code, figcaption';
+  for (const e of document.querySelectorAll(texts)) {
+    let own = e, back = 'rgba(0, 0, 0, 0)';
+    while (own && parts(back)[3] === 0) { back = getComputedStyle(own).backgroundColor; own = own.parentElement; }
+    const [a, b] = [light(getComputedStyle(e).color), light(back)];
+    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+    if (ratio < least) { least = ratio; where = e.outerHTML.slice(0, 80); }
+  }
+  return [least, where]; })()"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_text_has_contrast(view: Callable[..., Browser], scheme: str) -> None:
+    """At least the 4.5 that the Web Content Accessibility Guidelines ask for."""
+    b = view("fig4")
+    b.media(prefers_color_scheme=scheme)
+    b.run("choose(8, false)")
+    least, where = b.run(CONTRAST)
+    assert least >= 4.5, where
+
+
+@pytest.mark.parametrize("width", [320, 360, 768])
+def test_narrow_screens_need_no_sideways_scrolling(view: Callable[..., Browser], width: int) -> None:
+    b = view("fig4")
+    b.size(width, 740, phone=True)
+    b.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    b.run("document.querySelector('#map').scrollIntoView({ behavior: 'instant' })")
+    number = next(n for n, c in enumerate(computed("fig4").cells) if c.stable == 2 and c.sample["rho"] > 0.3)
+    b.tap(*place(b, number))
+    b.until("document.querySelectorAll('.pose').length === 6")
+    assert f"Cell {number}, " in b.run("document.querySelector('#readout').textContent")
+    assert b.run("document.documentElement.scrollWidth") == width
+    small = b.run(
+        "[...document.querySelectorAll('.number, .name')].map((t) => "
+        "parseFloat(getComputedStyle(t).fontSize) * t.ownerSVGElement.getScreenCTM().a)"
+    )
+    assert min(small) > 9.0  # CSS pixels
+    b.run("document.querySelectorAll('details').forEach((d) => { d.open = false; })")
+    b.picture(SHOTS / f"fig4-phone-{width}.png")
+    quiet(b, "fig4")
+
+
+def test_copy_buttons_copy_what_stands_below_them(view: Callable[..., Browser]) -> None:
+    """By the clipboard's interface where it is allowed, and by the older way where it is not."""
+    b = view("fig4")
+    b.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    many = b.run("document.querySelectorAll('button.copy').length")
+    assert many >= 5 + 4
+    b.run("window.seen = []; Object.defineProperty(navigator, 'clipboard', { configurable: true, value: "
+          "{ writeText: async (t) => { window.seen.push(t); } } })")  # fmt: skip
+    b.run("(async () => { for (const c of document.querySelectorAll('button.copy')) { c.click(); await 0; } })()")
+    b.until(f"window.seen.length === {many}")
+    expected = b.run("[...document.querySelectorAll('button.copy')].map((c) => "
+                     "c.parentElement.querySelector('code').textContent)")  # fmt: skip
+    assert sorted(b.run("window.seen")) == sorted(expected)
+    assert any("sympy.symbols" in t for t in expected)
+    b.run("Object.defineProperty(navigator, 'clipboard', { configurable: true, value: undefined });"
+          "document.addEventListener('copy', () => { const a = document.activeElement;"
+          " window.old = a.value.slice(a.selectionStart, a.selectionEnd); })")  # fmt: skip
+    b.call("Runtime.evaluate", expression="document.querySelector('button.copy').click()", userGesture=True)
+    b.until("document.querySelector('button.copy').textContent === 'Copied'")
+    assert b.run("window.old") == expected[0]
+    quiet(b, "fig4")
+
+
+HOSTILE = "</script><script>window.pwned=1</script><img src=x onerror='window.pwned=2'>\"'`${window.pwned=3}"
+
+
+def test_hostile_texts_run_nowhere(one: Browser, tmp_path: Path) -> None:
+    result = computed("fig3")
+    evil = replace(
+        result,
+        slice=replace(result.slice, title=HOSTILE),
+        plan=tuple(replace(s, what=HOSTILE, reason=HOSTILE) for s in result.plan),
+        versions={HOSTILE: HOSTILE},
+    )
+    file = tmp_path / "evil.html"
+    file.write_text(page(evil), encoding="utf-8")
+    one.media(prefers_color_scheme="light")
+    one.size(1200, 900)
+    one.open(file)
+    one.run("choose(0, false)")
+    assert one.run("window.pwned") is None
+    assert one.run("document.querySelector('h1').textContent") == HOSTILE
+    assert one.run("document.title") == HOSTILE
+    assert one.complaints() == []
+    assert len(one.requests()) == 1
+
+
+def test_the_policy_stops_what_is_not_the_pages_own(view: Callable[..., Browser]) -> None:
+    """Scripts and pictures that were smuggled in would not run or load."""
+    b = view("fig3")
+    before = len(b.requests())
+    b.run("document.body.insertAdjacentHTML('beforeend', '<img src=\"https://example.invalid/x.png\">');"
+          "const s = document.createElement('script'); s.textContent = 'window.pwned = 1'; document.body.append(s);"
+          "fetch('https://example.invalid/').catch(() => {}); 0")  # fmt: skip
+    assert b.run("window.pwned") is None
+    b.until("document.images.length === 1 && document.images[0].complete")
+    assert any("Content Security Policy" in text for text in b.complaints())
+    sent = [r for r in b.requests()[before:] if "example.invalid" in r]
+    assert b.run("document.images[0].naturalWidth") == 0
+    blocked = [e for e in b.events if e.get("method") == "Network.loadingFailed"]
+    assert len(sent) == sum(e["params"].get("blockedReason") == "csp" for e in blocked)
+
+
+@pytest.mark.parametrize("name", PAPER)
+def test_it_opens_within_a_second_and_is_small(view: Callable[..., Browser], name: str) -> None:
+    """The least of three: the machine may be doing something else."""
+    assert len(page(computed(name)).encode()) < 3_000_000
+    times = []
+    for _ in range(3):
+        b = view(name)
+        b.until("performance.getEntriesByType('navigation')[0].loadEventEnd > 0")
+        times.append(b.run("performance.getEntriesByType('navigation')[0].loadEventEnd"))
+        quiet(b, name)
+    assert min(times) < 1000, times
+    print(f"{name}: {min(times):.0f} ms")
+
+
+def test_reduced_motion_and_print(view: Callable[..., Browser], tmp_path: Path) -> None:
+    b = view("fig4")
+    assert b.run("getComputedStyle(document.documentElement).scrollBehavior") == "smooth"
+    b.media(prefers_reduced_motion="reduce")
+    assert b.run("getComputedStyle(document.documentElement).scrollBehavior") == "auto"
+    b.run("choose(8, false)")
+    b.run("document.querySelector('#theme').click()")
+    b.media(media="print")
+    assert b.run("getComputedStyle(document.body).color") == "rgb(0, 0, 0)"
+    assert b.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    assert b.run("getComputedStyle(document.querySelector('#close')).display") == "none"
+    b.printed(SHOTS / "fig4-print.pdf")
+    assert (SHOTS / "fig4-print.pdf").read_bytes().startswith(b"%PDF")
+    quiet(b, "fig4")
+
+
+def test_partial_results_open_too(one: Browser, tmp_path: Path) -> None:
+    result = computed("fig4")
+    empty = RegionMap.from_json(
+        replace(result, status=Status.PARTIAL, cells=(), stacks=(), regions=(), adjacencies=(), non_adjacencies=(),
+                critical_values=(), components=tuple(replace(c, separates=False) for c in result.components)).to_json()
+    )  # fmt: skip
+    file = tmp_path / "partial.html"
+    file.write_text(page(empty), encoding="utf-8")
+    one.media(prefers_color_scheme="light")
+    one.size(1200, 900)
+    one.open(file)
+    assert "Partial result." in one.run("document.querySelector('.banner').textContent")
+    assert one.run("document.querySelector('#readout').textContent") == "No cells are known yet."
+    assert one.complaints() == []
+
+
+@pytest.mark.slow
+def test_every_cell_of_every_slice_can_be_chosen(view: Callable[..., Any]) -> None:
+    for name, count in (("fig2", None), ("fig3", "index"), ("forces", None), ("rods", "total")):
+        b = view(name, count)
+        for number, cell in enumerate(computed(name, count).cells):
+            b.run(f"choose({number}, true)")
+            shown = b.run(FEW)
+            assert (shown["poses"], shown["stable"]) == (cell.total, cell.stable)
+        quiet(b, name, count)

@@ -1,0 +1,331 @@
+"""`ptmcad bench`: what is stored, compared, said and drawn, on studies that are made up; and the command itself."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from fractions import Fraction
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ptmcad.cli import run
+from ptmcad.errors import ConfigError
+from ptmcad.show.report.error_curve import read_error_curve
+from ptmcad.studies.bench.compare import BAD, Change, Verdict, compare, comparison_table
+from ptmcad.studies.bench.document import study_of, write_study, write_table
+from ptmcad.studies.bench.errortime import Curve, Spot, draw_error_time
+from ptmcad.studies.bench.study import Figures, Measurement, Study, Times, outward, smallest_grid
+from ptmcad.studies.bench.words import curve_file, curves, page, sentences, terminal
+
+ROOT = Path(__file__).resolve().parents[2]
+CONFIGS = ROOT / "configs"
+SCHEMA = json.loads((ROOT / "docs" / "bench.schema.json").read_text(encoding="utf-8"))
+NONE = Figures(wrong=(0.0, 0.0), undetermined=0.0, regions=3, missed=0, faintest=(1.0, 1.0), distance=(0.0, 0.0))
+
+
+def times(seconds: float, runs: int = 3, spread: float = 0.02) -> Times:
+    return Times(runs, seconds, seconds * (1 - spread), seconds * (1 + spread))
+
+
+def pixels(n: int, seconds: float, wrong: float, missed: int, faint: float) -> Measurement:
+    f = Figures((wrong, wrong * 1.001), 0.0, 0, 3, missed, (faint, faint), (0.5 / n, 0.6 / n))
+    return Measurement("companion", f"N = {n}", times(seconds), times(seconds / 2), 60.0, figures={"index": f})
+
+
+STUDY = Study(
+    slice="fig4",
+    heading="Equal loads",
+    machine={"cores": "2"},
+    versions={"python": "3.11"},
+    seed=1,
+    rounds=3,
+    time_limit=60.0,
+    quick=False,
+    verified=True,
+    floor=times(0.2),
+    measurements=(
+        Measurement(
+            "exact", "area tolerance 1e-2", times(0.3), times(0.2), 35.0, figures={"index": NONE}, area_width=2e-3
+        ),
+        Measurement(
+            "exact", "area tolerance 1e-8", times(0.4), times(0.3), 35.0, figures={"index": NONE}, area_width=2e-9
+        ),
+        pixels(25, 0.2, 0.02, 1, 0.0),
+        pixels(400, 1.5, 0.001, 0, 0.4),
+        pixels(800, 6.0, 0.0005, 0, 0.992),
+        Measurement("companion", "N = 1600", None, reason="left out: the 60 s for each method were used up"),
+        Measurement(
+            "qepcad", "where 6, where 4", times(3.0), figures={"total": Figures((0.0, 0.0), 0.0)}, note="claimed"
+        ),
+        Measurement("gcad", "", None, reason="gcad is not installed"),
+    ),
+)
+
+
+def changed(number: int, **values: Any) -> Study:
+    m = list(STUDY.measurements)
+    m[number] = replace(m[number], **values)
+    return replace(STUDY, measurements=tuple(m))
+
+
+def test_written_and_read_again() -> None:
+    text = write_study(STUDY)
+    assert study_of(text) == STUDY
+    jsonschema.validate(json.loads(text), SCHEMA)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "told"),
+    [
+        (("format",), "ptmcad-bench/9", "format is not"),
+        (("floor", "median"), 0, "floor.median"),
+        (("measurements", 0, "seconds", "runs"), 1.5, "measurements[0].seconds.runs"),
+        (("measurements", 0, "figures", "index", "wrong"), [1], "wrong has 1 entries"),
+        (("quick",), 1, "quick is neither"),
+        (("more",), 1, "unknown key"),
+        (("slice",), "a\x1bb", "slice"),
+    ],
+    ids=str,
+)
+def test_damaged_documents_are_refused_with_the_place(path: tuple[Any, ...], value: Any, told: str) -> None:
+    data = json.loads(write_study(STUDY))
+    at = data
+    for key in path[:-1]:
+        at = at[key]
+    at[path[-1]] = value
+    with pytest.raises(ValueError, match=told.replace("[", r"\[").replace("]", r"\]")):
+        study_of(json.dumps(data))
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "docs" / "benchmarks").glob("*.bench.json")), ids=lambda p: p.stem)
+def test_stored_studies_are_valid(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    jsonschema.validate(json.loads(text), SCHEMA)
+    assert write_study(study_of(text)) == text
+
+
+def test_table_has_a_row_for_each_measurement_and_count() -> None:
+    rows = list(csv.DictReader(StringIO(write_table(STUDY))))
+    assert len(rows) == len(STUDY.measurements)
+    assert (rows[3]["setting"], rows[3]["wrong_low"], rows[3]["missed"], rows[3]["runs"]) == (
+        "N = 400",
+        "0.001",
+        "0",
+        "3",
+    )
+    assert rows[5]["seconds_median"] == "" and rows[5]["reason"].startswith("left out")
+
+
+@given(st.fractions(0, 1), st.fractions(0, 1))
+def test_rounding_keeps_bounds(a: Fraction, b: Fraction) -> None:
+    low, high = outward((min(a, b), max(a, b)))
+    assert Fraction(str(low)) <= min(a, b) and max(a, b) <= Fraction(str(high))
+
+
+def test_smallest_grids() -> None:
+    assert smallest_grid(STUDY, "companion", "index", seen=False) == 400
+    assert smallest_grid(STUDY, "companion", "index", seen=True) == 800
+    assert smallest_grid(STUDY, "companion", "stable", seen=True) is None
+    said = " ".join(sentences(STUDY))
+    assert "a pixel in each is 400 x 400; with at least 99% of each, 800 x 800" in said
+    assert "no error after 0.30 s; the 400 x 400 grid has 5.0 times that time" in said
+
+
+def verdicts(found: tuple[Change, ...]) -> dict[tuple[str, str], list[Verdict]]:
+    told: dict[tuple[str, str], list[Verdict]] = {}
+    for c in found:
+        told.setdefault((c.method, c.setting), []).append(c.verdict)
+    return told
+
+
+def test_the_same_study_has_not_changed() -> None:
+    assert {c.verdict for c in compare(STUDY, STUDY)} == {Verdict.SAME}
+    assert comparison_table(compare(STUDY, STUDY)).endswith("nothing became slower or worse beyond noise")
+
+
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        (changed(0, seconds=times(0.6)), Verdict.SLOWER),
+        (changed(0, seconds=times(0.1)), Verdict.FASTER),
+        (changed(0, seconds=times(0.32)), Verdict.SAME),  # within a tenth and the spread
+        (changed(0, seconds=Times(3, 0.6, 0.31, 0.7)), Verdict.SAME),  # one of its runs was as fast
+        (changed(0, seconds=times(0.42, runs=1, spread=0.0)), Verdict.SAME),  # once: half as much again is noise
+        (changed(0, seconds=times(0.6, runs=1, spread=0.0)), Verdict.SLOWER),
+        (changed(0, area_width=3e-3), Verdict.WORSE),
+        (changed(0, area_width=1e-3), Verdict.BETTER),
+        (changed(0, figures={"index": replace(NONE, missed=1)}), Verdict.WORSE),
+        (changed(0, figures={"index": replace(NONE, wrong=(0.0, 1e-9))}), Verdict.WORSE),
+        (changed(0, figures={"stable": NONE}), Verdict.LOST),
+        (changed(0, seconds=None, reason="timed out"), Verdict.LOST),
+        (replace(STUDY, measurements=STUDY.measurements[1:]), Verdict.LOST),
+    ],
+    ids=lambda x: x.value if isinstance(x, Verdict) else "",
+)
+def test_verdicts(new: Study, expected: Verdict) -> None:
+    found = verdicts(compare(STUDY, new))
+    assert found.pop(("exact", "area tolerance 1e-2")) == [expected]
+    assert all(v == [Verdict.SAME] for v in found.values())
+
+
+def test_a_slower_machine_is_no_slower_program() -> None:
+    """Everything takes three times as long, the reference job too."""
+
+    def slow(t: Times | None) -> Times | None:
+        return t and Times(t.runs, 3 * t.median, 3 * t.minimum, 3 * t.maximum)
+
+    there = replace(
+        STUDY, floor=times(0.6), measurements=tuple(replace(m, seconds=slow(m.seconds)) for m in STUDY.measurements)
+    )
+    assert not BAD & {c.verdict for c in compare(STUDY, there)}
+    there = replace(there, floor=STUDY.floor)
+    assert Verdict.SLOWER in {c.verdict for c in compare(STUDY, there)}
+
+
+def test_what_is_gained() -> None:
+    new = changed(5, seconds=times(24.0), reason="")
+    assert verdicts(compare(STUDY, new))["companion", "N = 1600"] == [Verdict.GAINED]
+
+
+def test_studies_of_different_slices_are_not_compared() -> None:
+    with pytest.raises(ConfigError, match="differ in slice: fig4 and fig3"):
+        compare(STUDY, replace(STUDY, slice="fig3"))
+
+
+def test_comparing_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    old, new = tmp_path / "old.json", tmp_path / "new.json"
+    old.write_text(write_study(STUDY), encoding="utf-8")
+    new.write_text(write_study(changed(0, seconds=times(0.6))), encoding="utf-8")
+    assert run(["bench", "--compare", str(old), str(old)]) == 0
+    assert run(["bench", "--compare", str(old), str(new)]) == 1
+    out = capsys.readouterr().out
+    assert out.splitlines()[-1] == "1 slower"
+    assert "2.00 times the time, machine allowed for" in out
+    assert run(["bench", "--compare", str(new), str(old)]) == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["nowhere.yaml"], "nowhere.yaml"),
+        (["--method", "maple"], "maple"),
+        (["--rounds", "0"], "--rounds"),
+        (["--time-limit", "0"], "--time-limit: 0.0 is not a positive number"),
+        ([], "there is no configs/fig4.yaml here"),
+        (["--compare", "a.json", "b.json"], "a.json"),
+        (["--compare", "a.json", "b.json", "fig4.yaml"], "takes no CONFIG"),
+        ([str(CONFIGS / "fig3.yaml"), str(CONFIGS / "fig3.yaml")], "two records have the name fig3"),
+        ([str(CONFIGS / "fig3.yaml"), "--out", "file"], "file"),
+    ],
+    ids=lambda x: " ".join(x)[-40:] if isinstance(x, list) else "",
+)
+def test_bad_input_gets_one_message(
+    arguments: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("file").write_text("", encoding="utf-8")
+    assert run(["bench", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert "Traceback" not in error
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_one_slice_by_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """All files are written, belong together, and can be read by what reads them; the reference passed verify."""
+    arguments = ["bench", str(CONFIGS / "fig2.yaml"), "--quick", "--rounds", "1", "--method", "exact", "--method",
+                 "companion", "--page", "--out", str(tmp_path)]  # fmt: skip
+    assert run(arguments) == 0
+    shown = capsys.readouterr().out
+    names = {f"fig2.{s}" for s in ("bench.json", "bench.csv", "bench.svg", "bench.png", "error-time.json")}
+    assert {path.name for path in tmp_path.iterdir()} == names | {"error-time.md"}
+    study = study_of((tmp_path / "fig2.bench.json").read_text(encoding="utf-8"))
+    assert study.verified is True
+    assert [(m.method, m.setting) for m in study.measurements][:2] == [
+        ("exact", "area tolerance 1e-2"), ("exact", "area tolerance 1e-4")
+    ]  # fmt: skip
+    for m in study.measurements:
+        assert m.seconds is not None and m.computing is not None and m.figures is not None
+        # tan(theta/2) loses theta = pi, and with it nearly everything on the unloaded slice
+        assert m.figures["index"].wrong == (0.0, 0.0) if m.method == "exact" else m.figures["index"].wrong[0] > 0.5
+    assert terminal(study) in shown
+    assert len(read_error_curve(tmp_path / "fig2.error-time.json").series) == 2
+    assert "![Error against seconds for fig2](fig2.bench.svg)" in (tmp_path / "error-time.md").read_text(
+        encoding="utf-8"
+    )
+
+
+@pytest.mark.slow
+def test_everything_but_the_times_is_repeatable(tmp_path: Path) -> None:
+    def stripped(folder: str) -> Any:
+        arguments = ["bench", str(CONFIGS / "fig3.yaml"), "--quick", "--rounds", "1", "--seed", "5"]
+        assert run([*arguments, "--method", "certified", "--method", "multistart", "--method", "companion",
+                    "--method", "exact", "--out", str(tmp_path / folder)]) == 0  # fmt: skip
+        data = json.loads((tmp_path / folder / "fig3.bench.json").read_text(encoding="utf-8"))
+        del data["machine"], data["floor"]
+        for m in data["measurements"]:
+            del m["seconds"], m["computing"], m["peak"]
+        return data
+
+    assert stripped("first") == stripped("second")
+
+
+def test_a_zero_is_drawn_in_its_band() -> None:
+    found = curves(STUDY)
+    drawn = tuple(
+        Curve(name, tuple(Spot((m.seconds.median,) * 3, error) for m, error, _ in points if m.seconds), style)
+        for name, style, points in found
+    )
+    figure = draw_error_time("fig4", sentences(STUDY), drawn)
+    (axes,) = figure.axes
+    low = axes.get_ylim()[0]
+    decade = axes.get_yticks()[0]
+    marks = [
+        line for line in axes.lines if line.get_marker() in ("o", "P", "X", "D") and line.get_linestyle() == "None"
+    ]
+    zeros = [y for line in marks for y in line.get_ydata() if y < decade]
+    assert len(zeros) == 2 + 1  # the exact engine's two and QEPCAD's one
+    assert all(low < y < decade for y in zeros)
+    assert "0.3 s: 0, 0.4 s: 0." in figure.get_label()
+
+
+def test_what_is_written_for_the_report_is_positive(tmp_path: Path) -> None:
+    path = tmp_path / "fig4.error-time.json"
+    path.write_text(curve_file(STUDY), encoding="utf-8")
+    found = read_error_curve(path)
+    assert [len(s.points) for s in found.series] == [2, 3]
+    assert found.series[0].points[1] == (0.4, 2e-9)
+
+
+def test_page_tells_what_is_left_out_and_what_is_claimed() -> None:
+    text = page([STUDY])
+    assert "| companion | N = 1600 | left out: the 60 s for each method were used up | - |" in text
+    assert r"\* qepcad: claimed" in text
+    assert "passed `ptmcad verify`" in text
+    assert "did NOT pass" in page([replace(STUDY, verified=False)])
+    assert "](fig4.bench.svg)" in text
+    assert ".svg" not in page([replace(STUDY, measurements=STUDY.measurements[-1:])])  # nothing to draw
+
+
+@pytest.mark.slow
+def test_a_certified_run_that_is_stopped_is_a_point_too(tmp_path: Path) -> None:
+    """free02 at a tolerance that takes longer than the limit: what was left undetermined then, marked."""
+    pytest.importorskip("numba")
+    arguments = ["bench", str(ROOT / "configs" / "free02.yaml"), "--method", "certified", "--rounds", "1"]
+    assert run([*arguments, "--time-limit", "14", "--out", str(tmp_path)]) == 0
+    study = study_of((tmp_path / "free02.bench.json").read_text(encoding="utf-8"))
+    told = [m for m in study.measurements if m.seconds is not None]
+    assert told
+    for m in told:
+        tolerance = float(m.setting.split()[-1])
+        share = next(iter((m.figures or {}).values())).undetermined
+        assert (share > tolerance) == ("stopped" in m.note)
+    left_out = [m for m in study.measurements if m.seconds is None and m.method == "certified"]
+    assert all(m.reason for m in left_out)

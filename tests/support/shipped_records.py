@@ -1,0 +1,19 @@
+"""The shipped problem records, by the engine that answers them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import yaml
+
+_ALL = tuple(sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml")))
+
+
+def _has_free_lengths(path: Path) -> bool:
+    record = yaml.safe_load(path.read_text(encoding="utf-8"))
+    return any(name.startswith("l0") for name in (*record["parameters"], *record["axes"]))
+
+
+FREE = tuple(path for path in _ALL if _has_free_lengths(path))
+"""Records with free lengths, for the certified engine."""
+EXACT = tuple(path for path in _ALL if path not in FREE)

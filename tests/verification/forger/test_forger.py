@@ -1,0 +1,174 @@
+"""Every false alteration of a map is rejected, every true one is accepted.
+
+The fast tests take one place of each kind on one map; the slow ones `PLACES` places of each kind on every shipped
+slice, on slices with savings switched off, and `RANDOM_PLACES` on a hundred random ones.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import pytest
+from support.random_slices import NUMBERS
+from support.shipped_records import EXACT
+
+import ptmcad
+from forger import cells, certified, curves, frame, rearrangements
+from forger.consistency import drop, put, settled, with_plan
+from forger.decompose import decomposed
+from forger.judge import Tally, judge, places_of, violation
+from forger.maps import named
+from ptmcad.answer.regionmap import NO_POINT, Component, Kind, RegionMap
+from ptmcad.options import Options
+from ptmcad.question.slice import Count
+from ptmcad.text.plane import PlanePolynomial
+
+FALSE = (*cells.KINDS, *curves.KINDS, *frame.KINDS)
+PLACES, RANDOM_PLACES = 12, 2
+KEPT = ("fig2+sign-curve", "fig3+sign-curve+hermite-matrix", "fig4+sign-curve", "forces+hermite-matrix",
+        "rods+no-real-points", "horizontal+infinity+sign-curve", "fig4+even-powers", "fig5-text+no-areas")  # fmt: skip
+RANDOM = tuple(sorted(random.Random("forger").sample(list(NUMBERS), 100)))
+
+LIKELY = {
+    "adjacency": "adjacencies", "all_adjacencies": "no adjacency missing", "box": "solutions", "counts": "counts",
+    "component": "variety complete", "critical": "critical values", "sample": "walls and samples",
+    "wall": "walls and samples", "plan": "plan", "non_adjacency": "non-adjacencies", "area": "areas",
+    "region": "regions", "equations": "equations", "text": "parameters as written",
+}  # fmt: skip
+"""The check that is tried first, by how a kind's name begins: it makes the test faster, and no weaker."""
+
+
+def assert_judged(name: str, r: RegionMap, number: int | None, true: int | None = None) -> Tally:
+    """Judge so many places of each kind, and of so many true kinds."""
+    tally = Tally(likely={k.__name__: check for k in FALSE for begin, check in LIKELY.items()
+                          if k.__name__.startswith(begin)})  # fmt: skip
+    judge(name, r, FALSE, True, number, tally)
+    judge(name, r, rearrangements.KINDS[:true], False, number, tally)
+    assert not tally.wrong, "\n".join(tally.wrong)
+    return tally
+
+
+def test_there_are_enough_kinds() -> None:
+    assert len({kind.__name__ for kind in FALSE}) >= 40
+    assert len(RANDOM) == 100
+
+
+def test_one_place_of_each_kind(shipped: Callable[..., RegionMap]) -> None:
+    tally = assert_judged("fig2", shipped("fig2"), 1, 3)
+    assert sum(number > 0 for number in tally.tried.values()) >= 70
+
+
+@pytest.mark.parametrize("name", ["fig3", pytest.param("fig4", marks=pytest.mark.slow)])
+def test_no_adjacency_can_be_dropped(name: str, shipped: Callable[..., RegionMap]) -> None:
+    """Nor all of a critical value: regions, areas and records follow, so that nothing else is false."""
+    r = shipped(name)
+    for kind in (cells.adjacency_across_dropped, cells.all_adjacencies_across_dropped):
+        for place, make in places_of(kind, r, None, "")[1]:
+            found = violation(make(), "no adjacency missing")
+            assert found is not None, (kind.__name__, place)
+            assert found[0] == "no adjacency missing"
+
+
+def test_areas_next_to_one_of_their_bounds_are_confirmed(shipped: Callable[..., RegionMap]) -> None:
+    for make in rearrangements.lopsided_areas(shipped("fig3")):
+        assert violation(make(), "areas") is None
+
+
+def test_stacks_without_walls_need_a_pair(shipped: Callable[..., RegionMap]) -> None:
+    """Where no half-branch runs to the line over a critical value there is one pair, whatever parity says."""
+    r = shipped("fig3")
+    bare = [s for s in range(len(r.stacks) - 1) if not r.stacks[s].walls and not r.stacks[s + 1].walls]
+    assert bare
+    for s in bare[:1]:
+        k = next(k for k, a in enumerate(r.adjacencies) if a.segment and r.cells[a.first].stack == s)
+        forged = settled(replace(r, adjacencies=drop(r.adjacencies, k)))
+        assert len(forged.regions) > len(r.regions)
+        report = ptmcad.verify(forged)
+        assert report.violation is not None
+        assert report.violation.startswith("no adjacency missing: the adjacency of cells")
+
+
+@cache
+def with_sign_curve() -> RegionMap:
+    return named("fig2+sign-curve+no-areas")
+
+
+def test_a_critical_curve_is_not_auxiliary() -> None:
+    """Though its step of the plan says so, and auxiliary curves are asked for."""
+    r = with_sign_curve()
+    assert ptmcad.verify(r).ok
+    for k, c in enumerate(r.components):
+        if c.kind is Kind.CRITICAL:
+            forged = with_plan(replace(r, components=put(r.components, k, kind=Kind.AUXILIARY)))
+            found = violation(forged, "auxiliary components")
+            assert found is not None
+            assert "det H vanishes or has poles on it" in found[1]
+
+
+def test_auxiliary_curves_are_neither_invented_nor_left_out() -> None:
+    r = with_sign_curve()
+    line = Component(PlanePolynomial.of([(1, 0, 1), (0, 0, -1000)]), Kind.AUXILIARY, NO_POINT)
+    found = violation(with_plan(replace(r, components=(*r.components, line))), "auxiliary components")
+    assert found is not None
+    assert "is said to be auxiliary, but is no factor of the norm of H11" in found[1]
+    k = next(k for k, c in enumerate(r.components) if c.kind is Kind.AUXILIARY)
+    found = violation(decomposed(r, drop(r.components, k)), "auxiliary components")
+    assert found is not None
+    assert "a factor of the norm of H11 is not stored" in found[1]
+
+
+def test_an_exact_map_has_no_admissible_counts(shipped: Callable[..., RegionMap]) -> None:
+    r = shipped("fig2")
+    report = ptmcad.verify(replace(r, slice=replace(r.slice, count=Count.ADMISSIBLE)))
+    assert (
+        report.violation == "shape: an exact map has no admissible counts by which its regions could be distinguished"
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*(path.stem for path in EXACT), *KEPT])
+def test_places_on_shipped_slices(name: str) -> None:
+    assert_judged(name, named(name), PLACES)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", RANDOM)
+def test_places_on_random_slices(number: int) -> None:
+    assert_judged(str(number), named(str(number)), RANDOM_PLACES)
+
+
+def certified_map_of(count: str) -> RegionMap:
+    pytest.importorskip("numba")
+    from fractions import Fraction
+
+    from ptmcad.certified.engine import certified_map
+
+    record = {
+        "name": "small", "mechanism": "ptm", "count": count,
+        "parameters": {"L1": "1", "k": "100", "F3": "-10", "F4": "-10", "l0": "1/5"},
+        "axes": {"rho": ["1", "3/2"], "L2": ["3/4", "5/4"]},
+    }  # fmt: skip
+    return certified_map(ptmcad.slice_from_mapping(record), Options(tolerance=Fraction(1, 50), jobs=1))
+
+
+BOXES = 40
+"""Random places where a missing curve has to be found."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", ["stable", "admissible", "total"])
+def test_places_on_certified_maps(count: str) -> None:
+    r = certified_map_of(count)
+    assert ptmcad.verify(r, boxes=4).ok
+    wrong: list[tuple[str, int, str | None]] = []
+    for kind in certified.FALSE:
+        boxes = BOXES if kind is certified.cover_left_out else 0
+        wrong += [(kind.__name__, k, None) for k, make in enumerate(kind(r)) if ptmcad.verify(make(), boxes=boxes).ok]
+    for kind in certified.TRUE:
+        for k, make in enumerate(kind(r)):
+            report = ptmcad.verify(make(), boxes=2)
+            wrong += [(kind.__name__, k, report.violation)] if not report.ok else []
+    assert not wrong

@@ -1,0 +1,151 @@
+"""Parts of the verification, and of what it reads, by themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from itertools import combinations
+
+import pytest
+from flint import Ordering, fmpz_mpoly_ctx, fmpz_poly
+from hypothesis import given
+from hypothesis import strategies as st
+
+import ptmcad
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.errors import LimitReached
+from ptmcad.text.numerals import decimal, fraction_of, integer_of, integer_text, shortest_text, text_of
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.counts import check_counts
+from ptmcad.verification.elimination import discriminant, resultant
+from ptmcad.verification.solutions import check_solutions
+
+PLANE = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
+
+polynomials = st.dictionaries(
+    st.tuples(st.integers(0, 4), st.integers(0, 4)), st.integers(-9, 9).filter(bool), min_size=1, max_size=8
+).map(lambda terms: [(i, j, c) for (i, j), c in terms.items()])
+
+
+def in_u(p: object) -> fmpz_poly:
+    row = {int(m[0]): int(c) for m, c in p.to_dict().items()}  # type: ignore[attr-defined]
+    return fmpz_poly([row.get(i, 0) for i in range(max(row, default=-1) + 1)])
+
+
+@given(polynomials, polynomials)
+def test_resultants_agree_with_remainder_sequences(p: list, q: list) -> None:  # type: ignore[type-arg]
+    """FLINT's in Z[u, v] is another algorithm."""
+    expected = in_u(PLANE.from_dict({(i, j): c for i, j, c in p}).resultant(
+        PLANE.from_dict({(i, j): c for i, j, c in q}), "v"))  # fmt: skip
+    assert resultant(p, q) in (expected, -expected)
+
+
+@given(polynomials.filter(lambda p: max(j for _, j, _ in p) > 1))
+def test_discriminants_agree_with_remainder_sequences(p: list) -> None:  # type: ignore[type-arg]
+    expected = in_u(PLANE.from_dict({(i, j): c for i, j, c in p}).discriminant("v"))
+    assert discriminant(p) in (expected, -expected)
+
+
+long_integers = st.builds(
+    lambda head, zeros, tail: head * 10**zeros + tail,
+    st.integers(),
+    st.sampled_from([0, 3999, 4300, 9001]),
+    st.integers(),
+)  # hypothesis itself cannot print longer ones
+fractions = st.fractions() | st.builds(Fraction, long_integers, st.sampled_from([1, 7, 10**12, 10**4500 + 1]))
+
+
+@given(fractions)
+def test_numbers_are_read_back(value: Fraction) -> None:
+    assert fraction_of(text_of(value)) == fraction_of(shortest_text(value)) == value
+
+
+@given(long_integers)
+def test_long_integers(n: int) -> None:
+    text = integer_text(abs(n))
+    assert integer_of(text) == abs(n)
+    assert text == "0" or not text.startswith("0")
+
+
+@given(st.fractions(min_value=0), st.integers(1, 20))
+def test_decimals_bound_from_the_side_asked_for(value: Fraction, digits: int) -> None:
+    low, high = (fraction_of(decimal(value, up=up, digits=digits)) for up in (False, True))
+    assert low <= value <= high
+    assert high - low <= value * Fraction(1, 10 ** (digits - 1))
+
+
+@pytest.mark.parametrize("text", ["", "1/0", "0x10", "1_0", " 1", "1e", "١", "1e9999999", "1.5/2", "--1", "nan", "+1"])
+def test_other_texts_are_no_numbers(text: str) -> None:
+    with pytest.raises(ValueError, match=r"not an exact number|zero denominator|too long"):
+        fraction_of(text)
+
+
+# --------------------------------------------------------------------------------------------------- partial results
+
+
+def stopped_at(stage: str) -> RegionMap:
+    def progress(name: str, _done: int, _total: int) -> None:
+        if name == stage:
+            raise LimitReached("enough")
+
+    with pytest.raises(LimitReached) as stopped:
+        ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"), progress=progress)
+    assert isinstance(stopped.value.partial, RegionMap)
+    return RegionMap.from_json(stopped.value.partial.to_json())
+
+
+@pytest.mark.parametrize(("stage", "unchecked"), [("projection", 10), ("areas", 0)])
+def test_what_a_partial_result_has_is_checked(stage: str, unchecked: int) -> None:
+    partial = stopped_at(stage)
+    assert partial.status is Status.PARTIAL
+    report = ptmcad.verify(partial)
+    assert report.ok, report.violation
+    assert sum(c.detail == "not complete in this partial result" for c in report.checks) == unchecked
+
+
+def test_a_false_partial_result_is_rejected() -> None:
+    partial = stopped_at("areas")
+    cell = partial.cells[0]
+    assert cell.total is not None
+    wrong = replace(cell, total=cell.total + 2)
+    assert not ptmcad.verify(replace(partial, cells=(wrong, *partial.cells[1:]))).ok
+    assert not ptmcad.verify(replace(stopped_at("projection"), status=Status.EXACT)).ok
+
+
+# ------------------------------------------------------------------------------------------------------- solutions
+
+
+CUSP = {"L1": "1", "L2": "25/39", "rho": "28/169", "F3": "-22400/507", "F4": "-13440/169"}
+
+
+@pytest.mark.parametrize("exponent", [3, 10, 30])
+def test_boxes_near_a_cusp_are_disjoint_and_verified(exponent: int) -> None:
+    """Three equilibria meet in the cusp; next to it their boxes need more digits."""
+    width = Fraction(1, 10**exponent)
+    axes = {n: [str(Fraction(CUSP[n]) - width), str(Fraction(CUSP[n]) + width)] for n in ("rho", "F4")}
+    record = {"name": "cusp", "axes": axes, "count": "index",
+              "parameters": {n: v for n, v in CUSP.items() if n not in axes}}  # fmt: skip
+    result = ptmcad.classify(ptmcad.slice_from_mapping(record), area_tolerance="1/10")
+    assert sorted(r.index for r in result.regions if r.index) == [(1, 2, 1), (1, 3, 2)]
+    for cell in result.cells:
+        assert len(cell.solutions) == cell.total
+        for a, b in combinations(cell.solutions, 2):
+            assert any(abs(x - y) > a.radius + b.radius for x, y in zip(a.center, b.center, strict=True))
+    stored = RegionMap.from_json(result.to_json())
+    check_counts(Claims(stored))
+    check_solutions(Claims(stored))
+    if exponent == 3:  # the areas at a cusp take most of the time, and are no matter of digits
+        report = ptmcad.verify(stored)
+        assert report.ok, report.violation
+
+
+def test_points_are_drawn_from_the_claims(shipped: Callable[..., RegionMap]) -> None:
+    """Another set of claims is checked at other points, and a seed given by hand is used."""
+    details = []
+    for name, seed in (("fig2", None), ("fig3", None), ("fig2", 5), ("fig2", None)):
+        report = ptmcad.verify(shipped(name), seed=seed)
+        details.append(next(c.detail for c in report.checks if c.name == "variety complete").split(";")[0])
+    assert details[0] == details[3]
+    assert len(set(details)) == 3
+    assert details[2].endswith("seed 5")

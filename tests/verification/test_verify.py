@@ -1,0 +1,212 @@
+"""The verification accepts every shipped result, and rejects what has been altered so that it is false."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+import pytest
+from forger.judge import violation
+from support import mutations
+from support.mutations import put
+from support.shipped_records import EXACT
+
+import ptmcad
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.question.slice import Point
+from ptmcad.verification.areas import check_areas
+from ptmcad.verification.claims import Claims
+
+CONFIGS = [path.stem for path in EXACT]
+
+
+LIKELY = {
+    "walls and samples": "sample_of_another_cell sample_beyond_a_wall root_index stack_sample",
+    "variety complete": "changed_component critical_kind complex_solutions smooth_line_at_infinity",
+    "counts": "count morse_index swapped_index box_invented",
+    "merges": "separates merge_kind",
+    "critical values": "moved_critical_value invented_critical_value critical_polynomial origin",
+    "adjacencies": "adjacency_removed adjacency_added adjacency_component segment_end",
+    "areas": "area_bound area_order window area_shifted area_too_narrow area_beyond_the_window "
+             "partial_with_false_areas",
+    "regions": "region_number region_cells region_count region_sample",
+    "plan": "base_axis plan_cost",
+    "solutions": "box_moved box_shrunk box_blown_up box_dropped box_twice solutions_of_another_cell sign "
+                 "signs_exchanged",
+    "non-adjacencies": "non_adjacency_dropped non_adjacency_twice non_adjacency_invented non_adjacency_reason "
+                       "non_adjacency_cells non_adjacency_segment",
+}  # fmt: skip
+"""The alterations that a check is likely to reject: it is tried first, which makes the tests faster, and no weaker."""
+FIRST = {name: check for check, names in LIKELY.items() for name in names.split()}
+
+
+def stored(result: RegionMap) -> RegionMap:
+    """What a reader of the file has."""
+    return RegionMap.from_json(result.to_json())
+
+
+@cache
+def stored_shipped(shipped: Callable[..., RegionMap], name: str) -> RegionMap:
+    return stored(shipped(name))
+
+
+@pytest.mark.parametrize("name", CONFIGS)
+def test_shipped_results_are_accepted(name: str, shipped: Callable[..., RegionMap]) -> None:
+    report = ptmcad.verify(stored(shipped(name)))
+    assert report.ok, report.violation
+    assert report.violation is None
+    assert {c.name for c in report.checks if not c.passed} == {"plan without trace", "provenance"}
+    assert "not checked" in report.table()
+
+
+@pytest.mark.parametrize("mutation", mutations.ALL, ids=lambda m: m.__name__)
+@pytest.mark.parametrize(
+    ("name", "seeds"),
+    [
+        ("fig2", 3),
+        ("fig3", 1),
+        *(
+            pytest.param(n, k, marks=pytest.mark.slow)
+            for n, k in (("fig3", 10), ("rods", 6), ("fig4", 4), ("fig5-text", 4))
+        ),
+    ],
+)
+def test_false_alterations_are_rejected(
+    name: str, seeds: int, mutation: mutations.Mutation, shipped: Callable[..., RegionMap]
+) -> None:
+    true = stored_shipped(shipped, name)
+    for seed in range(seeds):
+        rng = random.Random(f"{name} {mutation.__name__} {seed}")
+        try:
+            false = mutation(true, rng)
+        except IndexError:  # from an empty choice: this result makes no claim of this kind
+            assert (name, mutation.__name__) in NOTHING_TO_ALTER
+            continue
+        assert violation(false, FIRST.get(mutation.__name__, "")) is not None, f"seed {seed}"
+
+
+def test_each_alteration_that_a_check_is_likely_to_reject_is_one() -> None:
+    assert FIRST.keys() <= {mutation.__name__ for mutation in mutations.ALL}
+
+
+NOTHING_TO_ALTER: set[tuple[str, str]] = set()
+
+
+NO_CLAIMS = {"title", "name", "reference", "versions", "precision", "timings"}
+"""What is no statement about the regions."""
+MAY_STAY_TRUE = {"low", "high", "segment", "below", "above", "center", "radius", "area", "sample", "reason", "text"}
+"""What can be altered a little without becoming false (k2 written as k1 instead of k); `mutations` makes it false."""
+
+
+def leaves(data: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Paths of all values in a JSON document that are claims as they stand."""
+    if path and isinstance(path[-1], str) and path[-1] in NO_CLAIMS | MAY_STAY_TRUE:
+        return
+    if isinstance(data, dict | list):
+        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+            yield from leaves(value, (*path, key))
+    else:
+        yield path
+
+
+def changed(value: Any, rng: random.Random) -> Any:
+    """Another value of the same type, or of another."""
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, int):
+        return value + rng.choice([-2, -1, 1, 2, 10**6])
+    if value is None:
+        return rng.choice([0, 1, "0"])
+    digits = [k for k, c in enumerate(value) if c.isdigit()]
+    if digits and rng.random() < 0.8:
+        k = rng.choice(digits)
+        return value[:k] + rng.choice([d for d in "123456789" if d != value[k]]) + value[k + 1 :]
+    return rng.choice([value + "1", "-" + value, value[:-1], None, 7]) if value else "x"
+
+
+FIRST_OF = {
+    "components": "variety complete", "critical_values": "critical values", "stacks": "walls and samples",
+    "cells": "solutions", "adjacencies": "adjacencies", "non_adjacencies": "non-adjacencies", "regions": "regions",
+}  # fmt: skip
+"""The check that is tried first, by the table in which an entry is changed."""
+
+
+def is_accepted(altered: RegionMap, table: str) -> bool:
+    if altered.status is not Status.EXACT or altered.cover is not None:  # it is not said to be an exact map any more
+        return ptmcad.verify(altered).ok
+    return violation(altered, FIRST_OF.get(table, "")) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "number"),
+    [
+        ("fig2", 150),
+        pytest.param("fig3", 1500, marks=pytest.mark.slow),
+        pytest.param("fig4", 300, marks=pytest.mark.slow),
+    ],
+)
+def test_any_changed_entry_of_the_file_is_rejected(name: str, number: int, shipped: Callable[..., RegionMap]) -> None:
+    text = shipped(name).to_json()
+    paths = list(leaves(json.loads(text)))
+    rng = random.Random(name)
+    accepted = []
+    for path in rng.choices(paths, k=number):
+        data = json.loads(text)
+        place = data
+        for key in path[:-1]:
+            place = place[key]
+        old, new = place[path[-1]], changed(place[path[-1]], rng)
+        place[path[-1]] = new
+        try:
+            altered = RegionMap.from_json(json.dumps(data))
+        except ValueError:
+            continue
+        if is_accepted(altered, path[0]) and altered != shipped(name):
+            accepted.append((path, old, new))
+    assert not accepted
+
+
+def test_a_tiny_change_of_an_area_is_rejected(shipped: Callable[..., RegionMap]) -> None:
+    true = stored(shipped("fig4", area_tolerance="1e-9"))
+    check_areas(Claims(true))
+    low, high = true.regions[1].area
+    shift = Fraction(2, 10**9)
+    first = replace(true.regions[0], area=(true.regions[0].area[0] - shift, true.regions[0].area[1] - shift))
+    second = replace(true.regions[1], area=(low + shift, high + shift))
+    found = violation(replace(true, regions=(first, second)), "areas")
+    assert found is not None
+    assert found[0] == "areas"
+
+
+def test_bounds_too_narrow_to_be_confirmed_are_rejected(shipped: Callable[..., RegionMap]) -> None:
+    """An area that is not rational, said to be known exactly: no enclosure can confirm it."""
+    true = stored(shipped("fig3"))
+    low, high = true.regions[1].area
+    point = (low + high) / 2
+    report = ptmcad.verify(replace(true, regions=put(true.regions, 1, area=(point, point))))
+    assert not report.ok
+
+
+def test_the_report_names_the_claim_and_a_witness(shipped: Callable[..., RegionMap]) -> None:
+    true = stored(shipped("fig2"))
+    report = ptmcad.verify(replace(true, cells=put(true.cells, 0, stable=2)))
+    assert report.violation is not None
+    assert report.violation.startswith("counts: cell 0 is said to have 4 equilibria, 2 stable")
+    assert "L2=" in report.violation
+    assert "FALSE" in report.table()
+    assert "not reached" in report.table()
+
+
+def test_a_true_alteration_is_accepted(shipped: Callable[..., RegionMap]) -> None:
+    """Wider bounds, and a sample elsewhere in the same cell, are as true as before."""
+    true = stored(shipped("fig2"))
+    low, high = true.regions[0].area
+    wide = replace(true, regions=put(true.regions, 0, area=(low * Fraction(9, 10), high + Fraction(1, 10))))
+    assert ptmcad.verify(wide).ok
+    assert ptmcad.verify(true, seed=7).ok
+    assert isinstance(true.cells[0].sample, Point)
