@@ -59,6 +59,9 @@ def optional(codec: Codec[T]) -> Codec[T | None]:
     return Codec(write, lambda node: node.optional(codec.read))
 
 
+COUNT = optional(NATURAL)
+
+
 def listed(codec: Codec[T], length: int | None = None) -> Codec[tuple[T, ...]]:
     """Several of the same, or so many."""
     convert = codec.write

@@ -31,6 +31,7 @@ from ptmcad.answer.regionmap import (
 from ptmcad.errors import ExpressionError
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.show.document.codec import (
+    COUNT,
     NATURAL,
     RATIONAL,
     SHARE,
@@ -58,7 +59,6 @@ MAX_NAME = 100
 MAX_TITLE = 300
 
 INDEX = listed(NATURAL, 3)
-COUNT = optional(NATURAL)
 SEGMENT: Codec[Segment | None] = optional(listed(RATIONAL, 3))  # type: ignore[arg-type]
 
 
