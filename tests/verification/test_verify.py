@@ -30,7 +30,7 @@ LIKELY = {
     "variety complete": "changed_component critical_kind complex_solutions smooth_line_at_infinity",
     "counts": "count morse_index swapped_index box_invented",
     "merges": "separates merge_kind",
-    "critical values": "moved_critical_value invented_critical_value critical_polynomial origin",
+    "critical values": "moved_critical_value invented_critical_value critical_polynomial",
     "adjacencies": "adjacency_removed adjacency_added adjacency_component segment_end",
     "areas": "area_bound area_order window area_shifted area_too_narrow area_beyond_the_window "
              "partial_with_false_areas",
