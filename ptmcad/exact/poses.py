@@ -20,7 +20,7 @@ from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.exact.counting import DegeneratePoint, point_system
-from ptmcad.exact.models.geometry import geometry_of, system_from
+from ptmcad.exact.models.potential import geometry_of, system_from
 from ptmcad.exact.models.system import polynomial_at
 from ptmcad.exact.statics import Model, State, pose_of, state_at
 from ptmcad.mechanism import ptm

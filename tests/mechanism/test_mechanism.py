@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.exact.models.geometry import geometry_of, squared_lengths, system_from
+from ptmcad.exact.models.potential import geometry_of, squared_lengths, system_from
 from ptmcad.mechanism import Kind, Mechanism, described, mechanism_of, ptm
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.ptm import RECORD

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.exact.models.geometry import potential as energy_of_the_engine
+from ptmcad.exact.models.potential import potential as energy_of_the_engine
 from ptmcad.mechanism import Mechanism, described, ptm
 from ptmcad.verification.derivation import Configuration, potential
 from ptmcad.verification.jets import circle

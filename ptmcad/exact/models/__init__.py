@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ptmcad.exact.models.geometry import system_from
+from ptmcad.exact.models.potential import system_from
 from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.mechanism import mechanism_of
 

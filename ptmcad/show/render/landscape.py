@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.exact.models.geometry import squared_lengths, system_from
+from ptmcad.exact.models.potential import squared_lengths, system_from
 from ptmcad.exact.models.system import polynomial_at
 from ptmcad.mechanism import ptm
 from ptmcad.mechanism.evaluate import value_at

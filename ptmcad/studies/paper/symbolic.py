@@ -15,7 +15,7 @@ from typing import Any
 
 import sympy as sp
 
-from ptmcad.exact.models.geometry import geometry_of, system_from
+from ptmcad.exact.models.potential import geometry_of, system_from
 from ptmcad.mechanism import ptm
 
 Expr = Any

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ptmcad.exact.models.geometry import geometry_of
+from ptmcad.exact.models.potential import geometry_of
 from ptmcad.mechanism import ptm
 from ptmcad.studies.paper import printed
 from ptmcad.studies.paper.claim import Claim, Outcome, judge, unchecked
