@@ -11,8 +11,7 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import click
 
@@ -33,8 +32,7 @@ def _bound(_context: click.Context, _parameter: click.Parameter, value: str | No
     return None if value is None else bound_of(value)
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
+class Limits(NamedTuple):
     """Seconds and memory that a command may take, None for no limit of its own."""
 
     timeout: float | None

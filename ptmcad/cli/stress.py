@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -106,7 +105,7 @@ def command(
 
     timeout = limits.timeout
     limit = None if timeout is None else timeout + GRACE_SECONDS
-    with held(replace(limits, timeout=limit)):
+    with held(limits._replace(timeout=limit)):
         cases = _cases(names, number, seed, everything=only_list)
         if only_list:
             from ptmcad.studies.stress.report import listing

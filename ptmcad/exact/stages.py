@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from typing import NamedTuple
 
 from flint import fmpq
 
@@ -79,8 +80,7 @@ class SliceProblem:
         return count_at(self.place(at), self.system, self.parameters, at)
 
 
-@dataclass(frozen=True, slots=True)
-class Variety:
+class Variety(NamedTuple):
     """The discriminant variety as seen from the base axis.
 
     Attributes
@@ -98,24 +98,21 @@ class Variety:
     costs: tuple[int, int]
 
 
-@dataclass(frozen=True, slots=True)
-class Stacks:
+class Stacks(NamedTuple):
     """The stacks over the base, and the sample of every cell, stack by stack from below."""
 
     stacks: tuple[StackData, ...]
     points: tuple[Sample, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class SampleCounts:
+class SampleCounts(NamedTuple):
     """The equilibria at each cell's sample, and the counts by which regions are told apart."""
 
     found: tuple[Equilibria, ...]
     keys: tuple[tuple[int, ...], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Neighbours:
+class Neighbours(NamedTuple):
     """What separates the cells and what does not.
 
     Attributes
@@ -130,16 +127,14 @@ class Neighbours:
     region_of: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Areas:
+class Areas(NamedTuple):
     """Bounds of each region's area, written outwards in decimals, and the bits of precision that they needed."""
 
     bounds: tuple[tuple[Fraction, Fraction], ...]
     bits: int
 
 
-@dataclass(frozen=True, slots=True)
-class Cells:
+class Cells(NamedTuple):
     """The decomposition with its counts: what there is when only areas are missing."""
 
     projection: Projection

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 from operator import attrgetter
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from ptmcad.show.document.node import Node
 from ptmcad.text.numerals import shortest_text, text_of
@@ -77,8 +77,7 @@ def named(codec: Codec[T]) -> Codec[Mapping[str, T]]:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Key:
+class Key(NamedTuple):
     """One key of a record.
 
     Attributes

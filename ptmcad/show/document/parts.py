@@ -7,9 +7,8 @@ has the types and sizes that the class asks for.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 from ptmcad.answer.regionmap import (
     Adjacency,
@@ -106,8 +105,7 @@ NON_ADJACENCY = record(
 PLAN_STEP = record(PlanStep, what=TEXT, done=TRUTH, reason=TEXT, saving=Key(TEXT, default=""))
 
 
-@dataclass(frozen=True, slots=True)
-class Parts:
+class Parts(NamedTuple):
     """The codecs of what depends on the slice: names of axes occur in it, or a certified map has it in another way."""
 
     component: Codec[Component]
