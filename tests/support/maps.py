@@ -26,7 +26,7 @@ def once_per_run(name: str, compute: Callable[[], ptmcad.RegionMap]) -> ptmcad.R
         return compute()
     import fcntl
 
-    path = Path(folder) / f"{name}.pickle"
+    path = Path(folder) / f"{name.replace('/', ' of ')}.pickle"
     with path.with_suffix(".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not path.exists():
@@ -52,4 +52,4 @@ def shipped_certified(name: str, tolerance: str, count: str | None = None) -> pt
         slice = ptmcad.load(CONFIGS / f"{name}.yaml")
         return ptmcad.classify(slice, engine="certified", tolerance=Fraction(tolerance), count=count, jobs=2)
 
-    return once_per_run(f"certified {name} {count} {tolerance.replace('/', ' of ')}", compute)
+    return once_per_run(f"certified {name} {count} {tolerance}", compute)

@@ -135,7 +135,7 @@ def test_boxes_near_a_cusp_are_disjoint_and_verified(exponent: int) -> None:
     stored = RegionMap.from_json(result.to_json())
     check_counts(Claims(stored))
     check_solutions(Claims(stored))
-    if exponent == 3:  # the areas at a cusp take most of the time, and are no matter of digits
+    if exponent != 10:  # in full where the areas are easiest, and where they need more than the usual precision
         report = ptmcad.verify(stored)
         assert report.ok, report.violation
 

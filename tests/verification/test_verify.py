@@ -32,10 +32,10 @@ LIKELY = {
     "merges": "separates merge_kind",
     "critical values": "moved_critical_value invented_critical_value critical_polynomial",
     "adjacencies": "adjacency_removed adjacency_added adjacency_component segment_end",
-    "areas": "area_bound area_order window area_shifted area_too_narrow area_beyond_the_window "
+    "areas": "area_bound area_order area_shifted area_too_narrow area_beyond_the_window "
              "partial_with_false_areas",
     "regions": "region_number region_cells region_count region_sample",
-    "plan": "base_axis plan_cost",
+    "plan": "plan_cost",
     "solutions": "box_moved box_shrunk box_blown_up box_dropped box_twice solutions_of_another_cell sign "
                  "signs_exchanged",
     "non-adjacencies": "non_adjacency_dropped non_adjacency_twice non_adjacency_invented non_adjacency_reason "
@@ -130,7 +130,7 @@ def changed(value: Any, rng: random.Random) -> Any:
 
 
 FIRST_OF = {
-    "components": "variety complete", "critical_values": "critical values", "stacks": "walls and samples",
+    "critical_values": "critical values", "stacks": "walls and samples",
     "cells": "solutions", "adjacencies": "adjacencies", "non_adjacencies": "non-adjacencies", "regions": "regions",
 }  # fmt: skip
 """The check that is tried first, by the table in which an entry is changed."""
