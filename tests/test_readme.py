@@ -17,6 +17,7 @@ from support.maps import shipped_certified
 
 import ptmcad
 from ptmcad.cli import run
+from ptmcad.options import Options
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -85,8 +86,8 @@ def test_program_commands_in_their_order(
 
     free02, asked = shipped_certified("free02", "1/50"), []
 
-    def certified_map(slice: ptmcad.Slice, *, tolerance: Fraction, **_: object) -> ptmcad.RegionMap:
-        assert (slice, tolerance) == (free02.slice, Fraction(1, 50))
+    def certified_map(slice: ptmcad.Slice, options: Options) -> ptmcad.RegionMap:
+        assert (slice, options.tolerance) == (free02.slice, Fraction(1, 50))
         asked.append(slice.name)
         return free02
 
