@@ -10,8 +10,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("configs", "docs", "ptmcad", "scripts", "tests")
-FILES = (".gitignore", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "MANIFEST.in", "Makefile", "README.md",
-         "pyproject.toml")  # fmt: skip
+FILES = (".gitignore", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "MANIFEST.in", "Makefile",
+         "README.md", "pyproject.toml")  # fmt: skip
 MADE = {"__pycache__", "generated", "findings", ".hypothesis", ".mypy_cache", ".ruff_cache", ".pytest_cache"}
 """Folders that running the program, its tests or its manual's build makes."""
 
