@@ -26,8 +26,10 @@ _CIRCLES = UNKNOWNS
 _NAMES = (*_LENGTHS, *_CIRCLES, *NAMES)
 _RING: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(_NAMES, Ordering.lex)
 _MAX_TEXT = 5_000
-_WRITTEN = re.compile(r"(?:[0-9]++(?![A-Za-z_])|[A-Za-z][A-Za-z0-9_]*+|(?<!\*)\*|[-+/^() ])*+", re.ASCII)
-"""Integers, names and signs: no comments, lines, decimals, or other things that are Python. Nothing is tried twice."""
+_SIGNS = re.compile(r"[A-Za-z0-9_ ()^*/+-]*", re.ASCII)
+_WRONG = re.compile(r"\*\*|(?<![A-Za-z0-9_])(?:_|[0-9]+[A-Za-z_])", re.ASCII)
+"""Integers, names and signs: no comments, lines, decimals, or other things that are Python. Each takes linear time;
+possessive quantifiers, which would do, are wrong in Python before 3.11.5."""
 _MAX_TERMS, _MAX_DEGREE, _MAX_BITS = 2_000, 60, 2_000
 """Of what a part of the text stands for, so that no text takes long; the energy has some 30 terms of degree 5."""
 
@@ -97,7 +99,7 @@ def _energy() -> fmpq_mpoly:
 
 
 def _parsed(text: str) -> ast.expr:
-    if len(text) > _MAX_TEXT or _WRITTEN.fullmatch(text) is None:
+    if len(text) > _MAX_TEXT or _SIGNS.fullmatch(text) is None or _WRONG.search(text):
         raise Violation("the stored potential is not a formula in the names of problem records")
     try:
         return ast.parse(text.replace("^", "**"), mode="eval").body
