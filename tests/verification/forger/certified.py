@@ -219,10 +219,11 @@ def potentials(r: RegionMap) -> Iterator[Alteration]:
     true = r.system.potential
     tower = "(" * 6 + "(F3/4)" + "^9)" * 6
     for text in (
-        true.replace("F3*L1*sin", "sqrt(F3^2)*L1*sin"), f"{true} + {tower}", f"{true} + F3/1{'0' * 200}",
+        true.replace("- F3*", "- sqrt(F3^2)*"), f"{true} + {tower}", f"{true} + F3/1{'0' * 200}",
         f"{true} + (F3 - 1)*(F3 - 2)*(F3 - 3)", f"{true} + sqrt(sin(th1)^2) - sin(th1)",
         f"{true} + sqrt((rho - L2)^2) + rho - L2",
     ):  # fmt: skip
+        assert text != true
         yield partial(replace, r, system=replace(r.system, potential=text))
 
 
