@@ -349,14 +349,14 @@ import sys
 from pathlib import Path
 from ptmcad.process import handover
 
-marker, tell = Path(sys.argv.pop(1)), handover.tell
+marker, tell = Path(sys.argv.pop(1)), handover.send
 
 def telling(topic, *texts):
     tell(topic, *texts)
     if topic is handover.Topic.RESULT:
         marker.touch()
 
-handover.tell = telling
+handover.send = telling
 from ptmcad.__main__ import main
 sys.exit(main())
 """

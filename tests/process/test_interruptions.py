@@ -46,7 +46,7 @@ class Waiting(commit.Disk):
                 time.sleep(0.6)
         return object.__getattribute__(self, name)
 commit.disk = Waiting()
-flock, tell = fcntl.flock, handover.tell
+flock, tell = fcntl.flock, handover.send
 def waiting(descriptor, operation):
     if step == 0 and (here / "drawn").exists() and stat.S_ISDIR(os.fstat(descriptor).st_mode):
         arrived("arrived")
@@ -58,7 +58,7 @@ def telling(topic, *texts):
         arrived("handed-over")
         if texts[0] == "complete":
             arrived("computed")
-handover.tell = telling
+handover.send = telling
 def draw(result, path, samples):
     path.write_text(result.slice.count.value)
     (here / "drawn").touch()
