@@ -198,6 +198,16 @@ def hermite_matrix(algebra: Fibre, weight: fmpq_mat) -> fmpq_mat:
     Its rank is the number of different solutions where the weight is not zero, its signature the number of real
     solutions with positive weight minus those with negative weight (Hermite; Basu, Pollack, Roy, theorem 4.101).
     """
+    return block_hermite_matrix(algebra, [[weight]])
+
+
+def block_hermite_matrix(algebra: Fibre, weights: Sequence[Sequence[fmpq_mat]]) -> fmpq_mat:
+    """The matrix of blocks trace(weights[k][l] b_i b_j), for a symmetric matrix of multiplication matrices.
+
+    Its signature is the sum over the real solutions of the signatures of the weights' values there: the form is the sum
+    over all solutions of that of the value, evaluated at the values of the elements, and the parts of two conjugate
+    solutions together have signature zero.
+    """
     size = algebra.dimension
     multiplications = []
     for monomial in algebra.basis:
@@ -206,13 +216,17 @@ def hermite_matrix(algebra: Fibre, weight: fmpq_mat) -> fmpq_mat:
             for _ in range(e):
                 m = matrix * m
         multiplications.append(m)
-    traces = [sum(((weight * m)[i, i] for i in range(size)), fmpq(0)) for m in multiplications]
-    entries = []
-    for a in multiplications:
-        for j in range(size):
-            # column j of a is the normal form of b_i b_j
-            entries.append(sum((a[i, j] * traces[i] for i in range(size)), fmpq(0)))
-    return fmpq_mat(size, size, entries)
+    number = len(weights)
+    entries = fmpq_mat(number * size, number * size)
+    for k, row in enumerate(weights):
+        for n, weight in enumerate(row):
+            traces = [sum(((weight * m)[i, i] for i in range(size)), fmpq(0)) for m in multiplications]
+            for b, a in enumerate(multiplications):
+                for j in range(size):
+                    # column j of a is the normal form of b_i b_j
+                    value = sum((a[i, j] * traces[i] for i in range(size)), fmpq(0))
+                    entries[k * size + b, n * size + j] = value
+    return entries
 
 
 def signature(symmetric: fmpq_mat) -> tuple[int, int]:

@@ -226,7 +226,9 @@ def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:
     return scale
 
 
-def poles_at_points(algebra: QuotientAlgebra, asked: Sequence[Coefficient], unknowns: int) -> list[Coefficient]:
+def poles_at_points(
+    algebra: QuotientAlgebra, asked: Sequence[Coefficient], coordinates: Sequence[int]
+) -> list[Coefficient]:
     """Those of the asked-for factors of `multiplication_denominator` on which solutions are seen to have poles.
 
     Guarantee: every polynomial that is returned divides the denominator of a power trace. For at an integer point the
@@ -246,7 +248,7 @@ def poles_at_points(algebra: QuotientAlgebra, asked: Sequence[Coefficient], unkn
         values = [abs(int(f(*point))) for f in every]
         if 0 in values:
             continue
-        denominators = math.lcm(*(_trace_denominator(algebra, k, point) for k in range(0, unknowns, 2)))
+        denominators = math.lcm(*(_trace_denominator(algebra, k, point) for k in coordinates))
         for k, f in enumerate(asked):
             others = content * math.prod(v for g, v in zip(every, values, strict=True) if g != f)
             own = _without_primes_of(abs(int(f(*point))), others)

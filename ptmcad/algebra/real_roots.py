@@ -111,7 +111,7 @@ def isolate(p: fmpz_poly, low: fmpq, high: fmpq) -> tuple[RealRoot, ...]:
     """
     if p.degree() < 1:
         return ()
-    beyond = _root_bound(p)
+    beyond = root_bound(p)
     if high - low > 16 * beyond:
         # bisection of an interval much longer than needed would take a level for each bit
         low, high = max(low, -beyond), min(high, beyond)
@@ -220,7 +220,7 @@ def _cluster(q: fmpz_poly, bound: int) -> tuple[fmpz_poly, fmpq, fmpq] | None:
         return None
     centre, unit = at, fmpq(2) ** (last.bit_length() - bits)
     around = _on_unit_interval(q, centre, centre + unit)
-    radius = _CLUSTER_MARGIN * unit * _root_bound(fmpz_poly(around.coeffs()[: bound + 1]))
+    radius = _CLUSTER_MARGIN * unit * root_bound(fmpz_poly(around.coeffs()[: bound + 1]))
     if radius > _MAX_CLUSTER_RADIUS:
         return None
     left, right = max(centre - radius, fmpq(0)), min(centre + radius, fmpq(1))
@@ -240,7 +240,7 @@ def _holding(q: fmpz_poly, bound: int, left: fmpq, right: fmpq) -> tuple[fmpz_po
     return (narrow, left, right - left) if held else None
 
 
-def _root_bound(p: fmpz_poly) -> fmpq:
+def root_bound(p: fmpz_poly) -> fmpq:
     """A power of two above the moduli of all complex roots: 2 max |a_{n-i} / a_n|^(1/i), rounded up (Fujiwara)."""
     leading, *lower = (int(c).bit_length() for c in reversed(p.coeffs()))
     bits = max((-((leading - 1 - b) // i) for i, b in enumerate(lower, 1) if b), default=0)

@@ -1,6 +1,7 @@
-"""Polynomials in the cosines and sines of angles, with parameters, over Q; and their derivatives by the angles.
+"""Polynomials in real unknowns and in cosines and sines of angles, with parameters, over Q; and their derivatives.
 
-Guarantee: exact; the derivation sends cos to -sin and sin to cos, so the derivative of an energy is its true gradient.
+Guarantee: exact; the derivation by an angle sends cos to -sin and sin to cos, so the derivative of an energy is its
+true gradient.
 """
 
 from __future__ import annotations
@@ -15,17 +16,54 @@ TrigonometricPolynomial = fmpq_mpoly
 
 @dataclass(frozen=True, slots=True)
 class TrigonometricRing:
-    """The ring Q[parameters][cos a, sin a for each angle a]; the unknowns come after the parameters."""
+    """The ring Q[parameters][cos a, sin a for each angle a; x for each real unknown x].
+
+    The coordinates of the unknowns come after the parameters, those of the angles first.
+    """
 
     parameters: tuple[str, ...]
     angles: tuple[str, ...]
+    reals: tuple[str, ...] = ()
+
+    @property
+    def unknowns(self) -> tuple[str, ...]:
+        """The angles, then the real unknowns."""
+        return self.angles + self.reals
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The names of the polynomials' variables that are no parameters."""
+        return tuple(f"{function}_{angle}" for angle in self.angles for function in ("cos", "sin")) + self.reals
+
+    @property
+    def width(self) -> int:
+        """The number of coordinates."""
+        return 2 * len(self.angles) + len(self.reals)
+
+    @property
+    def unbounded(self) -> tuple[int, ...]:
+        """Coordinates whose poles are all there are: a sine has one where its cosine has."""
+        return (*range(0, 2 * len(self.angles), 2), *range(2 * len(self.angles), self.width))
+
+    @property
+    def circles(self) -> tuple[dict[tuple[int, ...], int], ...]:
+        """cos^2 + sin^2 - 1 for each angle: exponents of the coordinates -> coefficient."""
+        found = []
+        for k in range(len(self.angles)):
+            circle = {(0,) * self.width: -1}
+            for offset in (0, 1):
+                circle[tuple(2 if i == 2 * k + offset else 0 for i in range(self.width))] = 1
+            found.append(circle)
+        return tuple(found)
 
     @property
     def context(self) -> fmpq_mpoly_ctx:
-        names = self.parameters + tuple(f"{f}_{a}" for a in self.angles for f in ("cos", "sin"))
-        return fmpq_mpoly_ctx.get(names, Ordering.degrevlex)
+        return fmpq_mpoly_ctx.get(self.parameters + self.coordinates, Ordering.degrevlex)
 
     def parameter(self, name: str) -> TrigonometricPolynomial:
+        """A parameter or a real unknown."""
+        if name in self.reals:
+            return self.context.gen(len(self.parameters) + 2 * len(self.angles) + self.reals.index(name))
         return self.context.gen(self.parameters.index(name))
 
     def cos(self, angle: str) -> TrigonometricPolynomial:
@@ -34,9 +72,11 @@ class TrigonometricRing:
     def sin(self, angle: str) -> TrigonometricPolynomial:
         return self.context.gen(len(self.parameters) + 2 * self.angles.index(angle) + 1)
 
-    def derivative(self, p: TrigonometricPolynomial, angle: str) -> TrigonometricPolynomial:
-        """The derivative of p by an angle."""
-        k = len(self.parameters) + 2 * self.angles.index(angle)
+    def derivative(self, p: TrigonometricPolynomial, unknown: str) -> TrigonometricPolynomial:
+        """The derivative of p by an unknown."""
+        if unknown in self.reals:
+            return p.derivative(len(self.parameters) + 2 * len(self.angles) + self.reals.index(unknown))
+        k = len(self.parameters) + 2 * self.angles.index(unknown)
         c, s = self.context.gen(k), self.context.gen(k + 1)
         return p.derivative(k + 1) * c - p.derivative(k) * s
 

@@ -16,8 +16,8 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Point, Slice
 from ptmcad.text.plane import PlanePolynomial
 
-MorseIndex = tuple[int, int, int]
-"""Numbers of minima, saddles and maxima."""
+MorseIndex = tuple[int, ...]
+"""Numbers of critical points by their number of negative eigenvalues: of two unknowns minima, saddles and maxima."""
 
 
 class Status(Enum):
@@ -51,15 +51,17 @@ HARMLESS = "real solutions stay bounded and regular there"
 
 @dataclass(frozen=True, slots=True)
 class System:
-    """The exact equations, as text: polynomials over Q in the unknowns and the mechanism's parameters.
+    """The exact equations, as text: polynomials over Q in the unknowns and the parameters.
 
     Attributes
     ----------
-    unknowns : cosine and sine of each angle, in this order; the boxes of `Solution` are in these coordinates.
-    relations : polynomials that vanish on the torus.
-    potential : energy, in units of force times length.
-    gradient : its derivatives by the angles; the equilibria are their common zeros.
-    hessian : its second derivatives by the angles.
+    unknowns : cosine and sine of each angle, in this order, then the real unknowns; the boxes of `Solution` are in
+        these coordinates.
+    relations : polynomials that vanish on the circles.
+    potential : energy, in units of force times length; empty where equations are given.
+    gradient : the equations, whose common zeros are meant: of a potential its derivatives by the unknowns.
+    hessian : their derivatives by the unknowns.
+    inequalities, stability : what is positive at solutions that count, and at stable ones.
     """
 
     unknowns: tuple[str, ...]
@@ -67,6 +69,8 @@ class System:
     potential: str
     gradient: tuple[str, ...]
     hessian: tuple[tuple[str, ...], ...]
+    inequalities: tuple[str, ...] = ()
+    stability: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +137,8 @@ class Solution:
     Attributes
     ----------
     center : rational, in the order of the system's unknowns.
-    signs : the signs of the Hessian's eigenvalues there, positive ones first, such as ``"+-"`` for a saddle.
+    signs : the signs of the Hessian's eigenvalues there, positive ones first, such as ``"+-"`` for a saddle; without a
+        potential those of the conditions for stability in their order, ``0`` where one is zero.
     """
 
     center: tuple[Fraction, ...]

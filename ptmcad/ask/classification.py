@@ -18,6 +18,7 @@ from time import perf_counter
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.mechanism import ptm
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.savings import load_all, switched_off
@@ -120,7 +121,7 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
         result = _certified(slice, options)
         return replace(result, timings={**result.timings, "total": perf_counter() - started})
     try:
-        without_free_lengths(slice.parameters, "an exact map is")
+        without_free_lengths(slice.model, slice.parameters, "an exact map is")
     except ConfigError as error:
         raise ConfigError(f"{error.message}: choose certified or auto", key="engine") from error
     if options.resume is not None:
@@ -170,6 +171,12 @@ def load_certified(progress: Progress | None = None) -> None:
 
 
 def _check_certified(slice: Slice, options: Options) -> None:
+    if slice.model != ptm():
+        raise ConfigError(
+            f"the certified engine knows the paper's mechanism only, and the slice is of {slice.model.name}: "
+            "set free lengths to zero for the exact engine",
+            key="engine",
+        )
     if options.area_tolerance is not None:
         raise ConfigError(
             "the certified engine bounds areas by what it leaves undetermined: give tolerance instead",
@@ -212,7 +219,7 @@ def check_resumable(slice: Slice, earlier: RegionMap) -> None:
                           key="resume")  # fmt: skip
     other = earlier.slice
     different = [
-        *(["mechanism"] if other.mechanism != slice.mechanism else []),
+        *(["mechanism"] if other.model != slice.model else []),
         *(["axes"] if other.axes != slice.axes else []),
         *(["count"] if other.count is not slice.count else []),
         *(n for n in dict.fromkeys((*slice.parameters, *other.parameters))

@@ -7,9 +7,9 @@ from fractions import Fraction
 
 from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
 from ptmcad.errors import ConfigError, shown
+from ptmcad.mechanism import ptm
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import point_from_mapping
-from ptmcad.question.slice import FREE_LENGTHS
 
 
 def solve(digits: int = DIGITS, **parameters: object) -> Poses:
@@ -44,7 +44,7 @@ def poses_at(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     parameters : all of the mechanism's, with the free lengths if some is not zero.
     digits : significant digits that every enclosure settles.
     """
-    if any(parameters.get(name) for name in FREE_LENGTHS):
+    if any(parameters.get(name) for name in ptm().free_lengths):
         with loading("the certified engine"):
             from ptmcad.certified.poses import certified_poses
         check_room("the certified engine")

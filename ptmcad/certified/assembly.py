@@ -21,6 +21,7 @@ from ptmcad.cover.borders import area_bounds
 from ptmcad.cover.complement import Components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.samples import samples
+from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Count, Point, Slice
 
 MAX_COUNTED = 500
@@ -70,7 +71,7 @@ class Assembler:
         return RegionMap(
             slice=self.slice,
             status=status,
-            system=system_text(self.slice.description),
+            system=system_text(ptm()),
             base=0,
             complex_solutions=0,
             components=(),

@@ -40,7 +40,7 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
     check_room("the certified engine")
     varying, other, value = varying_axis(slice, along, at)
     on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
-    prove(on_line, (slice.axes[varying], Axis(other, value, value)))
+    prove(slice.model, on_line, (slice.axes[varying], Axis(other, value, value)))
     line = replace(slice, axes=(slice.axes[varying], Axis(other, value, value)), parameters=on_line)
     found = line_counts(line, 0, value, 64 + 4 * digits)
     ends = {gap.low: Enclosure(gap.low, gap.high) for gap in found.gaps}

@@ -8,13 +8,14 @@ from __future__ import annotations
 from ptmcad.answer.plan import saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import PlanStep
 from ptmcad.certified.parameters import positive_base
-from ptmcad.question.slice import FREE_LENGTHS, Count, Slice
+from ptmcad.question.slice import Count, Slice
 
 
 def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
     """What is known of the plan before anything is computed."""
-    absent = [name for name in FREE_LENGTHS if name not in slice.parameters or not slice.parameters[name].numerator]
-    zero = [name for name in zero_parameters(slice) if name not in FREE_LENGTHS]
+    free_lengths = slice.model.free_lengths
+    absent = [name for name in free_lengths if name not in slice.parameters or not slice.parameters[name].numerator]
+    zero = [name for name in zero_parameters(slice) if name not in free_lengths]
     steps = [saving_step("imports", without, "imports of matplotlib and sympy")]
     steps += zero_terms([*zero, *absent])
     steps.append(PlanStep("discriminant variety", False, "its degree is out of reach when springs have free lengths"))
@@ -28,4 +29,4 @@ def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
 
 def unloaded(slice: Slice) -> bool:
     """Whether no load acts, on a base that is certainly positive in the open window."""
-    return positive_base(slice) and not any(slice.parameters[name].numerator for name in slice.description.forces)
+    return positive_base(slice) and not any(slice.parameters[name].numerator for name in slice.model.forces)

@@ -77,7 +77,7 @@ def _point_slice(parameters: Mapping[str, Fraction]) -> Slice:
     """The mechanism at a point as a slice on whose axes nothing depends."""
     constants = {name: 0 * axis(0) + value for name, value in parameters.items()}
     unit = (Fraction(0), Fraction(1))
-    return Slice("point", MECHANISM.name, (Axis("x", *unit), Axis("y", *unit)), constants)
+    return Slice("point", MECHANISM, (Axis("x", *unit), Axis("y", *unit)), constants)
 
 
 def _ordered(poses: Sequence[Pose]) -> list[Pose]:

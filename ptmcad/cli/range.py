@@ -18,8 +18,9 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.mechanism import ptm
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
-from ptmcad.question.config import PARAMETERS, file_name, load, slice_from_options
+from ptmcad.question.config import file_name, load, slice_from_options
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import rational
 
@@ -60,8 +61,9 @@ def slice_and_line(asked: AskedLine) -> tuple[Slice, dict[str, str]]:
     if asked.over is None and other not in at:
         raise ConfigError(f"the other axis, {other}, has no value: add {other}=VALUE", key="--at")
     fixed = tuple(f"{name}={value}" for name, value in at.items() if name != other)
+    known = (ptm() if asked.config is None else load(asked.config).model).parameters
     for name in at:
-        if name != other and name not in PARAMETERS:
+        if name != other and name not in known:
             raise ConfigError(f"'{name}' is neither an axis nor a parameter", key="--at")
     axes = asked.axes if {along, other} == set(given) else f"{along},{other}"
     slice = slice_from_options(asked.config, axes, (*asked.sets, *fixed), asked.ranges)

@@ -13,9 +13,9 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError
+from ptmcad.mechanism import ptm
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, point_from_options
-from ptmcad.question.slice import FREE_LENGTHS
 
 FORMATS = ("table", "json", "png", "svg", "pdf")
 DIGITS = 10
@@ -110,7 +110,7 @@ def command(
         from ptmcad.ask.solving import poses_at
 
         with clock_stopped(limits.timeout):  # the time that imports and compiling take is not the computation's
-            if any(parameters.get(length) for length in FREE_LENGTHS):
+            if any(parameters.get(length) for length in ptm().free_lengths):
                 load_certified()
         poses = poses_at(parameters, digits)
         if names:

@@ -143,12 +143,7 @@ def _non_adjacencies(stacks: Sequence[StackData], crossings: Sequence[Crossing])
 
 def _solutions(found: Equilibria) -> tuple[Solution, ...]:
     return tuple(
-        Solution(
-            tuple(to_fraction(x) for x in s.center),
-            to_fraction(s.radius),
-            "+" * (len(s.center) // 2 - s.negative) + "-" * s.negative,
-        )
-        for s in found.solutions
+        Solution(tuple(to_fraction(x) for x in s.center), to_fraction(s.radius), s.signs) for s in found.solutions
     )
 
 

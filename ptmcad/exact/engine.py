@@ -77,7 +77,7 @@ def exact_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
     LimitReached
         At the deadline, with what there is of the map as ``partial``.
     """
-    without_free_lengths(slice.parameters, "an exact map is")
+    without_free_lengths(slice.model, slice.parameters, "an exact map is")
     clock = _Clock(options)
     prove_slice(slice)
     problem = problem_of(slice)
@@ -137,7 +137,7 @@ def slice_variety(slice: Slice, without: frozenset[str] = frozenset()) -> SliceV
     HypothesisError
         When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
     """
-    without_free_lengths(slice.parameters, "the discriminant variety is")
+    without_free_lengths(slice.model, slice.parameters, "the discriminant variety is")
     prove_slice(slice)
     problem = problem_of(slice)
     variety = variety_of(problem, without)

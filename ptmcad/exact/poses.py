@@ -55,7 +55,8 @@ def exact_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
         name: (polynomial_at(system, x, values), polynomial_at(system, y, values))
         for name, (x, y) in geometry_of(mechanism).nodes.items()
     }
-    hessian = (point.hessian[0][0], point.hessian[0][1], point.hessian[1][1])
+    assert system.potential is not None
+    hessian = (point.jacobian[0][0], point.jacobian[0][1], point.jacobian[1][1])
     springs = tuple((s.name, s.start, s.end, value_at(s.stiffness, parameters)) for s in mechanism.springs)
     model = Model(springs, coordinates, polynomial_at(system, system.potential, values), hessian)
     states = _states(model, found.real)

@@ -35,7 +35,7 @@ from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
 from ptmcad.exact.counting import Counts, DegeneratePoint, Equilibria, equilibria, solutions_at
-from ptmcad.exact.models import ParametricSystem, system_of
+from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.regions import Link, members, merge
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.question.slice import Count, Slice
@@ -145,7 +145,7 @@ class Cells(NamedTuple):
 
 def problem_of(slice: Slice) -> SliceProblem:
     """The slice in the ring of the engine."""
-    system = system_of(slice.mechanism)
+    system = system_from(slice.model)
     parameters = {name: from_expression(slice.parameters[name]) for name in system.ring.parameters}
     first, second = ((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
     return SliceProblem(slice, system, parameters, (first, second))
@@ -217,9 +217,11 @@ def with_keys(problem: SliceProblem, found: Sequence[Equilibria]) -> SampleCount
 
 def count_key(counts: Counts, count: Count) -> tuple[int, ...]:
     """The count by which regions are told apart."""
-    if count is Count.STABLE:
+    if count is Count.STABLE and counts.stable is not None:
         return (counts.stable,)
-    return (counts.total,) if count is Count.TOTAL else counts.index
+    if count is Count.INDEX and counts.index is not None:
+        return counts.index
+    return (counts.total,)
 
 
 def crossings_of(

@@ -1,14 +1,17 @@
-"""The discriminant variety of a slice: the curves off which the number of equilibria of each kind is locally constant.
+"""The discriminant variety of a slice: the curves off which the number of solutions of each kind is locally constant.
 
 Guarantee: on every connected component of the window minus these curves, and minus a nowhere dense set that no count
-feels, the equilibria are nondegenerate and their number and indices are constant.
+feels, the solutions are nondegenerate, and their number, indices and the signs of all conditions are constant.
 
-Why. Over Q(x, y) the equations have finitely many solutions; let N be the norm of the Hessian's determinant J, that is
+Why. Over Q(x, y) the equations have finitely many solutions; let N be the norm of the Jacobian's determinant J, that is
 the product of J over them, and let P collect the poles of the characteristic polynomials of the unknowns. At a point
 with P != 0 the solutions at nearby generic points stay bounded, and with N != 0 none of them has J -> 0, so they are
-smooth functions there: real ones stay real and apart. The components are tagged CRITICAL (factors of N), INFINITY
-(factors of P, where a complex solution leaves every bounded set) and BOUNDARY (there the slice's equations lose their
-meaning).
+smooth functions there: real ones stay real and apart, and a condition changes its sign only where its norm vanishes.
+The components are tagged CRITICAL (factors of N), INFINITY (factors of P, where a complex solution leaves every bounded
+set) and BOUNDARY (there the slice's equations lose their meaning, or a condition's norm vanishes).
+
+Solutions at which an inequality's polynomial vanishes all over the slice never count. They are left out, by one more
+unknown, that polynomial's inverse; where the inverse has a pole the norm vanishes.
 
 Reference: Lazard & Rouillier, J. Symb. Comp. 42 (2007). N is used in place of the Hermite matrix's determinant because
 the latter also vanishes where the monomial basis degenerates; `hermite_determinant` computes it for comparison.
@@ -16,11 +19,19 @@ the latter also vanishes where the monomial basis degenerates; `hermite_determin
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
-from ptmcad.algebra.polynomials import Coefficient, Ratio, irreducible_factors, ratio, to_plane
+from ptmcad.algebra.polynomials import (
+    Coefficient,
+    Ratio,
+    UnknownPolynomial,
+    irreducible_factors,
+    ratio,
+    to_plane,
+)
 from ptmcad.algebra.quotient import (
     QuotientAlgebra,
     Vector,
@@ -37,7 +48,7 @@ from ptmcad.algebra.quotient import (
 from ptmcad.algebra.window import Interval, nowhere_zero
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind
 from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
-from ptmcad.exact.models.system import ParametricSystem, SliceSystem, first_minor, on_slice
+from ptmcad.exact.models.system import ParametricSystem, SliceSystem, leading_minors, on_slice, saturated
 from ptmcad.text.plane import PlanePolynomial
 
 
@@ -69,18 +80,8 @@ def discriminant_variety(
     ------
     InfiniteSolutionsError, DegenerateSliceError
         When every point of the slice is exceptional.
-    DimensionError
-        When the saving "sign-curve" is switched off and the system does not have two angles.
     """
-    equations = on_slice(system, parameters)
-    algebra = _algebra(equations)
-    rows = multiples(algebra, equations.jacobian)
-    jacobian_norm = determinant([[ratio(c, denominator) for c in row] for row, denominator in rows])
-    if jacobian_norm[0].is_zero():
-        raise DegenerateSliceError(
-            "the slice lies inside the discriminant variety: at every point of it some equilibrium has a singular "
-            "Hessian, so no count is stable under a small change; fix or free another parameter"
-        )
+    equations, algebra, rows, jacobian_norm = _nondegenerate(on_slice(system, parameters))
     found: dict[PlanePolynomial, Component] = {}
 
     def adopt(factors: Iterable[Coefficient], kind: Kind, left_out: str = "") -> None:
@@ -95,21 +96,24 @@ def discriminant_variety(
     for polynomial in (*equations.boundary, *limits):
         adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
     adopt(irreducible_factors(jacobian_norm[0]), Kind.CRITICAL)
+    for polynomial in _sign_changes(equations, algebra):
+        adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
     suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in found]
     if "infinity" in without:
-        adopt(_with_poles(algebra, suspects, equations.unknowns), Kind.INFINITY)
+        adopt(_with_poles(algebra, suspects, equations.unbounded), Kind.INFINITY)
     else:
         hidden = [f for f in suspects if outside(f)]
         visible = [f for f in suspects if f not in hidden]
-        harmless = _harmless(equations, rows, jacobian_norm, visible)
-        adopt(poles_at_points(algebra, hidden, equations.unknowns), Kind.INFINITY, NO_POINT)
-        adopt(poles_at_points(algebra, harmless, equations.unknowns), Kind.INFINITY, HARMLESS)
+        harmless = _harmless(equations, rows, jacobian_norm, visible) if equations.is_compact else []
+        adopt(poles_at_points(algebra, hidden, equations.unbounded), Kind.INFINITY, NO_POINT)
+        adopt(poles_at_points(algebra, harmless, equations.unbounded), Kind.INFINITY, HARMLESS)
         doubtful = [f for f in visible if f not in harmless]
-        seen = poles_at_points(algebra, doubtful, equations.unknowns)
+        seen = poles_at_points(algebra, doubtful, equations.unbounded)
         adopt(seen, Kind.INFINITY)
-        adopt(_with_poles(algebra, [f for f in doubtful if f not in seen], equations.unknowns), Kind.INFINITY)
+        adopt(_with_poles(algebra, [f for f in doubtful if f not in seen], equations.unbounded), Kind.INFINITY)
     if "sign-curve" in without:
-        adopt(irreducible_factors(norm(algebra, first_minor(system, parameters))[0]), Kind.AUXILIARY)
+        for minor in leading_minors(system, parameters) if system.has_index else ():
+            adopt(irreducible_factors(norm(algebra, _lifted(minor, equations))[0]), Kind.AUXILIARY)
     if "hermite-matrix" in without:
         for part in determinant(trace_form(algebra)):
             adopt(irreducible_factors(part), Kind.AUXILIARY)
@@ -120,11 +124,76 @@ def discriminant_variety(
     return DiscriminantVariety(tuple(components), algebra.dimension)
 
 
-def _with_poles(algebra: QuotientAlgebra, suspects: Sequence[Coefficient], unknowns: int) -> list[Coefficient]:
-    """Those of the polynomials on which some unknown has a pole; none is missed."""
+class _Nondegenerate(NamedTuple):
+    """Equations whose solutions over Q(x, y) are simple, with their algebra.
+
+    Attributes
+    ----------
+    rows : the matrix of multiplication by the Jacobian's determinant.
+    jacobian_norm : its determinant.
+    """
+
+    equations: SliceSystem
+    algebra: QuotientAlgebra
+    rows: tuple[Vector, ...]
+    jacobian_norm: Ratio
+
+
+def _nondegenerate(equations: SliceSystem) -> _Nondegenerate:
+    """The equations, without the solutions that an inequality excludes everywhere if those are in the way.
+
+    Raises
+    ------
+    InfiniteSolutionsError, DegenerateSliceError
+        When there are infinitely many solutions everywhere, or some is singular.
+    """
+    try:
+        found = _with_jacobian(equations)
+        if not any(norm(found.algebra, p)[0].is_zero() for p in equations.inequalities):
+            return found
+    except (InfiniteSolutionsError, DegenerateSliceError):
+        if not equations.inequalities:
+            raise
+    for condition in equations.inequalities:
+        equations = saturated(equations, _lifted(condition, equations))
+    return _with_jacobian(equations)
+
+
+def _with_jacobian(equations: SliceSystem) -> _Nondegenerate:
+    algebra = _algebra(equations)
+    rows = multiples(algebra, equations.jacobian)
+    jacobian_norm = determinant([[ratio(c, denominator) for c in row] for row, denominator in rows])
+    if jacobian_norm[0].is_zero():
+        raise DegenerateSliceError(
+            "the slice lies inside the discriminant variety: at every point of it some equilibrium has a singular "
+            "Hessian, so no count is stable under a small change; fix or free another parameter"
+        )
+    return _Nondegenerate(equations, algebra, rows, jacobian_norm)
+
+
+def _lifted(p: UnknownPolynomial, equations: SliceSystem) -> UnknownPolynomial:
+    """A polynomial in all coordinates of the equations."""
+    return {(*m, *(0,) * (equations.unknowns - len(m))): c for m, c in p.items()}
+
+
+def _sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[Coefficient]:
+    """The norms of the conditions, over those solutions at which they are not zero all over the slice."""
+    for p in equations.inequalities:
+        yield norm(algebra, p)[0]
+    for p in equations.stability:
+        product = norm(algebra, p)[0]
+        if product.is_zero():  # there solutions with p = 0 are not stable, whatever the others are
+            product = norm(_algebra(saturated(equations, p)), {(*m, 0): c for m, c in p.items()})[0]
+        yield product
+
+
+def _with_poles(
+    algebra: QuotientAlgebra, suspects: Sequence[Coefficient], coordinates: Sequence[int]
+) -> list[Coefficient]:
+    """Those of the polynomials on which some of the coordinates has a pole; none is missed."""
     if not suspects:
         return []
-    poles = [power_trace_denominators(algebra, k) for k in range(0, unknowns, 2)]
+    poles = [power_trace_denominators(algebra, k) for k in coordinates]
     return [f for f in suspects if any(pole.gcd(f).total_degree() > 0 for pole in poles)]
 
 

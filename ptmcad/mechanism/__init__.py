@@ -5,11 +5,24 @@ Guarantee: nothing here computes an equilibrium; a description that was read can
 
 from __future__ import annotations
 
-from ptmcad.mechanism.description import Kind, Mechanism, Parameter, Support
+from ptmcad.mechanism.description import Kind, Mechanism, Model, Parameter, Support, System
 from ptmcad.mechanism.ptm import ptm
-from ptmcad.mechanism.record import described
+from ptmcad.mechanism.record import described, described_system
 
-__all__ = ["Kind", "Mechanism", "Parameter", "Support", "described", "known_of", "mechanism_of", "ptm"]
+__all__ = [
+    "Kind",
+    "Mechanism",
+    "Model",
+    "Parameter",
+    "Support",
+    "System",
+    "built_in",
+    "described",
+    "described_system",
+    "known_of",
+    "mechanism_of",
+    "ptm",
+]
 
 
 def mechanism_of(name: str) -> Mechanism:
@@ -21,6 +34,11 @@ def mechanism_of(name: str) -> Mechanism:
         When there is none; `ptmcad.question.config` refuses such names before.
     """
     return _BUILT_IN[name]()
+
+
+def built_in() -> tuple[str, ...]:
+    """The names of the mechanisms that `mechanism_of` has."""
+    return tuple(_BUILT_IN)
 
 
 def known_of(name: str) -> Mechanism:

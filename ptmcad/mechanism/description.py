@@ -1,5 +1,7 @@
 """A planar mechanism as data: parameters, unknowns, points, bars, springs and loads; coordinates are expression trees.
 
+And any other parametric system: equations or a potential, and what a solution has to satisfy.
+
 Guarantee: what `ptmcad.mechanism.record` has read is consistent: every name that occurs is a parameter, an unknown or a
 point, angles stand inside of cosines and sines only, and every tree has a value in any ring (`evaluate`).
 """
@@ -7,10 +9,10 @@ point, angles stand inside of cosines and sines only, and every tree has a value
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ptmcad.text.syntax import Tree, names_of
 from ptmcad.text.syntax import to_text as text_of
@@ -50,6 +52,8 @@ class UnknownKind(Enum):
     """on the circle"""
     LENGTH = "length"
     """on the line"""
+    REAL = "real"
+    """on the line, and no length"""
 
 
 class Support(Enum):
@@ -102,31 +106,28 @@ class Load(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Mechanism:
-    """A mechanism and what follows from its description alone.
+class Model:
+    """What a mechanism and any other parametric system have in common.
 
     Attributes
     ----------
     parameters : by name; free lengths come last, and an alias after what it is an alias of.
     unknowns : in the order in which solutions list them.
-    points : to the trees of their coordinates, in the unit of the lengths.
-    bars : pairs of points, for drawings.
-    springs, loads : in the record's order.
-    symmetries : substitutions of parameters and unknowns under which the energy changes by what no unknown is in.
+    source : the record that it was read from; none for a built-in one.
     """
 
     name: str
     parameters: Mapping[str, Parameter]
     unknowns: Mapping[str, UnknownKind]
-    points: Mapping[str, tuple[Tree, Tree]]
-    bars: tuple[tuple[str, str], ...]
-    supports: Mapping[str, Support]
-    springs: tuple[Spring, ...]
-    loads: tuple[Load, ...]
-    symmetries: tuple[Mapping[str, Tree], ...] = ()
+    source: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False, kw_only=True)
+
+    @property
+    def tells_stability(self) -> bool:
+        """Whether it is known what a stable solution is."""
+        return True
 
     def __hash__(self) -> int:
-        return hash((self.name, *self.parameters, *self.points))
+        return hash((type(self).__name__, self.name, *self.parameters, *self.unknowns))
 
     @cached_property
     def angles(self) -> tuple[str, ...]:
@@ -134,8 +135,13 @@ class Mechanism:
         return tuple(name for name, kind in self.unknowns.items() if kind is UnknownKind.ANGLE)
 
     @cached_property
+    def reals(self) -> tuple[str, ...]:
+        """The unknowns on the line."""
+        return tuple(name for name, kind in self.unknowns.items() if kind is not UnknownKind.ANGLE)
+
+    @cached_property
     def variables(self) -> tuple[str, ...]:
-        """The parameters that geometry, springs or loads use, in their order."""
+        """The parameters that something uses, in their order."""
         used = {name for tree in self._trees() for name in names_of(tree)}
         return tuple(name for name in self.parameters if name in used)
 
@@ -179,16 +185,50 @@ class Mechanism:
         return {name: tuple(others) for name, others in found.items() if name not in self.variables}
 
     @cached_property
+    def units(self) -> tuple[str, str]:
+        """The first length and the first force: what the others are measured in; an empty name where there is none."""
+        return self.first(Kind.LENGTH), self.first(Kind.FORCE)
+
+    def first(self, kind: Kind) -> str:
+        """The first parameter of a kind; an empty name when there is none."""
+        return next((name for name, parameter in self.parameters.items() if parameter.kind is kind), "")
+
+    def kind(self, name: str) -> Kind:
+        """What a parameter measures."""
+        return self.parameters[name].kind
+
+    def _trees(self) -> Iterator[Tree]:
+        """All expressions."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class Mechanism(Model):
+    """A mechanism and what follows from its description alone.
+
+    Attributes
+    ----------
+    points : to the trees of their coordinates, in the unit of the lengths.
+    bars : pairs of points, for drawings.
+    springs, loads : in the record's order.
+    symmetries : substitutions of parameters and unknowns under which the energy changes by what no unknown is in.
+    """
+
+    points: Mapping[str, tuple[Tree, Tree]]
+    bars: tuple[tuple[str, str], ...]
+    supports: Mapping[str, Support]
+    springs: tuple[Spring, ...]
+    loads: tuple[Load, ...]
+    symmetries: tuple[Mapping[str, Tree], ...] = ()
+
+    __hash__ = Model.__hash__
+
+    @cached_property
     def moving(self) -> tuple[str, ...]:
         """The points whose coordinates depend on an unknown."""
         return tuple(
             name for name, (x, y) in self.points.items() if {*names_of(x), *names_of(y)} & self.unknowns.keys()
         )
-
-    @cached_property
-    def units(self) -> tuple[str, str]:
-        """The first length and the first force: what the others are measured in; an empty name where there is none."""
-        return self.first(Kind.LENGTH), self.first(Kind.FORCE)
 
     @cached_property
     def pivots(self) -> Mapping[str, str]:
@@ -201,17 +241,9 @@ class Mechanism:
             if start not in self.moving and any(angle in names_of(tree) for tree in self.points[end])
         }
 
-    def first(self, kind: Kind) -> str:
-        """The first parameter of a kind; an empty name when there is none."""
-        return next((name for name, parameter in self.parameters.items() if parameter.kind is kind), "")
-
     def held(self, support: Support) -> str:
         """The first point that is held so; an empty name when there is none."""
         return next((name for name, kind in self.supports.items() if kind is support), "")
-
-    def kind(self, name: str) -> Kind:
-        """What a parameter measures."""
-        return self.parameters[name].kind
 
     def _trees(self) -> Iterator[Tree]:
         for point in self.points.values():
@@ -220,3 +252,34 @@ class Mechanism:
             yield from (spring.stiffness, spring.free)
         for load in self.loads:
             yield from (load.x, load.y)
+
+
+@dataclass(frozen=True)
+class System(Model):
+    """A parametric system of any field: as many equations as unknowns, or a potential whose critical points are meant.
+
+    Attributes
+    ----------
+    equations : each is zero at a solution; empty where there is a potential.
+    inequalities : a solution counts where all of them are positive.
+    stability : without a potential, a solution is stable where all of these are positive.
+    """
+
+    equations: tuple[Tree, ...]
+    potential: Tree | None = None
+    inequalities: tuple[Tree, ...] = ()
+    stability: tuple[Tree, ...] = ()
+
+    __hash__ = Model.__hash__
+
+    @property
+    def tells_stability(self) -> bool:
+        """Whether it is known what a stable solution is."""
+        return self.potential is not None or bool(self.stability)
+
+    def _trees(self) -> Iterator[Tree]:
+        yield from self.equations
+        if self.potential is not None:
+            yield self.potential
+        yield from self.inequalities
+        yield from self.stability

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.mechanism.description import Kind, Load, Mechanism, Parameter, Spring, Support, UnknownKind
+from ptmcad.mechanism.description import Kind, Load, Mechanism, Parameter, Spring, Support, System, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.text.syntax import (
     FUNCTIONS,
@@ -30,6 +30,7 @@ from ptmcad.text.syntax import (
 MAX_NAME = 40
 MAX_DEGREE = 64
 """Of a coordinate, stiffness, free length or force in the parameters and the cosines and sines."""
+SYSTEM_KEYS = ("name", "parameters", "unknowns", "equations", "potential", "positive", "stable")
 KEYS = ("name", "parameters", "unknowns", "points", "bars", "supports", "springs", "loads", "symmetries")
 _PARAMETER_KEYS = ("kind", "default", "range", "alias")
 _SPRING_KEYS = ("between", "k", "free")
@@ -83,19 +84,86 @@ def described(record: Mapping[str, Any]) -> Mechanism:
         loads,
         tuple(reader.symmetry(s, f"symmetries.{n}")
               for n, s in enumerate(_list(record.get("symmetries", ()), "symmetries"), 1)),
+        source=record,
     )  # fmt: skip
 
 
-def _parameters(entries: Mapping[str, Any]) -> dict[str, Parameter]:
+def described_system(record: Mapping[str, Any], name: str = "system") -> System:
+    """The parametric system of a record, which is a mapping as YAML gives it.
+
+    Names that are no unknowns are its parameters; those that the record does not list are numbers without a default.
+
+    Raises
+    ------
+    ConfigError
+        With the key of what is wrong; also where there are not as many equations as unknowns, or where an unknown
+        stands in no equation.
+    """
+    _check_keys(record, SYSTEM_KEYS, "")
+    if "unknowns" not in record:
+        raise ConfigError("is missing", key="unknowns")
+    listed = _parameters(_mapping(record.get("parameters", {}), "parameters"), defaults=False)
+    unknowns = {
+        _new_name(name, f"unknowns.{name}", listed): _member(UnknownKind, kind, f"unknowns.{name}")
+        for name, kind in _mapping(record["unknowns"], "unknowns").items()
+    }
+    if not unknowns:
+        raise ConfigError("there is none", key="unknowns")
+    if ("equations" in record) is ("potential" in record):
+        raise ConfigError("give either equations or a potential", key="equations")
+    trees = {
+        key: [_tree(text, f"{key}.{n}") for n, text in enumerate(_list(record.get(key, ()), key), 1)]
+        for key in ("equations", "positive", "stable")
+    }
+    potential = _tree(record["potential"], "potential") if "potential" in record else None
+    every = [tree for some in trees.values() for tree in some] + ([] if potential is None else [potential])
+    used = dict.fromkeys(name for tree in every for name in names_of(tree))
+    parameters = dict(listed)
+    for found in used:
+        if found not in parameters and found not in unknowns:
+            parameters[_new_name(found, found, {})] = Parameter(found, Kind.NUMBER, "", None)
+    reader = _Reader(parameters, unknowns)
+    for key, some in trees.items():
+        for n, _ in enumerate(some, 1):
+            reader.tree(record[key][n - 1], f"{key}.{n}", moving=True)
+    if potential is not None:
+        reader.tree(record["potential"], "potential", moving=True)
+        if trees["stable"]:
+            raise ConfigError("of a potential the Hessian decides what is stable: leave this out", key="stable")
+    elif len(trees["equations"]) != len(unknowns):
+        raise ConfigError(
+            f"{len(trees['equations'])} equations for {len(unknowns)} unknowns: give as many as there are unknowns",
+            key="equations",
+        )
+    for unknown in unknowns:
+        if not any(unknown in names_of(tree) for tree in (trees["equations"] if potential is None else [potential])):
+            raise ConfigError("no equation holds this unknown", key=f"unknowns.{unknown}")
+    for parameter in listed:
+        if parameter not in used and not any(listed[a].alias_of == parameter for a in listed):
+            raise ConfigError("nothing uses this parameter", key=f"parameters.{parameter}")
+    return System(
+        _new_name(record.get("name", name), "name", {}),
+        parameters,
+        unknowns,
+        tuple(trees["equations"]),
+        potential,
+        tuple(trees["positive"]),
+        tuple(trees["stable"]),
+        source=record,
+    )
+
+
+def _parameters(entries: Mapping[str, Any], *, defaults: bool = True) -> dict[str, Parameter]:
+    """The parameters of a record; with ``defaults`` lengths, stiffnesses and numbers need one."""
     found: dict[str, Parameter] = {}
     for name, entry in entries.items():
         key = f"parameters.{name}"
         fields = _mapping(entry, key)
         _check_keys(fields, _PARAMETER_KEYS, key)
         kind = _member(Kind, fields.get("kind", Kind.NUMBER.value), f"{key}.kind")
-        if "default" not in fields and kind not in _UNSET:
+        if defaults and "default" not in fields and kind not in _UNSET:
             raise ConfigError(f"has no default, which a {kind.noun} needs", key=key)
-        default = _constant(fields.get("default", 0), f"{key}.default")
+        default = _constant(fields.get("default", 0), f"{key}.default") if defaults or "default" in fields else ""
         window = None
         if "range" in fields:
             ends = _list(fields["range"], f"{key}.range")
@@ -135,7 +203,7 @@ class _Reader:
     """Reads trees, and refuses those without a value in every ring."""
 
     def __init__(self, parameters: Mapping[str, Parameter], unknowns: Mapping[str, UnknownKind]):
-        lengths = [name for name, kind in unknowns.items() if kind is UnknownKind.LENGTH]
+        lengths = [name for name, kind in unknowns.items() if kind is not UnknownKind.ANGLE]
         angles = [name for name, kind in unknowns.items() if kind is UnknownKind.ANGLE]
         self.fixed = _Names(parameters, (), unknowns)
         self.moving = _Names((*parameters, *lengths), angles, ())

@@ -9,22 +9,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ptmcad.errors import GeometryError
-from ptmcad.mechanism import Kind, ptm
+from ptmcad.mechanism import Kind, Model
 from ptmcad.question.positivity import Axes, Need, Undecided, Witness, decide, named, number, place
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression
 
 
-def need(name: str, expression: Expression) -> Need:
+def need(kind: Kind, expression: Expression) -> Need:
     """What a parameter needs to be, besides having no pole."""
-    kind = _kind(name)
     # a base is positive, or zero everywhere
     if kind.is_positive or (kind is Kind.BASE and expression.numerator):
         return Need.POSITIVE
     return Need.NOT_NEGATIVE if kind.may_vanish else Need.NO_POLE
 
 
-def fault(name: str, expression: Expression, axes: Axes, max_work: int | None = None) -> str:
+def fault(name: str, kind: Kind, expression: Expression, axes: Axes, max_work: int | None = None) -> str:
     """What a point of the window contradicts, in words; empty when there is no such point, or none was found.
 
     Parameters
@@ -34,25 +33,25 @@ def fault(name: str, expression: Expression, axes: Axes, max_work: int | None = 
     pole = decide(expression, axes, Need.NO_POLE, max_work)
     if isinstance(pole, Witness):
         return f"division by zero inside the window: the denominator of {name} vanishes {_pole_place(pole, axes)}"
-    verdict = decide(expression, axes, need(name, expression), max_work)
+    verdict = decide(expression, axes, need(kind, expression), max_work)
     if isinstance(verdict, Witness):
         value = number(verdict.value)
-        least = "not be negative" if need(name, expression) is Need.NOT_NEGATIVE else "be positive"
+        least = "not be negative" if need(kind, expression) is Need.NOT_NEGATIVE else "be positive"
         return (
-            f"a {_kind(name).noun} must {least} in the whole window, but {name} is {value} {place(verdict, axes)}: "
+            f"a {kind.noun} must {least} in the whole window, but {name} is {value} {place(verdict, axes)}: "
             "narrow the window"
         )
     return ""
 
 
-def unproved(name: str, expression: Expression, axes: Axes, max_work: int | None = None) -> str:
+def unproved(name: str, kind: Kind, expression: Expression, axes: Axes, max_work: int | None = None) -> str:
     """What is not proved of a parameter, in words; empty when all is.
 
     Parameters
     ----------
     max_work : see `ptmcad.question.positivity.decide`.
     """
-    for asked in dict.fromkeys((Need.NO_POLE, need(name, expression))):
+    for asked in dict.fromkeys((Need.NO_POLE, need(kind, expression))):
         verdict = decide(expression, axes, asked, max_work)
         if isinstance(verdict, Undecided):
             return (
@@ -62,7 +61,7 @@ def unproved(name: str, expression: Expression, axes: Axes, max_work: int | None
     return ""
 
 
-def prove(parameters: Mapping[str, Expression], axes: Axes) -> None:
+def prove(model: Model, parameters: Mapping[str, Expression], axes: Axes) -> None:
     """Prove of every parameter that it is in the whole open window what it needs to be.
 
     Raises
@@ -71,22 +70,18 @@ def prove(parameters: Mapping[str, Expression], axes: Axes) -> None:
         With the parameter and the place where it is not, or where that could not be decided.
     """
     for name, expression in parameters.items():
-        problem = fault(name, expression, axes) or unproved(name, expression, axes)
+        kind = model.kind(name)
+        problem = fault(name, kind, expression, axes) or unproved(name, kind, expression, axes)
         if problem:
             raise GeometryError(problem)
 
 
 def prove_slice(slice: Slice) -> None:
     """The same for a slice."""
-    prove(slice.parameters, slice.axes)
+    prove(slice.model, slice.parameters, slice.axes)
 
 
 def _pole_place(pole: Witness, axes: Axes) -> str:
     if pole.other is None:
         return place(pole, axes)
     return f"between {named(pole.other, axes)} and {named(pole.point, axes)}"
-
-
-def _kind(name: str) -> Kind:
-    parameters = ptm().parameters
-    return parameters[name].kind if name in parameters else Kind.NUMBER

@@ -11,7 +11,8 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.question.slice import FREE_LENGTHS, Axis, Slice, without_free_lengths
+from ptmcad.mechanism import Model
+from ptmcad.question.slice import Axis, Slice, have_free_lengths, without_free_lengths
 from ptmcad.text.expressions import Expression, axis, constant, rational
 from ptmcad.text.numerals import shortest_text
 
@@ -23,6 +24,7 @@ class Line:
     along: Axis
     at: Mapping[str, Fraction]
     parameters: Mapping[str, Expression]
+    model: Model
 
     def place(self, value: Fraction) -> str:
         """A point of the line in words."""
@@ -69,9 +71,12 @@ def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
     except ExpressionError as error:
         raise ConfigError(str(error), key=f"at {other}") from error
     parameters = without_free_lengths(
-        parameters, "exact ends and paths of poses are", "ptmcad range with --at alone encloses the ends"
+        slice.model,
+        parameters,
+        "exact ends and paths of poses are",
+        "ptmcad range with --at alone encloses the ends",
     )
-    return Line(slice.axes[varying], {other: value}, parameters)
+    return Line(slice.axes[varying], {other: value}, parameters, slice.model)
 
 
 def restricted(expression: Expression, varying: int, value: Fraction) -> Expression:
@@ -97,10 +102,7 @@ def has_free_lengths(slice: Slice, along: str, at: Mapping[str, Any]) -> bool:
         return False
     try:
         value = rational(at[other])
-        return any(
-            restricted(slice.parameters[name], varying, value).numerator
-            for name in FREE_LENGTHS
-            if name in slice.parameters
-        )
+        on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
+        return have_free_lengths(slice.model, on_line)
     except ExpressionError:
         return False

@@ -13,9 +13,10 @@ from fractions import Fraction
 from typing import Any, TypeVar
 from unicodedata import category
 
-from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, known_of, ptm
-from ptmcad.text.expressions import Expression
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.text.expressions import Expression, constant
 
 
 def unstorable(data: Any) -> str | None:
@@ -58,9 +59,9 @@ class Slice:
     Attributes
     ----------
     name : used for the names of the files that are written.
-    mechanism : the model's name, ``"ptm"`` for the paper's mechanism.
+    model : the mechanism, or another parametric system.
     axes : the two axes, first the horizontal one.
-    parameters : every parameter of the mechanism as an `Expression` (a rational function in the two axes, exponent
+    parameters : every parameter of the model as an `Expression` (a rational function in the two axes, exponent
         pairs in the order of ``axes``). An axis that is itself a parameter maps to itself. The free lengths are among
         them unless all of them are zero everywhere.
     count : which count distinguishes two regions.
@@ -71,7 +72,7 @@ class Slice:
     """
 
     name: str
-    mechanism: str
+    model: Model
     axes: tuple[Axis, Axis]
     parameters: Mapping[str, Expression]
     count: Count = Count.STABLE
@@ -84,15 +85,14 @@ class Slice:
         return (self.axes[0].name, self.axes[1].name)
 
     @property
-    def has_free_lengths(self) -> bool:
-        """Whether some spring has a free length that is not zero everywhere; algebra cannot answer then."""
-        own = self.description.free_lengths
-        return any(bool(self.parameters[name].numerator) for name in own if name in self.parameters)
+    def mechanism(self) -> str:
+        """The model's name, ``"ptm"`` for the paper's mechanism."""
+        return self.model.name
 
     @property
-    def description(self) -> Mechanism:
-        """The mechanism that the slice is of; in a stored result it may be one of which nothing is known."""
-        return known_of(self.mechanism)
+    def has_free_lengths(self) -> bool:
+        """Whether some spring has a free length that is not zero everywhere; algebra cannot answer then."""
+        return have_free_lengths(self.model, self.parameters)
 
     @property
     def heading(self) -> str:
@@ -101,9 +101,8 @@ class Slice:
 
     def _fixed(self) -> Iterator[str]:
         values = {name: expression.to_text(self.axis_names) for name, expression in self.parameters.items()}
-        description = self.description
-        values = merged(values, description)
-        loads = [name for name in values if name in description.forces]
+        values = merged(values, self.model)
+        loads = [name for name in values if name in self.model.forces]
         for name, value in values.items():
             if value not in (name, "0"):
                 shown = value if len(value) <= MAX_HEADING_VALUE else self.text.get(name, value)
@@ -115,10 +114,10 @@ class Slice:
 _Value = TypeVar("_Value", bound=Hashable)
 
 
-def merged(values: Mapping[str, _Value], mechanism: Mechanism) -> dict[str, _Value]:
+def merged(values: Mapping[str, _Value], model: Model) -> dict[str, _Value]:
     """Values as shown: a shorthand in place of its parameters where these agree, and not beside them where not."""
     shown = dict(values)
-    for shorthand, names in mechanism.shorthands.items():
+    for shorthand, names in model.shorthands.items():
         own = {shown[name] for name in names if name in shown}
         if len(own) == 1:
             shown = {name: value for name, value in shown.items() if name not in names} | {shorthand: own.pop()}
@@ -127,8 +126,37 @@ def merged(values: Mapping[str, _Value], mechanism: Mechanism) -> dict[str, _Val
     return shown
 
 
+def have_free_lengths(model: Model, parameters: Mapping[str, Expression]) -> bool:
+    """Whether some spring has a free length that is not zero everywhere; a parameter that is missing is zero."""
+    if not isinstance(model, Mechanism):
+        return False
+    known = _Expressions(parameters)
+    return any(bool(evaluate(spring.free, known).numerator) for spring in model.springs)
+
+
+class _Expressions:
+    """The rational functions of the axes as a ring with parameters."""
+
+    def __init__(self, parameters: Mapping[str, Expression]):
+        self.parameters = parameters
+
+    def constant(self, value: Fraction) -> Expression:
+        return constant(value)
+
+    def parameter(self, name: str) -> Expression:
+        return self.parameters[name] if name in self.parameters else constant(0)
+
+    def cos(self, angle: str) -> Expression:
+        raise ExpressionError(f"{angle} is an unknown")
+
+    sin = cos
+
+
 def without_free_lengths(
-    parameters: Mapping[str, Expression], what: str, instead: str = "ptmcad classify encloses them"
+    model: Model,
+    parameters: Mapping[str, Expression],
+    what: str,
+    instead: str = "ptmcad classify encloses them",
 ) -> dict[str, Expression]:
     """The parameters for algebra, which would leave free lengths out: they have to be zero.
 
@@ -142,16 +170,14 @@ def without_free_lengths(
     ConfigError
         When a spring has a free length.
     """
-    if any(parameters[name].numerator for name in FREE_LENGTHS if name in parameters):
+    if have_free_lengths(model, parameters):
         raise ConfigError(
             f"{what} not computed for springs with a free length, which bring in square roots and curves of degree "
             f"over 1000; {instead}"
         )
-    return {name: value for name, value in parameters.items() if name not in FREE_LENGTHS}
+    return {name: value for name, value in parameters.items() if name not in model.free_lengths}
 
 
-FREE_LENGTHS = ptm().free_lengths
-"""A slice without free lengths need not have them."""
 MAX_HEADING_VALUE = 24
 """Longer values are cut in a heading."""
 

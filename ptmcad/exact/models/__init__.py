@@ -6,7 +6,7 @@ from ptmcad.exact.models.potential import system_from
 from ptmcad.exact.models.system import ParametricSystem
 from ptmcad.mechanism import mechanism_of
 
-__all__ = ["ParametricSystem", "system_of"]
+__all__ = ["ParametricSystem", "system_from", "system_of"]
 
 
 def system_of(mechanism: str) -> ParametricSystem:

@@ -6,18 +6,20 @@ equation is typed in. Springs are of free length zero: their energy is a polynom
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from typing import Any
 
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
-from ptmcad.exact.models.system import ParametricSystem, from_potential
-from ptmcad.mechanism import Mechanism
+from ptmcad.exact.models.system import ParametricSystem, from_equations, from_potential
+from ptmcad.mechanism import Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.text.syntax import Tree
 
 Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
 
@@ -60,7 +62,7 @@ class _Evaluation:
 @lru_cache(maxsize=8)
 def geometry_of(mechanism: Mechanism) -> Geometry:
     """The points, stiffnesses and loads of a mechanism, with all parameters symbolic."""
-    ring = TrigonometricRing(mechanism.without_free_lengths, mechanism.angles)
+    ring = TrigonometricRing(mechanism.without_free_lengths, mechanism.angles, mechanism.reals)
     within = _Evaluation(ring)
     return Geometry(
         ring,
@@ -88,8 +90,33 @@ def potential(mechanism: Mechanism) -> TrigonometricPolynomial:
 
 
 @lru_cache(maxsize=8)
-def system_from(mechanism: Mechanism) -> ParametricSystem:
-    """The mechanism's equilibrium equations and Hessian with all parameters symbolic."""
+def system_from(model: Model) -> ParametricSystem:
+    """The equations and Jacobian of a mechanism or system, with all parameters symbolic."""
+    if isinstance(model, System):
+        return _equations_of(model)
+    assert isinstance(model, Mechanism)
+    return _equilibria_of(model)
+
+
+def _equations_of(model: System) -> ParametricSystem:
+    ring = TrigonometricRing(model.variables, model.angles, model.reals)
+    within = _Evaluation(ring)
+
+    def elements(trees: Iterable[Tree]) -> tuple[TrigonometricPolynomial, ...]:
+        return tuple(ring.reduce(evaluate(tree, within)) for tree in trees)
+
+    asked: dict[str, Any] = {
+        "inequalities": elements(model.inequalities),
+        "positive": model.positive,
+        "nonnegative": model.nonnegative,
+    }
+    if model.potential is not None:
+        (potential,) = elements([model.potential])
+        return from_potential(ring, potential, **asked)
+    return from_equations(ring, elements(model.equations), stability=elements(model.stability), **asked)
+
+
+def _equilibria_of(mechanism: Mechanism) -> ParametricSystem:
     kept = set(mechanism.without_free_lengths)
     return from_potential(
         geometry_of(mechanism).ring,

@@ -1,12 +1,13 @@
-"""A parametric system: the equilibria of a potential energy on a torus of angles.
+"""A parametric system: as many equations as unknowns, on circles and lines, such as the equilibria of a potential.
 
-Guarantee: equations and Hessian are derived from the potential by exact differentiation; nothing is typed in.
+Guarantee: the equations of a potential, and every Jacobian, are derived by exact differentiation; nothing is typed in.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 from flint import fmpq
 
@@ -22,7 +23,6 @@ from ptmcad.algebra.polynomials import (
     ratio,
 )
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
-from ptmcad.errors import DimensionError
 
 RationalPolynomial = dict[tuple[int, ...], fmpq]
 """A polynomial in the unknowns with rational coefficients: exponent vector -> coefficient."""
@@ -33,67 +33,85 @@ Terms = tuple[tuple[tuple[int, ...], tuple[tuple[tuple[tuple[int, int], ...], fm
 
 @dataclass(frozen=True, slots=True)
 class ParametricSystem:
-    """Equilibrium equations of a potential energy U(angles; parameters).
+    """As many equations as unknowns, and what is asked of a solution.
 
     Attributes
     ----------
-    ring : Q[parameters][cos, sin].
-    potential : U, in units of force times length.
-    gradient : dU/d(angle), one for each angle.
-    hessian : second derivatives of U, row by row.
-    gradient_terms, hessian_terms : the same, sorted for evaluation at many points.
+    ring : Q[parameters][coordinates of the unknowns].
+    equations : each is zero at a solution; of a potential its gradient, in the order of the ring's unknowns.
+    jacobian : their derivatives by the unknowns, row by row; of a potential its Hessian.
+    equation_terms, jacobian_terms : the same, sorted for evaluation at many points.
+    potential : U, in units of force times length; None where equations are given.
+    inequalities : a solution counts where all of them are positive.
+    stability : where there is no potential a solution is stable where all of these are positive.
     positive : parameters that must be positive (rod lengths and stiffnesses).
     nonnegative : parameters that must not be negative (the base length).
     """
 
     ring: TrigonometricRing
-    potential: TrigonometricPolynomial
-    gradient: tuple[TrigonometricPolynomial, ...]
-    hessian: tuple[tuple[TrigonometricPolynomial, ...], ...]
-    gradient_terms: tuple[Terms, ...]
-    hessian_terms: tuple[tuple[Terms, ...], ...]
-    positive: tuple[str, ...]
-    nonnegative: tuple[str, ...]
+    equations: tuple[TrigonometricPolynomial, ...]
+    jacobian: tuple[tuple[TrigonometricPolynomial, ...], ...]
+    equation_terms: tuple[Terms, ...]
+    jacobian_terms: tuple[tuple[Terms, ...], ...]
+    potential: TrigonometricPolynomial | None
+    inequalities: tuple[TrigonometricPolynomial, ...] = ()
+    stability: tuple[TrigonometricPolynomial, ...] = ()
+    positive: tuple[str, ...] = ()
+    nonnegative: tuple[str, ...] = ()
 
     @property
     def dimension(self) -> int:
-        """The number of angles."""
-        return len(self.ring.angles)
+        """The number of unknowns."""
+        return len(self.ring.unknowns)
 
+    @property
+    def has_index(self) -> bool:
+        """Whether solutions are critical points, which have an index."""
+        return self.potential is not None
 
-def require_two_angles(system: ParametricSystem, what: str) -> None:
-    """Refuse a system to which a formula for 2 x 2 Hessians does not apply.
+    @property
+    def tells_stability(self) -> bool:
+        """Whether it is known what a stable solution is."""
+        return self.has_index or bool(self.stability)
 
-    Parameters
-    ----------
-    what : the quantity that the formula gives, for the message.
-
-    Raises
-    ------
-    DimensionError
-        When the system does not have two angles.
-    """
-    if system.dimension != 2:
-        angles = ", ".join(system.ring.angles)
-        raise DimensionError(f"{what}: known for systems of two angles only, and this one has {system.dimension} "
-                             f"({angles})")  # fmt: skip
+    @property
+    def is_on_torus(self) -> bool:
+        """Whether solutions are the zeros of a vector field on a torus, all of them counted: indices add up to zero."""
+        return not self.ring.reals and not self.inequalities
 
 
 def from_potential(
-    ring: TrigonometricRing, potential: TrigonometricPolynomial, positive: tuple[str, ...], nonnegative: tuple[str, ...]
+    ring: TrigonometricRing,
+    potential: TrigonometricPolynomial,
+    positive: tuple[str, ...],
+    nonnegative: tuple[str, ...],
+    inequalities: tuple[TrigonometricPolynomial, ...] = (),
 ) -> ParametricSystem:
-    """The system of equilibria of a potential, by differentiation."""
-    gradient = tuple(ring.reduce(ring.derivative(potential, a)) for a in ring.angles)
-    hessian = tuple(tuple(ring.reduce(ring.derivative(g, a)) for a in ring.angles) for g in gradient)
+    """The system of critical points of a potential, by differentiation."""
+    gradient = tuple(ring.reduce(ring.derivative(potential, u)) for u in ring.unknowns)
+    return from_equations(
+        ring, gradient, potential=potential, positive=positive, nonnegative=nonnegative, inequalities=inequalities
+    )
+
+
+def from_equations(
+    ring: TrigonometricRing, equations: Sequence[TrigonometricPolynomial], **asked: Any
+) -> ParametricSystem:
+    """A system of equations, one for each of the ring's unknowns.
+
+    Parameters
+    ----------
+    asked : further attributes of the system.
+    """
+    jacobian = tuple(tuple(ring.reduce(ring.derivative(e, u)) for u in ring.unknowns) for e in equations)
     return ParametricSystem(
         ring,
-        potential,
-        gradient,
-        hessian,
-        tuple(_terms(ring, g) for g in gradient),
-        tuple(tuple(_terms(ring, h) for h in row) for row in hessian),
-        positive,
-        nonnegative,
+        tuple(equations),
+        jacobian,
+        tuple(_terms(ring, e) for e in equations),
+        tuple(tuple(_terms(ring, d) for d in row) for row in jacobian),
+        asked.pop("potential", None),
+        **asked,
     )
 
 
@@ -110,17 +128,25 @@ class SliceSystem:
 
     Attributes
     ----------
-    equations : the gradient's entries, each divided by ``contents`` and cleared of denominators, then the circles
+    equations : the system's, each divided by its content and cleared of denominators, then the circles
         cos^2 + sin^2 - 1; exponent vector -> element of Z[x, y].
-    jacobian : the Hessian's determinant, cleared of denominators (these vanish only on ``boundary``).
+    jacobian : the Jacobian's determinant, cleared of denominators (these vanish only on ``boundary``).
+    inequalities, stability : the system's, cleared of denominators in the same way.
     boundary : polynomials where the slice's equations lose their meaning: denominators of the parameters, and
         factors common to all coefficients of an equation (there that equation vanishes identically).
+    unknowns : the number of coordinates.
+    unbounded : those whose poles are all there are.
+    is_compact : whether the real solutions stay bounded.
     """
 
     equations: tuple[UnknownPolynomial, ...]
     jacobian: UnknownPolynomial
+    inequalities: tuple[UnknownPolynomial, ...]
+    stability: tuple[UnknownPolynomial, ...]
     boundary: tuple[Coefficient, ...]
     unknowns: int
+    unbounded: tuple[int, ...]
+    is_compact: bool
 
 
 def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> SliceSystem:
@@ -132,40 +158,63 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
 
     Guarantee
     ---------
-    Outside the zero set of ``boundary`` the equations have exactly the equilibria as their solutions.
+    Outside the zero set of ``boundary`` the equations have exactly the system's solutions.
     """
-    unknowns = 2 * system.dimension
+    ring = system.ring
     boundary: list[Coefficient] = []
     equations: list[UnknownPolynomial] = []
-    for gradient in system.gradient:
-        cleared, removed = _cleared(_substitute(system, gradient, parameters))
+    for equation in system.equations:
+        cleared, removed = _cleared(_substitute(system, equation, parameters))
         equations.append(cleared)
         boundary += removed
-    for k in range(system.dimension):
-        circle: UnknownPolynomial = {(0,) * unknowns: -ONE}
-        for offset in (0, 1):
-            circle[tuple(2 if i == 2 * k + offset else 0 for i in range(unknowns))] = ONE
-        equations.append(circle)
-    jacobian = _without_denominators(_substitute(system, determinant(system), parameters))
-    return SliceSystem(tuple(equations), jacobian, tuple(boundary), unknowns)
+    equations += [{m: ONE * c for m, c in circle.items()} for circle in ring.circles]
+    conditions = []
+    for condition in (*system.inequalities, *system.stability):
+        substituted = _substitute(system, condition, parameters)
+        conditions.append(_without_denominators(substituted))
+        boundary += [q for q in (lcm(d for _, d in substituted.values()),) if not q.is_constant()]
+    return SliceSystem(
+        tuple(equations),
+        _without_denominators(_substitute(system, determinant(system), parameters)),
+        tuple(conditions[: len(system.inequalities)]),
+        tuple(conditions[len(system.inequalities) :]),
+        tuple(boundary),
+        ring.width,
+        ring.unbounded,
+        not ring.reals,
+    )
 
 
-def first_minor(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> UnknownPolynomial:
-    """H11 on a slice, up to a factor that vanishes only on the slice's ``boundary``.
+def saturated(equations: SliceSystem, condition: UnknownPolynomial) -> SliceSystem:
+    """The system of those solutions at which a polynomial does not vanish: its inverse is one more coordinate."""
 
-    Raises
-    ------
-    DimensionError
-        When the system does not have two angles: then its sign does not distinguish minima from maxima.
+    def lifted(p: UnknownPolynomial, power: int = 0) -> UnknownPolynomial:
+        return {(*m, power): c for m, c in p.items()}
+
+    inverse = {**lifted(condition, 1), (0,) * (equations.unknowns + 1): -ONE}
+    return replace(
+        equations,
+        equations=(*map(lifted, equations.equations), inverse),
+        jacobian=lifted(equations.jacobian),
+        inequalities=tuple(map(lifted, equations.inequalities)),
+        stability=tuple(map(lifted, equations.stability)),
+        unknowns=equations.unknowns + 1,
+    )
+
+
+def leading_minors(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> list[UnknownPolynomial]:
+    """The Hessian's proper leading principal minors on a slice, up to factors that vanish only on its ``boundary``.
+
+    Their signs, with that of the determinant, tell the index where none of them is zero (Jacobi).
     """
-    require_two_angles(system, "the curve on which minima and maxima could change places")
-    return _without_denominators(_substitute(system, system.hessian[0][0], parameters))
+    rows = [list(row) for row in system.jacobian]
+    minors = (_leibniz([row[:k] for row in rows[:k]]) for k in range(1, system.dimension))
+    return [_without_denominators(_substitute(system, system.ring.reduce(m), parameters)) for m in minors]
 
 
 def determinant(system: ParametricSystem) -> TrigonometricPolynomial:
-    """The determinant of the Hessian as a trigonometric polynomial in the parameters."""
-    rows = [list(row) for row in system.hessian]
-    return system.ring.reduce(_leibniz(rows))
+    """The determinant of the Jacobian, in the system's ring."""
+    return system.ring.reduce(_leibniz([list(row) for row in system.jacobian]))
 
 
 def _leibniz(rows: list[list[TrigonometricPolynomial]]) -> TrigonometricPolynomial:
@@ -212,10 +261,10 @@ def _without_denominators(p: dict[tuple[int, ...], Ratio]) -> UnknownPolynomial:
 def at_point(
     system: ParametricSystem, values: Mapping[str, fmpq]
 ) -> tuple[tuple[RationalPolynomial, ...], tuple[tuple[RationalPolynomial, ...], ...]]:
-    """Gradient and Hessian with rational numbers for the parameters, exactly and with their true signs."""
+    """Equations and Jacobian with rational numbers for the parameters, exactly and with their true signs."""
     return (
-        tuple(_specialised(system, g, values) for g in system.gradient_terms),
-        tuple(tuple(_specialised(system, h, values) for h in row) for row in system.hessian_terms),
+        tuple(_specialised(system, e, values) for e in system.equation_terms),
+        tuple(tuple(_specialised(system, d, values) for d in row) for row in system.jacobian_terms),
     )
 
 

@@ -17,7 +17,7 @@ from ptmcad.algebra.msolve import MsolveError, real_solutions
 from ptmcad.answer.intervals import CriticalFreeLength
 from ptmcad.errors import ConfigError
 from ptmcad.question.line import restricted, varying_axis
-from ptmcad.question.slice import FREE_LENGTHS, Slice
+from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import axis
 
@@ -66,10 +66,11 @@ def critical_on_line(
     """
     varying, _, value = varying_axis(slice, along, at)
     on_line = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
-    if any(on_line.get(name) != axis(0) for name in FREE_LENGTHS):
+    free_lengths = slice.model.free_lengths
+    if any(on_line.get(name) != axis(0) for name in free_lengths):
         raise ConfigError(f"elimination needs {along} to be the free length of all three springs", key="along")
     constants = {name: e.constant() for name, e in on_line.items() if e.is_constant}
-    missing = [name for name in on_line if name not in constants and name not in FREE_LENGTHS]
+    missing = [name for name in on_line if name not in constants and name not in free_lengths]
     if missing:
         raise ConfigError(f"elimination needs {', '.join(missing)} to be constant along {along}", key="along")
     if not constants["k1"] == constants["k2"] == constants["k3"] != 0:

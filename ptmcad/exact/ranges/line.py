@@ -23,8 +23,9 @@ from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
 from ptmcad.answer.regionmap import Kind, MorseIndex
-from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
-from ptmcad.exact.models import ParametricSystem, system_of
+from ptmcad.errors import ConfigError, DegenerateSliceError, InfiniteSolutionsError
+from ptmcad.exact.counting import Counts
+from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.stages import count_at, domain_limits
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.question.line import Line, line_of
@@ -73,9 +74,9 @@ def intervals(slice: Slice, along: str, at: Mapping[str, Any]) -> CountIntervals
     )
 
 
-def system_on(line: Line, mechanism: str = "ptm") -> tuple[ParametricSystem, dict[str, Ratio]]:
-    """The mechanism's system and its parameters on the line, for the engine."""
-    system = system_of(mechanism)
+def system_on(line: Line) -> tuple[ParametricSystem, dict[str, Ratio]]:
+    """The model's system and its parameters on the line, for the engine."""
+    system = system_from(line.model)
     return system, {name: from_expression(line.parameters[name]) for name in system.ring.parameters}
 
 
@@ -127,9 +128,22 @@ def samples_between(along: Axis, numbers: tuple[AlgebraicNumber, ...]) -> tuple[
 
 
 def index_at(line: Line, value: Fraction) -> MorseIndex:
-    """Numbers of minima, saddles and maxima at a rational value that is not critical."""
+    """Numbers of critical points by index at a rational value that is not critical.
+
+    Raises
+    ------
+    ConfigError
+        For a system of equations, whose solutions have no index.
+    """
     system, parameters = system_on(line)
-    return count_at(line.place(value), system, parameters, (from_fraction(value), fmpq(0))).counts.index
+    return index_of(count_at(line.place(value), system, parameters, (from_fraction(value), fmpq(0))).counts)
+
+
+def index_of(counts: Counts) -> MorseIndex:
+    """The index of counts that have one; raises `ConfigError` for others."""
+    if counts.index is None:
+        raise ConfigError("ranges are of critical points of a potential, and this system has equations instead")
+    return counts.index
 
 
 def _joined(

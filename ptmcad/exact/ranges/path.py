@@ -22,7 +22,7 @@ from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
 from ptmcad.exact.counting import equilibria
-from ptmcad.exact.models import ParametricSystem, system_of
+from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.models.system import polynomial_at
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.ranges.line import critical_values
@@ -64,7 +64,7 @@ def pose_paths(
     numbers = tuple(n for n, _ in critical_values(line))
     if any(n.compare(start) == 0 for n in numbers):
         raise ConfigError(f"{along} = {start} is a critical value: start beside it", key="--path")
-    system = system_of(slice.mechanism)
+    system = system_from(slice.model)
     poses = exact_poses(_parameters(system, line, start), DIGITS)
     stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable]
     if number is not None and number - 1 not in stable:
@@ -201,17 +201,19 @@ def _equilibria(family: Family, line: Line, value: Fraction) -> list[tuple[Reach
         place = at_value(family, value, guess)
         if place is None:
             return None
-        found.append((Reached(value, place, place), solution.negative))
+        found.append((Reached(value, place, place), solution.signs.count("-")))
     return found
 
 
 def _energy(family: Family, line: Line, reached: Reached) -> Enclosure:
     """The potential at a place."""
     values = {n: from_fraction(v) for n, v in _parameters(family.system, line, reached.value).items()}
+    potential = family.system.potential
+    assert potential is not None  # `Family` has refused other systems
     with ctx.workprec(BITS):
         unknowns = [f(a) for a in reached.angles for f in (arb.cos, arb.sin)]
         total = arb(0)
-        for monomial, coefficient in polynomial_at(family.system, family.system.potential, values).items():
+        for monomial, coefficient in polynomial_at(family.system, potential, values).items():
             term = arb(coefficient)
             for value, e in zip(unknowns, monomial, strict=True):
                 for _ in range(e):

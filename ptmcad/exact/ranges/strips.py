@@ -16,6 +16,7 @@ from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refin
 from ptmcad.answer.regionmap import MorseIndex, Wall
 from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
 from ptmcad.exact.cad.stacks import BaseEnd, StackData
+from ptmcad.exact.ranges.line import index_of
 from ptmcad.exact.stages import Variety, domain_limits, problem_of, projection_of, stacks_of
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.question.slice import Slice, without_free_lengths
@@ -60,6 +61,7 @@ def refuse_free_lengths(slice: Slice) -> None:
         When springs have a free length.
     """
     without_free_lengths(
+        slice.model,
         slice.parameters,
         "widths over a second axis (--over) are",
         "the range along one axis is enclosed where the other has a value (--at)",
@@ -90,7 +92,7 @@ def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
 
     def counted(stack: StackData, height: fmpq) -> MorseIndex:
         at = (stack.sample, height) if base == 0 else (height, stack.sample)
-        return problem.count(at).counts.index
+        return index_of(problem.count(at).counts)
 
     return tuple(
         strip

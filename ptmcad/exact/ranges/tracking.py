@@ -17,7 +17,8 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
-from ptmcad.exact.models.system import ParametricSystem, Terms, require_two_angles
+from ptmcad.errors import DimensionError
+from ptmcad.exact.models.system import ParametricSystem, Terms
 from ptmcad.text.expressions import Expression, Term
 
 Pair = tuple[arb, arb]
@@ -43,17 +44,19 @@ class Family:
     parameters: Mapping[str, Expression]
 
     def __post_init__(self) -> None:
-        require_two_angles(self.system, "paths of equilibria")
+        if len(self.system.ring.angles) != 2 or self.system.ring.reals or not self.system.has_index:
+            unknowns = ", ".join(self.system.ring.unknowns)
+            raise DimensionError(f"paths of equilibria: known for potentials of two angles only, not for {unknowns}")
 
     def at(self, low: Fraction, high: Fraction) -> Instance:
         """The equations for all parameters from low to high, with their derivatives by the parameter."""
         value = arb(from_fraction(low)).union(arb(from_fraction(high)))
         numbers = [_dual(self.parameters[name], value) for name in self.system.ring.parameters]
-        gradient = [_specialised(g, numbers) for g in self.system.gradient_terms]
+        gradient = [_specialised(g, numbers) for g in self.system.equation_terms]
         return Instance(
             tuple(terms for terms, _ in gradient),
             tuple(terms for _, terms in gradient),
-            tuple(tuple(_specialised(h, numbers)[0] for h in row) for row in self.system.hessian_terms),
+            tuple(tuple(_specialised(h, numbers)[0] for h in row) for row in self.system.jacobian_terms),
         )
 
 
@@ -99,13 +102,13 @@ def _specialised(terms: Terms, numbers: list[Dual]) -> tuple[Specialised, Specia
 class Instance:
     """Gradient and Hessian of the potential with balls for the parameters, to be evaluated at balls of angles."""
 
-    gradient_terms: tuple[Specialised, ...]
+    equation_terms: tuple[Specialised, ...]
     slope_terms: tuple[Specialised, ...]
     hessian_terms: tuple[tuple[Specialised, ...], ...]
 
     def gradient(self, angles: Pair) -> Pair:
         unknowns = _unknowns(angles)
-        first, second = (_evaluated(g, unknowns) for g in self.gradient_terms)
+        first, second = (_evaluated(g, unknowns) for g in self.equation_terms)
         return first, second
 
     def slope(self, angles: Pair) -> Pair:

@@ -19,9 +19,9 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Kind, Parameter
+from ptmcad.mechanism import Kind, Model, Parameter, ptm
 from ptmcad.question.config.options import ranges_of, settings_of, with_axes
-from ptmcad.question.config.parameters import PARAMETERS, unknown_parameter
+from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.record import (
     RECORD_KEYS,
     Record,
@@ -39,7 +39,6 @@ from ptmcad.text.yamltree import Place, Scalar, Tree, from_python, read_file
 
 __all__ = [
     "MAX_DEGREE",
-    "PARAMETERS",
     "RECORD_KEYS",
     "Kind",
     "Parameter",
@@ -103,7 +102,7 @@ def slice_from_options(
         For anything wrong, with file, line and key, or the option.
     """
     record = record_of(read_file(config)) if config is not None else Record()
-    given_sets, given_ranges = settings_of(sets), ranges_of(ranges)
+    given_sets, given_ranges = settings_of(sets, record.model), ranges_of(ranges)
     if slice is not None:
         record = with_axes(record, slice, given_sets, given_ranges)
     elif config is None:
@@ -125,8 +124,8 @@ def slice_from_options(
     return slice_of(record)
 
 
-def point_from_mapping(values: Mapping[str, object]) -> dict[str, Fraction]:
-    """Every parameter of the mechanism at a point: the given ones, and the defaults of `PARAMETERS`.
+def point_from_mapping(values: Mapping[str, object], model: Model | None = None) -> dict[str, Fraction]:
+    """Every parameter of a model, by default the paper's mechanism, at a point: the given ones, and the defaults.
 
     >>> point = point_from_mapping({"rho": "0.7", "L2": "3/2", "F3": -10})
     >>> point["rho"], point["k3"], point["F4"]
@@ -142,14 +141,15 @@ def point_from_mapping(values: Mapping[str, object]) -> dict[str, Fraction]:
     ConfigError
         For anything wrong, with the parameter's name.
     """
+    model = model or ptm()
     given = {}
     for name, value in values.items():
         place = Place(name)
-        if name not in PARAMETERS:
-            raise ConfigError(unknown_parameter(name))
+        if name not in model.parameters:
+            raise ConfigError(unknown_parameter(name, model))
         node = from_python(str(value) if isinstance(value, Decimal) else value, place)
         given[name] = number_text(node)
-    return point_of(Record(values=given), {})
+    return point_of(Record(model=model, values=given), {})
 
 
 def point_from_options(
@@ -169,18 +169,18 @@ def point_from_options(
         For anything wrong, with file, line and key, or the option.
     """
     record = record_of(read_file(config)) if config is not None else Record()
-    given = settings_of(sets)
+    given = settings_of(sets, record.model)
     axes: dict[str, Expression] = {}
     for name, text in (at or {}).items():
         scalar = Scalar(text, Place(f"--at {name[:40]}"))
         if name in given:
             raise scalar.place.error("is given with --set too: leave one out")
-        if name in PARAMETERS:
+        if name in record.model.parameters:
             given[name] = scalar
         elif name in record.axes:
             axes[name] = constant(number_of(scalar, "the value of this axis"))
         else:
-            raise scalar.place.error(unknown_parameter(name))
+            raise scalar.place.error(unknown_parameter(name, record.model))
     for name in record.axes:
         if name not in given and name not in axes:
             raise ConfigError(

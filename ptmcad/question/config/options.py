@@ -9,13 +9,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from ptmcad.errors import ConfigError
-from ptmcad.question.config.parameters import PARAMETERS, unknown_parameter
+from ptmcad.mechanism import Model
+from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.record import Record, Window, check_axis_name
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Place, Scalar
 
 
-def settings_of(sets: Iterable[str]) -> dict[str, Scalar]:
+def settings_of(sets: Iterable[str], model: Model) -> dict[str, Scalar]:
     """``NAME=VALUE`` texts."""
     settings: dict[str, Scalar] = {}
     for text in sets:
@@ -23,8 +24,8 @@ def settings_of(sets: Iterable[str]) -> dict[str, Scalar]:
         if not equals or not name or not value:
             raise ConfigError(f"{text[:80]!r} is not NAME=VALUE, such as F3=-10", key="--set")
         place = Place(f"--set {name[:40]}")
-        if name not in PARAMETERS:
-            raise place.error(unknown_parameter(name))
+        if name not in model.parameters:
+            raise place.error(unknown_parameter(name, model))
         if name in settings:
             raise place.error("is given twice: leave one out")
         settings[name] = Scalar(value, place)
@@ -49,6 +50,7 @@ def ranges_of(ranges: Iterable[str]) -> dict[str, Window]:
 def with_axes(record: Record, slice: str, sets: Mapping[str, Scalar], ranges: Mapping[str, Window]) -> Record:
     """The record with the axes of ``--slice X,Y``."""
     place = Place("--slice")
+    parameters = record.model.parameters
     names = [name.strip() for name in slice.split(",")]
     if len(names) != 2 or not all(names):
         raise place.error(f"{slice[:80]!r} is not X,Y: name two axes, such as L2,rho")
@@ -61,16 +63,16 @@ def with_axes(record: Record, slice: str, sets: Mapping[str, Scalar], ranges: Ma
             axes[name] = ranges[name]
         elif name in record.axes:
             axes[name] = record.axes[name]
-        elif name in PARAMETERS:
-            window = PARAMETERS[name].window
+        elif name in parameters:
+            window = parameters[name].window
             if window is None:
                 raise place.error(f"{name} has no usual range: add --range {name}=LO:HI")
             low, high = window
             axes[name] = Window(Scalar(low, place), Scalar(high, place), place)
         else:
-            hint = did_you_mean(name, PARAMETERS)
+            hint = did_you_mean(name, parameters)
             raise place.error(f"'{name}' is no parameter{hint}; any new name needs --range {name}=LO:HI")
     for name in record.axes:
-        if name in PARAMETERS and name not in axes and name not in sets and name not in record.values:
+        if name in parameters and name not in axes and name not in sets and name not in record.values:
             raise place.error(f"{name} was an axis of {record.place.file} and has no value now: add --set {name}=VALUE")
     return replace(record, axes=axes, values={name: v for name, v in record.values.items() if name not in axes})

@@ -1,19 +1,12 @@
-"""The parameters of the built-in mechanism, from its description: what they measure, their defaults and usual windows.
-
-Guarantee: every parameter of the mechanism is here, with its name in problem records.
-"""
+"""What is said of a name that is no parameter of the model in hand."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from ptmcad.mechanism import Parameter, ptm
+from ptmcad.mechanism import Model
 from ptmcad.text.syntax import did_you_mean
 
-PARAMETERS: Mapping[str, Parameter] = ptm().parameters
 
-
-def unknown_parameter(name: str) -> str:
-    """The message for a name that is none of them."""
-    hint = did_you_mean(name, PARAMETERS) or f"; the parameters are {', '.join(PARAMETERS)}"
+def unknown_parameter(name: str, model: Model) -> str:
+    """The message for a name that is none of the model's parameters."""
+    hint = did_you_mean(name, model.parameters) or f"; the parameters are {', '.join(model.parameters)}"
     return f"unknown parameter '{name[:40]}'{hint}"

@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ptmcad.mechanism import ptm
-from ptmcad.question.config.parameters import PARAMETERS, unknown_parameter
+from ptmcad.mechanism import Model, ptm
+from ptmcad.question.config.model import model_of
+from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.slice import Count, unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
-RECORD_KEYS = ("name", "title", "notes", "mechanism", "parameters", "axes", "count", "reference")
-BUILT_IN = ptm().name
+RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "count", "reference")
 _MAX_NAME = 100
 _MAX_TITLE = 300
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -40,10 +40,10 @@ class Record:
 
     name: str = ""
     title: str = ""
-    mechanism: str = BUILT_IN
+    model: Model = field(default_factory=ptm)
     values: Mapping[str, Scalar] = field(default_factory=dict)
     axes: Mapping[str, Window] = field(default_factory=dict)
-    count: Count = Count.STABLE
+    count: Count | None = None
     reference: Mapping[str, Any] = field(default_factory=dict)
     place: Place = field(default_factory=Place)
 
@@ -55,15 +55,14 @@ def record_of(tree: Tree) -> Record:
             hint = did_you_mean(key, RECORD_KEYS) or f"; the keys are {', '.join(RECORD_KEYS)}"
             raise _node_place(node, key, tree).error(f"unknown key{hint}")
     entries = tree.entries
-    mechanism = entries.get("mechanism")
-    if mechanism is not None and (not isinstance(mechanism, Scalar) or mechanism.text != BUILT_IN):
-        raise mechanism.place.error(f"unknown mechanism: the one that is built is '{BUILT_IN}', the paper's")
+    model = model_of(tree)
     return Record(
         name=_file_name(entries["name"]) if "name" in entries else _name_of_file(tree.place.file),
         title=_title(entries["title"]) if "title" in entries else "",
-        values=_values(entries["parameters"]) if "parameters" in entries else {},
+        model=model,
+        values=_values(entries["parameters"], model) if "parameters" in entries else {},
         axes=_axes(entries["axes"]) if "axes" in entries else {},
-        count=count_of(entries["count"]) if "count" in entries else Count.STABLE,
+        count=count_of(entries["count"]) if "count" in entries else None,
         reference=_reference(entries["reference"]) if "reference" in entries else {},
         place=tree.place,
     )
@@ -145,17 +144,21 @@ def _name_of_file(file: str | None) -> str:
     return _portable(name, Place("name", file))
 
 
-def _values(node: Node) -> dict[str, Scalar]:
+def _values(node: Node, model: Model) -> dict[str, Scalar]:
     if isinstance(node, Scalar) and node.is_null:
         return {}
     if not isinstance(node, Tree):
-        raise node.place.error("expected a mapping such as {L1: 1, F3: -10}")
+        raise node.place.error(f"expected a mapping such as {{{_example(model)}}}")
     values = {}
     for name, value in node.entries.items():
-        if name not in PARAMETERS:
-            raise value.place.error(unknown_parameter(name))
+        if name not in model.parameters:
+            raise value.place.error(unknown_parameter(name, model))
         values[name] = number_text(value)
     return values
+
+
+def _example(model: Model) -> str:
+    return ", ".join(f"{name}: {parameter.default or 1}" for name, parameter in list(model.parameters.items())[:2])
 
 
 def number_text(node: Node) -> Scalar:

@@ -11,12 +11,11 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.mechanism import Kind, Mechanism, mechanism_of
-from ptmcad.question.config.parameters import PARAMETERS
+from ptmcad.mechanism import Kind, Model, System
 from ptmcad.question.config.record import Record, Window
 from ptmcad.question.domain import fault, unproved
 from ptmcad.question.positivity import READING_WORK
-from ptmcad.question.slice import Axis, Slice
+from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression, axis, names_in, parse
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Place, Scalar
@@ -33,12 +32,12 @@ def slice_of(record: Record) -> Slice:
         if name in record.values:
             place = record.values[name].place
             raise place.error(f"{name} is an axis and cannot be fixed too: remove it here or from the axes")
-    axes = tuple(_axis(name, window) for name, window in record.axes.items())
+    axes = tuple(_axis(name, window, record.model) for name, window in record.axes.items())
     resolved = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)}).run()
     for name, expression in resolved.items():
         if name not in record.axes:
             _check_value(name, expression, record, (axes[0], axes[1]))
-    mechanism = mechanism_of(record.mechanism)
+    mechanism = record.model
     given = {*record.values, *record.axes}
     without_free_lengths = not any(resolved[name].numerator for name in mechanism.free_lengths)
     left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)}
@@ -48,7 +47,9 @@ def slice_of(record: Record) -> Slice:
     _check_shorthands_are_used(record, mechanism, given)
     for index, name in enumerate(record.axes):
         if not any(expression.uses(index) for expression in effective.values()):
-            hint = did_you_mean(name, PARAMETERS) if name not in PARAMETERS else ""
+            if isinstance(mechanism, System):
+                continue  # a published system may have fewer parameters than a slice has axes
+            hint = did_you_mean(name, mechanism.parameters) if name not in mechanism.parameters else ""
             remedy = f"no parameter depends on it{hint or ';'} use it in an expression, such as F3: {name}"
             if name in mechanism.shorthands:
                 own = _listed(mechanism.shorthands[name])
@@ -56,25 +57,42 @@ def slice_of(record: Record) -> Slice:
             raise record.axes[name].place.error(f"the axis {name} is not used: {remedy}")
     return Slice(
         name=record.name or "slice-" + "-".join(record.axes),
-        mechanism=record.mechanism,
+        model=record.model,
         axes=(axes[0], axes[1]),
         parameters=effective,
-        count=record.count,
+        count=_count(record),
         title=record.title,
         reference=record.reference,
         text=_texts(effective, resolved, record, (axes[0], axes[1])),
     )
 
 
+def _count(record: Record) -> Count:
+    """The count that is asked for; without one that of stable solutions, where it is known what these are."""
+    model, count = record.model, record.count
+    if count is None:
+        return Count.STABLE if model.tells_stability else Count.TOTAL
+    problem = ""
+    if count is Count.STABLE and not model.tells_stability:
+        problem = "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"
+    if count is Count.INDEX and isinstance(model, System) and model.potential is None:
+        problem = "solutions of equations have no index, which is that of a potential's Hessian: count total"
+    if count is Count.ADMISSIBLE and isinstance(model, System):
+        problem = "a system has no springs, whose lengths would be admissible: count stable or total"
+    if problem:
+        raise record.place.below("count").error(problem)
+    return count
+
+
 def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fraction]:
     """Resolve a record to a point; ``axes`` holds the values of its axes that are no parameters."""
-    mechanism = mechanism_of(record.mechanism)
+    mechanism = record.model
     resolved = _Resolution(record, axes).run()
     values = {}
     for name, expression in resolved.items():
         place = _place_of(name, record)
         value = expression.constant()
-        _check_number(name, value, place)
+        _check_number(name, mechanism.kind(name), value, place)
         values[name] = value
     _check_shorthands_are_used(record, mechanism, set(record.values))
     left_out = {*mechanism.shorthands}  # the parameters that they stand for are there
@@ -83,7 +101,7 @@ def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fracti
     return {name: value for name, value in values.items() if name not in left_out}
 
 
-def _is_left_out(name: str, mechanism: Mechanism, given: set[str]) -> bool:
+def _is_left_out(name: str, mechanism: Model, given: set[str]) -> bool:
     """Whether a slice does not name a shorthand: one of free lengths, or one whose parameters are all given."""
     return mechanism.kind(name) is Kind.FREE_LENGTH or given.issuperset(mechanism.shorthands[name])
 
@@ -102,12 +120,16 @@ def _texts(
         for name in names_in(waiting.pop()):
             if name in texts or name in record.axes:
                 continue
-            problem = "" if resolved[name].is_constant else unproved(name, resolved[name], axes, READING_WORK)
+            problem = (
+                ""
+                if resolved[name].is_constant
+                else unproved(name, record.model.kind(name), resolved[name], axes, READING_WORK)
+            )
             if problem:
                 raise _place_of(name, record).error(problem)
             texts[name] = _written(name, record)
             waiting.append(texts[name])
-    return {name: texts[name] for name in PARAMETERS if name in texts}
+    return {name: texts[name] for name in record.model.parameters if name in texts}
 
 
 def _written(name: str, record: Record) -> str:
@@ -115,19 +137,19 @@ def _written(name: str, record: Record) -> str:
         return name
     if name in record.values:
         return record.values[name].text
-    parameter = PARAMETERS[name]
+    parameter = record.model.parameters[name]
     if parameter.alias_of and parameter.kind is Kind.FREE_LENGTH:
         return _written(parameter.alias_of, record)  # which the slice need not name
     return parameter.default
 
 
-def _axis(name: str, window: Window) -> Axis:
+def _axis(name: str, window: Window, model: Model) -> Axis:
     low, high = number_of(window.low), number_of(window.high)
     if low == high:
         raise window.place.error(f"the range of {name} is empty: {low} to {high}")
     if low > high:
         raise window.place.error(f"the range of {name} is reversed: write [{high}, {low}]")
-    kind = PARAMETERS[name].kind if name in PARAMETERS else Kind.NUMBER
+    kind = model.kind(name) if name in model.parameters else Kind.NUMBER
     if low < 0 and (kind.is_positive or kind.may_vanish):
         least = "not negative" if kind.may_vanish else "positive"
         raise window.place.error(
@@ -170,17 +192,22 @@ class _Resolution:
     def __init__(self, record: Record, free: Mapping[str, Expression]):
         self.record = record
         self.done = dict(free)
-        self.known = tuple(dict.fromkeys((*free, *PARAMETERS)))
+        self.parameters = record.model.parameters
+        self.known = tuple(dict.fromkeys((*free, *self.parameters)))
 
     def run(self) -> dict[str, Expression]:
-        for name in PARAMETERS:
+        for name in self.parameters:
             self.resolve(name, ())
-        return {name: self.done[name] for name in PARAMETERS}
+        return {name: self.done[name] for name in self.parameters}
 
     def resolve(self, name: str, chain: tuple[str, ...]) -> Expression:
         if name in self.done:
             return self.done[name]
-        scalar = self.record.values.get(name) or Scalar(PARAMETERS[name].default, self.record.place.below(name))
+        scalar = self.record.values.get(name)
+        if scalar is None:
+            scalar = Scalar(self.parameters[name].default, self.record.place.below(name))
+            if not scalar.text:
+                raise scalar.place.error(f"{name} has no value: give it one under 'parameters', or make it an axis")
         if name in chain:
             cycle = " -> ".join((*chain[chain.index(name) :], name))
             raise scalar.place.error(f"the definition goes round in a circle: {cycle}")
@@ -201,9 +228,9 @@ def _check_value(name: str, expression: Expression, record: Record, axes: tuple[
     if expression.degree > MAX_DEGREE:
         raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
     if expression.is_constant:
-        _check_number(name, expression.constant(), place)
+        _check_number(name, record.model.kind(name), expression.constant(), place)
         return
-    problem = fault(name, expression, axes, READING_WORK)
+    problem = fault(name, record.model.kind(name), expression, axes, READING_WORK)
     if problem:
         raise place.error(problem)
 
@@ -212,15 +239,14 @@ def _place_of(name: str, record: Record) -> Place:
     return record.values[name].place if name in record.values else record.place.below(name)
 
 
-def _check_number(name: str, value: Fraction, place: Place) -> None:
+def _check_number(name: str, kind: Kind, value: Fraction, place: Place) -> None:
     """Refuse a number that the geometry excludes."""
-    kind = PARAMETERS[name].kind
     if (kind.is_positive and value <= 0) or (kind.may_vanish and value < 0):
         least = "not negative" if kind.may_vanish else "positive"
         raise place.error(f"{name} is {value}, but a {kind.noun} must be {least}")
 
 
-def _check_shorthands_are_used(record: Record, mechanism: Mechanism, given: set[str]) -> None:
+def _check_shorthands_are_used(record: Record, mechanism: Model, given: set[str]) -> None:
     """Refuse a value for all springs, such as k or l0, that none of them takes."""
     for shorthand, names in mechanism.shorthands.items():
         if shorthand not in record.values or not given.issuperset(names):

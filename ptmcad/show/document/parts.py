@@ -6,8 +6,9 @@ has the types and sizes that the class asks for.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import partial
 from typing import Any, NamedTuple
 
 from ptmcad.answer.regionmap import (
@@ -24,10 +25,11 @@ from ptmcad.answer.regionmap import (
     Segment,
     Solution,
     Stack,
-    System,
     Wall,
 )
-from ptmcad.errors import ExpressionError
+from ptmcad.answer.regionmap import System as Equations
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.mechanism import Mechanism, Model, System, built_in, described, described_system, known_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.show.document.codec import (
     COUNT,
@@ -57,7 +59,7 @@ MAX_DEGREE = 400
 MAX_NAME = 100
 MAX_TITLE = 300
 
-INDEX = listed(NATURAL, 3)
+INDEX = listed(NATURAL)
 SEGMENT: Codec[Segment | None] = optional(listed(RATIONAL, 3))  # type: ignore[arg-type]
 
 
@@ -69,12 +71,14 @@ def _whole(node: Node) -> int:
 
 
 SYSTEM = record(
-    System,
+    Equations,
     unknowns=listed(TEXT),
     relations=listed(TEXT),
     potential=TEXT,
     gradient=listed(TEXT),
     hessian=listed(listed(TEXT)),
+    inequalities=Key(listed(TEXT), default=()),
+    stability=Key(listed(TEXT), default=()),
 )
 CRITICAL_VALUE = record(
     CriticalValue,
@@ -209,15 +213,49 @@ def _parsed(node: Node, axes: tuple[Axis, Axis]) -> Expression:
         raise node.fault(f"is wrong: {error}") from error
 
 
-def _slice(axes: tuple[Axis, Axis], parameters: Mapping[str, Node], **rest: Any) -> Slice:
-    return Slice(axes=axes, parameters={name: _parsed(node, axes) for name, node in parameters.items()}, **rest)
+def _as_it_is(value: Any) -> Any:
+    return value
+
+
+def _slice(
+    axes: tuple[Axis, Axis],
+    parameters: Mapping[str, Node],
+    mechanism: Model | None,
+    system: Model | None,
+    **rest: Any,
+) -> Slice:
+    known = {name: _parsed(node, axes) for name, node in parameters.items()}
+    return Slice(model=mechanism or system or known_of(""), axes=axes, parameters=known, **rest)
+
+
+def _mechanism(node: Node) -> Model:
+    """The built-in mechanism of a name, one of which nothing is known, or a description."""
+    if isinstance(node.value, str):
+        return known_of(node.line(MAX_NAME))
+    return _described(node, described)
+
+
+def _described(node: Node, read: Callable[[Mapping[str, Any]], Model]) -> Model:
+    try:
+        return read(node.data())
+    except ConfigError as error:
+        raise node.fault(f"is wrong: {error}") from error
+
+
+def _stored(slice: Slice, kind: type[Model]) -> Any:
+    """The model's name where that says all, else its description; None for a model of the other kind."""
+    model = slice.model
+    if not isinstance(model, kind):
+        return None
+    return {"name": model.name, **model.source} if model.source and model.name not in built_in() else model.name
 
 
 SLICE = record(
     _slice,
     name=Codec(str, _file_name),
     title=line(MAX_TITLE),
-    mechanism=line(MAX_NAME),
+    mechanism=Key(Codec(_as_it_is, _mechanism), partial(_stored, kind=Mechanism), None),
+    system=Key(Codec(_as_it_is, partial(_described, read=described_system)), partial(_stored, kind=System), None),
     axes=Codec(lambda axes: {a.name: [RATIONAL.write(a.low), RATIONAL.write(a.high)] for a in axes}, _axes),
     # what they stand for is known when the axes are
     parameters=Key(Codec(dict, Node.mapping), _expressions),

@@ -23,7 +23,7 @@ def fixed_parameters(variety: SliceVariety) -> str:
     """
     names = variety.slice.axis_names
     values = {name: value.to_text(names) for name, value in variety.slice.parameters.items()}
-    mechanism = variety.slice.description
+    mechanism = variety.slice.model
     for shorthand, own_names in mechanism.shorthands.items():
         own = {name: values.pop(name) for name in own_names if name in values}
         if len(set(own.values())) == 1:

@@ -75,7 +75,7 @@ def symbol(name: str) -> str:
 
 def unit(slice: Slice, axis: int) -> str:
     """The unit of an axis, empty when none is known: that of the parameters which are a number times the axis."""
-    parameters = slice.description.parameters
+    parameters = slice.model.parameters
     exponents = (1, 0) if axis == 0 else (0, 1)
     found = set()
     for name, expression in slice.parameters.items():

@@ -99,6 +99,7 @@ def energy_of(parameters: Mapping[str, Fraction]) -> Energy:
     mechanism = ptm()
     system = system_from(mechanism)
     values = {name: from_fraction(parameters[name]) for name in system.ring.parameters}
+    assert system.potential is not None
     exact = {m: to_fraction(c) for m, c in polynomial_at(system, system.potential, values).items()}
     offset = exact.pop((0,) * 2 * system.dimension, Fraction(0))
     unit = Fraction(10) ** magnitude(max(map(abs, exact.values()), default=Fraction(1)))

@@ -40,7 +40,7 @@ def reproduction(slice: Slice) -> Reproduction:
 def _given(slice: Slice, written: Mapping[str, str]) -> dict[str, str]:
     """The values that a record has to give: not those of the axes, nor the defaults."""
     names = slice.axis_names
-    mechanism = slice.description
+    mechanism = slice.model
     always = (mechanism.first(Kind.LENGTH), mechanism.first(Kind.STIFFNESS))  # what the reader compares others with
     # shorthands are no parameters where the springs do not have them, but other texts may name them
     alone = {name: text for name, text in written.items() if name not in slice.parameters}

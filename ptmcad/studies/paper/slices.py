@@ -147,9 +147,9 @@ def equilibria_at(**given: Exact) -> Counted:
     values = {"k1": stiffness, "k2": stiffness, "k3": stiffness} | values
     found = equilibria(system, {name: from_fraction(values[name]) for name in system.ring.parameters})
     solutions = tuple(
-        Solution(tuple(map(to_fraction, e.center)), to_fraction(e.radius), ("++", "+-", "--")[e.negative])
-        for e in found.solutions
+        Solution(tuple(map(to_fraction, e.center)), to_fraction(e.radius), e.signs) for e in found.solutions
     )
+    assert found.counts.index is not None
     return Counted(found.counts.index, solutions)
 
 

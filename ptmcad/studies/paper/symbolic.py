@@ -70,14 +70,14 @@ def by_angle(expression: Expr, number: int) -> Expr:
 @lru_cache(maxsize=1)
 def gradient() -> tuple[Expr, Expr]:
     """dU/dth1 and dU/dth2."""
-    first, second = (_expression(g) for g in system_from(ptm()).gradient)
+    first, second = (_expression(g) for g in system_from(ptm()).equations)
     return first, second
 
 
 @lru_cache(maxsize=1)
 def hessian() -> tuple[Expr, Expr, Expr]:
     """H(1,1), H(1,2) and H(2,2)."""
-    (a, b), (_, d) = ((_expression(h) for h in row) for row in system_from(ptm()).hessian)
+    (a, b), (_, d) = ((_expression(h) for h in row) for row in system_from(ptm()).jacobian)
     return a, b, d
 
 

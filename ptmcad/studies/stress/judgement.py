@@ -14,7 +14,8 @@ from flint import arb, fmpq
 from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.question.slice import FREE_LENGTHS, Slice
+from ptmcad.mechanism import ptm
+from ptmcad.question.slice import Slice
 from ptmcad.studies.stress.case import (
     Case,
     LineAnswer,
@@ -95,7 +96,7 @@ def _reference(
     parameters: dict[str, Fraction], found: Poses, double: Sequence[DoublePose]
 ) -> tuple[ReferencePose, ...]:
     """The equilibria to 100 digits; with free lengths those from the starts of either method, each proved anew."""
-    if not any(parameters.get(name) for name in FREE_LENGTHS):
+    if not any(parameters.get(name) for name in ptm().free_lengths):
         return sextic_poses(parameters)
     starts = [(pose.th1, pose.th2) for pose in double]
     starts += [(float(pose.angles[0]), float(pose.angles[1])) for pose in found.equilibria]

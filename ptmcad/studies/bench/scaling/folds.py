@@ -84,7 +84,7 @@ def with_parameters(slice: Slice, **parameters: Expression) -> Slice:
     """The slice with other expressions for some parameters, and without the text that they had."""
     return Slice(
         slice.name,
-        slice.mechanism,
+        slice.model,
         slice.axes,
         {**slice.parameters, **parameters},
         slice.count,
