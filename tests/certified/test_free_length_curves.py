@@ -16,6 +16,7 @@ from ptmcad.certified.formula import Graph
 from ptmcad.certified.parameters import slice_mechanism
 from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import record
+from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis, constant
 
@@ -29,7 +30,7 @@ def slice_of(free: str, x: str = "rho", y: str = "L2", **values: str) -> Slice:
     parameters = {name: constant(Fraction(values.get(name, "1" if name[0] != "F" else "0"))) for name in names}
     parameters |= {f"l0_{i}": constant(Fraction(free)) for i in (1, 2, 3)}
     parameters |= {x: axis(0), y: axis(1)}
-    return Slice("test", "ptm", (Axis(x, Fraction(1, 20), Fraction(2)), Axis(y, Fraction(0), Fraction(2))), parameters)
+    return Slice("test", ptm(), (Axis(x, Fraction(1, 20), Fraction(2)), Axis(y, Fraction(0), Fraction(2))), parameters)
 
 
 def derivatives(z: Vector, free: float, load: float) -> tuple[Vector, Vector]:

@@ -15,6 +15,7 @@ from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.cones import cones
 from ptmcad.certified.mechanism import NAMES
 from ptmcad.certified.points import PointCount, PointCounter, point_counter
+from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis
 
@@ -25,7 +26,7 @@ def counter(**values: Q) -> PointCounter:
     """Counts in the plane of rho and L2; every other parameter is a number."""
     given = UNIT | values
     parameters = {name: axis(0) * 0 + value for name, value in given.items()} | {"rho": axis(0), "L2": axis(1)}
-    return point_counter(Slice("test", "ptm", (Axis("rho", Q(0), Q(2)), Axis("L2", Q(0), Q(2))), parameters))
+    return point_counter(Slice("test", ptm(), (Axis("rho", Q(0), Q(2)), Axis("L2", Q(0), Q(2))), parameters))
 
 
 def equal_springs(free: Q, force: Q, **more: Q) -> PointCounter:

@@ -53,7 +53,7 @@ def half_angles(p: fmpq_mpoly) -> fmpq_mpoly:
 
 
 U = with_equal_springs(SYSTEM.potential)
-G1, G2 = (with_equal_springs(g) for g in SYSTEM.gradient)
+G1, G2 = (with_equal_springs(g) for g in SYSTEM.equations)
 S12, C12 = V.s1 * V.c2 + V.c1 * V.s2, V.c1 * V.c2 - V.s1 * V.s2
 VERTICAL = {"F3x": 0, "F4x": 0}
 
@@ -197,7 +197,7 @@ def _power(numbers: list[Fraction], exponents: tuple[int, ...]) -> Fraction:
 
 
 def test_hessian() -> None:
-    (h11, h12), (h21, h22) = (tuple(with_equal_springs(h) for h in row) for row in SYSTEM.hessian)
+    (h11, h12), (h21, h22) = (tuple(with_equal_springs(h) for h in row) for row in SYSTEM.jacobian)
     k, rho = V.k, V.rho
     assert h11 == V.L1 * ((2 * k * rho + V.F3x) * V.c1 + V.F3 * V.s1 - k * V.L2 * C12)
     assert h22 == V.L2 * ((2 * k * rho - V.F4x) * V.c2 + V.F4 * V.s2 - k * V.L1 * C12)
@@ -231,7 +231,7 @@ def test_gradient_is_the_slope_of_the_potential() -> None:
         for b in (0.1, 2.2, 5.5):
             assert ours(SYSTEM.potential, a, b) == pytest.approx(energy(a, b), rel=1e-12)
             slope = ((energy(a + h, b) - energy(a - h, b)) / (2 * h), (energy(a, b + h) - energy(a, b - h)) / (2 * h))
-            assert tuple(ours(g, a, b) for g in SYSTEM.gradient) == pytest.approx(slope, abs=1e-4)
+            assert tuple(ours(g, a, b) for g in SYSTEM.equations) == pytest.approx(slope, abs=1e-4)
 
 
 def test_more_than_six_solutions_with_free_lengths_5_2() -> None:

@@ -1,9 +1,10 @@
-"""Systems of one and of three angles: what is general answers, and what has two angles' formulas inside refuses."""
+"""Systems of one, three and four angles: indices are right, and what has two angles' formulas inside refuses."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
+from math import comb
 
 import pytest
 from flint import fmpq
@@ -12,9 +13,9 @@ from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
 from ptmcad.algebra.trigonometric import TrigonometricRing
 from ptmcad.answer.regionmap import Kind
 from ptmcad.errors import DimensionError
-from ptmcad.exact.counting import count_by_isolation, count_by_signature, equilibria, solutions_at
+from ptmcad.exact.counting import Counts, count_by_isolation, count_by_signature, solutions_at
 from ptmcad.exact.models import ParametricSystem, system_of
-from ptmcad.exact.models.system import first_minor, from_potential
+from ptmcad.exact.models.system import from_potential
 from ptmcad.exact.ranges.tracking import Family
 from ptmcad.exact.variety import discriminant_variety
 
@@ -37,30 +38,19 @@ def chain(angles: int) -> ParametricSystem:
     return from_potential(ring, ring.reduce(energy), positive=("k",), nonnegative=())
 
 
-COUNTS = (equilibria, count_by_isolation, count_by_signature)
-
-
-def test_two_angles_are_counted() -> None:
-    """The same chain with two angles, whose counts are known: so its refusal with three is about the dimension."""
-    assert count_by_isolation(chain(2), VALUES).index == (1, 2, 1)
-    assert count_by_signature(chain(2), VALUES).index == (1, 2, 1)
-
-
-@pytest.mark.parametrize("angles", [1, 3])
-@pytest.mark.parametrize("count", COUNTS, ids=lambda f: f.__name__)
-def test_counts_of_other_dimensions_are_refused(count: Callable[..., object], angles: int) -> None:
-    """Three angles have (1, 3, 3, 1), and the formulas for two would say (2, 4, 2)."""
-    with pytest.raises(DimensionError, match=f"two angles only, and this one has {angles}"):
-        count(chain(angles), VALUES)
+@pytest.mark.parametrize("angles", [1, 2, 3, pytest.param(4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [count_by_isolation, count_by_signature], ids=lambda f: f.__name__)
+def test_indices_are_binomial_numbers(count: Callable[..., Counts], angles: int) -> None:
+    """Of three angles (1, 3, 3, 1), where formulas for two would say (2, 4, 2)."""
+    found = count(chain(angles), VALUES)
+    assert found.index == tuple(comb(angles, k) for k in range(angles + 1))
+    assert (found.total, found.stable) == (2**angles, 1)
 
 
 @pytest.mark.parametrize("angles", [1, 3])
-def test_what_is_made_of_2_by_2_hessians_is_refused(angles: int) -> None:
-    system = chain(angles)
+def test_paths_of_other_dimensions_are_refused(angles: int) -> None:
     with pytest.raises(DimensionError, match="paths of equilibria"):
-        Family(system, {})
-    with pytest.raises(DimensionError, match="minima and maxima could change places"):
-        first_minor(system, ratios())
+        Family(chain(angles), {})
 
 
 def ratios() -> dict[str, Ratio]:
@@ -83,8 +73,7 @@ def test_the_variety_is_general() -> None:
     assert found.complex_solutions == 2
     assert {c.polynomial.text(("k", "F")) for c in found.components} == {"F"}
     assert {c.kind for c in found.components} == {Kind.BOUNDARY}  # there the equation vanishes identically
-    with pytest.raises(DimensionError):
-        discriminant_variety(chain(1), ratios(), window, without=frozenset({"sign-curve"}))
+    assert discriminant_variety(chain(1), ratios(), window, without=frozenset({"sign-curve"})) == found
 
 
 def test_the_variety_of_three_angles() -> None:

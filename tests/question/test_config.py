@@ -9,8 +9,9 @@ import pytest
 
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
-from ptmcad.question.config import PARAMETERS, load, point_from_mapping, slice_from_mapping, slice_from_options
-from ptmcad.question.slice import FREE_LENGTHS, Count
+from ptmcad.mechanism import ptm
+from ptmcad.question.config import load, point_from_mapping, slice_from_mapping, slice_from_options
+from ptmcad.question.slice import Count
 from ptmcad.text.expressions import axis, constant
 
 CONFIGS = sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml"))
@@ -71,15 +72,19 @@ def test_free_lengths_fixed_as_axes_and_as_expressions(tmp_path: Path) -> None:
     fixed = load(write(tmp_path, AXES + "parameters: {l0: 1/5, l0_2: 2*l0}\ncount: admissible\n"))
     assert fixed.count is Count.ADMISSIBLE
     assert fixed.has_free_lengths
-    assert [fixed.parameters[n].constant() for n in FREE_LENGTHS] == [Fraction(1, 5), Fraction(2, 5), Fraction(1, 5)]
-    assert list(fixed.parameters)[-3:] == list(FREE_LENGTHS)
+    assert [fixed.parameters[n].constant() for n in ptm().free_lengths] == [
+        Fraction(1, 5),
+        Fraction(2, 5),
+        Fraction(1, 5),
+    ]
+    assert list(fixed.parameters)[-3:] == list(ptm().free_lengths)
     assert "l0" not in fixed.parameters
-    assert [fixed.text[n] for n in FREE_LENGTHS] == ["1/5", "2*l0", "1/5"]
+    assert [fixed.text[n] for n in ptm().free_lengths] == ["1/5", "2*l0", "1/5"]
     window = slice_from_options(slice="rho,l0", sets=["F3=-10"])
     assert (window.axes[1].low, window.axes[1].high) == (0, 1)
-    assert [window.parameters[n] for n in FREE_LENGTHS] == [axis(1)] * 3
+    assert [window.parameters[n] for n in ptm().free_lengths] == [axis(1)] * 3
     one = slice_from_options(slice="l0_3,rho", ranges=["l0_3=1/10:1/2"])
-    assert [one.parameters[n] for n in FREE_LENGTHS] == [constant(0), constant(0), axis(0)]
+    assert [one.parameters[n] for n in ptm().free_lengths] == [constant(0), constant(0), axis(0)]
     varying = load(write(tmp_path, AXES + "parameters: {l0: rho/10, l0_1: (rho-1)^2/4}"))
     assert varying.parameters["l0_2"] == axis(0) * Fraction(1, 10)
     assert varying.parameters["l0_1"].evaluate(Fraction(1), Fraction(1)) == 0  # zero inside the window is a length too
@@ -304,7 +309,7 @@ def test_mappings() -> None:
 
 
 def test_every_parameter_can_be_an_axis() -> None:
-    for name, parameter in PARAMETERS.items():
+    for name, parameter in ptm().parameters.items():
         if name != "L1":
             assert parameter.window is not None
             low, high = parameter.window
@@ -328,7 +333,7 @@ def test_a_title_with_a_hidden_character_is_refused(tmp_path: Path) -> None:
         load(path)
 
 
-@pytest.mark.parametrize(("shorthand", "names"), [("k", ("k1", "k2", "k3")), ("l0", FREE_LENGTHS)])
+@pytest.mark.parametrize(("shorthand", "names"), [("k", ("k1", "k2", "k3")), ("l0", ptm().free_lengths)])
 def test_a_value_for_all_springs_that_none_takes_is_refused_at_points_too(
     shorthand: str, names: tuple[str, ...]
 ) -> None:

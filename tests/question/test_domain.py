@@ -18,6 +18,7 @@ from ptmcad.certified.intervals import certified_intervals
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError, GeometryError, PtmcadError
 from ptmcad.exact.engine import exact_map
+from ptmcad.mechanism import Kind
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.domain import prove, prove_slice, unproved
 from ptmcad.question.positivity import READING_WORK, decide
@@ -139,7 +140,7 @@ def test_undecided_is_read_but_not_certified(monkeypatch: pytest.MonkeyPatch) ->
     decide.cache_clear()
     monkeypatch.setattr(definite, "MAX_WORK", 0)
     slice = slice_from_mapping(record(L1="(m^3 + n^3 - m*n - 1/7)^2 + 1e-40", l0="1/5"))
-    assert unproved("L1", slice.parameters["L1"], slice.axes).startswith(
+    assert unproved("L1", Kind.LENGTH, slice.parameters["L1"], slice.axes).startswith(
         "it is not proved that L1 is positive in the whole window: its sign is not decided near m = "
     )
     with pytest.raises(GeometryError, match="not proved that L1 is positive"):
@@ -186,10 +187,10 @@ def test_a_line_need_not_lie_in_the_window(at: str, sign: bool) -> None:
     value = parse(at).constant()
     axes = (slice.axes[0], Axis("m", value, value))
     if sign:
-        prove(on_line, axes)
+        prove(slice.model, on_line, axes)
     else:
         with pytest.raises(GeometryError, match="l0_3 is -"):
-            prove(on_line, axes)
+            prove(slice.model, on_line, axes)
         pytest.importorskip("numba")
         with pytest.raises(GeometryError, match=r"l0_3 is -.* at rho = 3/2, m = 1"):
             certified_intervals(slice, "rho", {"m": at}, 6)

@@ -15,7 +15,8 @@ from support.shipped_records import EXACT
 
 from ptmcad import RegionMap, classify, load
 from ptmcad.errors import LimitReached
-from ptmcad.question.config import PARAMETERS, RECORD_KEYS
+from ptmcad.mechanism import ptm
+from ptmcad.question.config import RECORD_KEYS
 from ptmcad.question.slice import Count
 from ptmcad.show.document import FORMAT
 
@@ -30,10 +31,10 @@ def test_the_schema_is_valid() -> None:
 def test_the_keys_are_those_of_config() -> None:
     properties = SCHEMA["properties"]
     assert tuple(properties) == RECORD_KEYS
-    assert tuple(properties["parameters"]["properties"]) == tuple(PARAMETERS)
+    assert tuple(properties["parameters"]["properties"]) == tuple(ptm().parameters)
     assert properties["count"]["enum"] == [member.value for member in Count]
     defaults = {name: str(entry["default"]) for name, entry in properties["parameters"]["properties"].items()}
-    assert defaults == {name: parameter.default for name, parameter in PARAMETERS.items()}
+    assert defaults == {name: parameter.default for name, parameter in ptm().parameters.items()}
 
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)

@@ -22,6 +22,7 @@ from support.maps import shipped
 
 import ptmcad
 from ptmcad.answer.regionmap import Cell, Component, Kind, Region, RegionMap, Stack, Status, System, Wall
+from ptmcad.mechanism import known_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.show.render import draw
 from ptmcad.show.render.axes import scale_of, symbol, unit
@@ -73,7 +74,9 @@ def bands(
 
     numbers = range(len(counts))
     return RegionMap(
-        slice=Slice("bands", "other", (Axis(names[0], *window[0]), Axis(names[1], *window[1])), {}, title=title),
+        slice=Slice(
+            "bands", known_of("other"), (Axis(names[0], *window[0]), Axis(names[1], *window[1])), {}, title=title
+        ),
         status=Status.EXACT,
         system=System((), (), "0", (), ()),
         base=base,
@@ -460,7 +463,7 @@ def test_symbols(name: str, printed: str) -> None:
 def test_units() -> None:
     assert [unit(ptmcad.load(ROOT / "configs" / "fig3.yaml"), k) for k in (0, 1)] == ["length", "force"]
     assert [unit(ptmcad.load(ROOT / "configs" / "stiffness.yaml"), k) for k in (0, 1)] == ["force/length", "length"]
-    assert unit(replace(ptmcad.load(ROOT / "configs" / "fig3.yaml"), mechanism="other"), 0) == ""
+    assert unit(replace(ptmcad.load(ROOT / "configs" / "fig3.yaml"), model=known_of("other")), 0) == ""
 
 
 @pytest.mark.parametrize("low", ["0", "-1", "1e-20", "-1e20", "123456.789", "1e400"])

@@ -23,6 +23,7 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
+from ptmcad.mechanism import known_of
 from ptmcad.question.config import load, slice_from_options
 from ptmcad.question.slice import Point
 from ptmcad.show.render.axes import scale_of
@@ -202,7 +203,7 @@ def test_titles_of_any_letters_survive_the_record(title: str) -> None:
 
 def test_a_slice_that_no_record_gives_is_said_to_be_so(shipped: Shipped) -> None:
     result = shipped("fig4")
-    odd = replace(result, slice=replace(result.slice, mechanism="another"))
+    odd = replace(result, slice=replace(result.slice, model=known_of("another")))
     assert reproduction(odd.slice).record is None
     assert "No problem record gives this slice" in page(odd)
 

@@ -224,8 +224,11 @@ def _slice(
     system: Model | None,
     **rest: Any,
 ) -> Slice:
+    model = mechanism or system
+    if model is None:
+        raise ValueError("the slice lacks the key 'mechanism'")
     known = {name: _parsed(node, axes) for name, node in parameters.items()}
-    return Slice(model=mechanism or system or known_of(""), axes=axes, parameters=known, **rest)
+    return Slice(model=model, axes=axes, parameters=known, **rest)
 
 
 def _mechanism(node: Node) -> Model:
