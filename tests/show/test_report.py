@@ -109,7 +109,7 @@ def test_nothing_of_a_result_becomes_markup(shipped: Shipped) -> None:
     result = shipped("fig3")
     evil = replace(
         result,
-        slice=replace(result.slice, title=HOSTILE, mechanism=HOSTILE[:90], text={"F3": HOSTILE}),
+        slice=replace(result.slice, title=HOSTILE, model=known_of(HOSTILE[:90]), text={"F3": HOSTILE}),
         components=tuple(replace(c, left_out=HOSTILE) if c.left_out else c for c in result.components),
         plan=tuple(replace(s, what=HOSTILE, reason=HOSTILE) for s in result.plan),
         versions={HOSTILE: HOSTILE},
