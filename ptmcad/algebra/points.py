@@ -16,7 +16,7 @@ from flint import fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 
 from ptmcad.algebra.fibre import Fibre, RationalPolynomial, evaluate, hermite_matrix, signature
 from ptmcad.algebra.number_field import Element, Modulus, RealField, Residue, polynomial_at
-from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
+from ptmcad.algebra.real_roots import RealRoot, isolate, root_bound, sign_at
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +45,18 @@ class Points:
     total: int
 
 
-def points(algebra: Fibre, bound: int = 1) -> Points:
-    """The points of a fibre all of whose real points have unknowns of at most ``bound``, which bounds the search."""
+def points(algebra: Fibre, bound: int | None = 1) -> Points:
+    """The points of a fibre.
+
+    Parameters
+    ----------
+    bound : of the unknowns at all real points, where one is known; it bounds the search.
+    """
     form, matrix, characteristic, distinct = _separating_form(algebra)
     factors = [(factor, int(multiplicity)) for factor, multiplicity in characteristic.numer().factor()[1]]
     radical = _product([factor for factor, _ in factors])
     numerators = _trace_polynomials(algebra, matrix, radical)
-    limit = fmpq(bound * sum(form) + 1)
+    limit = root_bound(radical) if bound is None else fmpq(bound * sum(form) + 1)
     coordinates: dict[int, tuple[Modulus, list[Residue]]] = {}
     found = []
     for root in isolate(radical, -limit, limit):
@@ -72,10 +77,12 @@ def value_at(point: RealPoint, p: RationalPolynomial) -> Element:
     return polynomial_at(point.field, point.unknowns, p)
 
 
-def real_values(algebra: Fibre, p: RationalPolynomial, bound: fmpq) -> tuple[RealRoot, ...]:
-    """The real numbers in (-bound, bound) that p takes at complex points of the fibre, in increasing order."""
+def real_values(algebra: Fibre, p: RationalPolynomial, bound: fmpq | None = None) -> tuple[RealRoot, ...]:
+    """The real numbers, in (-bound, bound), that p takes at complex points of the fibre, in increasing order."""
     factors = evaluate(algebra, p).charpoly().numer().factor()[1]
-    return isolate(_product([factor for factor, _ in factors]), -bound, bound)
+    radical = _product([factor for factor, _ in factors])
+    limit = root_bound(radical) if bound is None else bound
+    return isolate(radical, -limit, limit)
 
 
 def _separating_form(algebra: Fibre) -> tuple[tuple[int, ...], fmpq_mat, fmpq_poly, int]:

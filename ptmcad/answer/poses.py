@@ -1,4 +1,4 @@
-"""Equilibria of the mechanism at one rational point, with everything that a designer asks of a pose.
+"""The solutions at one rational point: equilibria with everything that a designer asks of a pose.
 
 Guarantee: all real equilibria are there; every number is exact or an `Enclosure`; what is zero is known to be zero.
 """
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.regionmap import Status
+from ptmcad.mechanism import Model
 from ptmcad.text.enclosure import Enclosure
 
 Vector = tuple[Enclosure, Enclosure]
@@ -37,32 +38,42 @@ class Pose:
 
     Attributes
     ----------
-    angles : th1, th2 in radians, in (-pi, pi].
+    angles : the unknown angles in radians, in (-pi, pi].
     degrees : the same in degrees, exact when rational.
-    cosines_sines : cos th1, sin th1, cos th2, sin th2.
-    nodes : A1, A2, A3, A4 to their coordinates, in the unit of the lengths.
-    energy : of springs and loads, in force times length.
-    eigenvalues : of the Hessian by the angles, the smaller first.
-    multiplicity : of the solution in its fibre; 1 exactly when the Hessian is nonsingular.
+    cosines_sines : cosine and sine of each.
+    reals : the unknowns on the line.
+    nodes : the mechanism's points to their coordinates, in the unit of the lengths; none of another system.
+    energy : of springs and loads, in force times length, or a system's potential; None where there is none.
+    eigenvalues : of the Hessian by the unknowns, the smallest first; none without a potential.
+    multiplicity : of the solution in its fibre; 1 exactly when the Jacobian is nonsingular.
     index : number of negative eigenvalues when the Hessian is nonsingular, else None.
-    stable : whether the Hessian is positive definite; None when it is singular.
-    flat : whether all four nodes lie on one line with A1A2 (both sines are exactly zero).
+    stable : whether the Hessian is positive definite, or a system's conditions hold; None when it is singular, or
+        nothing says what stable is.
+    flat : whether all points of a mechanism lie on the x axis, exactly.
     admissible : whether it is stable with every spring longer than its free length, as cables demand; None when the
         springs have no free lengths.
     """
 
-    angles: tuple[Enclosure, Enclosure]
-    degrees: tuple[Enclosure, Enclosure]
-    cosines_sines: tuple[Enclosure, Enclosure, Enclosure, Enclosure]
+    angles: tuple[Enclosure, ...]
+    degrees: tuple[Enclosure, ...]
+    cosines_sines: tuple[Enclosure, ...]
     nodes: Mapping[str, Vector]
     springs: tuple[Spring, ...]
-    energy: Enclosure
-    eigenvalues: tuple[Enclosure, Enclosure]
+    energy: Enclosure | None
+    eigenvalues: tuple[Enclosure, ...]
     multiplicity: int
     index: int | None
     stable: bool | None
     flat: bool
     admissible: bool | None = None
+    reals: tuple[Enclosure, ...] = ()
+
+    @property
+    def known_energy(self) -> Enclosure:
+        """The energy of a pose that has one; raises `ValueError` for others."""
+        if self.energy is None:
+            raise ValueError("solutions of equations have no energy")
+        return self.energy
 
 
 @with_methods
@@ -72,7 +83,8 @@ class Poses:
 
     Attributes
     ----------
-    parameters : every parameter of the mechanism to its value.
+    model : the mechanism or system.
+    parameters : every one of its parameters to its value.
     equilibria : stable ones first, then by energy.
     status : EXACT; CERTIFIED with free lengths, none degenerate; ON_VARIETY when an equilibrium is degenerate;
         UNDECIDED with no equilibria when there are infinitely many or they could not be separated; see ``remark``.
@@ -80,13 +92,18 @@ class Poses:
     bits : the precision that was needed.
     """
 
-    mechanism: str
+    model: Model
     parameters: Mapping[str, Fraction]
     equilibria: tuple[Pose, ...]
     status: Status
     digits: int
     bits: int
     remark: str = ""
+
+    @property
+    def mechanism(self) -> str:
+        """The model's name."""
+        return self.model.name
 
     @property
     def stable(self) -> int:

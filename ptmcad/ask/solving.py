@@ -7,13 +7,15 @@ from fractions import Fraction
 
 from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
 from ptmcad.errors import ConfigError, shown
-from ptmcad.mechanism import ptm
+from ptmcad.mechanism import Model, ptm
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import point_from_mapping
+from ptmcad.question.slice import have_free_lengths
+from ptmcad.text.expressions import constant
 
 
-def solve(digits: int = DIGITS, **parameters: object) -> Poses:
-    """All equilibria of the paper's mechanism at a rational point.
+def solve(digits: int = DIGITS, model: Model | None = None, **parameters: object) -> Poses:
+    """All equilibria of the paper's mechanism, or solutions of another model, at a rational point.
 
     >>> poses = solve(rho="1", L2="3/2")
     >>> [pose.angles[0].text(6) for pose in poses.equilibria if pose.stable]
@@ -22,9 +24,10 @@ def solve(digits: int = DIGITS, **parameters: object) -> Poses:
     Parameters
     ----------
     digits : significant digits that every number settles, 1 to `MAX_DIGITS`; more digits cost more time.
-    parameters : by the names of a problem record (L1, L2, rho, k or k1, k2, k3, F3, F4, F3x, F4x, l0 or l0_1, l0_2,
-        l0_3), with its defaults: lengths 1, stiffness 100, no load, free lengths 0. Text, int, Fraction or Decimal; no
-        float.
+    model : the mechanism or system; the paper's mechanism when None.
+    parameters : by the names of a problem record (of the paper's mechanism L1, L2, rho, k or k1, k2, k3, F3, F4, F3x,
+        F4x, l0 or l0_1, l0_2, l0_3), with its defaults: lengths 1, stiffness 100, no load, free lengths 0. Text, int,
+        Fraction or Decimal; no float.
 
     Raises
     ------
@@ -33,22 +36,37 @@ def solve(digits: int = DIGITS, **parameters: object) -> Poses:
     """
     if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MAX_DIGITS:
         raise ConfigError(f"{shown(repr(digits), 60)} is not a number of digits from 1 to {MAX_DIGITS}", key="digits")
-    return poses_at(point_from_mapping(parameters), digits)
+    model = model or ptm()
+    return poses_at(model, point_from_mapping(parameters, model), digits)
 
 
-def poses_at(parameters: Mapping[str, Fraction], digits: int) -> Poses:
-    """All equilibria of the paper's mechanism; only the engine that is used is loaded.
+def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> Poses:
+    """All solutions of a model; only the engine that is used is loaded.
 
     Parameters
     ----------
-    parameters : all of the mechanism's, with the free lengths if some is not zero.
+    parameters : all of the model's, with the free lengths if some is not zero.
     digits : significant digits that every enclosure settles.
+
+    Raises
+    ------
+    ConfigError
+        For springs with a free length in another mechanism than the paper's.
     """
-    if any(parameters.get(name) for name in ptm().free_lengths):
+    if needs_intervals(model, parameters):
+        if model != ptm():
+            raise ConfigError(
+                f"springs with a free length have known poses in the paper's mechanism only, and this is {model.name}"
+            )
         with loading("the certified engine"):
             from ptmcad.certified.poses import certified_poses
         check_room("the certified engine")
         return certified_poses(parameters, digits)
     from ptmcad.exact.poses import exact_poses
 
-    return exact_poses(parameters, digits)
+    return exact_poses(model, {n: v for n, v in parameters.items() if n not in model.free_lengths}, digits)
+
+
+def needs_intervals(model: Model, parameters: Mapping[str, Fraction]) -> bool:
+    """Whether some spring has a free length at a point."""
+    return have_free_lengths(model, {name: constant(value) for name, value in parameters.items()})

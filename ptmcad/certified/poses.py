@@ -61,16 +61,16 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     counter = point_counter(slice)
     counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
     if not counts.decided:
-        return Poses(MECHANISM.name, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
+        return Poses(MECHANISM, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
     poses, most = [], 0
     for solution in counts.solutions:
         pose, bits = _pose(parameters, counter.equilibria_at(Fraction(0), Fraction(0)).equations, solution, digits)
         most = max(most, bits)
         if pose is None:
-            return Poses(MECHANISM.name, parameters, (), Status.UNDECIDED, digits, most, ZERO)
+            return Poses(MECHANISM, parameters, (), Status.UNDECIDED, digits, most, ZERO)
         poses.append(pose)
     peaks = _PEAKS.get(counts.cones or 0, "")
-    return Poses(MECHANISM.name, parameters, tuple(_ordered(poses)), Status.CERTIFIED, digits, most, peaks)
+    return Poses(MECHANISM, parameters, tuple(_ordered(poses)), Status.CERTIFIED, digits, most, peaks)
 
 
 def _point_slice(parameters: Mapping[str, Fraction]) -> Slice:
@@ -82,10 +82,10 @@ def _point_slice(parameters: Mapping[str, Fraction]) -> Slice:
 
 def _ordered(poses: Sequence[Pose]) -> list[Pose]:
     """Stable ones first, then by energy; where energies are not separated, larger angles come first."""
-    by_energy = sorted(poses, key=lambda pose: pose.energy.center)
+    by_energy = sorted(poses, key=lambda pose: pose.known_energy.center)
     groups: list[list[Pose]] = []
     for pose in by_energy:
-        if groups and pose.energy.low <= max(p.energy.high for p in groups[-1]):
+        if groups and pose.known_energy.low <= max(p.known_energy.high for p in groups[-1]):
             groups[-1].append(pose)
         else:
             groups.append([pose])

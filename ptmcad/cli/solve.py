@@ -13,7 +13,6 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import ptm
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, point_from_options
 
@@ -103,16 +102,16 @@ def command(
     start = "poses" if name is None else file_name(name, "--name")
     names = file_names(start, formats, landscape)
     with held(limits):
-        parameters = point_from_options(config, {} if at is None else point_of(at), sets)
+        model, parameters = point_from_options(config, {} if at is None else point_of(at), sets)
         if names:
             check_writable(out, names)
         from ptmcad.ask.classification import load_certified
-        from ptmcad.ask.solving import poses_at
+        from ptmcad.ask.solving import needs_intervals, poses_at
 
         with clock_stopped(limits.timeout):  # the time that imports and compiling take is not the computation's
-            if any(parameters.get(length) for length in ptm().free_lengths):
+            if needs_intervals(model, parameters):
                 load_certified()
-        poses = poses_at(parameters, digits)
+        poses = poses_at(model, parameters, digits)
         if names:
             save(poses, out, start, names)
     if "table" in formats:

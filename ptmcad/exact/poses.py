@@ -14,28 +14,29 @@ from itertools import pairwise
 from flint import ctx, fmpq
 
 from ptmcad.algebra.fibre import Fibre
+from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.points import RealPoint, points, real_values
 from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.exact.counting import DegeneratePoint, point_system
+from ptmcad.exact.counting import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.models.potential import geometry_of, system_from
-from ptmcad.exact.models.system import polynomial_at
-from ptmcad.exact.statics import Model, State, pose_of, state_at
-from ptmcad.mechanism import ptm
+from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, polynomial_at
+from ptmcad.exact.statics import PointModel, State, is_positive, pose_of, state_at
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
 
 INFINITELY_MANY = "infinitely many equilibria"
 COMPLEX_DOUBLE = "two solutions that are not real coincide"
 
 
-def exact_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
-    """All equilibria of the paper's mechanism.
+def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int) -> Poses:
+    """All solutions of a mechanism without free lengths, or of another system.
 
     Parameters
     ----------
-    parameters : all of the mechanism's ``without_free_lengths``; the free lengths are zero.
+    parameters : all of the model's ``without_free_lengths``; free lengths are zero.
     digits : significant digits that every enclosure settles.
 
     Raises
@@ -43,43 +44,62 @@ def exact_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     ArithmeticError
         When two ways to the same fact disagree, which would be a fault of this program.
     """
-    mechanism = ptm()
-    system = system_from(mechanism)
+    system = system_from(given)
     values = {name: from_fraction(v) for name, v in parameters.items()}
     try:
         point = point_system(system, values)
     except DegeneratePoint:
-        return Poses(mechanism.name, parameters, (), Status.UNDECIDED, digits, 0, INFINITELY_MANY)
-    found = points(point.algebra)
-    coordinates = {
-        name: (polynomial_at(system, x, values), polynomial_at(system, y, values))
-        for name, (x, y) in geometry_of(mechanism).nodes.items()
-    }
-    assert system.potential is not None
-    hessian = (point.jacobian[0][0], point.jacobian[0][1], point.jacobian[1][1])
-    springs = tuple((s.name, s.start, s.end, value_at(s.stiffness, parameters)) for s in mechanism.springs)
-    model = Model(springs, coordinates, polynomial_at(system, system.potential, values), hessian)
-    states = _states(model, found.real)
+        return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, INFINITELY_MANY)
+    is_compact = not system.ring.reals
+    found = points(point.algebra, 1 if is_compact else None)
+    model = _at_point(given, system, point, values, parameters)
+    states = [state for state in _states(model, found.real) if _counts(model, state)]
     results = [pose_of(model, state, digits) for state in states]
     poses = [pose for pose, _ in results]
     degenerate = any(pose.multiplicity > 1 for pose in poses)
-    if not degenerate:
+    if not degenerate and system.has_index and system.is_on_torus:
         _check_euler_sum(poses)
-    energies = _energy_ranks(poses, states, point.algebra, model)
+    energies = _energy_ranks(poses, states, point.algebra, model, is_compact)
     # of equal energies the larger value of the separating form comes first, in which ``found.real`` increases
     order = sorted(range(len(poses)), key=lambda k: (poses[k].stable is not True, energies[k], -k))
     return Poses(
-        mechanism.name,
+        given,
         parameters,
         tuple(poses[k] for k in order),
         Status.ON_VARIETY if degenerate else Status.EXACT,
         digits,
-        max(bits for _, bits in results),
+        max((bits for _, bits in results), default=0),
         COMPLEX_DOUBLE if not degenerate and found.distinct < found.total else "",
     )
 
 
-def _states(model: Model, found: Sequence[RealPoint]) -> list[State]:
+def _at_point(
+    given: Model,
+    system: ParametricSystem,
+    point: PointSystem,
+    values: Mapping[str, fmpq],
+    parameters: Mapping[str, Fraction],
+) -> PointModel:
+    """The model at a point, with its places and springs where it is a mechanism."""
+    springs: tuple[tuple[str, str, str, Fraction], ...] = ()
+    nodes: dict[str, tuple[RationalPolynomial, RationalPolynomial]] = {}
+    if isinstance(given, Mechanism):
+        springs = tuple((s.name, s.start, s.end, value_at(s.stiffness, parameters)) for s in given.springs)
+        nodes = {
+            name: (polynomial_at(system, x, values), polynomial_at(system, y, values))
+            for name, (x, y) in geometry_of(given).nodes.items()
+        }
+    potential = None if system.potential is None else polynomial_at(system, system.potential, values)
+    angles = len(system.ring.angles)
+    return PointModel(angles, springs, nodes, potential, point.jacobian, point.inequalities, point.stability)
+
+
+def _counts(model: PointModel, state: State) -> bool:
+    """Whether a solution satisfies the inequalities."""
+    return all(map(is_positive, state.conditions[: len(model.inequalities)]))
+
+
+def _states(model: PointModel, found: Sequence[RealPoint]) -> list[State]:
     """The equilibria at real points; those at roots of one polynomial share the work."""
     first: dict[int, State] = {}
     states = []
@@ -91,27 +111,33 @@ def _states(model: Model, found: Sequence[RealPoint]) -> list[State]:
 
 
 def _check_euler_sum(poses: Sequence[Pose]) -> None:
-    total = sum(1 if pose.index in (0, 2) else -1 for pose in poses)
-    if total != 0 or len(poses) not in (4, 6):
+    total = sum(-1 if (pose.index or 0) % 2 else 1 for pose in poses)
+    if total != 0:
         raise ArithmeticError(f"{len(poses)} equilibria with Euler sum {total}")
 
 
-def _energy_ranks(poses: Sequence[Pose], states: Sequence[State], algebra: Fibre, model: Model) -> list[int]:
-    """A number for each pose, ordered as their energies are and equal where these are."""
-    by_energy = sorted(range(len(poses)), key=lambda k: poses[k].energy.center)
-    if all(poses[a].energy.high < poses[b].energy.low for a, b in pairwise(by_energy)):
+def _energy_ranks(
+    poses: Sequence[Pose], states: Sequence[State], algebra: Fibre, model: PointModel, is_compact: bool
+) -> list[int]:
+    """A number for each pose, ordered as their energies are and equal where these are, as all are without energies."""
+    if model.potential is None:
+        return [0] * len(poses)
+    energies = [pose.energy for pose in poses if pose.energy is not None]
+    by_energy = sorted(range(len(poses)), key=lambda k: energies[k].center)
+    if all(energies[a].high < energies[b].low for a, b in pairwise(by_energy)):
         return [by_energy.index(k) for k in range(len(poses))]
-    bound = 1 + sum((abs(c) for c in model.potential.values()), fmpq(0))  # cosines and sines are at most 1
+    # cosines and sines are at most 1
+    bound = 1 + sum((abs(c) for c in model.potential.values()), fmpq(0)) if is_compact else None
     values = real_values(algebra, model.potential, bound)
-    return [_rank(state, values) for state in states]
+    return [_rank(state.energy, values) for state in states if state.energy is not None]
 
 
-def _rank(state: State, values: Sequence[RealRoot]) -> int:
+def _rank(energy: Element, values: Sequence[RealRoot]) -> int:
     """Which of the isolated real numbers the energy is."""
     bits = 64
     while True:
         with ctx.workprec(bits):
-            ball = state.energy.ball(state.energy.field.evaluation())
+            ball = energy.ball(energy.field.evaluation())
             met = [k for k, root in enumerate(values) if not (ball < root.low or ball > root.high)]
         if len(met) == 1:
             return met[0]

@@ -9,121 +9,132 @@ an eigenvalue is a root of a quadratic over it; and an angle is a rational numbe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from math import gcd, isqrt
-from typing import TypeVar
+from math import gcd
 
-from flint import arb, ctx, fmpq, nmod
+from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.points import RealPoint, value_at
 from ptmcad.answer.poses import Pose, Spring, Vector
 from ptmcad.exact.models.system import RationalPolynomial
-from ptmcad.text.balls import ball_of, enclosed
+from ptmcad.exact.stiffness import Number, Stiffness, eigenvalues, square_root, stiffness_of
+from ptmcad.text.balls import ball_of
 from ptmcad.text.enclosure import Enclosure
 
-_Ring = TypeVar("_Ring", fmpq, nmod)
 MAX_BITS = 2**22
 """Parameters of a thousand digits need a hundredth of them: a number that is still open is rational unnoticed."""
-_ORDERS = range(3, 43)
-"""Orders of roots of unity: a field of degree d has cosines of those with totient at most 2d, and d is at most 6."""
+_MIN_ORDER = 42
+"""Orders of roots of unity that are tried at least: up to degree 6 a field has cosines of no others."""
 
 
 @dataclass(frozen=True, slots=True)
-class Model:
-    """The mechanism at rational values of its parameters: polynomials in cosines and sines of the angles.
+class PointModel:
+    """A mechanism or system at rational values of its parameters: polynomials in the coordinates of the unknowns.
 
     Attributes
     ----------
+    angles : their number; their cosines and sines are the first coordinates.
     springs : name, ends and stiffness of each.
-    hessian : its entries 11, 12 and 22.
+    potential : None where there is none.
+    jacobian : of a potential its Hessian.
+    inequalities, stability : the system's.
     """
 
+    angles: int
     springs: tuple[tuple[str, str, str, Fraction], ...]
     nodes: Mapping[str, tuple[RationalPolynomial, RationalPolynomial]]
-    potential: RationalPolynomial
-    hessian: tuple[RationalPolynomial, RationalPolynomial, RationalPolynomial]
+    potential: RationalPolynomial | None
+    jacobian: tuple[tuple[RationalPolynomial, ...], ...]
+    inequalities: tuple[RationalPolynomial, ...] = ()
+    stability: tuple[RationalPolynomial, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """One equilibrium in exact numbers: elements of one real field.
+    """One solution in exact numbers: elements of one real field.
 
     Attributes
     ----------
-    unknowns : cos th1, sin th1, cos th2, sin th2.
+    unknowns : cosine and sine of each angle, then the real unknowns.
     nodes : coordinates x, y of each node.
     squares : the springs' lengths squared.
-    trace, determinant, spread : of the Hessian; the last is the squared difference of its eigenvalues.
-    eigenvalue : a rational one, when there is one and the other is irrational, or both are equal.
+    energy : the potential; None where there is none.
+    conditions : the values of inequalities and stability conditions.
     """
 
     point: RealPoint
     unknowns: tuple[Element, ...]
     nodes: Mapping[str, tuple[Element, Element]]
     squares: tuple[Element, ...]
-    energy: Element
-    trace: Element
-    determinant: Element
-    spread: Element
-    eigenvalue: Fraction | None
+    energy: Element | None
+    stiffness: Stiffness
+    conditions: tuple[Element, ...]
 
     def conjugate(self, point: RealPoint) -> State:
-        """The equilibrium at another root of the same polynomial: the same residues."""
+        """The solution at another root of the same polynomial: the same residues."""
         field = point.field
+
+        def moved(element: Element) -> Element:
+            return element.conjugate(field)
+
+        def moved_or_none(element: Element | None) -> Element | None:
+            return None if element is None else element.conjugate(field)
+
+        stiffness = self.stiffness
         return State(
             point,
             point.unknowns,
-            {name: (x.conjugate(field), y.conjugate(field)) for name, (x, y) in self.nodes.items()},
-            tuple(square.conjugate(field) for square in self.squares),
-            self.energy.conjugate(field),
-            self.trace.conjugate(field),
-            self.determinant.conjugate(field),
-            self.spread.conjugate(field),
-            self.eigenvalue,
+            {name: (moved(x), moved(y)) for name, (x, y) in self.nodes.items()},
+            tuple(map(moved, self.squares)),
+            moved_or_none(self.energy),
+            stiffness._replace(
+                matrix=tuple(tuple(map(moved, row)) for row in stiffness.matrix),
+                trace=moved_or_none(stiffness.trace),
+                spread=moved_or_none(stiffness.spread),
+            ),
+            tuple(map(moved, self.conditions)),
         )
 
 
-@dataclass(frozen=True, slots=True)
-class _Number:
-    """A number as its exact value where it is rational, and a ball."""
-
-    exact: Fraction | None
-    ball: arb
-
-    def enclosure(self, digits: int) -> Enclosure | None:
-        if self.exact is not None:
-            return Enclosure(self.exact, self.exact)
-        return enclosed(self.ball, digits)
-
-
-def state_at(model: Model, point: RealPoint) -> State:
-    """The equilibrium at a real point of the fibre.
+def state_at(model: PointModel, point: RealPoint) -> State:
+    """The solution at a real point of the fibre.
 
     Raises
     ------
     ArithmeticError
-        When the Hessian is singular at a simple point or regular at a multiple one.
+        When the Jacobian is singular at a simple point or regular at a multiple one.
     """
     nodes = {name: (value_at(point, x), value_at(point, y)) for name, (x, y) in model.nodes.items()}
     squares = []
     for _, start, end, _ in model.springs:
         dx, dy = (nodes[end][i] - nodes[start][i] for i in (0, 1))
         squares.append(dx * dx + dy * dy)
-    h11, h12, h22 = (value_at(point, h) for h in model.hessian)
-    trace, determinant = h11 + h22, h11 * h22 - h12 * h12
-    if determinant.is_zero != (point.multiplicity > 1):
-        raise ArithmeticError(f"a point of multiplicity {point.multiplicity} contradicts its Hessian")
-    difference = h11 - h22
-    spread = difference * difference + (h12 * h12).times(fmpq(4))
-    energy = value_at(point, model.potential)
-    eigenvalue = _rational_eigenvalue(trace, determinant)
-    return State(point, point.unknowns, nodes, tuple(squares), energy, trace, determinant, spread, eigenvalue)
+    matrix = tuple(tuple(value_at(point, entry) for entry in row) for row in model.jacobian)
+    stiffness = stiffness_of(matrix, model.potential is not None)
+    if bool(stiffness.nullity) != (point.multiplicity > 1):
+        raise ArithmeticError(f"a point of multiplicity {point.multiplicity} contradicts its Jacobian")
+    energy = None if model.potential is None else value_at(point, model.potential)
+    conditions = tuple(value_at(point, p) for p in (*model.inequalities, *model.stability))
+    return State(point, point.unknowns, nodes, tuple(squares), energy, stiffness, conditions)
 
 
-def pose_of(model: Model, state: State, digits: int) -> tuple[Pose, int]:
+def is_positive(element: Element) -> bool:
+    """Whether a number is greater than zero, decided exactly."""
+    if element.is_zero:
+        return False
+    bits = 64
+    while True:
+        with ctx.workprec(bits):
+            ball = element.ball(element.field.evaluation())
+            if not ball.contains(0):
+                return bool(ball > 0)
+        bits *= 2
+
+
+def pose_of(model: PointModel, state: State, digits: int) -> tuple[Pose, int]:
     """The pose with all numbers settled to so many digits, and the bits that this took.
 
     Raises
@@ -151,52 +162,56 @@ def pose_of(model: Model, state: State, digits: int) -> tuple[Pose, int]:
             )
 
 
-def _numbers(model: Model, state: State) -> Iterator[_Number]:
+def _numbers(model: PointModel, state: State) -> Iterator[Number]:
     """The numbers of a pose at the context's precision, in the order in which `_assembled` takes them."""
     at = state.point.field.evaluation()
 
-    def number(element: Element) -> _Number:
+    def number(element: Element) -> Number:
         exact = element.rational
-        return _Number(exact, element.ball(at) if exact is None else ball_of(exact))
+        return Number(exact, element.ball(at) if exact is None else ball_of(exact))
 
     yield from map(number, state.unknowns)
-    for cosine, sine in (state.unknowns[:2], state.unknowns[2:]):
+    for k in range(model.angles):
+        cosine, sine = state.unknowns[2 * k : 2 * k + 2]
         angle = _angle(number(cosine), number(sine))
         yield angle
         yield _degrees(angle, cosine)
     for x, y in state.nodes.values():
         yield number(x)
         yield number(y)
-    for (*_, k), square in zip(model.springs, state.squares, strict=True):
-        length = _square_root(number(square))
+    for (*_, stiffness), square in zip(model.springs, state.squares, strict=True):
+        length = square_root(number(square))
         yield length
-        yield _Number(None if length.exact is None else k * length.exact, length.ball * ball_of(k))
-    yield number(state.energy)
-    yield from _eigenvalues(number(state.trace), number(state.spread), state.eigenvalue)
+        yield Number(None if length.exact is None else stiffness * length.exact, length.ball * ball_of(stiffness))
+    if state.energy is not None:
+        yield number(state.energy)
+        yield from eigenvalues(state.stiffness, number)
 
 
-def _angle(cosine: _Number, sine: _Number) -> _Number:
+def _angle(cosine: Number, sine: Number) -> Number:
     """The angle in (-pi, pi]."""
     if sine.exact != 0:
-        return _Number(None, arb.atan2(sine.ball, cosine.ball))
-    return _Number(Fraction(0), arb(0)) if cosine.exact == 1 else _Number(None, arb.pi())
+        return Number(None, arb.atan2(sine.ball, cosine.ball))
+    return Number(Fraction(0), arb(0)) if cosine.exact == 1 else Number(None, arb.pi())
 
 
-def _degrees(angle: _Number, cosine: Element) -> _Number:
+def _degrees(angle: Number, cosine: Element) -> Number:
     """The angle in degrees; it is exact when it is rational, that is when cos + i sin is a root of unity."""
     if angle.exact is not None:
         return angle
     if cosine.rational == -1:
-        return _Number(Fraction(180), arb(180))
+        return Number(Fraction(180), arb(180))
     turns = angle.ball / (2 * arb.pi())
     if turns.rel_accuracy_bits() < ctx.prec // 2:
-        return _Number(None, arb.nan())  # a wide ball holds many fractions, and each is tried by algebra
-    for order in _ORDERS:
+        return Number(None, arb.nan())  # a wide ball holds many fractions, and each is tried by algebra
+    # a field of degree d has cosines of those of totient at most 2d, and n is at most twice its totient's square
+    degree = cosine.field.modulus.degree
+    for order in range(3, (_MIN_ORDER if degree <= 6 else 8 * degree**2) + 1):
         number = (turns * order).unique_fmpz()
         # other fractions are in lowest terms with a smaller order, and 0 and 1/2 are where the sine is zero
         if number is not None and gcd(int(number), order) == 1 and _chebyshev(order, cosine).rational == 1:
-            return _Number(Fraction(360 * int(number), order), turns * 360)
-    return _Number(None, turns * 360)
+            return Number(Fraction(360 * int(number), order), turns * 360)
+    return Number(None, turns * 360)
 
 
 def _chebyshev(order: int, cosine: Element) -> Element:
@@ -207,78 +222,35 @@ def _chebyshev(order: int, cosine: Element) -> Element:
     return this
 
 
-def _square_root(square: _Number) -> _Number:
-    if square.exact is None:
-        return _Number(None, square.ball.sqrt())
-    numerator, denominator = isqrt(square.exact.numerator), isqrt(square.exact.denominator)
-    root = Fraction(numerator, denominator)
-    return _Number(root if root * root == square.exact else None, ball_of(square.exact).sqrt())
-
-
-def _rational_eigenvalue(trace_element: Element, determinant_element: Element) -> Fraction | None:
-    """A rational eigenvalue of the Hessian when there is one and the other is irrational, or both are equal.
-
-    With coefficients t_i of the trace and d_i of the determinant in powers of the field's generator, q^2 - q trace +
-    determinant = 0 says q t_i = d_i for each i > 0, which leaves one candidate unless the trace is rational. In that
-    case a rational eigenvalue makes the other one rational too. The equation holds modulo a prime too, q being integral
-    over the numbers without that prime in their denominators; so most often residues modulo the prime exclude it.
-    """
-    t, d = trace_element.image_coefficients(), determinant_element.image_coefficients()
-    if t is not None and d is not None and any(t[1:]) and _eigenvalue(t, d) is None:
-        return None
-    q = _eigenvalue(trace_element.coefficients(), determinant_element.coefficients())
-    return None if q is None else Fraction(int(q.p), int(q.q))
-
-
-def _eigenvalue(trace: Sequence[_Ring], determinant: Sequence[_Ring]) -> _Ring | None:
-    """The q of the field's ground ring, when the trace's coefficients behind the first are not all zero."""
-    for t, d in zip(trace[1:], determinant[1:], strict=True):
-        if t != 0:
-            q = d / t
-            holds = q * q - q * trace[0] + determinant[0] == 0 and all(
-                q * a == b for a, b in zip(trace[1:], determinant[1:], strict=True)
-            )
-            return q if holds else None
-    return None
-
-
-def _eigenvalues(trace: _Number, spread: _Number, rational: Fraction | None) -> tuple[_Number, _Number]:
-    """The Hessian's eigenvalues, the smaller first; a ball that is not finite stands for one not yet known."""
-    root = _square_root(spread)
-    balls = ((trace.ball - root.ball) / 2, (trace.ball + root.ball) / 2)
-    if trace.exact is not None and root.exact is not None:
-        return _Number((trace.exact - root.exact) / 2, balls[0]), _Number((trace.exact + root.exact) / 2, balls[1])
-    if rational is not None:
-        if (excess := 2 * ball_of(rational) - trace.ball) > 0:
-            return _Number(None, balls[0]), _Number(rational, balls[1])
-        if excess < 0:
-            return _Number(rational, balls[0]), _Number(None, balls[1])
-        return _Number(None, arb.nan()), _Number(None, arb.nan())
-    return _Number(None, balls[0]), _Number(None, balls[1])
-
-
-def _assembled(model: Model, state: State, numbers: Iterator[Enclosure]) -> Pose:
+def _assembled(model: PointModel, state: State, numbers: Iterator[Enclosure]) -> Pose:
     """The pose from its numbers in the order of `_numbers`."""
-    c1, s1, c2, s2 = (next(numbers) for _ in range(4))
-    first, degrees1, second, degrees2 = (next(numbers) for _ in range(4))
+    unknowns = tuple(next(numbers) for _ in state.unknowns)
+    turns = [(next(numbers), next(numbers)) for _ in range(model.angles)]
     nodes: dict[str, Vector] = {name: (next(numbers), next(numbers)) for name in state.nodes}
     springs = tuple(
         Spring(name, start, end, stiffness, next(numbers), next(numbers))
         for name, start, end, stiffness in model.springs
     )
-    energy, low, high = numbers
+    energy = None if state.energy is None else next(numbers)
+    values = tuple(numbers)
     multiplicity = state.point.multiplicity
-    index = (low.high < 0) + (high.high < 0) if multiplicity == 1 else None
+    index = stable = None
+    if multiplicity == 1 and energy is not None:
+        index = sum(value.high < 0 for value in values)
+        stable = index == 0
+    elif multiplicity == 1 and model.stability:
+        stable = all(map(is_positive, state.conditions[len(model.inequalities) :]))
     return Pose(
-        angles=(first, second),
-        degrees=(degrees1, degrees2),
-        cosines_sines=(c1, s1, c2, s2),
+        angles=tuple(radians for radians, _ in turns),
+        degrees=tuple(degrees for _, degrees in turns),
+        cosines_sines=unknowns[: 2 * model.angles],
         nodes=nodes,
         springs=springs,
         energy=energy,
-        eigenvalues=(low, high),
+        eigenvalues=values,
         multiplicity=multiplicity,
         index=index,
-        stable=None if index is None else index == 0,
-        flat=state.unknowns[1].is_zero and state.unknowns[3].is_zero,
+        stable=stable,
+        flat=bool(state.nodes) and all(y.is_zero for _, y in state.nodes.values()),
+        reals=unknowns[2 * model.angles :],
     )

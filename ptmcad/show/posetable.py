@@ -10,20 +10,27 @@ from itertools import pairwise
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.mechanism import Mechanism, known_of
+from ptmcad.mechanism import Mechanism, built_in
 from ptmcad.question.slice import merged
 from ptmcad.text.enclosure import Enclosure, exact_text
 
 WIDTH = 100
-_KINDS = {0: "stable", 1: "saddle", 2: "maximum"}
 
 Column = tuple[str, str, list[str]]
 """Header, unit and entries."""
 
 
 def kind_of(pose: Pose) -> str:
-    """Stable, saddle, maximum or degenerate."""
-    return "degenerate" if pose.index is None else _KINDS[pose.index]
+    """Stable, saddle, maximum or degenerate; of a system of equations stable, unstable or just a solution."""
+    if pose.multiplicity > 1:
+        return "degenerate"
+    if pose.stable is None:
+        return "solution"
+    if pose.stable:
+        return "stable"
+    if pose.index is None:
+        return "unstable"
+    return "maximum" if pose.index == len(pose.eigenvalues) else "saddle"
 
 
 def table(poses: Poses, digits: int | None = None) -> str:
@@ -40,7 +47,7 @@ def table(poses: Poses, digits: int | None = None) -> str:
     if poses.equilibria:
         lines += [
             "",
-            *_wrapped("units", _units(known_of(poses.mechanism))),
+            *(_wrapped("units", _units(poses.model)) if isinstance(poses.model, Mechanism) else []),
             *(_wrapped("tense", [_TENSE]) if poses.equilibria[0].admissible is not None else []),
         ]
     return "\n".join(lines)
@@ -48,11 +55,13 @@ def table(poses: Poses, digits: int | None = None) -> str:
 
 def _units(mechanism: Mechanism) -> list[str]:
     length, force = mechanism.units
+    pivots = " and ".join(f"{angle} at {at}" for angle, at in mechanism.pivots.items())
     return [
-        f"lengths and coordinates in that of {length}",
-        f"forces in that of {force}",
+        *([f"lengths and coordinates in that of {length}"] if length else []),
+        *([f"forces in that of {force}"] if force else []),
         "energies and the Hessian's eigenvalues in their product",
-        "angles between rod and base, " + " and ".join(f"{angle} at {at}" for angle, at in mechanism.pivots.items()),
+        # only of what is built in it is known where an angle is measured from
+        *([f"angles between rod and base, {pivots}"] if pivots and mechanism.name in built_in() else []),
     ]
 
 
@@ -61,11 +70,10 @@ _TENSE = "stable, and every spring longer than its free length; a negative force
 
 def _point(poses: Poses) -> list[str]:
     values = {name: exact_text(value) for name, value in poses.parameters.items()}
-    mechanism = known_of(poses.mechanism)
-    values = merged(values, mechanism)
-    loads = [name for name in values if name in mechanism.forces]
+    values = merged(values, poses.model)
+    loads = [name for name in values if name in poses.model.forces]
     parts = [f"{name} = {value}" for name, value in values.items() if name not in loads]
-    return parts + ([f"{n} = {values[n]}" for n in loads if values[n] != "0"] or ["no load"])
+    return parts + ([f"{n} = {values[n]}" for n in loads if values[n] != "0"] or (["no load"] if loads else []))
 
 
 def _summary(poses: Poses) -> list[str]:
@@ -73,10 +81,13 @@ def _summary(poses: Poses) -> list[str]:
         return [poses.remark]
     kinds = [kind_of(pose) for pose in poses.equilibria]
     several = {"stable": "stable", "saddle": "saddles", "maximum": "maxima", "degenerate": "degenerate"}
+    several |= {"unstable": "unstable", "solution": "solutions"}
     tally = [
         f"{kinds.count(kind)} {several[kind] if kinds.count(kind) > 1 else kind}" for kind in several if kind in kinds
     ]
-    parts = [f"{len(kinds)} equilibria: {', '.join(tally)}", poses.status.value]
+    noun = "equilibria" if isinstance(poses.model, Mechanism) else "solutions"
+    tells = f": {', '.join(tally)}" if kinds and "solution" not in kinds else ""
+    parts = [f"{len(kinds)} {noun}{tells}", poses.status.value]
     if any(pose.admissible is not None for pose in poses.equilibria):
         tense = sum(pose.admissible is True for pose in poses.equilibria)
         parts.insert(1, f"{tense} stable with every spring longer than its free length")
@@ -100,30 +111,36 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
     found = poses.equilibria
     if not found:
         return []
-    mechanism = known_of(poses.mechanism)
+    model = poses.model
+    moving = model.moving if isinstance(model, Mechanism) else ()
 
     def column(header: str, unit: str, numbers: Sequence[Enclosure]) -> Column:
         return header, unit, [x.text(digits) for x in numbers]
 
-    states: list[Column] = [
-        ("state", "", [kind_of(p) for p in found]),
-        ("flat", "", ["yes" if p.flat else "no" for p in found]),
-        *([("tense", "", ["yes" if p.admissible else "no" for p in found])] if found[0].admissible is not None else []),
-        ("index", "", ["-" if p.index is None else str(p.index) for p in found]),
-        ("mult.", "", [str(p.multiplicity) for p in found]),
-        column("energy", "", [p.energy for p in found]),
-        column("eigenvalue 1", "", [p.eigenvalues[0] for p in found]),
-        column("eigenvalue 2", "", [p.eigenvalues[1] for p in found]),
+    first = found[0]
+    states: list[Column] = [("state", "", [kind_of(p) for p in found])]
+    if isinstance(model, Mechanism):
+        states.append(("flat", "", ["yes" if p.flat else "no" for p in found]))
+    if first.admissible is not None:
+        states.append(("tense", "", ["yes" if p.admissible else "no" for p in found]))
+    if first.eigenvalues:
+        states.append(("index", "", ["-" if p.index is None else str(p.index) for p in found]))
+    states.append(("mult.", "", [str(p.multiplicity) for p in found]))
+    if first.energy is not None:
+        states.append(column("energy", "", [p.known_energy for p in found]))
+    states += [
+        column(f"eigenvalue {k + 1}", "", [p.eigenvalues[k] for p in found]) for k in range(len(first.eigenvalues))
     ]
     angles = [
         column(name, unit, [getattr(p, field)[i] for p in found])
         for field, unit in (("angles", "rad"), ("degrees", "deg"))
-        for i, name in enumerate(mechanism.angles)
+        for i, name in enumerate(model.angles)
     ]
+    angles += [column(name, "", [p.reals[i] for p in found]) for i, name in enumerate(model.reals)]
     nodes = [
         column(f"{name} {axis}", "", [p.nodes[name][i] for p in found])
         for name in found[0].nodes
-        if name in mechanism.moving
+        if name in moving
         for i, axis in enumerate("xy")
     ]
     springs = [
@@ -131,7 +148,9 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
         for what in ("length", "force")
         for k, s in enumerate(found[0].springs)
     ]
-    return [block for group in (states, angles, nodes, springs) for block in _fitting(group, len(str(len(found))))]
+    return [
+        block for group in (states, angles, nodes, springs) if group for block in _fitting(group, len(str(len(found))))
+    ]
 
 
 def _fitting(columns: Sequence[Column], used: int) -> list[list[Column]]:

@@ -65,7 +65,7 @@ def pose_paths(
     if any(n.compare(start) == 0 for n in numbers):
         raise ConfigError(f"{along} = {start} is a critical value: start beside it", key="--path")
     system = system_from(slice.model)
-    poses = exact_poses(_parameters(system, line, start), DIGITS)
+    poses = exact_poses(slice.model, _parameters(system, line, start), DIGITS)
     stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable]
     if number is not None and number - 1 not in stable:
         raise ConfigError(

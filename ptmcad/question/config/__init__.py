@@ -154,8 +154,8 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
 
 def point_from_options(
     config: str | Path | None = None, at: Mapping[str, str] | None = None, sets: Iterable[str] = ()
-) -> dict[str, Fraction]:
-    """Every parameter of the mechanism at the point of the command line's options, with or without a record under them.
+) -> tuple[Model, dict[str, Fraction]]:
+    """The model and its parameters at the point of the command line's options, with or without a record under them.
 
     Parameters
     ----------
@@ -186,4 +186,4 @@ def point_from_options(
             raise ConfigError(
                 f"{name} is an axis of {record.place.file} and has no value: add {name}=VALUE", key="--at"
             )
-    return point_of(replace(record, values={**record.values, **given}), axes)
+    return record.model, point_of(replace(record, values={**record.values, **given}), axes)

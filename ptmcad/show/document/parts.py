@@ -6,9 +6,8 @@ has the types and sizes that the class asks for.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
-from functools import partial
 from typing import Any, NamedTuple
 
 from ptmcad.answer.regionmap import (
@@ -28,8 +27,8 @@ from ptmcad.answer.regionmap import (
     Wall,
 )
 from ptmcad.answer.regionmap import System as Equations
-from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.mechanism import Mechanism, Model, System, built_in, described, described_system, known_of
+from ptmcad.errors import ExpressionError
+from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.show.document.codec import (
     COUNT,
@@ -48,6 +47,7 @@ from ptmcad.show.document.codec import (
     optional,
     record,
 )
+from ptmcad.show.document.model import MODEL, either
 from ptmcad.show.document.node import Node
 from ptmcad.text.expressions import Expression, parse
 from ptmcad.text.expressions import axis as axis_function
@@ -213,10 +213,6 @@ def _parsed(node: Node, axes: tuple[Axis, Axis]) -> Expression:
         raise node.fault(f"is wrong: {error}") from error
 
 
-def _as_it_is(value: Any) -> Any:
-    return value
-
-
 def _slice(
     axes: tuple[Axis, Axis],
     parameters: Mapping[str, Node],
@@ -224,41 +220,15 @@ def _slice(
     system: Model | None,
     **rest: Any,
 ) -> Slice:
-    model = mechanism or system
-    if model is None:
-        raise ValueError("the slice lacks the key 'mechanism'")
     known = {name: _parsed(node, axes) for name, node in parameters.items()}
-    return Slice(model=model, axes=axes, parameters=known, **rest)
-
-
-def _mechanism(node: Node) -> Model:
-    """The built-in mechanism of a name, one of which nothing is known, or a description."""
-    if isinstance(node.value, str):
-        return known_of(node.line(MAX_NAME))
-    return _described(node, described)
-
-
-def _described(node: Node, read: Callable[[Mapping[str, Any]], Model]) -> Model:
-    try:
-        return read(node.data())
-    except ConfigError as error:
-        raise node.fault(f"is wrong: {error}") from error
-
-
-def _stored(slice: Slice, kind: type[Model]) -> Any:
-    """The model's name where that says all, else its description; None for a model of the other kind."""
-    model = slice.model
-    if not isinstance(model, kind):
-        return None
-    return {"name": model.name, **model.source} if model.source and model.name not in built_in() else model.name
+    return Slice(model=either(mechanism, system), axes=axes, parameters=known, **rest)
 
 
 SLICE = record(
     _slice,
     name=Codec(str, _file_name),
     title=line(MAX_TITLE),
-    mechanism=Key(Codec(_as_it_is, _mechanism), partial(_stored, kind=Mechanism), None),
-    system=Key(Codec(_as_it_is, partial(_described, read=described_system)), partial(_stored, kind=System), None),
+    **MODEL,
     axes=Codec(lambda axes: {a.name: [RATIONAL.write(a.low), RATIONAL.write(a.high)] for a in axes}, _axes),
     # what they stand for is known when the axes are
     parameters=Key(Codec(dict, Node.mapping), _expressions),

@@ -30,6 +30,7 @@ from ptmcad.show.document.codec import (
     optional,
     record,
 )
+from ptmcad.show.document.model import MODEL, either
 from ptmcad.show.document.node import Node, opened
 from ptmcad.text.enclosure import Enclosure, exact_text
 
@@ -69,11 +70,11 @@ def _poses(digits: int) -> Codec[Poses]:
     """The codec of poses with so many digits."""
     bare, free = (_pose(digits, free) for free in (False, True))
     return record(
-        lambda format, **rest: Poses(**rest),
+        lambda format, mechanism, system, **rest: Poses(model=either(mechanism, system), **rest),
         format=Key(TEXT, lambda _: FORMAT),
         status=choice(Status),
         remark=line(MAX_REMARK),
-        mechanism=line(MAX_NAME),
+        **MODEL,
         parameters=_by_name(_EXACT),
         digits=NATURAL,
         bits=NATURAL,
@@ -110,13 +111,14 @@ def _pose(digits: int, free: bool) -> Codec[Pose]:
         index=COUNT,
         multiplicity=NATURAL,
         flat=TRUTH,
-        angles=pair,
-        degrees=pair,
-        cosines_sines=listed(number, 4),
+        angles=listed(number),
+        degrees=listed(number),
+        cosines_sines=listed(number),
+        reals=Key(listed(number), default=()),
         nodes=_by_name(pair),
         springs=listed(spring),
-        energy=number,
-        eigenvalues=pair,
+        energy=optional(number),
+        eigenvalues=listed(number),
     )
 
 

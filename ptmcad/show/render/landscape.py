@@ -130,7 +130,7 @@ def draw_landscape(poses: Poses) -> Figure:
         return empty(poses)
     energy = energy_of(poses.parameters)
     degrees, heights = _sampled(energy, _GRID)
-    critical = sorted({energy.scaled(pose.energy.center) for pose in shown})
+    critical = sorted({energy.scaled(pose.known_energy.center) for pose in shown})
     levels = contour_levels(critical, float(heights.min()), float(heights.max()))
     title = heading(poses, 90)
     size = (LEFT + SIDE + BAR + KEY + MARGIN, BOTTOM + SIDE + TITLE_LINE * len(title) + 3 * MARGIN)
@@ -147,7 +147,7 @@ def draw_landscape(poses: Poses) -> Figure:
         axes.contour(
             degrees, degrees, heights, levels=levels[1:-1], colors="white", linewidths=0.35, linestyles="solid"
         )
-        through = sorted({energy.scaled(p.energy.center) for p in shown if p.index in (1, None)})
+        through = sorted({energy.scaled(p.known_energy.center) for p in shown if p.index in (1, None)})
         finer, fine_heights = _sampled(energy, _FINE)
         axes.contour(finer, finer, fine_heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
         _decorate(axes)

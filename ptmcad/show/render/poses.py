@@ -106,7 +106,7 @@ def panel(
         fontweight="bold" if strong else "normal", color=colour, va="center",
     )  # fmt: skip
     angles = ", ".join(f"θ{k} = {number_text(a)}°" for k, a in zip("₁₂", pose.degrees, strict=True))
-    for k, line in enumerate((f"U = {number_text(pose.energy)}", angles)):
+    for k, line in enumerate((f"U = {number_text(pose.known_energy)}", angles)):
         figure.text(
             corner[0], corner[1] - 0.11 - 0.16 * k, line, transform=inches, fontsize=8, color=colour, va="center"
         )
@@ -169,8 +169,8 @@ def _count(poses: Poses) -> str:
 def describe(poses: Poses) -> str:
     """What the picture shows, in words."""
     parts = [
-        f"{n}: {kind(p)}{', flat' if p.flat else ''}, U {number_text(p.energy)}, theta1 {number_text(p.degrees[0])}, "
-        f"theta2 {number_text(p.degrees[1])} degrees"
+        f"{n}: {kind(p)}{', flat' if p.flat else ''}, U {number_text(p.known_energy)}, "
+        f"theta1 {number_text(p.degrees[0])}, theta2 {number_text(p.degrees[1])} degrees"
         for n, p in enumerate(in_order(poses), 1)
     ]
     return f"Equilibria of the mechanism, {', '.join(values(poses))}. " + "; ".join(parts) + poses.remark

@@ -94,7 +94,7 @@ def answer(question: Question, name: str = "case") -> Any:
     import ptmcad
 
     if isinstance(question, PointQuestion):
-        return ptmcad.solve(DIGITS, **question.parameters)
+        return ptmcad.solve(DIGITS, None, **question.parameters)
     slice = ptmcad.slice_from_mapping(question.record(name))
     if isinstance(question, LineQuestion):
         return ptmcad.intervals(slice, question.along, question.at)
