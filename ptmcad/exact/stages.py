@@ -30,7 +30,7 @@ from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
 from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
-from ptmcad.exact.cad.area import region_areas
+from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
@@ -304,8 +304,8 @@ def areas_of(
     numbers = iter(range(len(region_of)) if alone else region_of)
     stacks = known.stacks.stacks
     rows = [tuple(next(numbers) for _ in stack.heights) for stack in stacks]
-    window = problem.window
-    bounds, bits = region_areas(stacks, rows, variety.curves, window[base], window[1 - base], tolerance, check)
+    parts = RegionStacks(stacks, rows, variety.curves, problem.window[base], problem.window[1 - base])
+    bounds, bits = region_areas(parts, tolerance, check)
     if alone:
         bounds = tuple(_sum_of([bounds[n] for n in cells], problem.area) for cells in members(region_of))
     return Areas(

@@ -62,6 +62,11 @@ def lines_of(components: Sequence[Component], base: int, reason: str = "") -> di
     }
 
 
+def max_height_bits(curves: Sequence[Curve]) -> int:
+    """The bits of the longest coefficient."""
+    return max((int(q.height_bits()) for c in curves for q in c.in_v), default=0)
+
+
 def deflation(coefficients: Sequence[UnivariatePolynomial]) -> int:
     """The largest k for which only powers of v^k occur."""
     return max(1, gcd(*(i for i, c in enumerate(coefficients) if c)))
