@@ -27,7 +27,8 @@ SUPPORT, GROUND = (7.0, 10.0), 4.0
 SLIDER = (7.5, 4.2)
 """Half its width and height."""
 MIN_TURNS, TURN = 6, 6.0
-"""A spring has so many turns, or one for each such length: on longer ones teeth would not be seen to stand across it."""
+"""A spring has so many turns, or one for each such length: else the teeth of a long one lie so flat that it looks like
+stairs."""
 AMPLITUDE = 3.4
 _END, _SHORTEST = 7.0, 19.0
 _ASIDE = (9.0, -9.0, 15.5, -15.5, 22.0, -22.0)
