@@ -70,11 +70,6 @@ def classify(
     LimitReached
         After ``timeout`` seconds, with what there is of the map as ``partial``.
     """
-    if keep is not None:
-        if without:
-            raise ConfigError("this is the older name of without: give one of them", key="keep")
-        warnings.warn("keep has a new name: without", DeprecationWarning, stacklevel=2)
-        without = keep
     options = Options(
         engine=engine,
         timeout=timeout,
@@ -82,7 +77,7 @@ def classify(
         area_tolerance=_share(area_tolerance, "area_tolerance"),
         jobs=jobs,
         progress=progress,
-        without=frozenset((without,) if isinstance(without, str) else without),
+        without=_names(without, keep),
         partial=partial,
         resume=resume,
         areas=areas,
@@ -92,6 +87,16 @@ def classify(
     except ValueError as error:
         raise ConfigError(str(error), key="count") from error
     return region_map(counted, options)
+
+
+def _names(without: Iterable[str], keep: Iterable[str] | None) -> frozenset[str]:
+    """The savings to do without, which may be given under the option's older name."""
+    if keep is not None:
+        if without:
+            raise ConfigError("this is the older name of without: give one of them", key="keep")
+        warnings.warn("keep has a new name: without", DeprecationWarning, stacklevel=3)
+        without = keep
+    return frozenset((without,) if isinstance(without, str) else without)
 
 
 def region_map(slice: Slice, options: Options) -> RegionMap:
