@@ -19,7 +19,7 @@ from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.exact.cad.curves import Curve, curves_of
-from ptmcad.text.expressions import rational
+from ptmcad.text.parsing import rational
 
 if TYPE_CHECKING:
     from ptmcad.cover.complement import Components

@@ -12,7 +12,7 @@ from ptmcad.certified.curves import Curve
 from ptmcad.certified.plan import beforehand
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Slice
-from ptmcad.text.syntax import Chain, Negative, Number, Step, Tree, to_text
+from ptmcad.text.tree import Chain, Negative, Number, Step, Tree, to_text
 
 
 def system_text(mechanism: Mechanism) -> System:

@@ -21,7 +21,7 @@ from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import PARAMETERS, file_name, load, slice_from_options
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import rational
+from ptmcad.text.parsing import rational
 
 FORMATS = ("json", "png", "svg", "pdf")
 

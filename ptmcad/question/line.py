@@ -12,8 +12,9 @@ from typing import Any
 
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.question.slice import FREE_LENGTHS, Axis, Slice, without_free_lengths
-from ptmcad.text.expressions import Expression, axis, constant, rational
+from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.numerals import shortest_text
+from ptmcad.text.parsing import rational
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from ptmcad.errors import ExpressionError, PoleError
-from ptmcad.text.expressions import Expression, axis, constant, names_in, parse, rational
+from ptmcad.text.expressions import Expression, axis, constant
+from ptmcad.text.parsing import names_in, parse, rational
 
 NAMES = {"rho": axis(0), "L2": axis(1)}
 small = st.fractions(min_value=-5, max_value=5, max_denominator=12)

@@ -17,7 +17,8 @@ from ptmcad.question.config.record import Record, Window
 from ptmcad.question.domain import fault, unproved
 from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.text.expressions import Expression, axis, names_in, parse
+from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.parsing import names_in, parse
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Place, Scalar
 

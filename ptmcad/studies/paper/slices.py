@@ -31,7 +31,7 @@ from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models import system_of
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import rational
+from ptmcad.text.parsing import rational
 
 Exact = str | int | Fraction
 """An exact number: text such as 3/2 stands for one."""

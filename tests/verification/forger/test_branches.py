@@ -30,7 +30,8 @@ from ptmcad.answer.regionmap import (
     Wall,
 )
 from ptmcad.question.slice import Axis, Count, Point
-from ptmcad.text.expressions import axis, constant, parse
+from ptmcad.text.expressions import axis, constant
+from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas

@@ -35,7 +35,8 @@ from ptmcad.answer.regionmap import (
 )
 from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.question.slice import Count, Point
-from ptmcad.text.expressions import axis, parse
+from ptmcad.text.expressions import axis
+from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.certified import points
 from ptmcad.verification.certified.energy import NAMES
