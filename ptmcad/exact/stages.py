@@ -151,12 +151,13 @@ def problem_of(slice: Slice) -> SliceProblem:
     return SliceProblem(slice, system, parameters, (first, second))
 
 
-def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset()) -> Variety:
-    """The variety, over the base axis of the cheaper decomposition.
+def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset(), base: int | None = None) -> Variety:
+    """The variety, over a base axis.
 
     Parameters
     ----------
     keep : names of savings to switch off, of `ptmcad.question.savings`.
+    base : 0 or 1; that of the cheaper decomposition when None.
 
     Raises
     ------
@@ -170,7 +171,8 @@ def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset()) -> Var
         raise type(error)(f"{error}; {_witness(problem)}") from error
     views = [curves_of(found.components, base) for base in (0, 1)]
     costs = (predicted_cost(views[0]), predicted_cost(views[1]))
-    base = 1 if costs[1] < costs[0] and "axis-order" not in keep else 0
+    if base is None:
+        base = 1 if costs[1] < costs[0] and "axis-order" not in keep else 0
     lines = lines_of(found.components, base)
     return Variety(found.components, found.complex_solutions, base, views[base], lines, costs)
 

@@ -28,13 +28,13 @@ from flint import arb, fmpq
 from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.numbers import algebraic_number
 from ptmcad.algebra.polynomials import to_fraction
+from ptmcad.algebra.window import Interval
 from ptmcad.answer.intervals import End
 from ptmcad.answer.widths import Maximum, OperationWidths, Place, WidthRow
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.ranges.limits import chord_length, ends_of, limit
 from ptmcad.exact.ranges.line import intervals
 from ptmcad.exact.ranges.strips import (
-    Interval,
     Strip,
     at_abscissa,
     base_interval,
