@@ -22,6 +22,7 @@ from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.savings import load_all, switched_off
 from ptmcad.question.slice import Count, Slice, without_free_lengths
+from ptmcad.text.numerals import exactly
 
 
 def classify(
@@ -244,7 +245,7 @@ def _share(value: Fraction | float | str | None, key: str) -> Fraction | None:
     if value is None:
         return None
     try:
-        share = Fraction(value)
+        share = Fraction(value) if isinstance(value, str) else exactly(value)
     except (ValueError, TypeError, ZeroDivisionError, OverflowError) as error:
         raise ConfigError(f"{value!r} is not a number", key=key) from error
     if not 0 < share < 1:

@@ -23,8 +23,8 @@ def solve(digits: int = DIGITS, **parameters: object) -> Poses:
     ----------
     digits : significant digits that every number settles, 1 to `MAX_DIGITS`; more digits cost more time.
     parameters : by the names of a problem record (L1, L2, rho, k or k1, k2, k3, F3, F4, F3x, F4x, l0 or l0_1, l0_2,
-        l0_3), with its defaults: lengths 1, stiffness 100, no load, free lengths 0. Text, int, Fraction or Decimal; no
-        float.
+        l0_3), with its defaults: lengths 1, stiffness 100, no load, free lengths 0. Text, int, Fraction, Decimal, float
+        (its exact binary value) or one of numpy's numbers.
 
     Raises
     ------

@@ -15,13 +15,15 @@ True
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from decimal import Decimal
 from fractions import Fraction
 from functools import partial
 from math import comb
 from operator import add, mul, sub, truediv
 
-from ptmcad.errors import ExpressionError
+from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.numerals import exactly
 from ptmcad.text.syntax import names_in as names_in_text
 from ptmcad.text.syntax import parse as tree_of
 from ptmcad.text.syntax import unknown_name
@@ -36,14 +38,15 @@ MAX_WORK = 100_000
 _OPERATION: dict[str, Callable[[Expression, Expression], Expression]] = {"+": add, "-": sub, "*": mul, "/": truediv}
 
 
-def parse(text: str | int | Fraction, names: Mapping[str, Expression] | None = None) -> Expression:
+def parse(text: object, names: Mapping[str, Expression] | None = None) -> Expression:
     """Read an arithmetic expression: numbers, names, ``+ - * /``, integer powers ``^`` or ``**``, parentheses.
 
     ``^`` binds tighter than a sign on its left and groups to the right, as in mathematics: ``-x^2`` is -(x^2).
 
     Parameters
     ----------
-    text : the expression; an int or a Fraction is taken as the constant.
+    text : the expression, or a number: an int, a Fraction, a float (its exact binary value), a Decimal, or one of
+        numpy's.
     names : what each name stands for.
 
     Raises
@@ -52,27 +55,40 @@ def parse(text: str | int | Fraction, names: Mapping[str, Expression] | None = N
         With the position of the offending character: not arithmetic, an unknown name, a division by zero, or one of
         the limits (length, depth, digits, exponent, degree, number of terms, size of numbers).
     """
-    if isinstance(text, bool) or not isinstance(text, str | int | Fraction):
-        raise ExpressionError(
-            f'{text!r} is not an exact number: write it as text, such as "0.1", or as a fractions.Fraction'
-        )
-    if not isinstance(text, str):
-        return constant(text)
-    return interpret(tree_of(text), _InTheAxes(names or {}))
+    if isinstance(text, str | Decimal):  # a Decimal's exponent may be huge: a text has limits
+        return interpret(tree_of(str(text)), _InTheAxes(names or {}))
+    try:
+        return constant(exactly(text))
+    except (TypeError, ValueError) as error:
+        raise ExpressionError(str(error)) from error
 
 
-def rational(text: str | int | Fraction) -> Fraction:
-    """Read an exact rational number: ``3/4``, ``-0.1``, ``1e-30``, an int or a Fraction.
+def rational(text: object) -> Fraction:
+    """Read an exact rational number: a text such as ``3/4``, ``-0.1`` or ``1e-30``, or a number as `parse` takes it.
 
-    >>> rational("-0.1"), rational("1e-3")
-    (Fraction(-1, 10), Fraction(1, 1000))
+    >>> rational("-0.1"), rational(-0.125)
+    (Fraction(-1, 10), Fraction(-1, 8))
 
     Raises
     ------
     ExpressionError
-        If it is no number, also for a binary float (write it as text).
+        If it is no number.
     """
     return parse(text).constant()
+
+
+def number_for(key: str, value: object) -> Fraction:
+    """The number that a caller gave for something.
+
+    Raises
+    ------
+    ConfigError
+        With the key, if it is no number.
+    """
+    try:
+        return rational(value)
+    except ExpressionError as error:
+        raise ConfigError(str(error), key=key) from error
 
 
 def names_in(text: str | int | Fraction) -> tuple[str, ...]:

@@ -158,10 +158,10 @@ def test_refusals_are_fast_and_placed(text: str, part: str, position: int | None
     assert len(str(caught.value)) < 300
 
 
-@pytest.mark.parametrize("value", [0.1, True, None, [1]])
+@pytest.mark.parametrize("value", [0.1j, True, None, [1]])
 def test_inexact_values_are_refused(value: object) -> None:
     with pytest.raises(ExpressionError, match="not an exact number"):
-        parse(value)  # type: ignore[arg-type]
+        parse(value)
 
 
 def test_a_pole_is_named() -> None:

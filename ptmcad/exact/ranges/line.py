@@ -42,7 +42,7 @@ def intervals(slice: Slice, along: str, at: Mapping[str, Any]) -> CountIntervals
     Parameters
     ----------
     along : the axis that varies, over its window.
-    at : the other axis with its value: text, int or Fraction.
+    at : the other axis with its value: text or a number, of which a float stands for its exact binary value.
 
     Raises
     ------

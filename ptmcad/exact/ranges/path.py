@@ -31,6 +31,7 @@ from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import exact
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.parsing import number_for
 
 DIGITS = 12
 _MIN_DISTANCE = Fraction(1, 10**5)
@@ -40,9 +41,7 @@ _MIN_STEPS = 64
 """The longest step is this part of the window, so that a polyline through the points looks smooth."""
 
 
-def pose_paths(
-    slice: Slice, along: str, at: Mapping[str, Any], start: Fraction, number: int | None = None
-) -> PosePaths:
+def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, number: int | None = None) -> PosePaths:
     """Follow stable poses along a line, from their places at one value of the axis.
 
     Parameters
@@ -59,17 +58,18 @@ def pose_paths(
     """
     line = line_of(slice, along, at)
     axis = line.along
-    if not axis.low < start < axis.high:
-        raise ConfigError(f"{start} is outside the window of {along}, {axis.low} to {axis.high}", key="--path")
+    value = number_for("--path", start)
+    if not axis.low < value < axis.high:
+        raise ConfigError(f"{value} is outside the window of {along}, {axis.low} to {axis.high}", key="--path")
     numbers = tuple(n for n, _ in critical_values(line))
-    if any(n.compare(start) == 0 for n in numbers):
-        raise ConfigError(f"{along} = {start} is a critical value: start beside it", key="--path")
+    if any(n.compare(value) == 0 for n in numbers):
+        raise ConfigError(f"{along} = {value} is a critical value: start beside it", key="--path")
     system = system_of(slice.mechanism)
-    poses = exact_poses(_parameters(system, line, start), DIGITS)
+    poses = exact_poses(_parameters(system, line, value), DIGITS)
     stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable]
     if number is not None and number - 1 not in stable:
         raise ConfigError(
-            f"{number} is none of the {len(stable)} stable poses at {along} = {start}, counted from 1", key="--pose"
+            f"{number} is none of the {len(stable)} stable poses at {along} = {value}, counted from 1", key="--pose"
         )
     family = Family(system, line.parameters)
     chosen = stable if number is None else [number - 1]
@@ -77,8 +77,8 @@ def pose_paths(
         slice.name,
         axis,
         line.at,
-        start,
-        tuple(_path(family, line, numbers, poses.equilibria[k], k + 1, start) for k in chosen),
+        value,
+        tuple(_path(family, line, numbers, poses.equilibria[k], k + 1, value) for k in chosen),
     )
 
 

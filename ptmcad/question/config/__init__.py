@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -65,7 +64,8 @@ def load(path: str | Path) -> Slice:
 
 
 def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
-    """The slice of a record given as Python data: numbers as text, int or Fraction, never float.
+    """The slice of a record given as Python data: numbers as text, int, Fraction, float (its exact
+    binary value) or one of numpy's.
 
     >>> slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["0", "2"]}, "parameters": {"F3": "-0.1"}}).axis_names
     ('rho', 'L2')
@@ -134,8 +134,8 @@ def point_from_mapping(values: Mapping[str, object]) -> dict[str, Fraction]:
 
     Parameters
     ----------
-    values : text (a number, or arithmetic with other parameters), int, Fraction or Decimal; no float, which is not the
-        decimal that was written.
+    values : text (a number, or arithmetic with other parameters), int, Fraction, Decimal, float (its exact binary
+        value) or one of numpy's numbers.
 
     Raises
     ------
@@ -147,8 +147,7 @@ def point_from_mapping(values: Mapping[str, object]) -> dict[str, Fraction]:
         place = Place(name)
         if name not in PARAMETERS:
             raise ConfigError(unknown_parameter(name))
-        node = from_python(str(value) if isinstance(value, Decimal) else value, place)
-        given[name] = number_text(node)
+        given[name] = number_text(from_python(value, place))
     return point_of(Record(values=given), {})
 
 
