@@ -19,6 +19,7 @@ from flint import arb, ctx, fmpq, nmod
 
 from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.points import RealPoint, value_at
+from ptmcad.algebra.polynomials import to_fraction
 from ptmcad.answer.poses import Pose, Spring, Vector
 from ptmcad.exact.models.system import RationalPolynomial
 from ptmcad.text.balls import ball_of, enclosed
@@ -227,7 +228,7 @@ def _rational_eigenvalue(trace_element: Element, determinant_element: Element) -
     if t is not None and d is not None and any(t[1:]) and _eigenvalue(t, d) is None:
         return None
     q = _eigenvalue(trace_element.coefficients(), determinant_element.coefficients())
-    return None if q is None else Fraction(int(q.p), int(q.q))
+    return None if q is None else to_fraction(q)
 
 
 def _eigenvalue(trace: Sequence[_Ring], determinant: Sequence[_Ring]) -> _Ring | None:

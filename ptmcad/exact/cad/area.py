@@ -22,7 +22,7 @@ from ptmcad.algebra.branches import PrecisionTooLow
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
 from ptmcad.algebra.window import Interval
-from ptmcad.exact.cad.curves import Curve, max_height_bits
+from ptmcad.exact.cad.curves import Curve, by_component, max_height_bits
 from ptmcad.exact.cad.panels import Border, Effort, Panel, halves, panel
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.text.balls import exact
@@ -69,10 +69,10 @@ class RegionStacks:
 
     def borders(self) -> Iterator[list[Border]]:
         """For each stack the walls between different regions, from below."""
-        by_component = {c.component: c for c in self.curves}
+        curve_of = by_component(self.curves)
         for stack, row in zip(self.stacks, self.regions, strict=True):
             yield [
-                Border(by_component[wall.component], wall.root, below, above)
+                Border(curve_of[wall.component], wall.root, below, above)
                 for wall, (below, above) in zip(stack.walls, pairwise(row), strict=True)
                 if below != above
             ]
@@ -137,12 +137,12 @@ def region_areas(
     bits += _bits_lost(parts.base) + _bits_lost(parts.fibre)
     broad, narrowest = width * fmpq(1, 2 ** (3 * digits // 2)), min(map(_isolated, parts.stacks))
     strips, finer = _Strips(fmpq(1, 10 ** (digits + 3) * 4), own=True), 20
-    by_component = {c.component: c for c in parts.curves}
+    curve_of = by_component(parts.curves)
 
     @lru_cache(maxsize=_CACHED_FIBRES)
     def roots(component: int, u: fmpq) -> tuple[RealRoot, ...]:
         # walls over the same stack are cut at the same places, and again when an attempt is repeated
-        return isolate(by_component[component].fibre(u), *parts.fibre)
+        return isolate(curve_of[component].fibre(u), *parts.fibre)
 
     while True:
         effort = Effort(digits + 2, width, parts.fibre, broad, narrowest / 2 ** (bits // 2), roots)

@@ -5,7 +5,7 @@ Guarantee: exact. ``u`` is the coordinate on the base axis, ``v`` the one on the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import gcd
 
@@ -51,6 +51,11 @@ def curves_of(components: Sequence[Component], base: int, reason: str = "") -> l
         for n, c in enumerate(components)
         if c.left_out == reason and c.polynomial.degrees[1 - base] > 0
     ]
+
+
+def by_component(curves: Iterable[Curve]) -> dict[int, Curve]:
+    """The curve of each component's number."""
+    return {c.component: c for c in curves}
 
 
 def lines_of(components: Sequence[Component], base: int, reason: str = "") -> dict[int, UnivariatePolynomial]:

@@ -19,7 +19,7 @@ from typing import Any
 from flint import fmpq
 
 from ptmcad.algebra.numbers import in_order, roots_in
-from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction
+from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
 from ptmcad.answer.regionmap import Kind, MorseIndex
@@ -123,7 +123,7 @@ def samples_between(along: Axis, numbers: tuple[AlgebraicNumber, ...]) -> tuple[
     lows = [along.low, *(n.high for n in numbers)]
     highs = [*(n.low for n in numbers), along.high]
     samples = (simplest_between(from_fraction(a), from_fraction(b)) for a, b in zip(lows, highs, strict=True))
-    return tuple(Fraction(int(s.p), int(s.q)) for s in samples)
+    return tuple(to_fraction(s) for s in samples)
 
 
 def index_at(line: Line, value: Fraction) -> MorseIndex:

@@ -29,7 +29,7 @@ from ptmcad.exact.ranges.line import critical_values
 from ptmcad.exact.ranges.tracking import BITS, Family, Pair, Reached, at_value, bridge, follow
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Slice
-from ptmcad.text.balls import exact
+from ptmcad.text.balls import enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.parsing import number_for
 
@@ -217,7 +217,7 @@ def _energy(family: Family, line: Line, reached: Reached) -> Enclosure:
                 for _ in range(e):
                     term = term * value
             total += term
-        return Enclosure(exact(total.lower()), exact(total.upper()))
+        return enclosure_of(total)
 
 
 def _close(first: Pair, second: Pair) -> bool:
@@ -228,5 +228,5 @@ def _close(first: Pair, second: Pair) -> bool:
 
 def _point(reached: Reached) -> PathPoint:
     with ctx.workprec(BITS):
-        first, second = (Enclosure(exact(a.lower()), exact(a.upper())) for a in reached.angles)
+        first, second = map(enclosure_of, reached.angles)
     return PathPoint(reached.value, (first, second))

@@ -15,7 +15,7 @@ from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Wall
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.curves import Curve, by_component
 from ptmcad.exact.cad.stacks import BaseEnd, StackData
 from ptmcad.exact.stages import counts_of, problem_of, projection_of, stacks_of, variety_of
 from ptmcad.question.slice import Slice, without_free_lengths
@@ -80,7 +80,7 @@ def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
     variety = variety_of(problem, base=base)
     stacks = stacks_of(problem, variety, projection_of(problem, variety))
     stable = (found.counts.stable for found in counts_of(problem, stacks).found)
-    curves = {c.component: c for c in variety.curves}
+    curves = by_component(variety.curves)
     return tuple(
         strip
         for stack in stacks.stacks
