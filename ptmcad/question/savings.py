@@ -13,6 +13,7 @@ from importlib import import_module
 from importlib.util import find_spec
 
 from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Kind, ptm
 from ptmcad.text.syntax import did_you_mean
 
 ALL = "all"
@@ -45,6 +46,7 @@ class Saving:
     why: str
 
 
+_BASE = ptm().first(Kind.BASE)
 _WHAT_AND_WHY = {
     Engine.EXACT: (
         ("sign-curve", "projection of H11 = 0", "where it vanishes off the critical curves, det H < 0"),
@@ -63,7 +65,7 @@ _WHAT_AND_WHY = {
         ("folds-of-saddles", "folds of saddles and maxima", "the number of stable equilibria does not change"),
         ("cones-and-creases", "cones and creases", "no minimum appears or vanishes there without a fold"),
         ("dependent-equations", "boxes on which dependent equations do not vanish", "they vanish at every equilibrium"),
-        ("unloaded-factor", "the factor rho of the unloaded moment", "rho is zero nowhere in the window"),
+        ("unloaded-factor", f"the factor {_BASE} of the unloaded moment", f"{_BASE} is zero nowhere in the window"),
     ),
     Engine.ANY: (("imports", "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),),
 }  # fmt: skip

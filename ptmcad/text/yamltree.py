@@ -117,7 +117,7 @@ def read_text(text: str, file: str | None = None) -> Tree:
         ) from error
     if not isinstance(node, Tree):
         found = "is empty" if isinstance(node, Scalar) and node.is_null else "is not a mapping of keys to values"
-        raise ConfigError(f"{found}: a problem record has lines such as 'axes: {{rho: [0, 2], L2: [0, 2]}}'", file=file)
+        raise ConfigError(f"{found}: a problem record has lines such as 'count: stable'", file=file)
     return node
 
 

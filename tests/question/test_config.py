@@ -269,7 +269,7 @@ def test_options_over_a_record() -> None:
 @pytest.mark.parametrize(
     ("options", "key", "part"),
     [
-        ({}, None, "--slice L2,rho"),
+        ({}, None, "--slice L1,L2"),
         ({"slice": "L2"}, "--slice", "is not X,Y"),
         ({"slice": "L2,L2"}, "--slice", "both L2"),
         ({"slice": "L2,roh"}, "--slice", "did you mean 'rho'?"),

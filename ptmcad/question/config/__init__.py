@@ -31,6 +31,7 @@ from ptmcad.question.config.record import (
     record_of,
 )
 from ptmcad.question.config.resolution import MAX_DEGREE, number_of, point_of, slice_of
+from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.syntax import did_you_mean
@@ -107,7 +108,7 @@ def slice_from_options(
     if slice is not None:
         record = with_axes(record, slice, given_sets, given_ranges)
     elif config is None:
-        raise ConfigError("give a problem record (a YAML file), or two axes such as --slice L2,rho")
+        raise ConfigError(f"give a problem record (a YAML file), or two axes such as --slice {FIRST},{SECOND}")
     for name, value in given_sets.items():
         if name in record.axes:
             raise value.place.error(f"{name} is an axis and cannot be fixed too: choose other axes with --slice")

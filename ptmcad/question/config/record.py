@@ -12,6 +12,7 @@ from typing import Any
 
 from ptmcad.mechanism import ptm
 from ptmcad.question.config.parameters import PARAMETERS, unknown_parameter
+from ptmcad.question.examples import AXES, FIRST, SECOND
 from ptmcad.question.slice import Count, unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
@@ -149,7 +150,7 @@ def _values(node: Node) -> dict[str, Scalar]:
     if isinstance(node, Scalar) and node.is_null:
         return {}
     if not isinstance(node, Tree):
-        raise node.place.error("expected a mapping such as {L1: 1, F3: -10}")
+        raise node.place.error(f"expected a mapping such as {{{FIRST}: 1, {SECOND}: 3/2}}")
     values = {}
     for name, value in node.entries.items():
         if name not in PARAMETERS:
@@ -171,7 +172,7 @@ def number_text(node: Node) -> Scalar:
 
 def _axes(node: Node) -> dict[str, Window]:
     if not isinstance(node, Tree):
-        raise node.place.error("expected two axes with their ranges, such as {rho: [0, 2], L2: [0, 2]}")
+        raise node.place.error(f"expected two axes with their ranges, such as {AXES}")
     if len(node.entries) != 2:
         raise node.place.error(f"{len(node.entries)} axes are given: a slice has two, the horizontal one first")
     return {name: _window(name, entry) for name, entry in node.entries.items()}

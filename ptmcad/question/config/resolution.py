@@ -15,6 +15,7 @@ from ptmcad.mechanism import Kind, Mechanism, mechanism_of
 from ptmcad.question.config.parameters import PARAMETERS
 from ptmcad.question.config.record import Record, Window
 from ptmcad.question.domain import fault, unproved
+from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression, axis
@@ -29,7 +30,7 @@ MAX_DEGREE = 32
 def slice_of(record: Record) -> Slice:
     """Resolve a record to a slice."""
     if not record.axes:
-        raise record.place.below("axes").error("is missing: a slice needs two axes, such as {rho: [0, 2], L2: [0, 2]}")
+        raise record.place.below("axes").error(f"is missing: a slice needs two axes, such as {AXES}")
     for name in record.axes:
         if name in record.values:
             place = record.values[name].place
@@ -50,7 +51,8 @@ def slice_of(record: Record) -> Slice:
     for index, name in enumerate(record.axes):
         if not any(expression.uses(index) for expression in effective.values()):
             hint = did_you_mean(name, PARAMETERS) if name not in PARAMETERS else ""
-            remedy = f"no parameter depends on it{hint or ';'} use it in an expression, such as F3: {name}"
+            other = next(parameter for parameter in PARAMETERS if parameter not in record.axes)
+            remedy = f"no parameter depends on it{hint or ';'} use it in an expression, such as {other}: {name}"
             if name in mechanism.shorthands:
                 own = _listed(mechanism.shorthands[name])
                 remedy = f"{own} are all given and none depends on it; use it in one of them"
