@@ -428,11 +428,9 @@ def test_no_equilibrium_is_lost_where_doubles_are_coarse() -> None:
 
 @pytest.mark.parametrize("square", [(3.0, 1.0, 0.3, 1e-9), (0.0, 1.0, 3.0322134878826974, 2.8e-15)])
 def test_halves_cover_the_square(square: Square) -> None:
-    m, r = square[2:]
     halves = _halves(square, False, (0.0, 0.0))
     assert halves is not None
-    (low, half, high, other) = (*halves[0][2:], *halves[1][2:])
-    low, half, high, other, m, r = map(Fraction, (low, half, high, other, m, r))
+    (low, half), (high, other), (m, r) = (map(Fraction, q[2:]) for q in (*halves, square))
     assert low - half <= m - r < m + r <= high + other
     assert high - other <= low + half
     assert _halves((0.0, 0.0, 3.0, 2.0**-51), False, (1.0, 0.0)) is None
