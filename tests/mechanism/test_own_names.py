@@ -51,15 +51,6 @@ KERNELS = {
     "certified/poses.py",
 }
 """The certified engine's formulas, made by hand for this mechanism."""
-ELIMINATION = {
-    "algebra/critical_lengths.py",
-    "algebra/signed.py",
-    "algebra/signed_equations.py",
-    "algebra/simple_roots.py",
-    "algebra/squared.py",
-    "exact/ranges/free_lengths.py",
-}
-"""The paper's elimination of free lengths, signs and simple roots."""
 MESSAGES = {
     "cli/locate.py",
     "cli/range.py",
@@ -75,7 +66,7 @@ MESSAGES = {
     "text/yamltree.py",
 }
 """Examples in messages, and Greek letters as names."""
-STILL_HOLDING = KERNELS | ELIMINATION | MESSAGES
+STILL_HOLDING = KERNELS | MESSAGES
 
 
 def test_own_names_are_typed_in_the_description_and_where_the_list_says() -> None:
