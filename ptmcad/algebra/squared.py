@@ -23,13 +23,14 @@ def squared_equations(
     # scaling all lengths, and loads over k, which are lengths too, leaves the angles as they are
     r, length1, length2, l0, f3, f4 = (int(n * scale) for n in numbers)
     t1, t2 = PLANE.gens()
-    first = _squared(r, length1, length2, l0, f3, t1, t2)
-    second = _squared(r, length2, length1, l0, f4, t2, t1)
+    first = _squared((r, length1, length2, l0, f3), t1, t2)
+    second = _squared((r, length2, length1, l0, f4), t2, t1)
     return first, second
 
 
-def _squared(r: int, own: int, other: int, l0: int, f: int, t: Coefficient, u: Coefficient) -> Coefficient:
+def _squared(numbers: tuple[int, int, int, int, int], t: Coefficient, u: Coefficient) -> Coefficient:
     """The equation of the rod of length ``own`` with half angle t; u belongs to the other rod."""
+    r, own, other, l0, f = numbers
     d, e = 1 + t**2, 1 + u**2
     sine = 2 * t * e  # all of these are to be divided by d e
     cosine = (1 - t**2) * e

@@ -54,7 +54,7 @@ class Unproved(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Equilibrium:
-    """The only equilibrium within ``alone`` of (th1, th2), and it is within ``radius``; for each choice of parameters.
+    """The only equilibrium within ``alone`` of ``center``, and it is within ``radii``; for each choice of parameters.
 
     ``signs`` are those of the Hessian's eigenvalues, ``within`` the balls of the two angles.
     """
