@@ -24,8 +24,9 @@ from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import Tape, record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
-from ptmcad.verification.certified.energy import NAMES, Energy
+from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.parameters import energy_at, exact
+from ptmcad.verification.certified.vectors import NAMES
 
 Floats = NDArray[np.float64]
 SLICES = {
@@ -111,8 +112,8 @@ def test_formulas_are_those_of_the_verification(name: str) -> None:
             values = run_arb(tape, [exact(p) for p in point], 200)
             there = energy(slice, point[0], point[1])
             d = there(exact(point[2]), exact(point[3]))
-            expected = [d.e1, d.e2, d.e11, d.e22, d.e12 / there.length2, d.e11 * d.e22 - d.e12 * d.e21]
-            lengths = [q.sqrt() for q in there.lengths_squared(exact(point[2]), exact(point[3]))]
+            expected = [d.e1, d.e2, d.e11, d.e22, d.e12 / there.bars[1], d.e11 * d.e22 - d.e12 * d.e21]
+            lengths = [q.sqrt() for q in there.squares(exact(point[2]), exact(point[3]))]
             for place, value in zip(tape.outputs[0][: number + 3], [*expected, *lengths], strict=True):
                 assert abs(values[int(place)] - value) < 1e-40
 
@@ -214,7 +215,7 @@ def test_contraction_keeps_known_folds(number: int, folds: list[Floats]) -> None
 
 def _shortest(point: Floats) -> float:
     there = energy(slice_of("free02"), Fraction(float(point[0])), Fraction(float(point[1])))
-    return min(float(q.mid()) ** 0.5 for q in there.lengths_squared(arb(float(point[2])), arb(float(point[3]))))
+    return min(float(q.mid()) ** 0.5 for q in there.squares(arb(float(point[2])), arb(float(point[3]))))
 
 
 def test_contraction_discards_what_holds_none() -> None:

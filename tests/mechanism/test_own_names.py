@@ -51,29 +51,13 @@ KERNELS = {
     "certified/poses.py",
 }
 """The certified engine's formulas, made by hand for this mechanism."""
-CHECKER = {
-    "verification/certified/energy.py",
-    "verification/certified/equilibria.py",
-    "verification/certified/parameters.py",
-    "verification/certified/points.py",
-}
-"""The checker's formulas for springs with free lengths, written down once more."""
-ELIMINATION = {
-    "algebra/critical_lengths.py",
-    "algebra/signed.py",
-    "algebra/signed_equations.py",
-    "algebra/simple_roots.py",
-    "algebra/squared.py",
-    "exact/ranges/free_lengths.py",
-}
-"""The paper's elimination of free lengths, signs and simple roots."""
 GREEK = {
     "show/polynomial_text.py",
     "show/render/axes.py",
     "text/syntax.py",
 }
 """Greek letters as names."""
-STILL_HOLDING = KERNELS | CHECKER | ELIMINATION | GREEK
+STILL_HOLDING = KERNELS | GREEK
 
 
 def test_own_names_are_typed_in_the_description_and_where_the_list_says() -> None:

@@ -23,7 +23,8 @@ import sympy as sp
 from support import oracle
 from support.free_length_equilibria import free_length_equilibria
 
-from ptmcad.algebra.squared import real_root_number, squared_equations
+from ptmcad.algebra.elimination import real_root_number
+from ptmcad.algebra.squared import squared_equations
 from ptmcad.answer.regionmap import Merge, Status
 from ptmcad.studies.paper import printed
 from ptmcad.studies.paper.claim import Outcome, Verdict, judge
