@@ -43,7 +43,7 @@ class Operation(IntEnum):
 Number = Fraction | int
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Formula:
     """A node of a graph; formulas of one graph combine by the arithmetic operators."""
 

@@ -16,9 +16,10 @@ from flint import ctx
 
 from ptmcad.certified.arb_evaluation import ball, lower, upper
 from ptmcad.certified.arb_isolation import Box, refined
-from ptmcad.certified.curves import Curve, curves
+from ptmcad.certified.curve import Curve
 from ptmcad.certified.isolation import isolate
 from ptmcad.certified.points import PointCount, point_counter
+from ptmcad.certified.ptm.curves import curves
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.system import System
 from ptmcad.certified.tape import enclosing_floats

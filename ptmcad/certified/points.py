@@ -17,20 +17,19 @@ from flint import arb, ctx
 from ptmcad.answer.regionmap import MorseIndex, Solution
 from ptmcad.certified.arb_evaluation import ball, lower, run_arb, upper
 from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb, refined
-from ptmcad.certified.cones import cones
 from ptmcad.certified.distinct import distinct
-from ptmcad.certified.equilibria import TH1, TH2, Equilibria, slice_equilibria
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.isolation import isolate
-from ptmcad.certified.mechanism import NAMES
+from ptmcad.certified.parameters import values_at
+from ptmcad.certified.ptm.cones import cones, creases_at
+from ptmcad.certified.ptm.equilibria import Equilibria, slice_equilibria
+from ptmcad.certified.ptm.statics import TH1, TH2, TURN
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.question.slice import Count, Slice
 
-TURN = (-3.0, -3.0 + 6.2832)
-"""A little more than a full turn, cut where no symmetric solution lies."""
 CREASED = (-1e-9, 6.2831853081)
-"""The same for an angle whose formulas hold between 0 and a full turn."""
+"""A little more than a full turn, for an angle whose formulas hold between 0 and a full turn."""
 CREASED_END = (Fraction(6.283185307179586), Fraction(6.283185307179587))
 """Below and above a full turn."""
 EQUAL = np.ones(4)
@@ -84,19 +83,12 @@ class PointCounter:
 
     def equilibria_at(self, x: Fraction, y: Fraction) -> Equilibria:
         """The formulas for a point: others where rho = L2 or rho = L1, where spring 1 or 2 may have no length."""
-        creases = self._creases(x, y)
+        creases = creases_at(values_at(self.slice, x, y))
         if not any(creases):
             return self.equilibria
         if creases not in self._on_creases:
             self._on_creases[creases] = slice_equilibria(self.slice, creases)
         return self._on_creases[creases]
-
-    def _creases(self, x: Fraction, y: Fraction) -> tuple[bool, bool]:
-        p = self._values(x, y)
-        return (
-            p["rho"] == p["L2"] and bool(p["k1"] * p["l0_1"]),
-            p["rho"] == p["L1"] and bool(p["k2"] * p["l0_2"]),
-        )
 
     def at(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> PointCount:
         """What ``count`` needs at the point (x, y) of the two axes.
@@ -124,7 +116,7 @@ class PointCounter:
             )
         kinds = [zero.solution.signs for zero in zeros]
         index = (kinds.count("++"), kinds.count("+-"), kinds.count("--"))
-        peaks = cones(self._values(x, y))
+        peaks = cones(values_at(self.slice, x, y))
         if peaks.regular and index[0] - index[1] + index[2] + peaks.count != 0:
             raise ArithmeticError(f"minima, saddles and maxima {index} with {peaks.count} cones at ({x}, {y})")
         return PointCount(len(zeros), len(minima), None, index, peaks.count, solutions, True)
@@ -132,7 +124,7 @@ class PointCounter:
     def zeros(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> list[_Zero] | None:
         """The equilibria that ``count`` needs, each once; None when they cannot be decided."""
         only_minima = count in (Count.STABLE, Count.ADMISSIBLE)
-        written, creases = self.equilibria_at(x, y), self._creases(x, y)
+        written, creases = self.equilibria_at(x, y), creases_at(values_at(self.slice, x, y))
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
         second, first = (CREASED if crease else TURN for crease in creases)
         start = np.array([[x_low, y_low, first[0], second[0], x_high, y_high, first[1], second[1]]])
@@ -160,10 +152,6 @@ class PointCounter:
         else:
             found = _kinds(written, x, y, unique[kept], narrow[kept], only_minima)
         return None if found is None else _off_creases(found, creases)
-
-    def _values(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
-        given = self.slice.parameters
-        return {name: given[name].evaluate(x, y) if name in given else Fraction(0) for name in NAMES}
 
 
 def point_counter(slice: Slice) -> PointCounter:

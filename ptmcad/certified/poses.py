@@ -48,7 +48,7 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
 
     Parameters
     ----------
-    parameters : all of `ptmcad.certified.mechanism.NAMES`.
+    parameters : all variables of the description.
     digits : significant digits that every enclosure settles.
 
     Raises

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ptmcad.certified.curves import Curve
+from ptmcad.certified.curve import Curve
 from ptmcad.certified.search import Boxes, search_curve
 
 BUDGET = 20_000

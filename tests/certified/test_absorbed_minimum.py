@@ -14,8 +14,8 @@ import pytest
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.certified.curves import curves
 from ptmcad.certified.points import point_counter
+from ptmcad.certified.ptm.curves import curves
 from ptmcad.certified.search import search_curve
 from ptmcad.question.slice import Count, Slice
 

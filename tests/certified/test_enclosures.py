@@ -15,11 +15,11 @@ pytest.importorskip("numba")
 
 from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.contraction import contract, workspace
-from ptmcad.certified.curves import Curve, curves
+from ptmcad.certified.curve import Curve
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Formula, Graph
-from ptmcad.certified.mechanism import Mechanism
-from ptmcad.certified.parameters import slice_mechanism
+from ptmcad.certified.ptm.curves import curves
+from ptmcad.certified.ptm.statics import Statics, slice_statics
 from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import Tape, record
 from ptmcad.question.config import slice_from_mapping
@@ -43,7 +43,7 @@ def slice_of(name: str) -> Slice:
     )
 
 
-def differentiable(m: Mechanism) -> list[Formula]:
+def differentiable(m: Statics) -> list[Formula]:
     h = m.hessian
     return [*m.equilibrium, h.p11, h.p22, h.q, h.determinant]
 
@@ -51,7 +51,7 @@ def differentiable(m: Mechanism) -> list[Formula]:
 def tape_of(name: str) -> tuple[Tape, int]:
     """E1, E2, P11, P22, q, D, then the lengths; and derivatives of all six by x, y, th1, th2, row by row."""
     graph = Graph()
-    m = slice_mechanism(graph, slice_of(name))
+    m = slice_statics(graph, slice_of(name))
     wanted = differentiable(m)
     gradients = [graph.derivative(f, variable) for f in wanted for variable in range(4)]
     return record([[*wanted, *m.lengths, *gradients]]), len(wanted)
