@@ -19,12 +19,11 @@ from ptmcad.certified.arb_evaluation import ball, lower, run_arb, upper
 from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb, refined
 from ptmcad.certified.distinct import distinct
 from ptmcad.certified.evaluation import program, run
-from ptmcad.certified.isolation import isolate
 from ptmcad.certified.parameters import values_at
 from ptmcad.certified.ptm.cones import cones, creases_at
 from ptmcad.certified.ptm.equilibria import Equilibria, slice_equilibria
 from ptmcad.certified.ptm.statics import TH1, TH2, TURN
-from ptmcad.certified.search import Boxes
+from ptmcad.certified.search import Boxes, isolate
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.question.slice import Count, Slice
 
@@ -131,14 +130,16 @@ class PointCounter:
         system, equations = (written.minima if only_minima else written.all).arguments(), written.equations.arguments()
         for finest in MIN_BOX_WIDTHS:
             budget = BUDGET if thorough else QUICK_BUDGET
-            unique, narrow, left, used = isolate(system, equations, start, finest, budget, MAX_OPEN_BOXES, EQUAL)
-            if used < budget and len(left) <= MAX_OPEN_BOXES:
+            found = isolate(system, equations, start, (finest, budget, MAX_OPEN_BOXES), EQUAL)
+            left = found.left()
+            if found.used < budget and len(left) <= MAX_OPEN_BOXES:
                 break
             if not thorough:
                 return None
         else:
             return None
         # outside its turn a crease's formulas have zeros of their own, which are no equilibria a turn away either
+        unique, narrow = found.unique, found.narrow
         inside = np.ones(len(narrow), np.bool_)
         for angle, crease in zip((TH1, TH2), reversed(creases), strict=True):
             if crease:
@@ -148,10 +149,10 @@ class PointCounter:
         if kept is None and not thorough:
             return None
         if kept is None:
-            found = _by_arb(written, x, y, only_minima, unique, left)
+            zeros = _by_arb(written, x, y, only_minima, unique, left)
         else:
-            found = _kinds(written, x, y, unique[kept], narrow[kept], only_minima)
-        return None if found is None else _off_creases(found, creases)
+            zeros = _kinds(written, x, y, unique[kept], narrow[kept], only_minima)
+        return None if zeros is None else _off_creases(zeros, creases)
 
 
 def point_counter(slice: Slice) -> PointCounter:
@@ -182,7 +183,7 @@ def _kinds(
     written: Equilibria, x: Fraction, y: Fraction, unique: Boxes, narrow: Boxes, only_minima: bool
 ) -> list[_Zero] | None:
     tape = written.decisive
-    low, high = np.empty(len(tape)), np.empty(len(tape))
+    low, high = np.empty((2, len(tape)))
     outputs = tape.outputs[0]
     zeros = []
     for wide, box in zip(unique, narrow, strict=True):

@@ -41,7 +41,7 @@ def enclosed(slice: Slice, points: list[tuple[float, float]], tiles: int = 4) ->
     covered = 0.0
     for curve in curves(slice, Count.STABLE):
         area = float(size.prod()) * 4.0**-7
-        small, waiting, _ = search_curve(
+        _, _, small, waiting, _ = search_curve(
             curve.system.arguments(), curve.start(window), area, 3_000_000, curve.importance()
         )
         assert len(waiting) == 0

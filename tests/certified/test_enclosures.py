@@ -192,8 +192,7 @@ def fold_curves() -> list[Curve]:
 def test_contraction_keeps_known_folds(number: int, folds: list[Floats]) -> None:
     rng = np.random.default_rng(8)
     system = fold_curves()[number].system.arguments()
-    m, n = system[4].shape
-    work = workspace(system[0][0].shape[0], 4, m, n)
+    work = workspace(system, 4)
     kept = narrowed = 0
     for point in folds:
         if number and _shortest(point) < 0.1:
@@ -221,8 +220,7 @@ def test_contraction_discards_what_holds_none() -> None:
     """Boxes around random points off the curve, small enough to be decided."""
     rng = np.random.default_rng(9)
     system = fold_curves()[0].system.arguments()
-    m, n = system[4].shape
-    work = workspace(system[0][0].shape[0], 4, m, n)
+    work = workspace(system, 4)
     gone = 0
     for _ in range(200):
         point = np.array([*rng.uniform(0.1, 1.9, 2), *rng.uniform(-3, 3, 2)])
@@ -235,9 +233,6 @@ def test_search_keeps_known_folds(folds: list[Floats]) -> None:
     curve = fold_curves()[0]
     for point in folds:
         window = np.array([[point[0] - 0.02, point[1] - 0.013, point[0] + 0.011, point[1] + 0.017]])
-        small, waiting, _ = search_curve(
-            curve.system.arguments(), curve.start(window), 1e-6, 20_000, curve.importance()
-        )
-        boxes = np.concatenate([small, waiting])
+        boxes = search_curve(curve.system.arguments(), curve.start(window), 1e-6, 20_000, curve.importance()).left()
         inside = (boxes[:, :4] <= point + 1e-9).all(axis=1) & (boxes[:, 4:] >= point - 1e-9).all(axis=1)
         assert inside.any()

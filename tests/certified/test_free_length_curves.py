@@ -89,10 +89,7 @@ def rectangles(all_curves: tuple[Curve, ...], centre: Vector, half: float, area:
     window = np.array([[*(centre - half), *(centre + half)]])
     parts = []
     for curve in all_curves:
-        small, waiting, _ = search_curve(
-            curve.system.arguments(), curve.start(window), area, 20_000, curve.importance()
-        )
-        boxes = np.concatenate([small, waiting])
+        boxes = search_curve(curve.system.arguments(), curve.start(window), area, 20_000, curve.importance()).left()
         v = boxes.shape[1] // 2
         parts.append(boxes[:, [0, 1, v, v + 1]])
     return np.concatenate(parts)
