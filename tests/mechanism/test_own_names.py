@@ -41,7 +41,6 @@ def own_names(path: Path) -> Iterator[tuple[int, str]]:
 STUDIES = "studies/"
 """They study this mechanism: constructions, published equations and rival methods are its own."""
 KERNELS = {
-    "certified/poses.py",
     "certified/ptm/cones.py",
     "certified/ptm/curves.py",
     "certified/ptm/equilibria.py",
