@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ptmcad.answer.regionmap import PlanStep, System
-from ptmcad.certified.curves import Curve
+from ptmcad.certified.curve import Curve
 from ptmcad.certified.plan import beforehand
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Slice

@@ -15,11 +15,11 @@ pytest.importorskip("numba")
 
 from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.contraction import contract, workspace
-from ptmcad.certified.curves import Curve, curves
+from ptmcad.certified.curve import Curve
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Formula, Graph
-from ptmcad.certified.mechanism import Mechanism
-from ptmcad.certified.parameters import slice_mechanism
+from ptmcad.certified.ptm.curves import curves
+from ptmcad.certified.ptm.statics import Statics, slice_statics
 from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import Tape, record
 from ptmcad.question.config import slice_from_mapping
@@ -44,7 +44,7 @@ def slice_of(name: str) -> Slice:
     )
 
 
-def differentiable(m: Mechanism) -> list[Formula]:
+def differentiable(m: Statics) -> list[Formula]:
     h = m.hessian
     return [*m.equilibrium, h.p11, h.p22, h.q, h.determinant]
 
@@ -52,7 +52,7 @@ def differentiable(m: Mechanism) -> list[Formula]:
 def tape_of(name: str) -> tuple[Tape, int]:
     """E1, E2, P11, P22, q, D, then the lengths; and derivatives of all six by x, y, th1, th2, row by row."""
     graph = Graph()
-    m = slice_mechanism(graph, slice_of(name))
+    m = slice_statics(graph, slice_of(name))
     wanted = differentiable(m)
     gradients = [graph.derivative(f, variable) for f in wanted for variable in range(4)]
     return record([[*wanted, *m.lengths, *gradients]]), len(wanted)
@@ -193,8 +193,7 @@ def fold_curves() -> list[Curve]:
 def test_contraction_keeps_known_folds(number: int, folds: list[Floats]) -> None:
     rng = np.random.default_rng(8)
     system = fold_curves()[number].system.arguments()
-    m, n = system[4].shape
-    work = workspace(system[0][0].shape[0], 4, m, n)
+    work = workspace(system, 4)
     kept = narrowed = 0
     for point in folds:
         if number and _shortest(point) < 0.1:
@@ -222,8 +221,7 @@ def test_contraction_discards_what_holds_none() -> None:
     """Boxes around random points off the curve, small enough to be decided."""
     rng = np.random.default_rng(9)
     system = fold_curves()[0].system.arguments()
-    m, n = system[4].shape
-    work = workspace(system[0][0].shape[0], 4, m, n)
+    work = workspace(system, 4)
     gone = 0
     for _ in range(200):
         point = np.array([*rng.uniform(0.1, 1.9, 2), *rng.uniform(-3, 3, 2)])
@@ -236,9 +234,6 @@ def test_search_keeps_known_folds(folds: list[Floats]) -> None:
     curve = fold_curves()[0]
     for point in folds:
         window = np.array([[point[0] - 0.02, point[1] - 0.013, point[0] + 0.011, point[1] + 0.017]])
-        small, waiting, _ = search_curve(
-            curve.system.arguments(), curve.start(window), 1e-6, 20_000, curve.importance()
-        )
-        boxes = np.concatenate([small, waiting])
+        boxes = search_curve(curve.system.arguments(), curve.start(window), 1e-6, 20_000, curve.importance()).left()
         inside = (boxes[:, :4] <= point + 1e-9).all(axis=1) & (boxes[:, 4:] >= point - 1e-9).all(axis=1)
         assert inside.any()

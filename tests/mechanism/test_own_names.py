@@ -41,14 +41,10 @@ def own_names(path: Path) -> Iterator[tuple[int, str]]:
 STUDIES = "studies/"
 """They study this mechanism: constructions, published equations and rival methods are its own."""
 KERNELS = {
-    "certified/cones.py",
-    "certified/curves.py",
-    "certified/engine.py",
-    "certified/equilibria.py",
-    "certified/mechanism.py",
-    "certified/parameters.py",
-    "certified/points.py",
-    "certified/poses.py",
+    "certified/ptm/cones.py",
+    "certified/ptm/curves.py",
+    "certified/ptm/equilibria.py",
+    "certified/ptm/statics.py",
 }
 """The certified engine's formulas, made by hand for this mechanism."""
 GREEK = {
