@@ -14,11 +14,12 @@ from hypothesis import strategies as st
 import ptmcad
 from ptmcad.answer.regionmap import Status
 from ptmcad.cli import run
+from ptmcad.studies.equilibria import angle_error
 from ptmcad.studies.stress import campaign as campaign_module
 from ptmcad.studies.stress.campaign import campaign
 from ptmcad.studies.stress.case import Case, MapQuestion, PointAnswer, PointQuestion
 from ptmcad.studies.stress.constructions import Degenerate, beside_cusp, beside_fold
-from ptmcad.studies.stress.doubles import angle_error, double_poses
+from ptmcad.studies.stress.doubles import double_poses
 from ptmcad.studies.stress.judgement import judge
 from ptmcad.studies.stress.measure import Verdict, answer, work_of
 from ptmcad.studies.stress.named import chosen, named_cases

@@ -15,6 +15,7 @@ from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.question.slice import FREE_LENGTHS, Slice
+from ptmcad.studies.equilibria import angle_error, scale
 from ptmcad.studies.stress.case import (
     Case,
     LineAnswer,
@@ -24,7 +25,7 @@ from ptmcad.studies.stress.case import (
     PointAnswer,
     PointQuestion,
 )
-from ptmcad.studies.stress.doubles import DoublePose, angle_error, double_poses, scale
+from ptmcad.studies.stress.doubles import DoublePose, double_poses
 from ptmcad.studies.stress.measure import Verdict, as_float
 from ptmcad.studies.stress.reference import ReferencePose, newton_pose, sextic_poses
 from ptmcad.text.balls import exact
