@@ -16,7 +16,8 @@ from typing import Any
 
 from ptmcad.errors import ConfigError
 from ptmcad.show.document.node import Node
-from ptmcad.studies.bench.study import FORMAT, Figures, Measurement, Study, Times
+from ptmcad.studies.bench.rounds import Times
+from ptmcad.studies.bench.study import FORMAT, Figures, Measurement, Study
 from ptmcad.text.textfile import read_text
 
 MAX_BYTES = 10_000_000

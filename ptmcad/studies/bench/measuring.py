@@ -33,7 +33,8 @@ from ptmcad.studies.bench.error import MapError, exact_error, grid_error
 from ptmcad.studies.bench.methods import Job, Method, jobs, question
 from ptmcad.studies.bench.process import Outcome, Usage, run
 from ptmcad.studies.bench.reference import COUNTS, Column, Reference, Walls, centres, reference, shown_count, walls
-from ptmcad.studies.bench.study import Figures, Measurement, Study, Times, figures, outward, times
+from ptmcad.studies.bench.rounds import Times, times
+from ptmcad.studies.bench.study import Figures, Measurement, Study, figures, outward
 from ptmcad.studies.bench.suite import machine, versions
 
 FLOOR = (
