@@ -29,7 +29,7 @@ from ptmcad.studies.bench.scaling import families, folds, measurement, run, slic
 from ptmcad.studies.bench.scaling.fit import Verdict, fit, medians
 from ptmcad.studies.bench.scaling.measurement import Run, Stages, Unmeasured, in_child
 from ptmcad.studies.bench.scaling.picture import draw_scaling
-from ptmcad.studies.bench.scaling.table import to_markdown
+from ptmcad.studies.bench.scaling.table import grouped, to_markdown
 from ptmcad.text.expressions import axis
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -529,6 +529,6 @@ def test_the_page_of_figures_is_made_from_the_stored_runs() -> None:
     assert report["rounds"] >= 3
     for family in report["families"]:
         assert not family["reasons"]
-        seen = {run.abscissa(family["against"], r) for r in family["runs"]}
+        seen = grouped(family)
         for suffix in command.PICTURES if len(seen) >= command.MIN_PICTURE_SIZES else ():
             assert STORED.with_name(f"scaling-{family['name']}.{suffix}").exists()

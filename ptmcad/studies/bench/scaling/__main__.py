@@ -9,8 +9,8 @@ from typing import Any
 
 from ptmcad.studies.bench.command import Command, progress, save
 from ptmcad.studies.bench.scaling.families import FAMILIES, families_named
-from ptmcad.studies.bench.scaling.run import MAX_SECONDS, ROUNDS, abscissa, scaling
-from ptmcad.studies.bench.scaling.table import to_markdown
+from ptmcad.studies.bench.scaling.run import MAX_SECONDS, ROUNDS, scaling
+from ptmcad.studies.bench.scaling.table import grouped, to_markdown
 
 PICTURES = ("svg", "png")
 MIN_PICTURE_SIZES = 3
@@ -55,7 +55,7 @@ def _draw(report: dict[str, Any], folder: Path) -> None:
     from ptmcad.studies.bench.scaling.picture import draw_scaling
 
     for family in report["families"]:
-        if len({abscissa(family["against"], run) for run in family["runs"]}) >= MIN_PICTURE_SIZES:
+        if len(grouped(family)) >= MIN_PICTURE_SIZES:
             figure = draw_scaling(family)
             for suffix in PICTURES:
                 save(figure, folder / f"scaling-{family['name']}.{suffix}")

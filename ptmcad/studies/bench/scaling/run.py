@@ -8,7 +8,7 @@ fitted to them.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from functools import partial
 from typing import Any
@@ -98,11 +98,6 @@ def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: 
             if f is not None
         },
     }
-
-
-def abscissa(against: str, run: Mapping[str, Any]) -> float:
-    """The place of a run, as data, along its family."""
-    return float(run["size"] if against == "size" else run["found"][against])
 
 
 def _order(against: str, run: Run) -> tuple[float, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from statistics import median
 from typing import Any
 
@@ -34,6 +34,20 @@ def to_markdown(report: Mapping[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def grouped(family: Mapping[str, Any]) -> dict[float, list[Any]]:
+    """A family's runs, as data, by their place along it."""
+    groups: dict[float, list[Any]] = {}
+    for run in family["runs"]:
+        place = run["size"] if family["against"] == "size" else run["found"][family["against"]]
+        groups.setdefault(place, []).append(run)
+    return groups
+
+
+def stages_of(runs: Iterable[Mapping[str, Any]]) -> list[str]:
+    """The stages of runs, as data, in their order."""
+    return list(dict.fromkeys(stage for run in runs for stage in run["stages"]))
+
+
 def _fits(family: Mapping[str, Any]) -> list[str]:
     rows = [
         (_NAMES.get(name, name), f"{f['first']:g} - {f['last']:g}",
@@ -54,12 +68,9 @@ def _beyond(f: Mapping[str, Any]) -> str:
 
 def _runs(family: Mapping[str, Any]) -> list[str]:
     """Medians by abscissa, the spread of the seconds, and what was found."""
-    against = family["against"]
-    groups: dict[float, list[Any]] = {}
-    for run in family["runs"]:
-        groups.setdefault(run["size"] if against == "size" else run["found"][against], []).append(run)
-    facts = [k for k in (family["runs"][0]["found"] if family["runs"] else {}) if k != against]
-    stages = list(dict.fromkeys(stage for run in family["runs"] for stage in run["stages"]))
+    groups = grouped(family)
+    facts = [k for k in (family["runs"][0]["found"] if family["runs"] else {}) if k != family["against"]]
+    stages = stages_of(family["runs"])
     stages = stages if len(stages) > 1 else []
     rows = []
     for place, runs in sorted(groups.items()):
