@@ -15,14 +15,10 @@ from itertools import pairwise
 
 from ptmcad.algebra.polynomials import (
     coefficients_in,
-    from_expression,
     from_fraction,
     from_plane,
     to_fraction,
     univariate,
-)
-from ptmcad.algebra.polynomials import (
-    evaluate as value_of,
 )
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, refine, simplest_between, squarefree_part
 from ptmcad.answer.regionmap import Component, MorseIndex, RegionMap, Solution
@@ -104,12 +100,8 @@ def curves(figure: str) -> tuple[Component, ...]:
 def parameters_at(figure: str, at: Mapping[str, Exact]) -> dict[str, Fraction]:
     """Every parameter of the mechanism at a point of a figure, which need not lie in its window."""
     wanted = slice_of(figure)
-    x, y = (from_fraction(rational(at[name])) for name in wanted.axis_names)
-    values = {}
-    for name, expression in wanted.parameters.items():
-        numerator, denominator = from_expression(expression)
-        values[name] = to_fraction(value_of(numerator, x, y) / value_of(denominator, x, y))
-    return values
+    x, y = (rational(at[name]) for name in wanted.axis_names)
+    return {name: expression.evaluate(x, y) for name, expression in wanted.parameters.items()}
 
 
 @dataclass(frozen=True, slots=True)
