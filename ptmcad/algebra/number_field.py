@@ -18,6 +18,7 @@ from itertools import repeat
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly, nmod, nmod_poly
 
+from ptmcad.algebra.polynomials import to_fraction
 from ptmcad.algebra.real_roots import RealRoot, refine
 
 PRIME = 2**61 - 1
@@ -151,8 +152,7 @@ class Element:
             return None
         if self.residue.degree() > 0:
             return None
-        value = fmpq(self.residue[0])
-        return Fraction(int(value.p), int(value.q))
+        return to_fraction(fmpq(self.residue[0]))
 
     def conjugate(self, field: RealField) -> Element:
         """The same residue at another root of the modulus."""

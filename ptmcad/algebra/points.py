@@ -15,8 +15,9 @@ from dataclasses import dataclass
 from flint import fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 
 from ptmcad.algebra.fibre import Fibre, RationalPolynomial, evaluate, hermite_matrix, signature
+from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.number_field import Element, Modulus, RealField, Residue, polynomial_at
-from ptmcad.algebra.real_roots import RealRoot, isolate, root_bound, sign_at
+from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 
 
 @dataclass(frozen=True, slots=True)

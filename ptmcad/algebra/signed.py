@@ -7,9 +7,9 @@ With v_i^2 l_i^2 = 1 and m_i = 1 - l0 v_i the equations are linear in each v_i,
 
     E1 = m2 rho s1 + m3 (rho s1 - L2 s12) - f3 c1,    E2 = m1 rho s2 + m3 (rho s2 - L1 s12) - f4 c2,
 
-and an equilibrium is a real solution with all v_i > 0. The squared equations of `ptmcad.algebra.squared` are the
-products of E1 over the signs of v2 and v3, and of E2 over those of v1 and v3. So a simple root t2 of their resultant
-belongs to one t1 and one choice of signs in each; it is a solution where both choose the same sign of v3.
+and an equilibrium is a real solution with all v_i > 0. The squared equations (`ptmcad.algebra.squared`) are
+the products of E1 over the signs of v2 and v3, and of E2 over those of v1 and v3. So a simple root t2 of their
+resultant belongs to one t1 and one choice of signs in each; it is a solution where both choose the same sign of v3.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ class SignedSolutions:
 
 
 Design = tuple[Fraction, tuple[Fraction, Fraction], Fraction, tuple[Fraction, Fraction]]
-"""rho, the rods, l0 and the loads over k, all in one unit; the loads both zero or not both."""
+"""base, the rods, l0 and the loads over k, all in one unit; the loads both zero or not both."""
 
 
 def signed_solutions(design: Design) -> SignedSolutions:
@@ -110,9 +110,9 @@ class _Problem:
 
 
 def _problem(design: Design) -> _Problem:
-    rho, rods, free, loads = design
+    base, rods, free, loads = design
     unloaded = not any(loads)
-    first, second = squared_equations(rho, rods, free, loads)
+    first, second = squared_equations(base, rods, free, loads)
     rows = tuple(coefficients_in(first, 0)), tuple(coefficients_in(second, 0))
     eliminated = resultant(*rows)
     (a, b), (c, d) = first.degrees(), second.degrees()
@@ -121,10 +121,10 @@ def _problem(design: Design) -> _Problem:
     if not unloaded and eliminated.degree() != a * d + b * c:
         raise SpecialDesignError("t2 is infinite at a solution")
     return _Problem(
-        simple_part(eliminated, first, second, rho, rods, unloaded),
+        simple_part(eliminated, first, second, base, rods, unloaded),
         rows,
-        SignedEquations(*(ball(x) for x in (rho, *rods, free, *loads))),
-        flat_poses(rho, rods, free) if unloaded else 0,
+        SignedEquations(*(ball(x) for x in (base, *rods, free, *loads))),
+        flat_poses(base, rods, free) if unloaded else 0,
     )
 
 

@@ -45,7 +45,7 @@ def directions(*tangents: acb) -> tuple[tuple[acb, acb], ...]:
 class SignedEquations:
     """E1 and E2 in balls."""
 
-    rho: arb
+    base: arb
     length1: arb
     length2: arb
     free: arb
@@ -54,17 +54,17 @@ class SignedEquations:
 
     def squares(self, t1: acb, t2: acb) -> tuple[acb, acb, acb]:
         """l1^2, l2^2 and l3^2."""
-        rho, p, q = self.rho, self.length1, self.length2
+        base, p, q = self.base, self.length1, self.length2
         (c1, s1), (c2, s2) = directions(t1, t2)
         return (
-            rho**2 + q**2 - 2 * rho * q * c2,
-            rho**2 + p**2 - 2 * rho * p * c1,
-            rho**2 + p**2 + q**2 + 2 * p * q * (c1 * c2 - s1 * s2) - 2 * rho * p * c1 - 2 * rho * q * c2,
+            base**2 + q**2 - 2 * base * q * c2,
+            base**2 + p**2 - 2 * base * p * c1,
+            base**2 + p**2 + q**2 + 2 * p * q * (c1 * c2 - s1 * s2) - 2 * base * p * c1 - 2 * base * q * c2,
         )
 
     def signs(self, t1: acb, t2: acb) -> tuple[tuple[int, int], tuple[int, int]] | None:
         """The only signs of (v2, v3) at which E1 can vanish, and of (v1, v3) for E2; None when it is not clear."""
-        rho, p, q = self.rho, self.length1, self.length2
+        base, p, q = self.base, self.length1, self.length2
         (c1, s1), (c2, s2) = directions(t1, t2)
         s12 = s1 * c2 + c1 * s2
         squares = self.squares(t1, t2)
@@ -73,8 +73,8 @@ class SignedEquations:
         # any continuous choice of the root serves: both signs are tried
         v1, v2, v3 = (1 / s.sqrt() for s in squares)
         chosen = []
-        for own, b, c, load in ((v2, rho * s1, rho * s1 - q * s12, self.f3 * c1),
-                                (v1, rho * s2, rho * s2 - p * s12, self.f4 * c2)):  # fmt: skip
+        for own, b, c, load in ((v2, base * s1, base * s1 - q * s12, self.f3 * c1),
+                                (v1, base * s2, base * s2 - p * s12, self.f4 * c2)):  # fmt: skip
             zero = [
                 (i, j)
                 for i, j in product((1, -1), repeat=2)

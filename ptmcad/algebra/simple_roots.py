@@ -12,11 +12,11 @@ from itertools import product
 
 from flint import fmpz_poly
 
+from ptmcad.algebra.elimination import squarefree_factors
 from ptmcad.algebra.polynomials import Coefficient, coefficients_in
 from ptmcad.algebra.real_roots import squarefree_part
 from ptmcad.algebra.resultants import resultant
 from ptmcad.algebra.signed_equations import SignedEquations, ball, complex_roots, value_at, vanishes
-from ptmcad.algebra.squared import squarefree_factors
 
 _CIRCLE = fmpz_poly([1, 0, 1])
 
@@ -29,7 +29,7 @@ def simple_part(
     eliminated: fmpz_poly,
     first: Coefficient,
     second: Coefficient,
-    rho: Fraction,
+    base: Fraction,
     rods: tuple[Fraction, Fraction],
     unloaded: bool,
 ) -> fmpz_poly:
@@ -45,9 +45,9 @@ def simple_part(
             simple = factor
             continue
         # v1 does not exist where l1 = 0
-        left = factor // factor.gcd(_distance(rho, rods[1], Fraction(0)))
-        cone = left.gcd(_distance(rho, rods[1], rods[0]))
-        if cone.degree() > 0 and not _spring_three_vanishes(cone, first, second, rho, rods):
+        left = factor // factor.gcd(_distance(base, rods[1], Fraction(0)))
+        cone = left.gcd(_distance(base, rods[1], rods[0]))
+        if cone.degree() > 0 and not _spring_three_vanishes(cone, first, second, base, rods):
             raise SpecialDesignError("a solution shares t2 with a pose at which l3 = 0")
         left //= cone
         if unloaded:
@@ -57,15 +57,15 @@ def simple_part(
     return simple
 
 
-def _distance(rho: Fraction, rod: Fraction, other: Fraction) -> fmpz_poly:
+def _distance(base: Fraction, rod: Fraction, other: Fraction) -> fmpz_poly:
     """(1 + t^2) (l^2 - other^2) in t = tan(th/2), l reaching from the end of a rod to the other rod's joint."""
-    ends = (rho - rod) ** 2 - other**2, (rho + rod) ** 2 - other**2
+    ends = (base - rod) ** 2 - other**2, (base + rod) ** 2 - other**2
     scale = math.lcm(*(e.denominator for e in ends))
     return fmpz_poly([int(ends[0] * scale), 0, int(ends[1] * scale)])
 
 
 def _spring_three_vanishes(
-    cone: fmpz_poly, first: Coefficient, second: Coefficient, rho: Fraction, rods: tuple[Fraction, Fraction]
+    cone: fmpz_poly, first: Coefficient, second: Coefficient, base: Fraction, rods: tuple[Fraction, Fraction]
 ) -> bool:
     """Whether l3 = 0 at all common zeros of the squared equations at the roots t2 of ``cone``; False when unclear.
 
@@ -76,7 +76,7 @@ def _spring_three_vanishes(
     norms = (resultant(over, coefficients_in(p, 1)) for p in (first, second))
     candidates = squarefree_part(next(norms).gcd(next(norms)))
     rows = coefficients_in(first, 0), coefficients_in(second, 0)
-    equations = SignedEquations(*(ball(x) for x in (rho, *rods, *(Fraction(0),) * 3)))
+    equations = SignedEquations(*(ball(x) for x in (base, *rods, *(Fraction(0),) * 3)))
     for t2 in complex_roots(cone):
         if all(value_at(row[-1], t2).contains(0) for row in rows):
             return False  # a common root may be infinite
@@ -91,17 +91,19 @@ def _spring_three_vanishes(
     return True
 
 
-def flat_poses(rho: Fraction, rods: tuple[Fraction, Fraction], free: Fraction) -> int:
+def flat_poses(base: Fraction, rods: tuple[Fraction, Fraction], free: Fraction) -> int:
     """The poses with both sines zero at which no length is; unloaded, no other solution has sin th2 = 0.
 
     With s2 = 0 and no loads E2 says m3 s1 = 0. Where s1 is not zero m3 and then m2 vanish: l2^2 = l3^2 = l0^2.
     """
     length1, length2 = rods
-    for end in (rho - length2, rho + length2):  # A4 is on the axis
+    for end in (base - length2, base + length2):  # A4 is on the axis
         cosines = {
-            (x * x + length1 * length1 - free * free) / (2 * x * length1) if x else None for x in (rho, end)
+            (x * x + length1 * length1 - free * free) / (2 * x * length1) if x else None for x in (base, end)
         }  # fmt: skip
         if len(cosines) == 1 or None in cosines:
-            raise SpecialDesignError("l2 = l3 = l0 in a pose with sin th2 = 0, or a rod as long as the base")
-    poses = [(length1 * c1, rho - length2 * c2) for c1, c2 in product((1, -1), repeat=2)]
-    return sum(x4 != 0 and x3 not in (rho, x4) for x3, x4 in poses)
+            raise SpecialDesignError(
+                "two springs are as long as l_0 in a pose with a sine of zero, or a rod is as long as the base"
+            )
+    poses = [(length1 * c1, base - length2 * c2) for c1, c2 in product((1, -1), repeat=2)]
+    return sum(x4 != 0 and x3 not in (base, x4) for x3, x4 in poses)

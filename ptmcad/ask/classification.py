@@ -23,6 +23,7 @@ from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.savings import load_all, switched_off
 from ptmcad.question.slice import Count, Slice, without_free_lengths
+from ptmcad.text.numerals import exactly
 
 
 def classify(
@@ -71,11 +72,6 @@ def classify(
     LimitReached
         After ``timeout`` seconds, with what there is of the map as ``partial``.
     """
-    if keep is not None:
-        if without:
-            raise ConfigError("this is the older name of without: give one of them", key="keep")
-        warnings.warn("keep has a new name: without", DeprecationWarning, stacklevel=2)
-        without = keep
     options = Options(
         engine=engine,
         timeout=timeout,
@@ -83,7 +79,7 @@ def classify(
         area_tolerance=_share(area_tolerance, "area_tolerance"),
         jobs=jobs,
         progress=progress,
-        without=frozenset((without,) if isinstance(without, str) else without),
+        without=_names(without, keep),
         partial=partial,
         resume=resume,
         areas=areas,
@@ -93,6 +89,16 @@ def classify(
     except ValueError as error:
         raise ConfigError(str(error), key="count") from error
     return region_map(counted, options)
+
+
+def _names(without: Iterable[str], keep: Iterable[str] | None) -> frozenset[str]:
+    """The savings to do without, which may be given under the option's older name."""
+    if keep is not None:
+        if without:
+            raise ConfigError("this is the older name of without: give one of them", key="keep")
+        warnings.warn("keep has a new name: without", DeprecationWarning, stacklevel=3)
+        without = keep
+    return frozenset((without,) if isinstance(without, str) else without)
 
 
 def region_map(slice: Slice, options: Options) -> RegionMap:
@@ -246,7 +252,7 @@ def _share(value: Fraction | float | str | None, key: str) -> Fraction | None:
     if value is None:
         return None
     try:
-        share = Fraction(value)
+        share = Fraction(value) if isinstance(value, str) else exactly(value)
     except (ValueError, TypeError, ZeroDivisionError, OverflowError) as error:
         raise ConfigError(f"{value!r} is not a number", key=key) from error
     if not 0 < share < 1:

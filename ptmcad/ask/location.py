@@ -17,9 +17,9 @@ from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at
 from ptmcad.answer.regionmap import CriticalValue, Location, RegionMap, Status
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
-from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.curves import Curve, curves_of
-from ptmcad.text.expressions import rational
+from ptmcad.text.parsing import number_for
 
 if TYPE_CHECKING:
     from ptmcad.cover.complement import Components
@@ -111,14 +111,7 @@ def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction
         raise ConfigError(
             f"a point of this map needs {names[0]} and {names[1]}, not {', '.join(map(str, at)) or 'nothing'}"
         )
-    values = []
-    for name in names:
-        try:
-            value = at[name]
-            values.append(rational(repr(value) if isinstance(value, float) else value))
-        except ExpressionError as error:
-            raise ConfigError(str(error), key=name) from error
-    return values[0], values[1]
+    return number_for(names[0], at[names[0]]), number_for(names[1], at[names[1]])
 
 
 def _stack(result: RegionMap, u: fmpq) -> tuple[int, bool]:

@@ -13,11 +13,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
 from ptmcad.certified.formula import Operation
 from ptmcad.certified.tape import Tape
-from ptmcad.text.balls import exact
+from ptmcad.text.balls import ball_of, exact
 
 
 class EmptyMeet(Exception):
@@ -26,7 +26,7 @@ class EmptyMeet(Exception):
 
 def ball(low: Fraction, high: Fraction) -> arb:
     """A ball that contains the interval, at the context's precision."""
-    return arb(_fmpq(low)).union(arb(_fmpq(high))) if low != high else arb(_fmpq(low))
+    return ball_of(low).union(ball_of(high)) if low != high else ball_of(low)
 
 
 def lower(value: arb) -> Fraction:
@@ -58,7 +58,7 @@ def run_arb(tape: Tape, box: Sequence[arb], precision: int, stages: int | None =
         for place in range(end):
             operation, a, b = Operation(int(tape.operations[place])), int(tape.first[place]), int(tape.second[place])
             if operation is Operation.CONSTANT:
-                values.append(arb(_fmpq(tape.constants[place])))
+                values.append(ball_of(tape.constants[place]))
             elif operation is Operation.VARIABLE:
                 values.append(box[a])
             elif b < 0:
@@ -133,7 +133,3 @@ def _root(x: arb, y: arb) -> arb:
 
 def _hull(a: arb, b: arb) -> arb:
     return a if a.is_exact() and b.is_exact() and a == b else a.union(b)
-
-
-def _fmpq(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)

@@ -20,10 +20,10 @@ import numpy as np
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.assembly import Assembler
 from ptmcad.certified.covering import Lattice, Thinning, box_rectangles, thinning
-from ptmcad.certified.curves import curves
 from ptmcad.certified.loading import load
 from ptmcad.certified.pace import SAFETY, Pace
 from ptmcad.certified.points import point_counter
+from ptmcad.certified.ptm.curves import curves, distance_from_degeneracy
 from ptmcad.certified.refinement import Enclosure, begin, refine
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.statement import plan_of
@@ -288,10 +288,8 @@ class _Run:
 def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:
     """The rectangles (low x, low y, high x, high y) with which the search begins, rounded outwards."""
     if resume is None:
-        steps, rectangles = (
-            START_TILES,
-            tuple(sorted(_tiles(), key=lambda tile: _distance_from_degeneracy(slice, tile), reverse=True)),
-        )
+        tiles = sorted(_tiles(), key=lambda tile: distance_from_degeneracy(slice, *_middle(slice, tile)), reverse=True)
+        steps, rectangles = START_TILES, tuple(tiles)
     else:
         most = min(Fraction(MAX_TILES), START_TILES**2 / max(_share(resume), Fraction(1, MAX_TILES)))
         steps, rectangles = resume.steps, gathered(resume, int(most)).rectangles
@@ -316,15 +314,12 @@ def _tiles() -> Iterator[Rectangle]:
     return ((i, i + 1, j, j + 1) for i in range(START_TILES) for j in range(START_TILES))
 
 
-def _distance_from_degeneracy(slice: Slice, tile: Rectangle) -> Fraction:
-    """Small where the search takes long, which is best begun first: for small rho and bars of equal length."""
-    left, _, bottom, _ = tile
+def _middle(slice: Slice, tile: Rectangle) -> tuple[Fraction, Fraction]:
     x, y = (
         axis.low + (axis.high - axis.low) * Fraction(2 * step + 1, 2 * START_TILES)
-        for axis, step in zip(slice.axes, (left, bottom), strict=True)
+        for axis, step in zip(slice.axes, (tile[0], tile[2]), strict=True)
     )
-    rho, bar1, bar2 = (slice.parameters[name].evaluate(x, y) for name in ("rho", "L1", "L2"))
-    return rho + abs(bar1 - bar2)
+    return x, y
 
 
 def _share(cover: Cover) -> Fraction:

@@ -8,6 +8,7 @@ proved that they are equal at no point of the box.
 from __future__ import annotations
 
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,19 @@ from ptmcad.certified.compiled import compiled
 from ptmcad.certified.formula import Operation
 from ptmcad.certified.tape import Tape
 
-Program = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+class Program(NamedTuple):
+    """A `Tape` as the compiled code takes it."""
+
+    operations: Indices
+    first: Indices
+    second: Indices
+    constant_low: Floats
+    constant_high: Floats
+
 
 _CONSTANT, _VARIABLE, _ADD, _SUBTRACT = (int(x) for x in list(Operation)[:4])
 _MULTIPLY, _SQUARE, _NEGATE, _SINE, _COSINE = (int(x) for x in list(Operation)[4:9])
@@ -26,19 +39,11 @@ _INVERSE_LENGTH, _DIRECTION, _LENGTH, _MEET, _DIVIDE = (int(x) for x in list(Ope
 
 def program(tape: Tape) -> Program:
     """The tape as the compiled code takes it."""
-    return tape.operations, tape.first, tape.second, tape.low, tape.high
+    return Program(tape.operations, tape.first, tape.second, tape.low, tape.high)
 
 
 @compiled
-def run(
-    program: Program,
-    box_low: NDArray[np.float64],
-    box_high: NDArray[np.float64],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-    start: int,
-    end: int,
-) -> bool:
+def run(program: Program, box_low: Floats, box_high: Floats, low: Floats, high: Floats, start: int, end: int) -> bool:
     """Run the nodes from ``start`` to before ``end``; those before them have been run on this box."""
     operations, first, second, constant_low, constant_high = program
     for i in range(start, end):

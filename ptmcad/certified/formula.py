@@ -43,7 +43,7 @@ class Operation(IntEnum):
 Number = Fraction | int
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Formula:
     """A node of a graph; formulas of one graph combine by the arithmetic operators."""
 
@@ -155,27 +155,26 @@ class Graph:
 
     def node(self, operation: Operation, a: Formula | None = None, b: Formula | None = None) -> Formula:
         """The node of this operation; an old one if there is one."""
-        return self._intern((operation, a and a.number, b and b.number), operation, a, b)
+        return self._intern(operation, a, b)
 
     def constant(self, value: Number) -> Formula:
-        exact = Fraction(value)
-        return self._intern((Operation.CONSTANT, exact), Operation.CONSTANT, value=exact)
+        return self._intern(Operation.CONSTANT, value=Fraction(value))
 
     def variable(self, number: int) -> Formula:
-        return self._intern((Operation.VARIABLE, number), Operation.VARIABLE, variable=number)
+        return self._intern(Operation.VARIABLE, variable=number)
 
     def formula(self, value: Formula | Number) -> Formula:
         return value if isinstance(value, Formula) else self.constant(value)
 
     def _intern(
         self,
-        key: tuple[object, ...],
         operation: Operation,
         a: Formula | None = None,
         b: Formula | None = None,
         value: Fraction | None = None,
         variable: int = -1,
     ) -> Formula:
+        key = (operation, a and a.number, b and b.number, value, variable)
         known = self._known.get(key)
         if known is None:
             known = Formula(self, len(self.nodes), operation, a, b, value, variable)

@@ -16,10 +16,10 @@ from flint import ctx
 
 from ptmcad.certified.arb_evaluation import ball, lower, upper
 from ptmcad.certified.arb_isolation import Box, refined
-from ptmcad.certified.curves import Curve, curves
-from ptmcad.certified.isolation import isolate
+from ptmcad.certified.curve import Curve
 from ptmcad.certified.points import PointCount, point_counter
-from ptmcad.certified.search import Boxes
+from ptmcad.certified.ptm.curves import curves
+from ptmcad.certified.search import Boxes, isolate
 from ptmcad.certified.system import System
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.question.slice import Count, Slice
@@ -99,18 +99,18 @@ def _gaps(slice: Slice, curve: Curve, varying: int, value: Fraction, bits: int) 
         along, fixed = (enclosing_floats(low)[0], enclosing_floats(high)[1]), enclosing_floats(value)
         ranges = (along, fixed) if varying == 0 else (fixed, along)
         start = curve.start(np.array([[ranges[0][0], ranges[1][0], ranges[0][1], ranges[1][1]]]))
-        arguments = system.arguments(), equations.arguments(), start
-        unique, narrow, left, used = isolate(*arguments, MIN_BOX_WIDTH, BUDGET, MAX_OPEN_BOXES, curve.importance())
-        variables = start.shape[1] // 2
-        total += used
-        if (used >= BUDGET or len(left) > MAX_OPEN_BOXES) and high - low > smallest and total < MAX_BOXES:
+        limits = MIN_BOX_WIDTH, BUDGET, MAX_OPEN_BOXES
+        found = isolate(system.arguments(), equations.arguments(), start, limits, curve.importance())
+        left, variables = found.left(), start.shape[1] // 2
+        total += found.used
+        if (found.used >= BUDGET or len(left) > MAX_OPEN_BOXES) and high - low > smallest and total < MAX_BOXES:
             middle = (low + high) / 2
             waiting += [(low, middle), (middle, high)]
             continue
         for box in left:
             yield Gap(Fraction(float(box[varying])), Fraction(float(box[variables + varying])), (curve.name,), False)
         # ``narrow`` was contracted with the equations alone; its number can be enclosed to any precision
-        for row in narrow if len(unique) else ():
+        for row in found.narrow:
             with ctx.workprec(bits):
                 box = _balls(row, varying, value)
             exact = refined(equations, box, bits)[varying]

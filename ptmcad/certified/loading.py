@@ -13,15 +13,14 @@ import numpy as np
 from ptmcad.certified.distinct import distinct
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Graph
-from ptmcad.certified.isolation import isolate
-from ptmcad.certified.search import search_curve
+from ptmcad.certified.search import isolate
 from ptmcad.certified.strips import areas_of_pieces, numbers_of_pieces, pieces, strips
 from ptmcad.certified.system import System, system
 from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 
-STEPS = 7
+STEPS = 6
 _done: list[bool] = []
 
 
@@ -48,12 +47,10 @@ def _functions() -> Iterator[None]:
     distinct(square, square, 0)
     yield
     line, point = _systems()
-    low, high = np.empty(len(line.tape)), np.empty(len(line.tape))
+    low, high = np.empty((2, len(line.tape)))
     run(program(line.tape), square[0, :2], square[0, 2:], low, high, 0, len(line.tape))
     yield
     components(Cover(2, ((0, 1, 0, 1),)), COMPILED)
-    yield
-    search_curve(line.arguments(), square, 0.25, 8, weights)
     yield
     thin = strips(line.arguments(), square)
     yield
@@ -61,7 +58,7 @@ def _functions() -> Iterator[None]:
     areas_of_pieces(thin, 0.25)
     pieces(thin, 0.25)
     yield
-    isolate(point.arguments(), point.arguments(), square, 1e-3, 64, 4, weights)
+    isolate(point.arguments(), point.arguments(), square, (1e-3, 64, 4), weights)
     yield
 
 

@@ -1,6 +1,6 @@
 """The parameters of a slice as formulas in its two axes.
 
-Guarantee: every coefficient is exact; variables 0 and 1 are the axes, 2 and 3 the angles th1 and th2.
+Guarantee: every coefficient is exact; variables 0 and 1 are the axes.
 """
 
 from __future__ import annotations
@@ -9,12 +9,8 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from ptmcad.certified.formula import Formula, Graph
-from ptmcad.certified.mechanism import NAMES, Mechanism, mechanism
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import Expression, Term, axis
-
-PHI_UNIT = 4
-"""The search bisects the widest variable; with this factor it bisects phi, which follows from th1 and th2, later."""
+from ptmcad.text.expressions import Expression, Term
 
 
 def expression_formula(graph: Graph, expression: Expression) -> Formula:
@@ -39,27 +35,16 @@ def _horner(graph: Graph, coefficients: Mapping[int, Formula], variable: Formula
 
 
 def parameter_formulas(graph: Graph, slice: Slice) -> dict[str, Formula]:
-    """All of `ptmcad.certified.mechanism.NAMES`; free lengths that the slice does not have are zero."""
-    zero = graph.constant(0)
-    return {
-        name: expression_formula(graph, slice.parameters[name]) if name in slice.parameters else zero for name in NAMES
-    }
+    """All variables of the slice's description; free lengths that the slice does not have are zero."""
+    given, zero = slice.parameters, graph.constant(0)
+    return {name: expression_formula(graph, given[name]) if name in given else zero for name in _names(slice)}
 
 
-def slice_mechanism(graph: Graph, slice: Slice, *, phi: bool = False, factored: bool = True) -> Mechanism:
-    """The slice's mechanism in variables x, y, th1, th2 and, if asked for, v, which is phi / PHI_UNIT.
-
-    ``factored`` says whether the unloaded mechanism's factor rho may be left out where rho is positive.
-    """
-    direction = PHI_UNIT * graph.variable(4) if phi else None
-    values = parameter_formulas(graph, slice)
-    return mechanism(
-        graph, values, graph.variable(2), graph.variable(3), direction, positive_base=factored and positive_base(slice)
-    )
+def values_at(slice: Slice, x: Fraction, y: Fraction) -> dict[str, Fraction]:
+    """The same at a point of the axes."""
+    given = slice.parameters
+    return {name: given[name].evaluate(x, y) if name in given else Fraction(0) for name in _names(slice)}
 
 
-def positive_base(slice: Slice) -> bool:
-    """Whether rho is certainly positive in the open window."""
-    rho = slice.parameters["rho"]
-    # an axis is positive in the open window; of other expressions only constants are known to be
-    return rho in (axis(0), axis(1)) or (rho.is_constant and rho.constant() > 0)
+def _names(slice: Slice) -> tuple[str, ...]:
+    return slice.model.variables

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from ptmcad.answer.plan import saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import PlanStep
-from ptmcad.certified.parameters import positive_base
+from ptmcad.certified.ptm.statics import positive_base
 from ptmcad.question.slice import Count, Slice
 
 

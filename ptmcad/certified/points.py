@@ -17,20 +17,18 @@ from flint import arb, ctx
 from ptmcad.answer.regionmap import MorseIndex, Solution
 from ptmcad.certified.arb_evaluation import ball, lower, run_arb, upper
 from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb, refined
-from ptmcad.certified.cones import cones
 from ptmcad.certified.distinct import distinct
-from ptmcad.certified.equilibria import TH1, TH2, Equilibria, slice_equilibria
 from ptmcad.certified.evaluation import program, run
-from ptmcad.certified.isolation import isolate
-from ptmcad.certified.mechanism import NAMES
-from ptmcad.certified.search import Boxes
+from ptmcad.certified.parameters import values_at
+from ptmcad.certified.ptm.cones import cones, creases_at
+from ptmcad.certified.ptm.equilibria import Equilibria, slice_equilibria
+from ptmcad.certified.ptm.statics import TH1, TH2, TURN
+from ptmcad.certified.search import Boxes, isolate
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.question.slice import Count, Slice
 
-TURN = (-3.0, -3.0 + 6.2832)
-"""A little more than a full turn, cut where no symmetric solution lies."""
 CREASED = (-1e-9, 6.2831853081)
-"""The same for an angle whose formulas hold between 0 and a full turn."""
+"""A little more than a full turn, for an angle whose formulas hold between 0 and a full turn."""
 CREASED_END = (Fraction(6.283185307179586), Fraction(6.283185307179587))
 """Below and above a full turn."""
 EQUAL = np.ones(4)
@@ -84,19 +82,12 @@ class PointCounter:
 
     def equilibria_at(self, x: Fraction, y: Fraction) -> Equilibria:
         """The formulas for a point: others where rho = L2 or rho = L1, where spring 1 or 2 may have no length."""
-        creases = self._creases(x, y)
+        creases = creases_at(values_at(self.slice, x, y))
         if not any(creases):
             return self.equilibria
         if creases not in self._on_creases:
             self._on_creases[creases] = slice_equilibria(self.slice, creases)
         return self._on_creases[creases]
-
-    def _creases(self, x: Fraction, y: Fraction) -> tuple[bool, bool]:
-        p = self._values(x, y)
-        return (
-            p["rho"] == p["L2"] and bool(p["k1"] * p["l0_1"]),
-            p["rho"] == p["L1"] and bool(p["k2"] * p["l0_2"]),
-        )
 
     def at(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> PointCount:
         """What ``count`` needs at the point (x, y) of the two axes.
@@ -124,7 +115,7 @@ class PointCounter:
             )
         kinds = [zero.solution.signs for zero in zeros]
         index = (kinds.count("++"), kinds.count("+-"), kinds.count("--"))
-        peaks = cones(self._values(x, y))
+        peaks = cones(values_at(self.slice, x, y))
         if peaks.regular and index[0] - index[1] + index[2] + peaks.count != 0:
             raise ArithmeticError(f"minima, saddles and maxima {index} with {peaks.count} cones at ({x}, {y})")
         return PointCount(len(zeros), len(minima), None, index, peaks.count, solutions, True)
@@ -132,21 +123,23 @@ class PointCounter:
     def zeros(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> list[_Zero] | None:
         """The equilibria that ``count`` needs, each once; None when they cannot be decided."""
         only_minima = count in (Count.STABLE, Count.ADMISSIBLE)
-        written, creases = self.equilibria_at(x, y), self._creases(x, y)
+        written, creases = self.equilibria_at(x, y), creases_at(values_at(self.slice, x, y))
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
         second, first = (CREASED if crease else TURN for crease in creases)
         start = np.array([[x_low, y_low, first[0], second[0], x_high, y_high, first[1], second[1]]])
         system, equations = (written.minima if only_minima else written.all).arguments(), written.equations.arguments()
         for finest in MIN_BOX_WIDTHS:
             budget = BUDGET if thorough else QUICK_BUDGET
-            unique, narrow, left, used = isolate(system, equations, start, finest, budget, MAX_OPEN_BOXES, EQUAL)
-            if used < budget and len(left) <= MAX_OPEN_BOXES:
+            found = isolate(system, equations, start, (finest, budget, MAX_OPEN_BOXES), EQUAL)
+            left = found.left()
+            if found.used < budget and len(left) <= MAX_OPEN_BOXES:
                 break
             if not thorough:
                 return None
         else:
             return None
         # outside its turn a crease's formulas have zeros of their own, which are no equilibria a turn away either
+        unique, narrow = found.unique, found.narrow
         inside = np.ones(len(narrow), np.bool_)
         for angle, crease in zip((TH1, TH2), reversed(creases), strict=True):
             if crease:
@@ -156,14 +149,10 @@ class PointCounter:
         if kept is None and not thorough:
             return None
         if kept is None:
-            found = _by_arb(written, x, y, only_minima, unique, left)
+            zeros = _by_arb(written, x, y, only_minima, unique, left)
         else:
-            found = _kinds(written, x, y, unique[kept], narrow[kept], only_minima)
-        return None if found is None else _off_creases(found, creases)
-
-    def _values(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
-        given = self.slice.parameters
-        return {name: given[name].evaluate(x, y) if name in given else Fraction(0) for name in NAMES}
+            zeros = _kinds(written, x, y, unique[kept], narrow[kept], only_minima)
+        return None if zeros is None else _off_creases(zeros, creases)
 
 
 def point_counter(slice: Slice) -> PointCounter:
@@ -194,7 +183,7 @@ def _kinds(
     written: Equilibria, x: Fraction, y: Fraction, unique: Boxes, narrow: Boxes, only_minima: bool
 ) -> list[_Zero] | None:
     tape = written.decisive
-    low, high = np.empty(len(tape)), np.empty(len(tape))
+    low, high = np.empty((2, len(tape)))
     outputs = tape.outputs[0]
     zeros = []
     for wide, box in zip(unique, narrow, strict=True):

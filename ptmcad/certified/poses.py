@@ -11,16 +11,19 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
-from typing import Any
 
 from flint import arb, ctx
 
 from ptmcad.answer.poses import Pose, Poses, Spring
 from ptmcad.answer.regionmap import Solution, Status
-from ptmcad.certified.arb_evaluation import ball
+from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
+from ptmcad.certified.formula import Graph, Operation
 from ptmcad.certified.points import point_counter
+from ptmcad.certified.potential import potential
+from ptmcad.certified.ptm.statics import TH1, TH2
 from ptmcad.certified.system import System
+from ptmcad.certified.tape import Tape, record
 from ptmcad.mechanism import ptm
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.question.domain import prove_slice
@@ -36,9 +39,10 @@ NOT_TOLD = (
     "the equilibria could not be distinguished: there are infinitely many, one is nearly degenerate, or a spring has "
     "nearly no length there"
 )
+_PEAKED = MECHANISM.springs[2]
 _PEAKS = {
-    1: "the energy has a peak where spring A3A4 has no length too",
-    2: "the energy has two peaks where spring A3A4 has no length too",
+    1: f"the energy has a peak where spring {_PEAKED.start}{_PEAKED.end} has no length too",
+    2: f"the energy has two peaks where spring {_PEAKED.start}{_PEAKED.end} has no length too",
 }
 ZERO = "a number of an equilibrium could not be distinguished from zero"
 
@@ -48,7 +52,7 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
 
     Parameters
     ----------
-    parameters : all of `ptmcad.certified.mechanism.NAMES`.
+    parameters : all variables of the description.
     digits : significant digits that every enclosure settles.
 
     Raises
@@ -62,9 +66,10 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
     if not counts.decided:
         return Poses(MECHANISM, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
+    written, equations = _tape(parameters), counter.equilibria_at(Fraction(0), Fraction(0)).equations
     poses, most = [], 0
     for solution in counts.solutions:
-        pose, bits = _pose(parameters, counter.equilibria_at(Fraction(0), Fraction(0)).equations, solution, digits)
+        pose, bits = _pose(parameters, written, equations, solution, digits)
         most = max(most, bits)
         if pose is None:
             return Poses(MECHANISM, parameters, (), Status.UNDECIDED, digits, most, ZERO)
@@ -109,21 +114,26 @@ class _Number:
 
 
 def _pose(
-    parameters: Mapping[str, Fraction], equations: System, solution: Solution, digits: int
+    parameters: Mapping[str, Fraction],
+    written: tuple[Tape, tuple[str, ...]],
+    equations: System,
+    solution: Solution,
+    digits: int,
 ) -> tuple[Pose | None, int]:
     """The pose with all numbers settled, and the bits that this took; None when some number is not."""
-    signs = _flat(parameters, solution)
+    tape, names = written
+    flat = _flat(tape, solution)
     bits = 64 + 4 * digits
     found: dict[str, Enclosure] = {}
     while bits <= MORE_BITS + 8 * digits:
         box = refined(equations, _box(solution, bits), bits)
         with ctx.workprec(bits):
-            numbers = _numbers(parameters, box, signs)
+            numbers = _numbers(tape, names, box, flat)
             for name in numbers.keys() - found.keys():  # what a lower precision settled stays as it is
                 if (settled := numbers[name].enclosure(digits)) is not None:
                     found[name] = settled
         if found.keys() == numbers.keys():
-            return _assembled(parameters, found, solution.signs, signs is not None), bits
+            return _assembled(parameters, found, solution.signs, flat is not None), bits
         bits *= 2
     return None, bits // 2
 
@@ -134,49 +144,89 @@ def _box(solution: Solution, bits: int) -> Box:
         return (arb(0), arb(0), *(ball(c - r, c + r) for c in solution.center))
 
 
-def _flat(parameters: Mapping[str, Fraction], solution: Solution) -> tuple[int, int] | None:
-    """The cosines of the flat configuration that the solution is, if it is one.
+def _tape(parameters: Mapping[str, Fraction]) -> tuple[Tape, tuple[str, ...]]:
+    """Everything asked of a pose as a tape, and the names of its outputs; the equations of equilibrium come first."""
+    graph = Graph()
+    unknowns = {angle: graph.variable(number) for angle, number in zip(MECHANISM.angles, (TH1, TH2), strict=True)}
+    at = potential(MECHANISM, {name: graph.constant(value) for name, value in parameters.items()}, unknowns)
+    g1, g2 = (graph.derivative(at.energy, number) for number in (TH1, TH2))
+    h11, h12, h22 = graph.derivative(g1, TH1), graph.derivative(g1, TH2), graph.derivative(g2, TH2)
+    found = {f"cos {angle}": variable.cos() for angle, variable in unknowns.items()}
+    found |= {f"sin {angle}": variable.sin() for angle, variable in unknowns.items()}
+    found |= {f"{name} {n}": coordinate for name, pair in at.points.items() for n, coordinate in enumerate(pair)}
+    found |= {f"length {n}": length for n, length in enumerate(at.lengths)}
+    found |= {f"force {n}": force for n, force in enumerate(at.forces)}
+    found |= {"energy": at.energy, "trace": h11 + h22, "spread": (h11 - h22).squared() + 4 * h12.squared()}
+    return record([[g1, g2], list(found.values())]), tuple(found)
 
-    With both sines zero all springs lie along the base, so that only vertical loads can turn the bars.
-    """
-    if parameters["F3"] or parameters["F4"]:
-        return None
-    cosines = []
+
+def _flat(tape: Tape, solution: Solution) -> list[Fraction] | None:
+    """The values on the tape at the flat configuration that the solution is, if it is one."""
+    cosines = {}
     with ctx.workprec(256):
-        for center in solution.center:
+        for number, center in zip((TH1, TH2), solution.center, strict=True):
             half_turns = round(float(ball_of(center) / arb.pi()))
             distance = abs(ball_of(center) - half_turns * arb.pi())
             if not distance < ball_of(solution.radius):
                 return None
-            cosines.append(-1 if half_turns % 2 else 1)
-    first, second = cosines
-    x3, x4 = first * parameters["L1"], parameters["rho"] - second * parameters["L2"]
-    lengths = {"1": abs(x4), "2": abs(x3 - parameters["rho"]), "3": abs(x4 - x3)}
-    if any(lengths[name] == 0 and parameters[f"l0_{name}"] != 0 for name in lengths):
+            cosines[number] = Fraction(-1 if half_turns % 2 else 1)
+    try:
+        values = _flat_values(tape, cosines)
+    except ZeroDivisionError:  # a spring with a free length has no length
         return None
-    return first, second
+    return None if any(values[int(place)] for place in tape.outputs[0]) else values
 
 
-def _numbers(parameters: Mapping[str, Fraction], box: Box, flat: tuple[int, int] | None) -> dict[str, _Number]:
+def _flat_values(tape: Tape, cosines: Mapping[int, Fraction]) -> list[Fraction]:
+    """The tape run in fractions where all sines are zero, and all springs lie along the base."""
+    values: list[Fraction] = []
+    for place in range(len(tape)):
+        operation, first, second = Operation(int(tape.operations[place])), int(tape.first[place]), tape.second[place]
+        if operation is Operation.CONSTANT:
+            values.append(tape.constants[place])
+        elif operation is Operation.VARIABLE:
+            values.append(Fraction(first))
+        elif operation is Operation.COSINE:
+            values.append(cosines[int(values[first])])
+        elif operation is Operation.SINE:
+            values.append(Fraction(0))
+        else:
+            values.append(_EXACT[operation](values[first], values[int(second)]))
+    return values
+
+
+_EXACT: Mapping[Operation, Callable[[Fraction, Fraction], Fraction]] = {
+    Operation.ADD: lambda a, b: a + b,
+    Operation.SUBTRACT: lambda a, b: a - b,
+    Operation.MULTIPLY: lambda a, b: a * b,
+    Operation.DIVIDE: lambda a, b: a / b,
+    Operation.SQUARE: lambda a, _: a * a,
+    Operation.NEGATE: lambda a, _: -a,
+    # of a vector of which one coordinate is zero
+    Operation.LENGTH: lambda a, b: abs(a) + abs(b),
+    Operation.INVERSE_LENGTH: lambda a, b: 1 / (abs(a) + abs(b)),
+    Operation.DIRECTION: lambda a, b: a / (abs(a) + abs(b)),
+}
+
+
+def _numbers(tape: Tape, names: Sequence[str], box: Box, flat: list[Fraction] | None) -> dict[str, _Number]:
     """The numbers of a pose at the context's precision."""
+    numbers = {}
     if flat is not None:
-        zero = Fraction(0)
-        exact = _quantities(dict(parameters), (Fraction(flat[0]), zero, Fraction(flat[1]), zero), abs)
-        numbers = {name: _Number(ball_of(value), value) for name, value in exact.items()}
-        for i, cosine in enumerate(flat, 1):
-            exact_angle = (None if cosine < 0 else zero, Fraction(180 if cosine < 0 else 0))
-            numbers[f"th{i}"] = _Number(arb.pi() if cosine < 0 else arb(0), exact_angle[0])
-            numbers[f"degrees{i}"] = _Number(ball_of(exact_angle[1]), exact_angle[1])
+        for name, place in zip(names, tape.outputs[1], strict=True):
+            numbers[name] = _Number(ball_of(flat[int(place)]), flat[int(place)])
+        for angle in MECHANISM.angles:
+            folded = numbers[f"cos {angle}"].exact == -1
+            numbers[angle] = _Number(arb.pi()) if folded else _Number(arb(0), Fraction(0))
+            degrees = Fraction(180 if folded else 0)
+            numbers[f"degrees {angle}"] = _Number(ball_of(degrees), degrees)
     else:
-        cosines_sines = (box[2].cos(), box[2].sin(), box[3].cos(), box[3].sin())
-        balls = _quantities({n: ball_of(v) for n, v in parameters.items()}, cosines_sines, None)
-        numbers = {name: _Number(value) for name, value in balls.items()}
-        for i in (1, 2):
-            angle = arb.atan2(numbers[f"s{i}"].ball, numbers[f"c{i}"].ball)
-            numbers[f"th{i}"], numbers[f"degrees{i}"] = _Number(angle), _Number(angle * 180 / arb.pi())
-        for name in ("A1x", "A1y", "A2y"):
-            numbers[name] = _Number(arb(0), Fraction(0))
-        numbers["A2x"] = _Number(ball_of(parameters["rho"]), parameters["rho"])
+        balls = run_arb(tape, box, ctx.prec)
+        for name, place in zip(names, tape.outputs[1], strict=True):
+            numbers[name] = _Number(balls[int(place)], tape.constants.get(int(place)))
+        for angle in MECHANISM.angles:
+            radians = arb.atan2(numbers[f"sin {angle}"].ball, numbers[f"cos {angle}"].ball)
+            numbers[angle], numbers[f"degrees {angle}"] = _Number(radians), _Number(radians * 180 / arb.pi())
     trace, spread = numbers.pop("trace"), numbers.pop("spread")
     root = _Number(spread.ball.sqrt() if spread.ball > 0 else spread.ball.nonnegative_part().sqrt())
     if spread.exact is not None:
@@ -192,42 +242,6 @@ def _numbers(parameters: Mapping[str, Fraction], box: Box, flat: tuple[int, int]
     return numbers
 
 
-def _quantities(
-    p: Mapping[str, Any], cosines_sines: tuple[Any, Any, Any, Any], flat_length: Callable[[Any], Any] | None
-) -> dict[str, Any]:
-    """Coordinates, lengths, forces, energy and the Hessian's trace and spread, in rational numbers or in balls."""
-    c1, s1, c2, s2 = cosines_sines
-    x3, y3, x4, y4 = p["L1"] * c1, p["L1"] * s1, p["rho"] - p["L2"] * c2, p["L2"] * s2
-    zero = 0 * p["rho"]
-    found = {
-        "c1": c1, "s1": s1, "c2": c2, "s2": s2, "A1x": zero, "A1y": zero, "A2x": p["rho"], "A2y": zero,
-        "A3x": x3, "A3y": y3, "A4x": x4, "A4y": y4,
-    }  # fmt: skip
-    # a spring's vector, and its derivatives by the angles as multiples (m1, m2) of those of A3 and A4
-    springs = (("1", x4, y4, 0, 1), ("2", x3 - p["rho"], y3, 1, 0), ("3", x4 - x3, y4 - y3, -1, 1))
-    d1, d2 = (-y3, x3), (y4, p["rho"] - x4)
-    energy = -(p["F3x"] * x3 + p["F3"] * y3 + p["F4x"] * x4 + p["F4"] * y4)
-    h11 = p["F3x"] * x3 + p["F3"] * y3
-    h22 = -p["F4x"] * (p["rho"] - x4) + p["F4"] * y4
-    h12 = zero
-    for name, x, y, m1, m2 in springs:
-        k, free = p[f"k{name}"], p[f"l0_{name}"]
-        length = flat_length(x) if flat_length else (x * x + y * y).sqrt()
-        stretch = length - free
-        found[f"length{name}"], found[f"force{name}"] = length, k * stretch
-        energy = energy + k * stretch * stretch / 2
-        tension, bend = (k, zero) if free == 0 else (k * stretch / length, k * free / (length * length * length))
-        along1, along2 = m1 * (x * d1[0] + y * d1[1]), m2 * (x * d2[0] + y * d2[1])
-        # second derivatives: of A3 by th1 is -A3, of A4 by th2 is A2 - A4
-        h11 = h11 + tension * (m1 * m1 * p["L1"] * p["L1"] - m1 * (x * x3 + y * y3)) + bend * along1 * along1
-        turned = x * (p["rho"] - x4) - y * y4
-        h22 = h22 + tension * (m2 * m2 * p["L2"] * p["L2"] + m2 * turned) + bend * along2 * along2
-        h12 = h12 + tension * (m1 * m2 * (d1[0] * d2[0] + d1[1] * d2[1])) + bend * along1 * along2
-    found["energy"], found["trace"] = energy, h11 + h22
-    found["spread"] = (h11 - h22) * (h11 - h22) + 4 * h12 * h12
-    return found
-
-
 def _assembled(parameters: Mapping[str, Fraction], at: Mapping[str, Enclosure], signs: str, flat: bool) -> Pose:
     springs = tuple(
         Spring(
@@ -235,20 +249,25 @@ def _assembled(parameters: Mapping[str, Fraction], at: Mapping[str, Enclosure], 
             spring.start,
             spring.end,
             value_at(spring.stiffness, parameters),
-            at[f"length{n}"],
-            at[f"force{n}"],
+            at[f"length {n}"],
+            at[f"force {n}"],
             value_at(spring.free, parameters),
         )
-        for n, spring in enumerate(MECHANISM.springs, 1)
+        for n, spring in enumerate(MECHANISM.springs)
     )
     index = signs.count("-")
     if index != (at["low"].high < 0) + (at["high"].high < 0):
         raise ArithmeticError("the Hessian's eigenvalues contradict the index that was proved")
     return Pose(
         angles=(at[MECHANISM.angles[0]], at[MECHANISM.angles[1]]),
-        degrees=(at["degrees1"], at["degrees2"]),
-        cosines_sines=(at["c1"], at["s1"], at["c2"], at["s2"]),
-        nodes={name: (at[f"{name}x"], at[f"{name}y"]) for name in MECHANISM.points},
+        degrees=(at[f"degrees {MECHANISM.angles[0]}"], at[f"degrees {MECHANISM.angles[1]}"]),
+        cosines_sines=(
+            at[f"cos {MECHANISM.angles[0]}"],
+            at[f"sin {MECHANISM.angles[0]}"],
+            at[f"cos {MECHANISM.angles[1]}"],
+            at[f"sin {MECHANISM.angles[1]}"],
+        ),
+        nodes={name: (at[f"{name} 0"], at[f"{name} 1"]) for name in MECHANISM.points},
         springs=springs,
         energy=at["energy"],
         eigenvalues=(at["low"], at["high"]),

@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ptmcad.certified.curves import Curve
-from ptmcad.certified.search import Boxes, search_curve
+from ptmcad.certified.curve import Curve
+from ptmcad.certified.search import Boxes, Found, search_curve
 
 BUDGET = 20_000
 """Boxes that a task treats before it returns: about a tenth of a second."""
@@ -81,7 +81,7 @@ def _refine_one(
 ) -> bool:
     arguments, weights = enclosure.curve.system.arguments(), enclosure.curve.importance()
     queue = list(_batches(enclosure.waiting))
-    running: dict[Future[tuple[Boxes, Boxes, int]], Boxes] = {}
+    running: dict[Future[Found], Boxes] = {}
     treated = 0
     ending = late is not None and late()
     while running or (queue and not ending):
@@ -90,11 +90,11 @@ def _refine_one(
             running[pool.submit(search_curve, arguments, batch, area, BUDGET, weights)] = batch
             queue.pop()
         for future in wait(running, return_when=FIRST_COMPLETED).done:
-            small, waiting, used = future.result()
-            treated += used
-            if len(small):
-                enclosure.small.append(small)
-            queue.extend(_batches([waiting]))
+            found = future.result()
+            treated += found.used
+            if len(found.small):
+                enclosure.small.append(found.small)
+            queue.extend(_batches([found.waiting]))
             del running[future]
         # The only statement that takes boxes away. Until it is done the batches of before are still there: of those
         # that an interruption cuts short nothing is lost, and what they have left is there twice at worst.

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.certified.evaluation import program, run
-from ptmcad.certified.formula import Graph
-from ptmcad.certified.parameters import slice_mechanism
+from ptmcad.certified.formula import Formula
 from ptmcad.certified.tape import record
 from ptmcad.question.slice import Slice
 
@@ -20,15 +19,14 @@ SAMPLES = 200
 _SEED = 1
 
 
-def axis_weights(slice: Slice) -> tuple[float, float]:
+def axis_weights(slice: Slice, equilibrium: tuple[Formula, Formula]) -> tuple[float, float]:
     """The widths of the axes count this much in comparison with an angle's.
 
-    It is the ratio of the typical derivatives of E1 and E2 by the axis and by the angles, at points of the window that
-    are chosen at random but always the same.
+    It is the ratio of the typical derivatives of the equations of equilibrium by the axis and by the angles, at points
+    of the window that are chosen at random but always the same.
     """
-    m = slice_mechanism(Graph(), slice)
-    graph = m.equilibrium[0].graph
-    tape = record([[graph.derivative(e, v) for v in range(4) for e in m.equilibrium]])
+    graph = equilibrium[0].graph
+    tape = record([[graph.derivative(e, v) for v in range(4) for e in equilibrium]])
     generator = random.Random(_SEED)
     low, high = np.empty(len(tape)), np.empty(len(tape))
     point = np.empty(4)

@@ -1,84 +1,155 @@
 """Branch and prune: boxes that may hold solutions of a system, contracted and bisected until they are small.
 
 Guarantee: every solution in the boxes at the start lies in one of the boxes at the end, those still waiting included.
-(Lemma 11 of docs/soundness.md.)
+Each box that is called proved holds exactly one zero of the equations, and it lies in the narrow box that comes with
+it; two proved boxes may hold the same zero. (Lemmas 9 and 11 of docs/soundness.md.)
 
-The search knows no mathematics: `ptmcad.certified.contraction` discards and shrinks.
+The search knows no mathematics: `ptmcad.certified.contraction` discards and shrinks, `ptmcad.certified.isolation`
+proves.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
-from numpy.typing import NDArray
 
 from ptmcad.certified.compiled import compiled
 from ptmcad.certified.contraction import contract, workspace
+from ptmcad.certified.evaluation import Floats
+from ptmcad.certified.isolation import inflated
 from ptmcad.certified.system import Arguments
 
-Boxes = NDArray[np.float64]
+Boxes = Floats
 """Shape (k, 2v): low ends of the v variables, then high ends."""
 CUT = 0.5
+MAX_PROOF_WIDTH = 1e-2
+"""Boxes at most this wide are tried for a proof of existence."""
+NEVER = -1.0
+MAX_BOXES = 2**62
 
 
-@compiled
-def search_curve(
-    system: Arguments, start: Boxes, area: float, budget: int, weights: NDArray[np.float64]
-) -> tuple[Boxes, Boxes, int]:
+class Limits(NamedTuple):
+    """Where a search stops.
+
+    Attributes
+    ----------
+    area : boxes whose projection to variables 0 and 1 has at most this area are not bisected further.
+    width : nor are those that are at most this wide; widths count by their weights.
+    proof_width : boxes at most this wide are tried for a proof that they hold exactly one zero.
+    budget : number of boxes after which the search stops.
+    allowed : number of boxes that may stay open; the search stops beyond.
+    """
+
+    area: float
+    width: float
+    proof_width: float
+    budget: int
+    allowed: int
+
+
+class Found(NamedTuple):
+    """What a search leaves.
+
+    Attributes
+    ----------
+    unique, narrow : boxes that hold exactly one zero each, and narrower ones around it, row by row.
+    small : boxes that were not bisected further, for their size or because no float lies between their ends.
+    waiting : boxes that were not treated.
+    used : number of boxes treated.
+    """
+
+    unique: Boxes
+    narrow: Boxes
+    small: Boxes
+    waiting: Boxes
+    used: int
+
+    def left(self) -> Boxes:
+        """The boxes that are not decided."""
+        return np.concatenate((self.small, self.waiting))
+
+
+def search_curve(system: Arguments, start: Boxes, area: float, budget: int, weights: Floats) -> Found:
     """Enclose a curve in the plane of variables 0 and 1 (the first two unknowns).
 
     Parameters
     ----------
-    area : boxes whose projection to the plane has at most this area are not bisected further.
-    budget : number of boxes after which the search stops.
+    area, budget : see `Limits`.
     weights : shape (v,): the variable whose width times its weight is largest is bisected.
-
-    Returns
-    -------
-    small : boxes that were not bisected further, for their area or because no float lies between their ends.
-    waiting : boxes that the budget did not reach.
-    used : number of boxes treated.
     """
+    return branch_and_prune(system, system, start, Limits(area, NEVER, NEVER, budget, MAX_BOXES), weights)
+
+
+def isolate(
+    system: Arguments, equations: Arguments, start: Boxes, limits: tuple[float, int, int], weights: Floats
+) -> Found:
+    """Isolate the solutions of a square system.
+
+    Parameters
+    ----------
+    system : with what discards boxes that hold no solution looked for.
+    equations : the same equations alone, for the proofs.
+    limits : the width, the budget and the number of allowed boxes; see `Limits`.
+    weights : shape (v,), positive: of the variables' widths.
+    """
+    width, budget, allowed = limits
+    return branch_and_prune(system, equations, start, Limits(NEVER, width, MAX_PROOF_WIDTH, budget, allowed), weights)
+
+
+@compiled
+def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limits: Limits, weights: Floats) -> Found:
+    """The one loop of both."""
     variables = start.shape[1] // 2
-    unknowns = system[2]
-    m, n = system[4].shape
-    work = workspace(system[0][0].shape[0], variables, m, n)
+    larger = system if len(system.program.operations) > len(equations.program.operations) else equations
+    work = workspace(larger, variables)
+    stack, small = start.copy(), np.empty((64, 2 * variables))
+    unique, narrow = np.empty((4, 2 * variables)), np.empty((4, 2 * variables))
     top = start.shape[0]
-    stack = np.empty((max(256, 2 * top), 2 * variables))
-    stack[:top] = start
-    small = np.empty((256, 2 * variables))
-    found = used = 0
-    low, high = np.empty(variables), np.empty(variables)
-    while top > 0 and used < budget:
+    proved = finished = used = 0
+    box = np.empty(2 * variables)
+    low, high = box[:variables], box[variables:]
+    while top > 0 and used < limits.budget and finished <= limits.allowed:
         top -= 1
         used += 1
-        low[:] = stack[top, :variables]
-        high[:] = stack[top, variables:]
+        box[:] = stack[top]
         if not contract(system, low, high, work):
             continue
-        widest, width = -1, -1.0
-        for x in unknowns:
+        widest, width = -1, 0.0
+        for x in system.unknowns:
             middle = low[x] + CUT * (high[x] - low[x])
             size = (high[x] - low[x]) * weights[x]
             if size > width and low[x] < middle < high[x]:
                 widest, width = x, size
-        if widest < 0 or (high[0] - low[0]) * (high[1] - low[1]) <= area:
-            if found == small.shape[0]:
-                larger = np.empty((2 * found, 2 * variables))
-                larger[:found] = small
-                small = larger
-            small[found, :variables] = low
-            small[found, variables:] = high
-            found += 1
+        if width <= limits.proof_width:
+            wide = inflated(equations, box, weights, work)
+            if len(wide) > 0:
+                unique = _with(unique, proved, wide)
+                # several rounds, because each stops after some sweeps
+                for _ in range(3):
+                    contract(equations, wide[:variables], wide[variables:], work)
+                narrow = _with(narrow, proved, wide)
+                proved += 1
+                continue
+        area = (high[0] - low[0]) * (high[1] - low[1])
+        if widest < 0 or width <= limits.width or area <= limits.area:
+            small = _with(small, finished, box)
+            finished += 1
             continue
-        if top + 2 > stack.shape[0]:
-            larger = np.empty((2 * stack.shape[0], 2 * variables))
-            larger[:top] = stack[:top]
-            stack = larger
         middle = low[widest] + CUT * (high[widest] - low[widest])
-        for k in range(2):
-            stack[top + k, :variables] = low
-            stack[top + k, variables:] = high
+        stack = _with(_with(stack, top, box), top + 1, box)
         stack[top, variables + widest] = middle
         stack[top + 1, widest] = middle
         top += 2
-    return small[:found].copy(), stack[:top].copy(), used
+    return Found(unique[:proved].copy(), narrow[:proved].copy(), small[:finished].copy(), stack[:top].copy(), used)
+
+
+@compiled
+def _with(store: Boxes, count: int, box: Floats) -> Boxes:
+    """The store of so many boxes with one more; a larger one where it is full."""
+    if count == store.shape[0]:
+        larger = np.empty((2 * count, store.shape[1]))
+        larger[:count] = store
+        store = larger
+    store[count] = box
+    return store

@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ptmcad.answer.regionmap import PlanStep, System
-from ptmcad.certified.curves import Curve
+from ptmcad.certified.curve import Curve
 from ptmcad.certified.plan import beforehand
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Slice
-from ptmcad.text.syntax import Chain, Negative, Number, Step, Tree, to_text
+from ptmcad.text.tree import Chain, Negative, Number, Step, Tree, to_text
 
 
 def system_text(mechanism: Mechanism) -> System:

@@ -25,6 +25,7 @@ from ptmcad.certified.contraction import (
     row_constant,
     workspace,
 )
+from ptmcad.certified.evaluation import Floats
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.system import Arguments
 
@@ -47,9 +48,9 @@ def strips(system: Arguments, boxes: Boxes) -> Strips:
     boxes : shape (k, 2v); variables 0 and 1 are those of the plane, and the first two unknowns.
     """
     variables = boxes.shape[1] // 2
-    m, n = system[4].shape
-    work = workspace(system[0][0].shape[0], variables, m, n)
-    radius, matrix, inverse = work[6], work[9], work[10]
+    m, n = system.jacobian.shape
+    work = workspace(system, variables)
+    radius, matrix, inverse = work.radius, work.matrix, work.inverse
     widths, pivots = np.zeros(n), np.empty(m, np.int64)
     result = np.zeros((boxes.shape[0], 11))
     found = 0
@@ -68,7 +69,7 @@ def strips(system: Arguments, boxes: Boxes) -> Strips:
             continue
         # eliminate all unknowns but the plane's: columns without width are not chosen
         widths[2:] = radius[2:]
-        precondition(matrix, inverse, widths, pivots, 1e-200)
+        precondition(matrix, inverse, widths, pivots)
         thinnest = inf
         for i in range(m):
             if pivots[i] < 0:
@@ -78,17 +79,11 @@ def strips(system: Arguments, boxes: Boxes) -> Strips:
 
 @compiled
 def _solved(
-    system: Arguments,
-    i: int,
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-    work: Workspace,
-    strip: NDArray[np.float64],
-    thinnest: float,
+    system: Arguments, i: int, low: Floats, high: Floats, work: Workspace, strip: Floats, thinnest: float
 ) -> float:
     """Row i as a strip, if that is thinner than the thinnest so far; its thickness."""
-    unknowns, middle, radius = system[2], work[4], work[6]
-    c_low, c_high = row_constant(i, system[3], work)
+    unknowns, middle, radius = system.unknowns, work.middle_low, work.radius
+    c_low, c_high = row_constant(i, system.equations, work)
     for j in range(2, len(unknowns)):
         u, v = row_coefficient(i, j, work)
         x = unknowns[j]

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ptmcad.certified.evaluation import Program, program
+from ptmcad.certified.evaluation import Indices, Program, program
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.tape import Tape, record
 
@@ -31,22 +31,32 @@ class System:
     """
 
     tape: Tape
-    unknowns: NDArray[np.int64]
-    equations: NDArray[np.int64]
-    jacobian: NDArray[np.int64]
-    vanishing: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
-    nonnegative: NDArray[np.int64]
+    unknowns: Indices
+    equations: Indices
+    jacobian: Indices
+    vanishing: tuple[Indices, Indices, Indices]
+    nonnegative: Indices
 
     def arguments(self) -> Arguments:
         """The system as the compiled code takes it."""
-        return (
+        return Arguments(
             program(self.tape), self.tape.stages, self.unknowns, self.equations, self.jacobian,
             *self.vanishing, self.nonnegative,
         )  # fmt: skip
 
 
-Indices = NDArray[np.int64]
-Arguments = tuple[Program, Indices, Indices, Indices, Indices, Indices, Indices, Indices, Indices]
+class Arguments(NamedTuple):
+    """A `System` for compiled code; what vanishes at solutions is known after stage 0, 1 and 2 in turn."""
+
+    program: Program
+    stages: Indices
+    unknowns: Indices
+    equations: Indices
+    jacobian: Indices
+    cheap: Indices
+    rest: Indices
+    costly: Indices
+    nonnegative: Indices
 
 
 def system(

@@ -11,6 +11,7 @@ import click
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import load
+from ptmcad.question.slice import Slice
 
 METHODS = ("exact", "certified", "companion", "multistart", "qepcad", "gcad")
 DEFAULT = Path("configs") / "fig4.yaml"
@@ -69,41 +70,37 @@ def command(
         if configs:
             raise ConfigError("measures nothing, so it takes no CONFIG", key="--compare")
         return _compare(*compare)
-    if not configs and not DEFAULT.is_file():
-        raise ConfigError(f"there is no {DEFAULT} here: name a problem record", key="CONFIG")
-    records = configs or (DEFAULT,)
-    slices = [(load(path), path) for path in records]
-    names = [slice.name for slice, _ in slices]
-    if len(set(names)) < len(names):
-        raise ConfigError(f"two records have the name {next(n for n in names if names.count(n) > 1)}", key="CONFIG")
+    slices = _slices(configs)
     if find_spec("scipy") is None:
         raise ConfigError("measuring distances needs scipy: pip install 'ptmcad[bench]'", key="bench")
     from ptmcad.studies.bench.files import PAGE, SUFFIXES, save, save_page
-    from ptmcad.studies.bench.measuring import measure
+    from ptmcad.studies.bench.measuring import Settings, measure
     from ptmcad.studies.bench.methods import Method
     from ptmcad.studies.bench.words import terminal
     from ptmcad.verification import verify
 
-    check_writable(out, (*(f"{name}.{suffix}" for name in names for suffix in SUFFIXES), PAGE))
+    check_writable(out, (*(f"{slice.name}.{suffix}" for slice, _ in slices for suffix in SUFFIXES), PAGE))
     chosen = tuple(Method(name) for name in methods) or tuple(Method)
+    settings = Settings(chosen, rounds, seed, time_limit, quick)
+    report = partial(click.echo, err=True)
     for number, (slice, path) in enumerate(slices):
-        study = measure(
-            slice,
-            path,
-            lambda result: verify(result).ok,
-            methods=chosen,
-            rounds=rounds,
-            seed=seed,
-            time_limit=time_limit,
-            quick=quick,
-            warm_up=number == 0,
-            report=partial(click.echo, err=True),
-        )
+        study = measure(slice, path, lambda m: verify(m).ok, settings, warm_up=number == 0, report=report)
         save(study, out)
         click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}\n")
     if page:
         click.echo(f"written {shown_path(save_page(out))}")
     return 0
+
+
+def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
+    """The slices of the records, whose names differ, or that of `DEFAULT`."""
+    if not configs and not DEFAULT.is_file():
+        raise ConfigError(f"there is no {DEFAULT} here: name a problem record", key="CONFIG")
+    slices = [(load(path), path) for path in configs or (DEFAULT,)]
+    names = [slice.name for slice, _ in slices]
+    if len(set(names)) < len(names):
+        raise ConfigError(f"two records have the name {next(n for n in names if names.count(n) > 1)}", key="CONFIG")
+    return slices
 
 
 def _compare(old: Path, new: Path) -> int:

@@ -32,7 +32,7 @@ from ptmcad.process.output import (
 )
 from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Count, Slice
-from ptmcad.text.expressions import rational
+from ptmcad.text.parsing import rational
 
 FORMATS = ("json", "png", "svg", "pdf")
 MIN_SECONDS = 0.01

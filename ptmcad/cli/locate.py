@@ -14,6 +14,7 @@ from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.stored import read_result
 from ptmcad.errors import ConfigError, shown
 from ptmcad.process.streams import reader_left
+from ptmcad.question.examples import POINT
 from ptmcad.text.textfile import lines_of
 
 MAX_ROW = 100_000
@@ -52,7 +53,7 @@ def point_of(text: str) -> dict[str, str]:
     for part in text.split(","):
         name, equals, value = (piece.strip() for piece in part.partition("="))
         if not (name and equals and value) or name in point:
-            raise ConfigError(f"'{shown(part, 60)}' is not NAME=VALUE: as in rho=7/10,L2=3/2", key="--at")
+            raise ConfigError(f"'{shown(part, 60)}' is not NAME=VALUE: as in {POINT}", key="--at")
         point[name] = value
     return point
 
@@ -155,7 +156,7 @@ def command(*, result: Path, at: str | None, table: Path | None, limits: Limits)
         ptmcad locate slice-L2-rho.json --csv points.csv
     """
     if (at is None) == (table is None):
-        raise ConfigError("give a point, as in --at rho=7/10,L2=3/2, or --csv FILE")
+        raise ConfigError(f"give a point, as in --at {POINT}, or --csv FILE")
     with held(limits):
         stored = read_result(result)
         if table is not None:

@@ -21,8 +21,9 @@ from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import ptm
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, load, slice_from_options
+from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import rational
+from ptmcad.text.parsing import rational
 
 FORMATS = ("json", "png", "svg", "pdf")
 
@@ -55,7 +56,9 @@ def slice_and_line(asked: AskedLine) -> tuple[Slice, dict[str, str]]:
     given = _axes(asked)
     along, other = asked.along, _other_axis(asked, given, at)
     if not other:
-        raise ConfigError(f"give the values at which {along} varies, as in L2=3/2", key="--at")
+        raise ConfigError(
+            f"give the values at which {along} varies, as in {SECOND if along == FIRST else FIRST}=3/2", key="--at"
+        )
     if along == other:
         raise ConfigError(f"{along} varies along the line: it has no fixed value", key="--at")
     if asked.over is None and other not in at:
@@ -331,7 +334,7 @@ def _start(text: str | None, other: Mapping[str, str]) -> Fraction | None:
     if text is None:
         return None
     if not other:
-        raise ConfigError("needs the value of the other axis too, as in --at L2=3/2", key="--path")
+        raise ConfigError(f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--path")
     try:
         return rational(text)
     except ExpressionError as error:

@@ -15,6 +15,7 @@ from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, point_from_options
+from ptmcad.question.examples import POINT
 
 FORMATS = ("table", "json", "png", "svg", "pdf")
 DIGITS = 10
@@ -98,7 +99,7 @@ def command(
         ptmcad solve configs/fig4.yaml --at rho=7/10,L2=3/2 --digits 30
     """
     if at is None and not sets and config is None:
-        raise ConfigError("give a point, as in --at rho=1,L2=3/2")
+        raise ConfigError(f"give a point, as in --at {POINT}")
     start = "poses" if name is None else file_name(name, "--name")
     names = file_names(start, formats, landscape)
     with held(limits):

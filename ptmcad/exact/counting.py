@@ -31,7 +31,8 @@ from ptmcad.algebra.fibre import (
     univariate_representation,
 )
 from ptmcad.algebra.inertia import negative_eigenvalues
-from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine, root_bound, sign_at
+from ptmcad.algebra.isolation import root_bound
+from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine, sign_at
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, at_point, polynomial_at
 

@@ -30,7 +30,7 @@ from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
 from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
-from ptmcad.exact.cad.area import region_areas
+from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
@@ -151,12 +151,13 @@ def problem_of(slice: Slice) -> SliceProblem:
     return SliceProblem(slice, system, parameters, (first, second))
 
 
-def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset()) -> Variety:
-    """The variety, over the base axis of the cheaper decomposition.
+def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset(), base: int | None = None) -> Variety:
+    """The variety, over a base axis.
 
     Parameters
     ----------
     keep : names of savings to switch off, of `ptmcad.question.savings`.
+    base : 0 or 1; that of the cheaper decomposition when None.
 
     Raises
     ------
@@ -170,7 +171,8 @@ def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset()) -> Var
         raise type(error)(f"{error}; {_witness(problem)}") from error
     views = [curves_of(found.components, base) for base in (0, 1)]
     costs = (predicted_cost(views[0]), predicted_cost(views[1]))
-    base = 1 if costs[1] < costs[0] and "axis-order" not in keep else 0
+    if base is None:
+        base = 1 if costs[1] < costs[0] and "axis-order" not in keep else 0
     lines = lines_of(found.components, base)
     return Variety(found.components, found.complex_solutions, base, views[base], lines, costs)
 
@@ -306,8 +308,8 @@ def areas_of(
     numbers = iter(range(len(region_of)) if alone else region_of)
     stacks = known.stacks.stacks
     rows = [tuple(next(numbers) for _ in stack.heights) for stack in stacks]
-    window = problem.window
-    bounds, bits = region_areas(stacks, rows, variety.curves, window[base], window[1 - base], tolerance, check)
+    parts = RegionStacks(stacks, rows, variety.curves, problem.window[base], problem.window[1 - base])
+    bounds, bits = region_areas(parts, tolerance, check)
     if alone:
         bounds = tuple(_sum_of([bounds[n] for n in cells], problem.area) for cells in members(region_of))
     return Areas(

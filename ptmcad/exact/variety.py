@@ -82,46 +82,63 @@ def discriminant_variety(
         When every point of the slice is exceptional.
     """
     equations, algebra, rows, jacobian_norm = _nondegenerate(on_slice(system, parameters))
-    found: dict[PlanePolynomial, Component] = {}
-
-    def adopt(factors: Iterable[Coefficient], kind: Kind, left_out: str = "") -> None:
-        for factor in factors:
-            polynomial = to_plane(factor)
-            if polynomial not in found:
-                found[polynomial] = Component(polynomial, kind, left_out or outside(factor))
-
-    def outside(factor: Coefficient) -> str:
-        return NO_POINT if "no-real-points" not in without and nowhere_zero(factor, *window) else ""
-
+    seen = _Components(window, without)
     for polynomial in (*equations.boundary, *limits):
-        adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
-    adopt(irreducible_factors(jacobian_norm[0]), Kind.CRITICAL)
+        seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
+    seen.adopt(irreducible_factors(jacobian_norm[0]), Kind.CRITICAL)
     for polynomial in _sign_changes(equations, algebra):
-        adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
-    suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in found]
+        seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
+    suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in seen.found]
     if "infinity" in without:
-        adopt(_with_poles(algebra, suspects, equations.unbounded), Kind.INFINITY)
+        seen.adopt(_with_poles(algebra, suspects, equations.unbounded), Kind.INFINITY)
     else:
-        hidden = [f for f in suspects if outside(f)]
+        hidden = [f for f in suspects if seen.outside(f)]
         visible = [f for f in suspects if f not in hidden]
         harmless = _harmless(equations, rows, jacobian_norm, visible) if equations.is_compact else []
-        adopt(poles_at_points(algebra, hidden, equations.unbounded), Kind.INFINITY, NO_POINT)
-        adopt(poles_at_points(algebra, harmless, equations.unbounded), Kind.INFINITY, HARMLESS)
+        seen.adopt(poles_at_points(algebra, hidden, equations.unbounded), Kind.INFINITY, NO_POINT)
+        seen.adopt(poles_at_points(algebra, harmless, equations.unbounded), Kind.INFINITY, HARMLESS)
         doubtful = [f for f in visible if f not in harmless]
-        seen = poles_at_points(algebra, doubtful, equations.unbounded)
-        adopt(seen, Kind.INFINITY)
-        adopt(_with_poles(algebra, [f for f in doubtful if f not in seen], equations.unbounded), Kind.INFINITY)
+        poles = poles_at_points(algebra, doubtful, equations.unbounded)
+        poles += _with_poles(algebra, [f for f in doubtful if f not in poles], equations.unbounded)
+        seen.adopt(poles, Kind.INFINITY)
     if "sign-curve" in without:
         for minor in leading_minors(system, parameters) if system.has_index else ():
-            adopt(irreducible_factors(norm(algebra, _lifted(minor, equations))[0]), Kind.AUXILIARY)
+            seen.adopt(irreducible_factors(norm(algebra, _lifted(minor, equations))[0]), Kind.AUXILIARY)
     if "hermite-matrix" in without:
         for part in determinant(trace_form(algebra)):
-            adopt(irreducible_factors(part), Kind.AUXILIARY)
-    order = {Kind.CRITICAL: 0, Kind.INFINITY: 1, Kind.BOUNDARY: 2, Kind.AUXILIARY: 3}
-    components = sorted(
-        found.values(), key=lambda c: (bool(c.left_out), order[c.kind], len(c.polynomial.terms), c.polynomial.terms)
-    )
-    return DiscriminantVariety(tuple(components), algebra.dimension)
+            seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
+    return DiscriminantVariety(seen.in_order(), algebra.dimension)
+
+
+class _Components:
+    """The components found so far, each with the first kind that was found for it."""
+
+    def __init__(self, window: tuple[Interval, Interval], without: frozenset[str]) -> None:
+        self.window = window
+        self.without = without
+        self.found: dict[PlanePolynomial, Component] = {}
+
+    def outside(self, factor: Coefficient) -> str:
+        """Why a curve is left out that has no point in the window, or the empty string."""
+        return NO_POINT if "no-real-points" not in self.without and nowhere_zero(factor, *self.window) else ""
+
+    def adopt(self, factors: Iterable[Coefficient], kind: Kind, left_out: str = "") -> None:
+        for factor in factors:
+            polynomial = to_plane(factor)
+            if polynomial not in self.found:
+                self.found[polynomial] = Component(polynomial, kind, left_out or self.outside(factor))
+
+    def in_order(self) -> tuple[Component, ...]:
+        """Those left out last; by kind, number of terms and terms."""
+        return tuple(
+            sorted(
+                self.found.values(),
+                key=lambda c: (bool(c.left_out), _ORDER[c.kind], len(c.polynomial.terms), c.polynomial.terms),
+            )
+        )
+
+
+_ORDER = {Kind.CRITICAL: 0, Kind.INFINITY: 1, Kind.BOUNDARY: 2, Kind.AUXILIARY: 3}
 
 
 class _Nondegenerate(NamedTuple):

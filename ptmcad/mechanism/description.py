@@ -14,8 +14,8 @@ from enum import Enum
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from ptmcad.text.syntax import Tree, names_of
-from ptmcad.text.syntax import to_text as text_of
+from ptmcad.text.tree import Tree, names_of
+from ptmcad.text.tree import to_text as text_of
 
 
 class Kind(Enum):

@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any, Generic, Protocol, TypeVar
 
 from ptmcad.errors import ExpressionError
-from ptmcad.text.syntax import Call, Name, Number, Power, Step, Tree, interpret
+from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret
 
 MAX_EXPONENT = 64
 MAX_BITS = 13_000

@@ -13,19 +13,8 @@ from typing import Any, TypeVar
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism.description import Kind, Load, Mechanism, Parameter, Spring, Support, System, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.text.syntax import (
-    FUNCTIONS,
-    NAME,
-    NOT_NUMBERS,
-    Name,
-    Negative,
-    Number,
-    Tree,
-    did_you_mean,
-    names_of,
-    parse,
-    to_text,
-)
+from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean, parse
+from ptmcad.text.tree import FUNCTIONS, Name, Negative, Number, Tree, names_of, to_text
 
 MAX_NAME = 40
 MAX_DEGREE = 64

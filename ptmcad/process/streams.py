@@ -57,3 +57,16 @@ def open_standard_streams() -> None:
     while (descriptor := os.open(os.devnull, os.O_RDWR)) < 3:
         pass
     os.close(descriptor)
+
+
+def report(text: str) -> None:
+    """Write to standard error, of whatever process."""
+    try:
+        rest = memoryview(text.encode(errors="replace"))
+        while rest:
+            try:
+                rest = rest[os.write(2, rest) :]
+            except BlockingIOError:  # of a caller that has made it non-blocking
+                select.select([], [2], [])
+    except OSError:  # nobody reads standard error, or it is full: there is no third place to report it
+        return

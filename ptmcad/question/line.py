@@ -13,8 +13,9 @@ from typing import Any
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis, Slice, have_free_lengths, without_free_lengths
-from ptmcad.text.expressions import Expression, axis, constant, rational
+from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.numerals import shortest_text
+from ptmcad.text.parsing import number_for, rational
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +51,7 @@ def varying_axis(slice: Slice, along: str, at: Mapping[str, Any]) -> tuple[int, 
         raise ConfigError(
             f"a line along {along} needs a value of {other} and of nothing else, not of {given}", key="at"
         )
-    try:
-        return varying, other, rational(at[other])
-    except ExpressionError as error:
-        raise ConfigError(str(error), key=f"at {other}") from error
+    return varying, other, number_for(f"at {other}", at[other])
 
 
 def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:

@@ -13,6 +13,7 @@ from importlib import import_module
 from importlib.util import find_spec
 
 from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Kind, ptm
 from ptmcad.text.syntax import did_you_mean
 
 ALL = "all"
@@ -45,34 +46,30 @@ class Saving:
     why: str
 
 
-_EXACT = (
-    Saving("sign-curve", Engine.EXACT, "projection of H11 = 0",
-           "where it vanishes off the critical curves, det H < 0"),
-    Saving("hermite-matrix", Engine.EXACT, "determinant of the Hermite matrix",
-           "the norm of det H has the same critical factors and no others"),
-    Saving("infinity", Engine.EXACT, "curves over which solutions leave every bounded set",
-           "near them det H stays away from 0 at every solution, and real ones are bounded"),
-    Saving("no-real-points", Engine.EXACT, "components without a point in the window", "no cell touches them"),
-    Saving("axis-order", Engine.EXACT, "decomposition over the other axis", "regions do not depend on it"),
-    Saving("even-powers", Engine.EXACT, "discriminants and resultants of full degree",
-           "where only powers of u^k occur they are computed in u^k"),
-    Saving("equal-counts", Engine.EXACT, "areas beside walls that separate no regions",
-           "what one cell has too much there its neighbour in the region has too little"),
-)  # fmt: skip
-_CERTIFIED = (
-    Saving("folds-of-saddles", Engine.CERTIFIED, "folds of saddles and maxima",
-           "the number of stable equilibria does not change"),
-    Saving("cones-and-creases", Engine.CERTIFIED, "cones and creases",
-           "no minimum appears or vanishes there without a fold"),
-    Saving("dependent-equations", Engine.CERTIFIED, "boxes on which dependent equations do not vanish",
-           "they vanish at every equilibrium"),
-    Saving("unloaded-factor", Engine.CERTIFIED, "the factor rho of the unloaded moment",
-           "rho is zero nowhere in the window"),
-)  # fmt: skip
-_ANY = (
-    Saving("imports", Engine.ANY, "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),
-)
-SAVINGS = (*_EXACT, *_CERTIFIED, *_ANY)
+_BASE = ptm().first(Kind.BASE)
+_WHAT_AND_WHY = {
+    Engine.EXACT: (
+        ("sign-curve", "projection of H11 = 0", "where it vanishes off the critical curves, det H < 0"),
+        ("hermite-matrix", "determinant of the Hermite matrix",
+         "the norm of det H has the same critical factors and no others"),
+        ("infinity", "curves over which solutions leave every bounded set",
+         "near them det H stays away from 0 at every solution, and real ones are bounded"),
+        ("no-real-points", "components without a point in the window", "no cell touches them"),
+        ("axis-order", "decomposition over the other axis", "regions do not depend on it"),
+        ("even-powers", "discriminants and resultants of full degree",
+         "where only powers of u^k occur they are computed in u^k"),
+        ("equal-counts", "areas beside walls that separate no regions",
+         "what one cell has too much there its neighbour in the region has too little"),
+    ),
+    Engine.CERTIFIED: (
+        ("folds-of-saddles", "folds of saddles and maxima", "the number of stable equilibria does not change"),
+        ("cones-and-creases", "cones and creases", "no minimum appears or vanishes there without a fold"),
+        ("dependent-equations", "boxes on which dependent equations do not vanish", "they vanish at every equilibrium"),
+        ("unloaded-factor", f"the factor {_BASE} of the unloaded moment", f"{_BASE} is zero nowhere in the window"),
+    ),
+    Engine.ANY: (("imports", "imports of numpy, matplotlib, sympy and numba", "nothing needs them before it asks"),),
+}  # fmt: skip
+SAVINGS = tuple(Saving(name, engine, *rest) for engine, table in _WHAT_AND_WHY.items() for name, *rest in table)
 """Every saving, in the order in which the engines make them."""
 BY_NAME = {saving.name: saving for saving in SAVINGS}
 

@@ -40,6 +40,11 @@ def ball_of(value: Fraction) -> arb:
     return arb(fmpq(value.numerator, value.denominator))
 
 
+def enclosure_of(ball: arb) -> Enclosure:
+    """All of the ball, with exact ends."""
+    return Enclosure(exact(ball.lower()), exact(ball.upper()))
+
+
 def exact(ball: arb) -> Fraction:
     """The number that a ball of radius zero is.
 

@@ -1,45 +1,27 @@
-"""Rational functions in the two axes of a slice, and what a text means as one of them.
+"""Rational functions in the two axes of a slice.
 
-Guarantee: every coefficient is exact (``0.1`` is 1/10, ``1e-30`` is 10^-30); nothing is rounded, nothing is evaluated
-as Python. Any text is answered within a fraction of a second, by an `Expression` or by an `ExpressionError`:
-the limits of `ptmcad.text.syntax` and those below bound the work.
+Guarantee: every coefficient is exact; nothing is rounded.
 
 >>> rho, force = axis(0), axis(1)
->>> str(parse("-0.1*rho^2 + 3/4", {"rho": rho}))
-'3/4 - 1/10*x^2'
->>> parse("2*rho*F / rho", {"rho": rho, "F": force}) == 2 * force
-True
+>>> str(2 * rho * force / rho)
+'2*y'
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
-from math import comb, gcd, lcm
-from operator import add, mul, sub, truediv
+from math import gcd, lcm
 
 from ptmcad.errors import ExpressionError, PoleError
 from ptmcad.text.numerals import text_of
-from ptmcad.text.syntax import Call, Name, Number, Power, Step, interpret, unknown_name
-from ptmcad.text.syntax import names_in as names_in_text
-from ptmcad.text.syntax import parse as tree_of
 from ptmcad.text.terms import terms_text
 
 Term = tuple[int, int, Fraction]
 _Polynomial = dict[tuple[int, int], Fraction]
 
-MAX_EXPONENT = 64
-MAX_DEGREE = 64
-MAX_TERMS = 300
-MAX_BITS = 13_000  # under 4300 decimal digits, so that Python prints it
-MAX_WORK = 100_000
-
 ONE: tuple[Term, ...] = ((0, 0, Fraction(1)),)
-
-
-# ---------------------------------------------------------------------------------------------- the rational function
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +90,7 @@ class Expression:
         return _value(self.numerator, x, y) / denominator
 
     def to_text(self, names: tuple[str, str] = ("x", "y")) -> str:
-        """The expression as text that `parse` reads back."""
+        """The expression as text that `ptmcad.text.parsing.parse` reads back."""
         numerator = _terms_text(self.numerator, names)
         if self.is_polynomial:
             return numerator
@@ -270,142 +252,3 @@ def _exact_quotient(numerator: _Polynomial, divisor: _Polynomial) -> _Polynomial
 
 def _terms_text(terms: tuple[Term, ...], names: tuple[str, str]) -> str:
     return terms_text((((i, j), c) for i, j, c in terms), names)
-
-
-# ------------------------------------------------------------------------------------------------------ from a text
-
-_OPERATION: dict[str, Callable[[Expression, Expression], Expression]] = {"+": add, "-": sub, "*": mul, "/": truediv}
-
-
-def parse(text: str | int | Fraction, names: Mapping[str, Expression] | None = None) -> Expression:
-    """Read an arithmetic expression: numbers, names, ``+ - * /``, integer powers ``^`` or ``**``, parentheses.
-
-    ``^`` binds tighter than a sign on its left and groups to the right, as in mathematics: ``-x^2`` is -(x^2).
-
-    Parameters
-    ----------
-    text : the expression; an int or a Fraction is taken as the constant.
-    names : what each name stands for.
-
-    Raises
-    ------
-    ExpressionError
-        With the position of the offending character: not arithmetic, an unknown name, a division by zero, or one of
-        the limits (length, depth, digits, exponent, degree, number of terms, size of numbers).
-    """
-    if isinstance(text, bool) or not isinstance(text, str | int | Fraction):
-        raise ExpressionError(
-            f'{text!r} is not an exact number: write it as text, such as "0.1", or as a fractions.Fraction'
-        )
-    if not isinstance(text, str):
-        return constant(text)
-    return interpret(tree_of(text), _InTheAxes(names or {}))
-
-
-def rational(text: str | int | Fraction) -> Fraction:
-    """Read an exact rational number: ``3/4``, ``-0.1``, ``1e-30``, an int or a Fraction.
-
-    >>> rational("-0.1"), rational("1e-3")
-    (Fraction(-1, 10), Fraction(1, 1000))
-
-    Raises
-    ------
-    ExpressionError
-        If it is no number, also for a binary float (write it as text).
-    """
-    return parse(text).constant()
-
-
-def names_in(text: str | int | Fraction) -> tuple[str, ...]:
-    """The names that occur in a text, in order of appearance, each once.
-
-    Raises
-    ------
-    ExpressionError
-        If a character cannot stand in an expression.
-    """
-    if not isinstance(text, str):
-        return ()
-    return names_in_text(text)
-
-
-class _InTheAxes:
-    """The interpretation of a text as a rational function of the axes, with a budget for the arithmetic."""
-
-    def __init__(self, names: Mapping[str, Expression]):
-        self.names = names
-        self.work = 0
-
-    def number(self, number: Number) -> Expression:
-        return constant(number.value)
-
-    def name(self, name: Name) -> Expression:
-        if name.name in self.names:
-            return self.names[name.name]
-        raise unknown_name(name.name, name.position, self.names)
-
-    def call(self, call: Call) -> Expression:
-        if call.function in self.names:
-            raise ExpressionError(f"'{call.function}' is no function here: is an operator missing?", call.position)
-        raise unknown_name(call.function, call.position, self.names)
-
-    def negative(self, value: Expression) -> Expression:
-        return -value
-
-    def joined(self, left: Expression, step: Step, right: Expression) -> Expression:
-        if step.operator == "/" and not right.numerator:
-            raise ExpressionError("division by zero", step.position)
-        spread = (len(left.numerator) + len(left.denominator)) * (len(right.numerator) + len(right.denominator))
-        self.spend(spread * (1 + (_bits(left) + _bits(right)) // 512), step.position)
-        degrees = (left.degree, right.degree)
-        adds_up = step.operator in "*/" or not (left.is_polynomial and right.is_polynomial)
-        if (sum(degrees) if adds_up else max(degrees)) > MAX_DEGREE:
-            raise ExpressionError(f"the degree exceeds {MAX_DEGREE}", step.position)
-        return self.limited(partial(_OPERATION[step.operator], left, right), step.position)
-
-    def power(self, base: Expression, power: Power, exponent: Expression) -> Expression:
-        if not exponent.is_constant or exponent.constant().denominator != 1:
-            raise ExpressionError("the exponent is not an integer", power.position)
-        n = exponent.constant().numerator
-        if n < 0 and not base.numerator:
-            raise ExpressionError("division by zero", power.position)
-        if base.is_constant:
-            if abs(base.constant()) not in (0, 1) and abs(n) * _bits(base) > MAX_BITS:
-                raise ExpressionError(f"the power has more than {MAX_BITS} bits", power.position)
-            if abs(base.constant()) in (0, 1):
-                n = n % 2 if n <= 0 else 2 - n % 2
-        else:
-            if abs(n) > MAX_EXPONENT:
-                raise ExpressionError(f"an exponent of a name is at most {MAX_EXPONENT}", power.position)
-            terms = max(len(base.numerator), len(base.denominator))
-            if abs(n) * base.degree > MAX_DEGREE or abs(n) * _bits(base) > MAX_BITS:
-                raise ExpressionError(
-                    f"the power is too large (degree over {MAX_DEGREE} or numbers over {MAX_BITS} bits)",
-                    power.position,
-                )
-            if min(comb(terms + abs(n) - 1, abs(n)), comb(abs(n) * base.degree + 2, 2)) > MAX_TERMS:
-                raise ExpressionError(f"the power has more than {MAX_TERMS} terms", power.position)
-            self.spend(MAX_TERMS * terms, power.position)
-        return self.limited(partial(base.__pow__, n), power.position)
-
-    def spend(self, work: int, position: int) -> None:
-        self.work += work
-        if self.work > MAX_WORK:
-            raise ExpressionError("the expression takes too much work to expand", position)
-
-    def limited(self, operation: Callable[[], Expression], position: int) -> Expression:
-        value = operation()
-        if max(len(value.numerator), len(value.denominator)) > MAX_TERMS:
-            raise ExpressionError(f"the expression has more than {MAX_TERMS} terms", position)
-        if _bits(value) > MAX_BITS:
-            raise ExpressionError(f"a number in the expression has more than {MAX_BITS} bits", position)
-        return value
-
-
-def _bits(expression: Expression) -> int:
-    """Bits of the largest integer in the coefficients."""
-    return max(
-        (max(c.numerator.bit_length(), c.denominator.bit_length())
-         for _, _, c in expression.numerator + expression.denominator),
-        default=0,
-    )  # fmt: skip

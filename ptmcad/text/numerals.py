@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from operator import index
+from typing import SupportsIndex
 
 MAX_DIGITS = 200_000
 """Of a numerator, a denominator or a decimal: longer ones are refused when reading."""
@@ -40,6 +42,30 @@ def integer_of(digits: str) -> int:
     half = len(digits) // 2
     power: int = 10**half
     return integer_of(digits[:-half]) * power + integer_of(digits[-half:])
+
+
+def exactly(number: object) -> Fraction:
+    """The value of a number of Python's or numpy's: an integer, a Fraction, or a float's exact binary value.
+
+    >>> exactly(0.5), exactly(0.1) == Fraction(1, 10)
+    (Fraction(1, 2), False)
+
+    Raises
+    ------
+    TypeError
+        For anything else, also for a truth value.
+    ValueError
+        For an infinite float, and one that is not a number.
+    """
+    if isinstance(number, SupportsIndex) and not isinstance(number, bool):
+        return Fraction(index(number))
+    ratio = getattr(number, "as_integer_ratio", None)
+    if ratio is None or isinstance(number, bool):
+        raise TypeError(f"{number!r} of type {type(number).__name__} is not an exact number")
+    try:
+        return Fraction(*ratio())
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"{number!r} is not a number that can be computed with") from error
 
 
 def text_of(value: Fraction | int) -> str:

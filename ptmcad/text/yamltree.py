@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ import yaml
 
 from ptmcad.errors import ConfigError, shown
 from ptmcad.text import textfile
+from ptmcad.text.numerals import exactly, text_of
 
 MAX_BYTES = 200_000
 MAX_DEPTH = 20
@@ -116,17 +117,19 @@ def read_text(text: str, file: str | None = None) -> Tree:
         ) from error
     if not isinstance(node, Tree):
         found = "is empty" if isinstance(node, Scalar) and node.is_null else "is not a mapping of keys to values"
-        raise ConfigError(f"{found}: a problem record has lines such as 'axes: {{rho: [0, 2], L2: [0, 2]}}'", file=file)
+        raise ConfigError(f"{found}: a problem record has lines such as 'count: stable'", file=file)
     return node
 
 
 def from_python(value: object, place: Place) -> Node:
-    """The same tree from Python data: mappings, lists, tuples, str, int, bool, None, Fraction.
+    """The same tree from Python data: mappings, lists, tuples, str, bool, None, and numbers, exactly.
+
+    A float stands for its binary value: 0.1, unlike the text "0.1", is not 1/10.
 
     Raises
     ------
     ConfigError
-        For a float (it is not the decimal that was written) and any other type.
+        For any other type, and for a float that is no number.
     """
     if isinstance(value, Mapping):
         for key in value:
@@ -139,10 +142,12 @@ def from_python(value: object, place: Place) -> Node:
         return Scalar({None: "null", True: "true", False: "false"}[value], place)
     if isinstance(value, str):
         return Scalar(value, place, plain=False)
-    if isinstance(value, int | Fraction):
+    if isinstance(value, Decimal):
         return Scalar(str(value), place)
-    remedy = ': write it as text, such as "0.1", or as a fractions.Fraction' if isinstance(value, float) else ""
-    raise place.error(f"{value!r} of type {type(value).__name__} is not exact plain data{remedy}")
+    try:
+        return Scalar(text_of(exactly(value)), place)
+    except (TypeError, ValueError) as error:
+        raise place.error(str(error)) from error
 
 
 def plain_data(node: Node) -> Any:

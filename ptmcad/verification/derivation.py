@@ -16,7 +16,7 @@ from typing import Any
 from flint import fmpq
 
 from ptmcad.mechanism import Kind, Mechanism, ptm
-from ptmcad.text.syntax import Call, Chain, Name, Negative, Number, Power, Tree
+from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree
 
 MECHANISM = ptm()
 PARAMETERS = MECHANISM.without_free_lengths

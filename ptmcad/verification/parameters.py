@@ -13,7 +13,8 @@ from math import lcm
 from ptmcad.answer.regionmap import Kind
 from ptmcad.errors import ExpressionError
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import Expression, axis, names_in, parse
+from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.parsing import names_in, parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import PLANE, Claims
 from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, PARAMETERS, POSITIVE

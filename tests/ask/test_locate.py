@@ -6,6 +6,7 @@ import subprocess
 import sys
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from support import oracle
 from support.maps import CONFIGS, shipped
@@ -96,11 +97,23 @@ def test_a_rational_critical_abscissa_off_the_curves() -> None:
                 assert found.stable == (2 if abs(length - 1) < 2 * rho < length + 1 else 1)
 
 
+def test_a_float_stands_for_its_exact_binary_value() -> None:
+    """fig. 2 has a wall on 2 rho = L2 + 1, which the float 0.7, a little less than 7/10, misses."""
+    result = shipped("fig2")
+    assert result.locate(rho="0.7", L2="2/5").status is Status.ON_VARIETY
+    beside = result.locate(rho=0.7, L2="2/5")
+    assert beside.status is Status.EXACT
+    assert beside == result.locate(rho=Fraction(0.7), L2="2/5") == result.locate(rho=np.float64(0.7), L2="2/5")
+    assert result.locate(rho=0.75, L2=np.float32(0.5)) == result.locate(rho="3/4", L2="1/2")
+    assert result.locate(rho=np.int64(1), L2=np.int32(1)).status is Status.ON_VARIETY
+
+
 def test_values_are_exact_numbers() -> None:
     result = shipped("fig4")
     assert result.locate(rho="7/10", L2="3/2") == result.locate(rho="0.7", L2=Fraction(3, 2))
     assert result.locate(rho="0.7" + "0" * 60, L2="1.5").stable == 2
-    for bad in ({"rho": 1}, {"rho": 1, "L2": 1, "k": 1}, {"rho": "x", "L2": 1}, {"rho": "nan", "L2": 1}, {}):
+    no_numbers = ("x", "nan", float("nan"), float("inf"), np.True_)
+    for bad in ({"rho": 1}, {"rho": 1, "L2": 1, "k": 1}, {}, *({"rho": value, "L2": 1} for value in no_numbers)):
         with pytest.raises(ConfigError):
             result.locate(**bad)
 

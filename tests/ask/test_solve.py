@@ -423,7 +423,8 @@ def test_many_digits() -> None:
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"rho": 0.7}, "rho: 0.7 of type float is not exact"),
+        ({"rho": 0.7j}, "rho: 0.7j of type complex is not an exact number"),
+        ({"rho": float("inf")}, "rho: inf is not a number"),
         ({"rhoo": 1}, "did you mean 'rho'"),
         ({"L2": 0}, "L2: L2 is 0, but a length must be positive"),
         ({"k": -1}, "stiffness must be positive"),

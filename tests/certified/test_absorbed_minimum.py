@@ -14,8 +14,8 @@ import pytest
 pytest.importorskip("numba")
 
 import ptmcad
-from ptmcad.certified.curves import curves
 from ptmcad.certified.points import point_counter
+from ptmcad.certified.ptm.curves import curves
 from ptmcad.certified.search import search_curve
 from ptmcad.question.slice import Count, Slice
 
@@ -41,7 +41,7 @@ def enclosed(slice: Slice, points: list[tuple[float, float]], tiles: int = 4) ->
     covered = 0.0
     for curve in curves(slice, Count.STABLE):
         area = float(size.prod()) * 4.0**-7
-        small, waiting, _ = search_curve(
+        _, _, small, waiting, _ = search_curve(
             curve.system.arguments(), curve.start(window), area, 3_000_000, curve.importance()
         )
         assert len(waiting) == 0

@@ -15,17 +15,18 @@ pytest.importorskip("numba")
 
 from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.contraction import contract, workspace
-from ptmcad.certified.curves import Curve, curves
+from ptmcad.certified.curve import Curve
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Formula, Graph
-from ptmcad.certified.mechanism import Mechanism
-from ptmcad.certified.parameters import slice_mechanism
+from ptmcad.certified.ptm.curves import curves
+from ptmcad.certified.ptm.statics import Statics, slice_statics
 from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import Tape, record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
-from ptmcad.verification.certified.energy import NAMES, Energy
+from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.parameters import energy_at, exact
+from ptmcad.verification.certified.vectors import NAMES
 
 Floats = NDArray[np.float64]
 SLICES = {
@@ -43,7 +44,7 @@ def slice_of(name: str) -> Slice:
     )
 
 
-def differentiable(m: Mechanism) -> list[Formula]:
+def differentiable(m: Statics) -> list[Formula]:
     h = m.hessian
     return [*m.equilibrium, h.p11, h.p22, h.q, h.determinant]
 
@@ -51,7 +52,7 @@ def differentiable(m: Mechanism) -> list[Formula]:
 def tape_of(name: str) -> tuple[Tape, int]:
     """E1, E2, P11, P22, q, D, then the lengths; and derivatives of all six by x, y, th1, th2, row by row."""
     graph = Graph()
-    m = slice_mechanism(graph, slice_of(name))
+    m = slice_statics(graph, slice_of(name))
     wanted = differentiable(m)
     gradients = [graph.derivative(f, variable) for f in wanted for variable in range(4)]
     return record([[*wanted, *m.lengths, *gradients]]), len(wanted)
@@ -111,8 +112,8 @@ def test_formulas_are_those_of_the_verification(name: str) -> None:
             values = run_arb(tape, [exact(p) for p in point], 200)
             there = energy(slice, point[0], point[1])
             d = there(exact(point[2]), exact(point[3]))
-            expected = [d.e1, d.e2, d.e11, d.e22, d.e12 / there.length2, d.e11 * d.e22 - d.e12 * d.e21]
-            lengths = [q.sqrt() for q in there.lengths_squared(exact(point[2]), exact(point[3]))]
+            expected = [d.e1, d.e2, d.e11, d.e22, d.e12 / there.bars[1], d.e11 * d.e22 - d.e12 * d.e21]
+            lengths = [q.sqrt() for q in there.squares(exact(point[2]), exact(point[3]))]
             for place, value in zip(tape.outputs[0][: number + 3], [*expected, *lengths], strict=True):
                 assert abs(values[int(place)] - value) < 1e-40
 
@@ -192,8 +193,7 @@ def fold_curves() -> list[Curve]:
 def test_contraction_keeps_known_folds(number: int, folds: list[Floats]) -> None:
     rng = np.random.default_rng(8)
     system = fold_curves()[number].system.arguments()
-    m, n = system[4].shape
-    work = workspace(system[0][0].shape[0], 4, m, n)
+    work = workspace(system, 4)
     kept = narrowed = 0
     for point in folds:
         if number and _shortest(point) < 0.1:
@@ -214,15 +214,14 @@ def test_contraction_keeps_known_folds(number: int, folds: list[Floats]) -> None
 
 def _shortest(point: Floats) -> float:
     there = energy(slice_of("free02"), Fraction(float(point[0])), Fraction(float(point[1])))
-    return min(float(q.mid()) ** 0.5 for q in there.lengths_squared(arb(float(point[2])), arb(float(point[3]))))
+    return min(float(q.mid()) ** 0.5 for q in there.squares(arb(float(point[2])), arb(float(point[3]))))
 
 
 def test_contraction_discards_what_holds_none() -> None:
     """Boxes around random points off the curve, small enough to be decided."""
     rng = np.random.default_rng(9)
     system = fold_curves()[0].system.arguments()
-    m, n = system[4].shape
-    work = workspace(system[0][0].shape[0], 4, m, n)
+    work = workspace(system, 4)
     gone = 0
     for _ in range(200):
         point = np.array([*rng.uniform(0.1, 1.9, 2), *rng.uniform(-3, 3, 2)])
@@ -235,9 +234,6 @@ def test_search_keeps_known_folds(folds: list[Floats]) -> None:
     curve = fold_curves()[0]
     for point in folds:
         window = np.array([[point[0] - 0.02, point[1] - 0.013, point[0] + 0.011, point[1] + 0.017]])
-        small, waiting, _ = search_curve(
-            curve.system.arguments(), curve.start(window), 1e-6, 20_000, curve.importance()
-        )
-        boxes = np.concatenate([small, waiting])
+        boxes = search_curve(curve.system.arguments(), curve.start(window), 1e-6, 20_000, curve.importance()).left()
         inside = (boxes[:, :4] <= point + 1e-9).all(axis=1) & (boxes[:, 4:] >= point - 1e-9).all(axis=1)
         assert inside.any()

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ptmcad.certified.curves import Curve, curves
+from ptmcad.certified.curve import Curve
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Graph
-from ptmcad.certified.parameters import slice_mechanism
+from ptmcad.certified.ptm.curves import curves
+from ptmcad.certified.ptm.statics import slice_statics
 from ptmcad.certified.search import search_curve
 from ptmcad.certified.tape import record
 from ptmcad.mechanism import ptm
@@ -89,10 +90,7 @@ def rectangles(all_curves: tuple[Curve, ...], centre: Vector, half: float, area:
     window = np.array([[*(centre - half), *(centre + half)]])
     parts = []
     for curve in all_curves:
-        small, waiting, _ = search_curve(
-            curve.system.arguments(), curve.start(window), area, 20_000, curve.importance()
-        )
-        boxes = np.concatenate([small, waiting])
+        boxes = search_curve(curve.system.arguments(), curve.start(window), area, 20_000, curve.importance()).left()
         v = boxes.shape[1] // 2
         parts.append(boxes[:, [0, 1, v, v + 1]])
     return np.concatenate(parts)
@@ -177,7 +175,7 @@ def test_formulas_of_the_fold_agree_with_the_energy() -> None:
         z = rng.uniform([0.2, 0.2, -3, -3], [1.9, 1.9, 3, 3])
         slope, h = derivatives(z, 0.2, -0.1)
         graph = Graph()
-        m = slice_mechanism(graph, slice_of("1/5", **LOADED))
+        m = slice_statics(graph, slice_of("1/5", **LOADED))
         l1, l2, l3 = m.lengths
         d = m.hessian
         tape = record([[*m.equilibrium, m.dependent[0], m.turn, d.p11, d.p22, d.determinant,

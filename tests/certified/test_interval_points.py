@@ -12,9 +12,9 @@ from support.dense_search import dense_search
 
 import ptmcad
 from ptmcad.certified.arb_evaluation import ball, run_arb
-from ptmcad.certified.cones import cones
-from ptmcad.certified.mechanism import NAMES
+from ptmcad.certified.parameters import values_at
 from ptmcad.certified.points import PointCount, PointCounter, point_counter
+from ptmcad.certified.ptm.cones import cones
 from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import axis
@@ -71,7 +71,7 @@ def compare_with_dense_search(seed: int, points: int) -> None:
     for _ in range(points):
         counts, x, y = random_case(generator)
         found, admissible = counts.at(x, y, Count.INDEX), counts.at(x, y, Count.ADMISSIBLE)
-        values = parameters_at(counts, x, y)
+        values = values_at(counts.slice, x, y)
         assert found.decided and admissible.decided, values
         for grid in (40, 80, 300):  # the search may miss some, so a difference has to stay with more starts
             seen = dense_search({name: float(value) for name, value in values.items()}, grid)
@@ -79,11 +79,6 @@ def compare_with_dense_search(seed: int, points: int) -> None:
                 break
         assert (seen["index"], seen["admissible"]) == (found.index, admissible.admissible), values
         assert admissible.stable == found.stable == counts.at(x, y, Count.STABLE).stable
-
-
-def parameters_at(counts: PointCounter, x: Q, y: Q) -> dict[str, Q]:
-    given = counts.slice.parameters
-    return {name: given[name].evaluate(x, y) if name in given else Q(0) for name in NAMES}
 
 
 def test_agrees_with_a_dense_search() -> None:

@@ -19,14 +19,14 @@ from support.dense_search import dense_search
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.certified.cones import cones
-from ptmcad.certified.curves import curves
 from ptmcad.certified.engine import certified_map
 from ptmcad.certified.formula import Graph
-from ptmcad.certified.mechanism import NAMES
-from ptmcad.certified.parameters import positive_base, slice_mechanism
 from ptmcad.certified.points import PointCount, point_counter
+from ptmcad.certified.ptm.cones import cones
+from ptmcad.certified.ptm.curves import curves
+from ptmcad.certified.ptm.statics import positive_base, slice_statics
 from ptmcad.errors import ConfigError, DegenerateSliceError, LimitReached
+from ptmcad.mechanism import ptm
 from ptmcad.options import Options
 from ptmcad.question.slice import Count, Slice
 
@@ -42,7 +42,7 @@ def slice_of(axes: Mapping[str, Any], count: str = "total", **parameters: Any) -
 def seen_at(slice: Slice, x: Q, y: Q) -> dict[str, Any]:
     """The counts of a search that shares no code with the engine."""
     given = slice.parameters
-    values = {name: given[name].evaluate(x, y) if name in given else Q(0) for name in NAMES}
+    values = {name: given[name].evaluate(x, y) if name in given else Q(0) for name in ptm().variables}
     return dense_search({name: float(value) for name, value in values.items()}, 80)
 
 
@@ -113,8 +113,8 @@ def test_a_spring_without_free_length_is_absent_however_it_is_written() -> None:
 def test_the_factor_rho_is_left_out_only_where_rho_is_known_to_be_positive(rho: str, positive: bool) -> None:
     s = slice_of({"m": [0, 1], "L2": ["1/2", 1]}, rho=rho, F3=0, F4=0, l0="m/5")
     assert positive_base(s) is positive
-    mechanism = slice_mechanism(Graph(), s)
-    unfactored = slice_mechanism(mechanism.equilibrium[0].graph, s, factored=False)
+    mechanism = slice_statics(Graph(), s)
+    unfactored = slice_statics(mechanism.equilibrium[0].graph, s, factored=False)
     assert (mechanism.unloaded != unfactored.unloaded) is positive
 
 
@@ -126,7 +126,7 @@ def test_the_factor_rho_is_left_out_only_where_rho_is_known_to_be_positive(rho: 
 def test_a_load_that_vanishes_somewhere_is_a_load(name: str, load: str, unloaded: bool) -> None:
     none = {"F3": 0, "F4": 0, "F3x": 0, "F4x": 0}
     s = slice_of({"rho": ["1/2", 1], "L2": ["1/2", 1]}, **(none | {name: load}))
-    assert (slice_mechanism(Graph(), s).unloaded is not None) is unloaded
+    assert (slice_statics(Graph(), s).unloaded is not None) is unloaded
 
 
 @pytest.mark.parametrize("off", [Q(0), Q(1, 10**6), Q(-1, 10**6), Q(1, 10**13), Q(-1, 10**13), Q(1, 10**20)])
@@ -166,7 +166,8 @@ def test_rho_nearly_equal_to_a_bar_everywhere() -> None:
 
 def test_euler_s_sum_is_not_used_where_a_cone_changes() -> None:
     """At l0 = 1/3 a peak appears (see test_interval_points); 10^-60 beside it, it is known whether it is there."""
-    given = {**dict.fromkeys(NAMES, Q(0)), "L1": Q(1), "L2": Q(1), "rho": Q(1, 2), "k1": Q(1), "k2": Q(1), "k3": Q(1)}
+    ones = dict.fromkeys(("L1", "L2", "k1", "k2", "k3"), Q(1))
+    given = dict.fromkeys(ptm().variables, Q(0)) | ones | {"rho": Q(1, 2)}
     little = Q(1, 10**60)
     for free, count, regular in ((Q(1, 3) - little, 0, True), (Q(1, 3), 0, False), (Q(1, 3) + little, 2, True)):
         found = cones(given | {f"l0_{i}": free for i in (1, 2, 3)})
@@ -175,7 +176,7 @@ def test_euler_s_sum_is_not_used_where_a_cone_changes() -> None:
 
 @pytest.mark.parametrize("bar", ["L1", "L2"])
 def test_euler_s_sum_is_not_used_where_a_spring_has_no_length_on_a_circle(bar: str) -> None:
-    given = {**dict.fromkeys(NAMES, Q(0)), "L1": Q(1), "L2": Q(3, 2), "k1": Q(1), "k2": Q(1), "k3": Q(1)}
+    given = {**dict.fromkeys(ptm().variables, Q(0)), "L1": Q(1), "L2": Q(3, 2), "k1": Q(1), "k2": Q(1), "k3": Q(1)}
     spring = {"L2": "l0_1", "L1": "l0_2"}[bar]
     assert not cones(given | {"rho": given[bar], spring: Q(1, 10**60)}).regular
     assert cones(given | {"rho": given[bar] + Q(1, 10**60), spring: Q(1, 10**60)}).regular

@@ -15,7 +15,7 @@ pytest.importorskip("numba")
 
 import ptmcad
 from ptmcad.certified import refinement
-from ptmcad.certified.curves import Curve
+from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.refinement import Enclosure, begin, refine
 from ptmcad.certified.system import system

@@ -30,7 +30,7 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options
 from ptmcad.process.handover import Receiver, Topic, connect, disconnect
-from ptmcad.process.supervisor import OVERRUN_SECONDS, _Watch
+from ptmcad.process.watch import OVERRUN_SECONDS, Watch
 
 ROOT = Path(__file__).resolve().parents[2]
 SCHEMA = json.loads((ROOT / "docs" / "region-map.schema.json").read_text(encoding="utf-8"))
@@ -287,7 +287,7 @@ def test_compiling_is_no_part_of_the_time_limit(
     assert 1600 <= again - begun <= 1600 + taken
     # the library loads once more, which takes no time outside of this test
     assert 2600 <= engine["options"].deadline - counted <= 2600 + taken
-    watch = _Watch(0, 0, 0, ())
+    watch = Watch(0, 0, 0, ())
     watch.reports[Topic.DEADLINE] = [repr(stopped), ""]
     assert watch._deadline() is None
     watch.reports[Topic.DEADLINE] = [repr(again), "600 s"]

@@ -74,7 +74,7 @@ def test_special_points_are_answers(at: str, tmp_path: Path, capsys: pytest.Capt
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([], "error: give a point, as in --at rho=1,L2=3/2"),
+        ([], "error: give a point, as in --at L1=1,L2=3/2"),
         (["--at", "rho"], "error: --at: 'rho' is not NAME=VALUE"),
         (["--at", "rho=1,rho=2"], "error: --at: 'rho=2' is not NAME=VALUE"),
         (["--at", "roh=1"], "did you mean 'rho'"),

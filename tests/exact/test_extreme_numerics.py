@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ptmcad
-from ptmcad.algebra import real_roots
+from ptmcad.algebra import isolation
 from ptmcad.algebra.arcs import arc_integral
 from ptmcad.algebra.fibre import Fibre, coordinates_at, univariate_representation
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
@@ -69,13 +69,13 @@ def test_pairs_that_are_real_or_not_are_told_apart(e: int, f: int, real: bool, n
 def tests_made(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The degree of the polynomial in each test by Descartes' rule."""
     made: list[int] = []
-    bound = real_roots._descartes_bound
+    bound = isolation.descartes_bound
 
     def counted(q: fmpz_poly, degree: int) -> int:
         made.append(degree)
         return bound(q, degree)
 
-    monkeypatch.setattr(real_roots, "_descartes_bound", counted)
+    monkeypatch.setattr(isolation, "descartes_bound", counted)
     return made
 
 

@@ -20,7 +20,8 @@ from ptmcad.algebra.polynomials import from_fraction, from_plane, to_fraction
 from ptmcad.algebra.real_roots import disjoint, isolate, refine, squarefree_part
 from ptmcad.answer.regionmap import Status
 from ptmcad.exact.cad.curves import curve
-from ptmcad.text.expressions import axis, parse
+from ptmcad.text.expressions import axis
+from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 
 SLICES = {path.stem: load(path) for path in EXACT}

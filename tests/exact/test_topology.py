@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
 from ptmcad.exact.cad.adjacency import Separator, cross
-from ptmcad.exact.cad.area import region_areas
+from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curve
 from ptmcad.exact.cad.projection import project
 from ptmcad.exact.cad.stacks import StackData, lift
@@ -312,7 +312,7 @@ AREAS: dict[str, tuple[list[fmpz_mpoly], Window, str, str, tuple[Fraction, Fract
 def check_area(name: str, base: int, tolerance: Fraction) -> None:
     polynomials, window, x, y, (low, high) = AREAS[name]
     found = decompose(polynomials, window, base)
-    areas, _ = region_areas(found.stacks, found.pieces, found.curves, found.base, found.fibre, tolerance)
+    areas, _ = region_areas(RegionStacks(found.stacks, found.pieces, found.curves, found.base, found.fibre), tolerance)
     at = (rational(x), rational(y))
     u, v = at[base], at[1 - base]
     stack = next(

@@ -19,7 +19,8 @@ from ptmcad.exact.models.potential import geometry_of, squared_lengths, system_f
 from ptmcad.mechanism import Kind, Mechanism, described, mechanism_of, ptm
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.ptm import RECORD
-from ptmcad.text.syntax import Tree, parse, to_text
+from ptmcad.text.syntax import parse
+from ptmcad.text.tree import Tree, to_text
 
 PAPER = """
 name: ptm

@@ -41,48 +41,19 @@ def own_names(path: Path) -> Iterator[tuple[int, str]]:
 STUDIES = "studies/"
 """They study this mechanism: constructions, published equations and rival methods are its own."""
 KERNELS = {
-    "certified/cones.py",
-    "certified/curves.py",
-    "certified/engine.py",
-    "certified/equilibria.py",
-    "certified/mechanism.py",
-    "certified/parameters.py",
-    "certified/points.py",
-    "certified/poses.py",
+    "certified/ptm/cones.py",
+    "certified/ptm/curves.py",
+    "certified/ptm/equilibria.py",
+    "certified/ptm/statics.py",
 }
 """The certified engine's formulas, made by hand for this mechanism."""
-CHECKER = {
-    "verification/certified/energy.py",
-    "verification/certified/equilibria.py",
-    "verification/certified/parameters.py",
-    "verification/certified/points.py",
-}
-"""The checker's formulas for springs with free lengths, written down once more."""
-ELIMINATION = {
-    "algebra/critical_lengths.py",
-    "algebra/signed.py",
-    "algebra/signed_equations.py",
-    "algebra/simple_roots.py",
-    "algebra/squared.py",
-    "exact/ranges/free_lengths.py",
-}
-"""The paper's elimination of free lengths, signs and simple roots."""
-MESSAGES = {
-    "cli/locate.py",
-    "cli/range.py",
-    "cli/solve.py",
-    "question/config/__init__.py",
-    "question/config/options.py",
-    "question/config/record.py",
-    "question/config/resolution.py",
+GREEK = {
     "show/polynomial_text.py",
     "show/render/axes.py",
-    "question/savings.py",
     "text/syntax.py",
-    "text/yamltree.py",
 }
-"""Examples in messages, and Greek letters as names."""
-STILL_HOLDING = KERNELS | CHECKER | ELIMINATION | MESSAGES
+"""Greek letters as names."""
+STILL_HOLDING = KERNELS | GREEK
 
 
 def test_own_names_are_typed_in_the_description_and_where_the_list_says() -> None:

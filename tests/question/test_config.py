@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from ptmcad.cli import run
@@ -272,7 +274,7 @@ def test_options_over_a_record() -> None:
 @pytest.mark.parametrize(
     ("options", "key", "part"),
     [
-        ({}, None, "--slice L2,rho"),
+        ({}, None, "--slice L1,L2"),
         ({"slice": "L2"}, "--slice", "is not X,Y"),
         ({"slice": "L2,L2"}, "--slice", "both L2"),
         ({"slice": "L2,roh"}, "--slice", "did you mean 'rho'?"),
@@ -304,8 +306,12 @@ def test_mappings() -> None:
     slice = slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["1/2", Fraction(3, 2)]}, "reference": {"regions": 2}})
     assert slice.axes[1].low == Fraction(1, 2)
     assert slice.reference == {"regions": 2}
-    with pytest.raises(ConfigError, match=r"axes\.rho: 0\.5 of type float"):
-        slice_from_mapping({"axes": {"rho": [0, 0.5], "L2": [0, 2]}})
+    for number in (0.1, np.float64(0.1), Fraction(0.1)):
+        assert slice_from_mapping({"axes": {"rho": [0, number], "L2": [0, 2]}}).axes[0].high == Fraction(0.1)
+    assert slice_from_mapping({"axes": {"rho": [0, Decimal("0.1")], "L2": [0, 2]}}).axes[0].high == Fraction(1, 10)
+    assert slice_from_mapping({"axes": {"rho": [0, np.int64(2)], "L2": [0, 2]}}).axes[0].high == 2
+    with pytest.raises(ConfigError, match=r"axes\.rho: 1j of type complex is not an exact number"):
+        slice_from_mapping({"axes": {"rho": [0, 1j], "L2": [0, 2]}})
 
 
 def test_every_parameter_can_be_an_axis() -> None:

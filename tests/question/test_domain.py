@@ -23,7 +23,8 @@ from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.domain import prove, prove_slice, unproved
 from ptmcad.question.positivity import READING_WORK, decide
 from ptmcad.question.slice import Axis, Slice
-from ptmcad.text.expressions import axis, parse
+from ptmcad.text.expressions import axis
+from ptmcad.text.parsing import parse
 
 DIPS = {
     "degree 20": "(m - 1/3)^20 - 1e-180",

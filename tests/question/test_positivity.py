@@ -27,7 +27,8 @@ from ptmcad.question.positivity import (
     polynomial_value,
 )
 from ptmcad.question.slice import Axis
-from ptmcad.text.expressions import Expression, constant, parse
+from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.parsing import parse
 
 coefficients = st.dictionaries(
     st.tuples(st.integers(0, 3), st.integers(0, 3)), st.integers(-5, 5).filter(bool), min_size=1, max_size=6

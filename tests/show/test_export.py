@@ -353,7 +353,7 @@ def test_command_takes_the_options_of_classify(capsys: pytest.CaptureFixture[str
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["variety"], "--slice L2,rho"),
+        (["variety"], "--slice L1,L2"),
         (["variety", "nowhere.yaml"], "nowhere.yaml"),
         (["variety", "--slice", "L2,rho", "--format", "fortran"], "fortran"),
         (["variety", "--slice", "L2,rho", "--out", "."], "is a folder"),

@@ -31,7 +31,7 @@ from ptmcad.show.render.figure import draw_figure, point_of
 from ptmcad.show.render.landscape import contour_levels, copies, draw_landscape, energy_of
 from ptmcad.show.render.mechanism import PALE, STRONG
 from ptmcad.show.render.poses import draw_poses, in_order, printed_number, value_text
-from ptmcad.show.render.sketch import BAR_WIDTHS, PIN, TURNS, arrow_lengths, frame_of, sketch
+from ptmcad.show.render.sketch import BAR_WIDTHS, MIN_TURNS, PIN, arrow_lengths, frame_of, sketch
 from ptmcad.text.enclosure import Enclosure
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -150,17 +150,20 @@ def labels_are_clear(found: Poses) -> None:
 
 
 @CASES
-def test_a_spring_has_all_its_turns_at_any_length(name: str) -> None:
+def test_a_springs_teeth_stand_across_it_at_any_length_and_slope(name: str) -> None:
     found = poses(name)
     frame = frame_of(found.equilibria)
     for pose in found.equilibria:
         seen = sketch(pose, frame, {})
         for spring, line in zip(pose.springs, seen.springs, strict=True):
             assert (line[0], line[-1]) == (seen.nodes[spring.start], seen.nodes[spring.end])
-            assert len(line) == 2 * TURNS + 4
-            xs, ys = np.diff(np.array(line[1:-1]), axis=0).T
-            assert np.hypot(xs, ys)[1:-1].min() > 1.5, "a turn's edge is longer than its line is wide"
-            assert np.hypot(xs.sum(), ys.sum()) > 1.4 * 2 * TURNS, "and so is the way from turn to turn"
+            teeth = len(line) - 4
+            assert teeth % 2 == 0 and teeth >= 2 * MIN_TURNS
+            edges = np.diff(np.array(line[1:-1]), axis=0)
+            axis = edges.sum(axis=0) / np.hypot(*edges.sum(axis=0))
+            along, across = edges[1:-1] @ axis, abs(edges[1:-1] @ (-axis[1], axis[0]))
+            assert along.min() > 1.4, "the way from tooth to tooth is longer than the line is wide"
+            assert (across > 1.3 * along).all(), "no edge lies so flat that the spring looks like stairs"
 
 
 def test_springs_on_bars_are_drawn_aside() -> None:

@@ -20,7 +20,7 @@ from support.maps import shipped
 import ptmcad
 from ptmcad.algebra.polynomials import from_fraction, from_plane
 from ptmcad.exact.cad.curves import curve
-from ptmcad.exact.cad.polyline import FLAT, Chord, chords
+from ptmcad.exact.cad.polyline import FLAT, Branch, Chord, chords
 from ptmcad.exact.cad.stacks import roots_over
 from ptmcad.studies.bench import companion, multistart
 from ptmcad.studies.bench.cover_error import cover_error
@@ -125,7 +125,9 @@ def disc() -> Walls:
     unit = (fmpq(0), fmpq(1))
     gap = Fraction(1, 2**32)
     span = (Fraction(1, 8) + gap, Fraction(7, 8) - gap)
-    below, above = (chords(source, root, span, unit, unit, Fraction(1, 2**16), Fraction(1, 2**36)) for root in (0, 1))
+    below, above = (
+        chords(Branch(source, root, unit, unit), span, Fraction(1, 2**16), Fraction(1, 2**36)) for root in (0, 1)
+    )
     pieces = [(c, 0, 1) for c in below] + [(c, 1, 0) for c in above]
     tops = ((ZERO, Fraction(1, 8), 0), (*span, 0), (Fraction(7, 8), ONE, 0))
     gaps = tuple((x - gap, x + gap, ((Fraction(1, 2), Fraction(1, 2)),)) for x in (Fraction(1, 8), Fraction(7, 8)))
@@ -148,7 +150,7 @@ def test_walls_that_leave_a_cusp_side_by_side_are_shut_in() -> None:
     unit = (fmpq(0), fmpq(1))
     span = (Fraction(1, 2**32), 1 - Fraction(1, 2**32))
     for root, side in ((0, -1), (1, 1)):
-        found = chords(source, root, span, unit, unit, Fraction(1, 2**18), Fraction(1, 2**24))
+        found = chords(Branch(source, root, unit, unit), span, Fraction(1, 2**18), Fraction(1, 2**24))
         assert len(found) < 2000
         assert max(c.distance for c in found) <= FLAT
         assert sum(c.distance * (c.right - c.left) for c in found) < Fraction(1, 2**17)

@@ -88,7 +88,7 @@ def test_written_and_read_again() -> None:
         (("floor", "median"), 0, "floor.median"),
         (("measurements", 0, "seconds", "runs"), 1.5, "measurements[0].seconds.runs"),
         (("measurements", 0, "figures", "index", "wrong"), [1], "wrong has 1 entries"),
-        (("quick",), 1, "quick is neither"),
+        (("quick",), 1, "quick is not true or false"),
         (("more",), 1, "unknown key"),
         (("slice",), "a\x1bb", "slice"),
     ],

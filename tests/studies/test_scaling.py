@@ -29,7 +29,7 @@ from ptmcad.studies.bench.scaling import families, folds, measurement, run, slic
 from ptmcad.studies.bench.scaling.fit import Verdict, fit, medians
 from ptmcad.studies.bench.scaling.measurement import Run, Stages, Unmeasured, in_child
 from ptmcad.studies.bench.scaling.picture import draw_scaling
-from ptmcad.studies.bench.scaling.table import to_markdown
+from ptmcad.studies.bench.scaling.table import grouped, to_markdown
 from ptmcad.text.expressions import axis
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -84,15 +84,15 @@ def glued(n: int) -> int:
     return len({root(part) for part in parts})
 
 
-@pytest.mark.parametrize("n", range(1, 13))
-def test_regions_of_the_grid_by_gluing(n: int) -> None:
-    assert glued(n) == folds.regions_of_grid(n)
+def test_regions_of_the_grid_by_gluing() -> None:
+    for n in range(1, 13):
+        assert glued(n) == folds.regions_of_grid(n)
 
 
 FOLDED = {
-    **{f"fold {n}": (folds.fold(n), folds.regions_of_fold(n)) for n in (1, 2, 3, 5, 8)},
+    **{f"fold {n}": (folds.fold(n), folds.regions_of_fold(n)) for n in (1, 2, 3, 5)},
     **{f"grid {n}": (folds.grid(n), folds.regions_of_grid(n)) for n in (1, 2, 3)},
-    **{f"window {n}": (folds.window_of_fold(n), folds.regions_of_fold(n)) for n in (2, 6)},
+    "window 2": (folds.window_of_fold(2), folds.regions_of_fold(2)),
 }
 _maps: dict[str, RegionMap] = {}
 
@@ -113,15 +113,13 @@ def test_the_engine_finds_the_regions_of_folds(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("n", [16, 32])
-def test_the_engine_finds_the_regions_of_many_folds(n: int) -> None:
-    assert len(ptmcad.classify(folds.fold(n)).regions) == folds.regions_of_fold(n)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("n", [4, 5, 6])
-def test_the_engine_finds_the_regions_of_large_grids(n: int) -> None:
-    assert len(ptmcad.classify(folds.grid(n)).regions) == folds.regions_of_grid(n)
+@pytest.mark.parametrize(("slice", "regions"), [
+    *(pytest.param(folds.fold(n), folds.regions_of_fold(n), id=f"fold {n}") for n in (8, 16, 32)),
+    *(pytest.param(folds.grid(n), folds.regions_of_grid(n), id=f"grid {n}") for n in (4, 5, 6)),
+    pytest.param(folds.window_of_fold(6), folds.regions_of_fold(6), id="window 6"),
+])  # fmt: skip
+def test_the_engine_finds_the_regions_of_many_folds(slice: Slice, regions: int) -> None:
+    assert len(ptmcad.classify(slice).regions) == regions
 
 
 @settings(max_examples=40)
@@ -150,15 +148,14 @@ def test_bends_are_dense_and_small(n: int, seed: int) -> None:
     assert sum(abs(c) for _, _, c in terms) <= slices.SHIFT
 
 
-@pytest.mark.parametrize("seed", [1, 2])
-@pytest.mark.parametrize("n", [1, 2, 5])
+@pytest.mark.parametrize(("n", "seed"), [(1, 1), (2, 2), (5, 1)])
 def test_the_curves_of_bent_slices_have_the_degree_asked_for(n: int, seed: int) -> None:
     result = ptmcad.classify(slices.unloaded(n, seed))
     assert [c.polynomial.total_degree for c in result.components if not c.left_out] == [n] * 3
     assert len(result.regions) == 4
 
 
-@pytest.mark.parametrize("n", [1, 2])
+@pytest.mark.parametrize("n", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_the_curves_of_loaded_slices_have_six_times_the_degree(n: int) -> None:
     (found,) = families.exact(n, slices.loaded(n, 1), 2)
     assert found.found["degree"] == 6 * n
@@ -186,10 +183,12 @@ def test_a_family_with_the_wrong_number_of_regions_is_a_fault() -> None:
 
 
 def test_the_known_designs_have_their_equilibria(monkeypatch: pytest.MonkeyPatch) -> None:
-    """12 and 26 of REFERENCE.md, 30 of the issue, among the designs that are solved."""
+    """12 of REFERENCE.md first among the designs that are solved; 26 and 30 follow."""
     pytest.importorskip("numba")
+    assert families.designs(1)[:3] == families.KNOWN_DESIGNS
     monkeypatch.setattr(families, "DESIGNS", 0)
-    assert [r.found["equilibria"] for r in families.equilibria(1, 1)] == [12, 26, 30]
+    monkeypatch.setattr(families, "KNOWN_DESIGNS", families.KNOWN_DESIGNS[:1])
+    assert [r.found["equilibria"] for r in families.equilibria(1, 1)] == [12]
 
 
 def test_algebra_has_four_or_six_equilibria(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -214,7 +213,7 @@ def test_certified_maps_within_a_tolerance(monkeypatch: pytest.MonkeyPatch) -> N
 
     monkeypatch.setattr(refinement, "search_curve", counting)
     boxes = []
-    for size in (5, 200):
+    for size in (5, 50):
         used.clear()
         (found,) = families.tolerances(size, 1)
         assert found.found["boxes"] == sum(used)
@@ -225,6 +224,7 @@ def test_certified_maps_within_a_tolerance(monkeypatch: pytest.MonkeyPatch) -> N
 # ---------------------------------------------------------------------------------------------------------------- fits
 
 
+@settings(max_examples=40)
 @given(st.floats(-3, 6), st.floats(1e-6, 1e3), st.sets(st.integers(1, 500), min_size=4, max_size=9), st.integers(0, 99))
 def test_an_exact_power_law_gives_its_exponent(p: float, c: float, sizes: set[int], seed: int) -> None:
     found = fit([(x, c * x**p) for x in sizes], seed)
@@ -249,7 +249,7 @@ def test_noise_is_within_the_bounds_of_the_exponent(p: float, seed: int) -> None
     assert found.verdict is Verdict.POWER_LAW
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(st.floats(0.8, 4), st.floats(0.1, 20))
 def test_a_fixed_cost_is_told_from_growth(p: float, share: float) -> None:
     """y = a + x^p, a being a share of what the smallest size costs beyond it."""
@@ -369,7 +369,7 @@ def test_a_child_that_takes_too_long_is_ended() -> None:
 # ---------------------------------------------------------------------------------------------------- the whole report
 
 
-def small(name: str = "small", sizes: tuple[int, ...] = (1, 2, 3, 4)) -> families.Family:
+def small(name: str = "small", sizes: tuple[int, ...] = (1, 2, 3)) -> families.Family:
     def slice_of(n: int, seed: int) -> Slice:
         return folds.fold(n)
 
@@ -406,8 +406,8 @@ def test_a_report_says_what_it_was_made_with(report: dict[str, Any]) -> None:
     assert report["machine"]["cores"]
     assert report["versions"]["python-flint"]
     (family,) = report["families"]
-    assert [r["size"] for r in family["runs"]] == [1, 1, 2, 2, 3, 3, 4]  # the heavy one only once
-    assert [r["found"]["regions"] for r in family["runs"]] == [4, 4, 5, 5, 6, 6, 7]
+    assert [r["size"] for r in family["runs"]] == [1, 1, 2, 2, 3]  # the heavy one only once
+    assert [r["found"]["regions"] for r in family["runs"]] == [4, 4, 5, 5, 6]
     assert list(family["runs"][0]["stages"]) == ["variety", "projection", "stacks", "counts", "adjacency", "areas"]
     assert {"seconds", "counts"} <= family["fits"].keys()
 
@@ -424,7 +424,7 @@ def test_a_size_that_fails_is_given_up_with_its_reason() -> None:
 def test_the_page_shows_every_place_and_every_fit(report: dict[str, Any]) -> None:
     page = to_markdown(report)
     (family,) = report["families"]
-    for regions in (4, 5, 6, 7):
+    for regions in (4, 5, 6):
         assert f"\n| {regions} | " in page
     assert f"{family['fits']['seconds']['exponent']:.2f} (" in page
     widths = [line.count("|") for line in page.splitlines() if line.startswith("|")]
@@ -529,6 +529,6 @@ def test_the_page_of_figures_is_made_from_the_stored_runs() -> None:
     assert report["rounds"] >= 3
     for family in report["families"]:
         assert not family["reasons"]
-        seen = {run.abscissa(family["against"], r) for r in family["runs"]}
+        seen = grouped(family)
         for suffix in command.PICTURES if len(seen) >= command.MIN_PICTURE_SIZES else ():
             assert STORED.with_name(f"scaling-{family['name']}.{suffix}").exists()

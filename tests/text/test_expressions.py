@@ -10,7 +10,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from ptmcad.errors import ExpressionError, PoleError
-from ptmcad.text.expressions import Expression, axis, constant, names_in, parse, rational
+from ptmcad.text.expressions import Expression, axis, constant
+from ptmcad.text.parsing import names_in, parse, rational
 
 NAMES = {"rho": axis(0), "L2": axis(1)}
 small = st.fractions(min_value=-5, max_value=5, max_denominator=12)
@@ -157,10 +158,10 @@ def test_refusals_are_fast_and_placed(text: str, part: str, position: int | None
     assert len(str(caught.value)) < 300
 
 
-@pytest.mark.parametrize("value", [0.1, True, None, [1]])
+@pytest.mark.parametrize("value", [0.1j, True, None, [1]])
 def test_inexact_values_are_refused(value: object) -> None:
     with pytest.raises(ExpressionError, match="not an exact number"):
-        parse(value)  # type: ignore[arg-type]
+        parse(value)
 
 
 def test_a_pole_is_named() -> None:

@@ -10,22 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.errors import ExpressionError
-from ptmcad.text.syntax import (
-    MAX_DEPTH,
-    Call,
-    Chain,
-    Name,
-    Negative,
-    Number,
-    Power,
-    Step,
-    Tree,
-    interpret,
-    names_in,
-    names_of,
-    parse,
-    to_text,
-)
+from ptmcad.text.syntax import MAX_DEPTH, names_in, parse
+from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, interpret, names_of, to_text
 
 
 def without_positions(tree: Tree) -> Tree:

@@ -14,7 +14,8 @@ from support.dips import AXES, DIPS, NAMES, random_square, thin_dip
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.positivity import Need, Proved, Undecided, decide
-from ptmcad.text.expressions import Expression, axis, constant, parse
+from ptmcad.text.expressions import Expression, axis, constant
+from ptmcad.text.parsing import parse
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Unchecked, Violation

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections import Counter
 from collections.abc import Callable
@@ -23,13 +24,14 @@ from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.options import Options
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Point
-from ptmcad.verification.certified.energy import NAMES, Energy
-from ptmcad.verification.certified.equilibria import TORUS, Unproved, equilibria
+from ptmcad.verification.certified.energy import Energy
+from ptmcad.verification.certified.equilibria import TORUS, Square, Unproved, _halves, equilibria
 from ptmcad.verification.certified.parameters import energy_at, energy_over, exact
 from ptmcad.verification.certified.points import _only, all_equilibria, counts_of
 from ptmcad.verification.certified.sampling import _beside, _by_area
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.sweep import sweep
+from ptmcad.verification.certified.vectors import NAMES
 from ptmcad.verification.report import Violation
 
 pytest.importorskip("numba")
@@ -345,7 +347,7 @@ MIRRORED = {"L1": "1", "L2": "3/2", "l0_1": "0", "l0_2": "1/5"}
 def test_minima_on_both_sides_of_a_crease(changes: dict[str, str]) -> None:
     """Places from a root finder in mpmath, with the energy from the nodes' coordinates."""
     _, found = all_equilibria(creased_values(**changes), Count.STABLE)
-    places = sorted((round(e.th1, 4), round(e.th2, 4)) for e in found if e.signs == "++")
+    places = sorted((round(e.center[0], 4), round(e.center[1], 4)) for e in found if e.signs == "++")
     near = (0.0189, 0.2124) if not changes else (0.2124, 0.0189)
     assert places == [(-near[0], -near[1]), near]
 
@@ -366,9 +368,10 @@ def test_a_box_across_a_crease_may_hold_one_equilibrium(center: str) -> None:
 def test_no_proof_of_existence_crosses_a_crease() -> None:
     """The square in which a minimum beside a crease is proved to be alone ends before it."""
     energy, found = all_equilibria(creased_values(), Count.STABLE)
-    assert all(e.alone < abs(e.th2) for e in found)
-    assert energy(arb(0), arb(0, 0.01)).short == 1
-    assert [way.sides for way in energy.one_sided(arb(0), arb(0, 0.01))] == [(1, 0, 0), (-1, 0, 0)]
+    assert all(e.alone[1] < abs(e.center[1]) for e in found)
+    assert energy(arb(0), arb(0, 0.01)).short == (0,)
+    ways = energy.one_sided(arb(0), arb(0, 0.01))
+    assert [tuple(s.side for s in way.springs) for way in ways] == [(1, 0, 0), (-1, 0, 0)]
     assert energy.one_sided(arb(0), arb(0.5, 0.01)) == []
 
 
@@ -396,7 +399,7 @@ def test_derivatives_beside_the_crease_of_spring_3(bar: str) -> None:
             one, two = energy_at(point)(arb(th1), arb(th2)), Energy(balls)(arb(th1), arb(th2))
             for name in ("e1", "e2", "e11", "e12", "e21", "e22"):
                 assert abs(getattr(one, name) - getattr(two, name)) < 1e-10
-    assert energy_at(point)(arb(1.5, 0.1), arb(1.6, 0.1)).short == 3
+    assert energy_at(point)(arb(1.5, 0.1), arb(1.6, 0.1)).short == (2,)
 
 
 def test_rho_next_to_a_bar_of_one_length() -> None:
@@ -407,10 +410,41 @@ def test_rho_next_to_a_bar_of_one_length() -> None:
     point |= {"F3": Fraction(-10), "F4": Fraction(-10)}
     energy, found = all_equilibria(point, Count.TOTAL)
     assert counts_of(energy, point, found, Count.TOTAL).index == (2, 4, 2)
-    (peak,) = (e for e in found if abs(e.th1) < 1e-9)
-    assert (peak.signs, round(peak.th1 * 1e14, 2), round(peak.th2, 6)) == ("--", -6.22, 3.032489)
+    (peak,) = (e for e in found if abs(e.center[0]) < 1e-9)
+    assert (peak.signs, round(peak.center[0] * 1e14, 2), round(peak.center[1], 6)) == ("--", -6.22, 3.032489)
     box = Solution((Fraction(-6.219379885031517e-14), Fraction(3.03248855256242)), Fraction(1, 2**46), "--")
     assert _only(energy, box, 0).signs == "--"
+
+
+def test_no_equilibrium_is_lost_where_doubles_are_coarse() -> None:
+    """REFERENCE (mpmath): rho - L1 is 8e-15; there is a maximum at (-5.6195574e-16, 3.0322134879)."""
+    point = {n: Fraction(1, 5) if n[0] == "l" else Fraction(100) if n[0] == "k" else Fraction(0) for n in NAMES}
+    point |= {"rho": Fraction(107374182400000886471, 107374182400000000000), "L1": Fraction(1)}
+    point |= {"L2": Fraction(665987249, 536870912), "F3": Fraction(-10), "F4": Fraction(-10)}
+    energy, found = all_equilibria(point, Count.TOTAL)
+    assert counts_of(energy, point, found, Count.TOTAL).index == (2, 4, 2)
+    assert any(abs(e.center[0] + 5.6195574e-16) < e.radii[0] + 1e-22 < 1e-16 and e.signs == "--" for e in found)
+
+
+@pytest.mark.parametrize("square", [(3.0, 1.0, 0.3, 1e-9), (0.0, 1.0, 3.0322134878826974, 2.8e-15)])
+def test_halves_cover_the_square(square: Square) -> None:
+    halves = _halves(square, False, (0.0, 0.0))
+    assert halves is not None
+    (low, half), (high, other), (m, r) = (map(Fraction, q[2:]) for q in (*halves, square))
+    assert low - half <= m - r < m + r <= high + other
+    assert high - other <= low + half
+    assert _halves((0.0, 0.0, 3.0, 2.0**-51), False, (1.0, 0.0)) is None
+
+
+def test_a_window_as_narrow_as_rounding_beside_a_bar() -> None:
+    """Boxes of parameters in it are proved: an angle has a unit of its own where a spring is that short."""
+    side = [str(1 + k * Fraction(1, 10**13)) for k in (3, 4)]
+    true = certified(
+        "total", {"rho": side, "L2": ["6/5", "13/10"]}, Fraction(1, 3), L1="1", l0="1/5", F3="-10", F4="-10"
+    )
+    report = ptmcad.verify(true, boxes=2)
+    assert report.ok, report.violation
+    assert "2 boxes" in report.table()
 
 
 def test_places_are_spread_over_the_window(stable: RegionMap) -> None:
@@ -584,7 +618,7 @@ def test_a_box_of_parameters_has_the_count_of_its_points(seed: int, stable: Regi
         point = {n: e.evaluate(a, b) for n, e in stable.slice.parameters.items()}
         _, there = all_equilibria(point, Count.STABLE)
         for e in there:
-            assert e.signs != "++" or sum(abs(e.th1 - f.th1) + abs(e.th2 - f.th2) < 0.05 for f in found) == 1
+            assert e.signs != "++" or sum(math.dist(e.center, f.center) < 0.03 for f in found) == 1
         assert sum(e.signs == "++" for e in there) == sum(f.signs == "++" for f in found)
 
 
@@ -609,7 +643,7 @@ def test_solutions_of_a_cell_are_where_the_check_finds_them(total: RegionMap) ->
             assert any(
                 all(
                     min(abs(float(c) - a + k * 6.283185307179586) for k in (-1, 0, 1)) < 1e-9
-                    for c, a in zip(solution.center, (e.th1, e.th2), strict=True)
+                    for c, a in zip(solution.center, e.center, strict=True)
                 )
                 for e in found
             )

@@ -21,6 +21,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 from flint import fmpq
 
@@ -38,8 +39,8 @@ from ptmcad.algebra.real_roots import (
 )
 from ptmcad.algebra.resultants import Check, nothing, resultant
 from ptmcad.algebra.window import Interval
-from ptmcad.answer.regionmap import Reason, Wall
-from ptmcad.exact.cad.curves import Curve
+from ptmcad.answer.regionmap import Reason
+from ptmcad.exact.cad.curves import Curve, max_height_bits
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, roots_over
 
 ROUNDS = 4
@@ -94,17 +95,15 @@ def cross(
     width, resolution, step = reach, extent, 8
     extra: tuple[fmpq, ...] = ()
     points: UnivariatePolynomial | None = None  # costly, computed once if the rounds do not suffice
-    attempt, height = 0, max((int(q.height_bits()) for c in curves for q in c.in_v), default=0)
-    rounds = max(ROUNDS, (height // _LONG_COEFFICIENT_BITS).bit_length())
+    attempt = 0
+    rounds = max(ROUNDS, (max_height_bits(curves) // _LONG_COEFFICIENT_BITS).bit_length())
     while True:
         check()
         width, resolution = width / 2**step, resolution / 2 ** (step - 2)
         low, high = _bracket(end, width, left.sample, right.sample)
-        over_low, over_high = (
-            tuple((w, refine(r, resolution)) for w, r in roots_over(curves, u, fibre)) for u in (low, high)
-        )
-        found = _separators(curves, low, high, over_low, over_high, fibre, extra)
-        gaps = _open_gaps(found, len(over_low), len(over_high), fibre)
+        sides = _sides(curves, (low, high), fibre, resolution)
+        found = _separators(curves, sides, fibre, extra)
+        gaps = _open_gaps(found, len(sides.over_low), len(sides.over_high), fibre)
         # without any separator nothing is proved, even if no branch runs up to the line
         unresolved = [g for g in gaps if not found or _reason(g, curves, end, points) is None]
         if not unresolved:
@@ -130,17 +129,24 @@ def _bracket(end: BaseEnd, width: fmpq, low: fmpq, high: fmpq) -> tuple[fmpq, fm
     return root.low, root.high
 
 
-def _separators(
-    curves: Sequence[Curve],
-    low: fmpq,
-    high: fmpq,
-    over_low: Sequence[tuple[Wall, RealRoot]],
-    over_high: Sequence[tuple[Wall, RealRoot]],
-    fibre: Interval,
-    extra: Sequence[fmpq],
-) -> list[Separator]:
+class _Sides(NamedTuple):
+    """Abscissae on both sides of the critical one, and the branches over each, isolated, from below."""
+
+    low: fmpq
+    high: fmpq
+    over_low: tuple[RealRoot, ...]
+    over_high: tuple[RealRoot, ...]
+
+
+def _sides(curves: Sequence[Curve], bracket: Interval, fibre: Interval, resolution: fmpq) -> _Sides:
+    over_low, over_high = (tuple(refine(root, resolution) for _, root in roots_over(curves, u, fibre)) for u in bracket)
+    return _Sides(*bracket, over_low, over_high)
+
+
+def _separators(curves: Sequence[Curve], sides: _Sides, fibre: Interval, extra: Sequence[fmpq]) -> list[Separator]:
     """The separators among the gaps between the branches and among the extra heights, from below."""
-    occupied = sorted((r.low, r.high) for _, r in (*over_low, *over_high))
+    low, high, over_low, over_high = sides
+    occupied = sorted((r.low, r.high) for r in (*over_low, *over_high))
     heights = list(extra)
     top = fibre[0]
     for start, stop in [*occupied, (fibre[1], fibre[1])]:
@@ -150,13 +156,12 @@ def _separators(
         top = max(top, stop)
     result = []
     for height in sorted(set(heights)):
-        if any(r.low <= height <= r.high for _, r in (*over_low, *over_high)):
+        if any(below <= height <= above for below, above in occupied):
             continue
         if any(has_root_between(c.trace(height), low, high) for c in curves):
             continue
-        below_low = sum(r.high < height for _, r in over_low)
-        below_high = sum(r.high < height for _, r in over_high)
-        result.append(Separator(below_low, below_high, low, high, height))
+        left, right = (sum(r.high < height for r in over) for over in (over_low, over_high))
+        result.append(Separator(left, right, low, high, height))
     return result
 
 

@@ -5,7 +5,7 @@ Guarantee: exact. ``u`` is the coordinate on the base axis, ``v`` the one on the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import gcd
 
@@ -53,6 +53,11 @@ def curves_of(components: Sequence[Component], base: int, reason: str = "") -> l
     ]
 
 
+def by_component(curves: Iterable[Curve]) -> dict[int, Curve]:
+    """The curve of each component's number."""
+    return {c.component: c for c in curves}
+
+
 def lines_of(components: Sequence[Component], base: int, reason: str = "") -> dict[int, UnivariatePolynomial]:
     """The other ones: lines across the base, as polynomials in u by the components' numbers."""
     return {
@@ -60,6 +65,11 @@ def lines_of(components: Sequence[Component], base: int, reason: str = "") -> di
         for n, c in enumerate(components)
         if c.left_out == reason and c.polynomial.degrees[1 - base] == 0
     }
+
+
+def max_height_bits(curves: Sequence[Curve]) -> int:
+    """The bits of the longest coefficient."""
+    return max((int(q.height_bits()) for c in curves for q in c.in_v), default=0)
 
 
 def deflation(coefficients: Sequence[UnivariatePolynomial]) -> int:

@@ -21,10 +21,13 @@ from flint import arb, ctx, fmpq
 from ptmcad.algebra.branches import local_coefficients
 from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
-from ptmcad.algebra.real_roots import isolate, refine
+from ptmcad.algebra.real_roots import RealRoot, isolate, refine
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve
 from ptmcad.text.balls import exact
+
+Span = tuple[Fraction, Fraction]
+"""A part of a window's side: shares of it, from 0 to 1."""
 
 _BITS = 128
 _GRID_STEPS = 2**60
@@ -56,17 +59,28 @@ class Chord:
     distance: Fraction
 
 
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """A wall, the ``root``-th real root of a curve, in the window base x fibre."""
+
+    curve: Curve
+    root: int
+    base: Interval
+    fibre: Interval
+
+    def at(self, u: fmpq) -> RealRoot:
+        """Its height over an abscissa, isolated."""
+        return isolate(self.curve.fibre(u), *self.fibre)[self.root]
+
+
 def chords(
-    curve: Curve,
-    root: int,
-    span: tuple[Fraction, Fraction],
-    base: Interval,
-    fibre: Interval,
+    wall: Branch,
+    span: Span,
     max_distance: Fraction,
     narrowest: Fraction,
     check: Callable[[], None] = lambda: None,
 ) -> tuple[Chord, ...]:
-    """The wall that is the ``root``-th real root of a curve, from left to right without gaps.
+    """A wall from left to right without gaps.
 
     Parameters
     ----------
@@ -78,14 +92,13 @@ def chords(
     check : called between panels; may raise to stop.
     """
     found: list[Chord] = []
-    width, height = base[1] - base[0], fibre[1] - fibre[0]
     heights: dict[Fraction, Fraction] = {}
+    bottom, height = wall.fibre[0], wall.fibre[1] - wall.fibre[0]
 
     def place(share: Fraction) -> Fraction:
         if share not in heights:
-            u = base[0] + width * from_fraction(share)
-            at = refine(isolate(curve.fibre(u), *fibre)[root], height / _GRID_STEPS)
-            rounded = ((at.middle - fibre[0]) / height * _GRID_STEPS + fmpq(1, 2)).floor()
+            at = refine(wall.at(from_share(share, wall.base)), height / _GRID_STEPS)
+            rounded = ((at.middle - bottom) / height * _GRID_STEPS + fmpq(1, 2)).floor()
             heights[share] = Fraction(int(rounded), _GRID_STEPS)
         return heights[share]
 
@@ -94,10 +107,10 @@ def chords(
         check()
         left, right = waiting.pop()
         middle = (left + right) / 2
-        distance = _distance(curve, root, left, right, base, fibre)
+        distance = _distance(wall, (left, right))
         enough = distance is not None and distance <= max_distance
         if distance is None and right - left <= SHORT:
-            distance = _between_heights(curve, (left, right), (place(left), place(right)), base, fibre)
+            distance = _between_heights(wall, (left, right), (place(left), place(right)))
             enough = distance is not None and distance <= FLAT and distance * (right - left) <= LITTLE
         if right - left > narrowest and not enough:
             waiting += [(middle, right), (left, middle)]
@@ -107,31 +120,21 @@ def chords(
     return tuple(found)
 
 
-def _distance(
-    curve: Curve, root: int, left: Fraction, right: Fraction, base: Interval, fibre: Interval
-) -> Fraction | None:
+def _distance(wall: Branch, panel: Span) -> Fraction | None:
     """A bound for the distance between the wall and its chord over a panel, as a share of the fibre; None: unproved."""
-    width, height = base[1] - base[0], fibre[1] - fibre[0]
-    middle, half = (left + right) / 2, (right - left) / 2
-    u = base[0] + width * from_fraction(middle)
-    radius = width * from_fraction(half)
-    slope = slope_over(curve.in_v, isolate(curve.fibre(u), *fibre)[root], u, radius)
+    u, radius = _part(panel, wall.base)
+    slope = slope_over(wall.curve.in_v, wall.at(u), u, radius)
     if slope is None:
         return None
-    distance = exact((abs(slope.second) * arb(radius * radius / 2 / height)).upper())
+    distance = exact((abs(slope.second) * arb(radius * radius / 2 / (wall.fibre[1] - wall.fibre[0]))).upper())
     return -((-distance * _GRID_STEPS).__floor__()) * Fraction(1, _GRID_STEPS)
 
 
-def _between_heights(
-    curve: Curve, panel: tuple[Fraction, Fraction], ends: tuple[Fraction, Fraction], base: Interval, fibre: Interval
-) -> Fraction | None:
+def _between_heights(wall: Branch, panel: Span, ends: Span) -> Fraction | None:
     """How far apart two heights are between which a wall with these ends is shut in over a panel; None: not proved.
 
     The wall does not leave the window, and it cannot cross a height at which p has no zero over the panel.
     """
-    width, height = base[1] - base[0], fibre[1] - fibre[0]
-    u = base[0] + width * from_fraction(panel[0] + panel[1]) / 2
-    radius = width * from_fraction(panel[1] - panel[0]) / 2
     found = []
     for end, side in ((min(ends), -1), (max(ends), 1)):
         margin = max(abs(ends[1] - ends[0]), ROUNDING)
@@ -140,7 +143,7 @@ def _between_heights(
             if not 0 < at < 1:
                 found.append(min(max(at, Fraction(0)), Fraction(1)))
                 break
-            if _absent(curve, u, radius, fibre[0] + height * from_fraction(at), fmpq(0)):
+            if _absent(wall.curve, _part(panel, wall.base), (from_share(at, wall.fibre), fmpq(0))):
                 found.append(at)
                 break
             margin *= 4
@@ -149,9 +152,7 @@ def _between_heights(
     return found[1] - found[0]
 
 
-def reaching(
-    curve: Curve, span: tuple[Fraction, Fraction], base: Interval, fibre: Interval, depth: int
-) -> Iterator[tuple[Fraction, Fraction]]:
+def reaching(curve: Curve, span: Span, base: Interval, fibre: Interval, depth: int) -> Iterator[Span]:
     """The parts of the fibre that the curve may reach over a part of the base, as shares from below.
 
     Parameters
@@ -159,16 +160,11 @@ def reaching(
     span : where, as shares of the base.
     depth : how often the fibre is halved where the curve is not proved to be absent.
     """
-    width, height = base[1] - base[0], fibre[1] - fibre[0]
-    middle, half = (span[0] + span[1]) / 2, (span[1] - span[0]) / 2
-    u = base[0] + width * from_fraction(middle)
-    radius = width * from_fraction(half)
+    across = _part(span, base)
     waiting = [(Fraction(0), Fraction(1), depth)]
     while waiting:
         low, high, left = waiting.pop()
-        centre = fibre[0] + height * from_fraction(low + high) / 2
-        tall = height * from_fraction(high - low) / 2
-        if _absent(curve, u, radius, centre, tall):
+        if _absent(curve, across, _part((low, high), fibre)):
             continue
         if left == 0:
             yield low, high
@@ -177,14 +173,19 @@ def reaching(
             waiting += [(between, high, left - 1), (low, between, left - 1)]
 
 
-def _absent(curve: Curve, u: fmpq, radius: fmpq, v: fmpq, tall: fmpq) -> bool:
-    """Whether the curve is proved not to meet a closed box: at its centre p outweighs the rest of its Taylor sum."""
+def _absent(curve: Curve, across: tuple[fmpq, fmpq], up: tuple[fmpq, fmpq]) -> bool:
+    """Whether the curve is proved not to meet a closed box: at its centre p outweighs the rest of its Taylor sum.
+
+    Parameters
+    ----------
+    across, up : the box's middle, and half its length, along the base and along the fibre.
+    """
     with ctx.workprec(_BITS):
         rest, power = arb(0), arb(1)
-        local = local_coefficients(curve.in_v, u, radius, v)
+        local = local_coefficients(curve.in_v, *across, up[0])
         for row in local:
             rest += sum((abs(c) for c in row.coeffs()), arb(0)) * power
-            power = power * arb(tall)
+            power = power * arb(up[1])
         value = local[0][0]
         return bool(rest - abs(value) < abs(value))
 
@@ -192,3 +193,14 @@ def _absent(curve: Curve, u: fmpq, radius: fmpq, v: fmpq, tall: fmpq) -> bool:
 def to_share(value: fmpq, interval: Interval) -> Fraction:
     """Where a number lies in an interval: 0 at its lower end, 1 at its upper."""
     return to_fraction((value - interval[0]) / (interval[1] - interval[0]))
+
+
+def from_share(share: Fraction, interval: Interval) -> fmpq:
+    """The number that lies there."""
+    return interval[0] + (interval[1] - interval[0]) * from_fraction(share)
+
+
+def _part(span: Span, interval: Interval) -> tuple[fmpq, fmpq]:
+    """Middle and half the length of a part of an interval that is given in shares."""
+    low, high = (from_share(share, interval) for share in span)
+    return (low + high) / 2, (high - low) / 2

@@ -19,7 +19,7 @@ from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricR
 from ptmcad.exact.models.system import ParametricSystem, from_equations, from_potential
 from ptmcad.mechanism import Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.text.syntax import Tree
+from ptmcad.text.tree import Tree
 
 Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
 

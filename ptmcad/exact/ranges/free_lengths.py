@@ -12,18 +12,24 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.algebra.critical_lengths import NAMES, critical_system
 from ptmcad.algebra.msolve import MsolveError, real_solutions
 from ptmcad.answer.intervals import CriticalFreeLength
 from ptmcad.errors import ConfigError
+from ptmcad.exact.ranges.critical_lengths import NAMES, critical_system
+from ptmcad.mechanism import Kind, ptm
 from ptmcad.question.line import restricted, varying_axis
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.expressions import axis
 
+_MECHANISM = ptm()
+_BASE = _MECHANISM.first(Kind.BASE)
+_RODS = tuple(name for name in _MECHANISM.variables if _MECHANISM.kind(name) is Kind.LENGTH)
+_ACROSS, _UP = zip(*(load.names for load in _MECHANISM.loads), strict=True)
+
 
 def critical_free_lengths(
-    rho: Fraction,
+    base: Fraction,
     rods: tuple[Fraction, Fraction],
     loads: tuple[Fraction, Fraction],
     timeout: float | None = None,
@@ -40,10 +46,11 @@ def critical_free_lengths(
         When msolve is not there, takes longer than ``timeout`` seconds, or finds infinitely many solutions, as it does
         without loads where two poses are degenerate along a whole interval.
     """
-    if min(rho, *rods) <= 0:
-        raise ConfigError("rho and the rods must be positive")
+    if min(base, *rods) <= 0:
+        raise ConfigError(f"{_BASE} and the rods must be positive")
+    design = {_BASE: base, **dict(zip(_RODS + _UP, rods + loads, strict=True)), **dict.fromkeys(_ACROSS, Fraction(0))}
     found = []
-    for box in real_solutions(NAMES, critical_system(rho, rods, loads), timeout):
+    for box in real_solutions(NAMES, critical_system(design), timeout):
         low, high = box[-1]
         first, second, third = (_sign(*interval) for interval in box[:3])
         _sign(low, high)  # at l0 = 0 the signs have no meaning
@@ -73,14 +80,14 @@ def critical_on_line(
     missing = [name for name in on_line if name not in constants and name not in free_lengths]
     if missing:
         raise ConfigError(f"elimination needs {', '.join(missing)} to be constant along {along}", key="along")
-    if not constants["k1"] == constants["k2"] == constants["k3"] != 0:
-        raise ConfigError("elimination needs three springs of one stiffness", key="k")
-    if any(constants.get(name, 0) != 0 for name in ("F3x", "F4x")):
-        raise ConfigError("elimination needs loads without horizontal parts", key="F3x")
-    k = constants["k1"]
-    found = critical_free_lengths(
-        constants["rho"], (constants["L1"], constants["L2"]), (constants["F3"] / k, constants["F4"] / k), timeout
-    )
+    k, *others = (constants[name] for name in _MECHANISM.stiffnesses)
+    if any(other != k for other in others) or k == 0:
+        shorthand = next(name for name, of in _MECHANISM.shorthands.items() if of == _MECHANISM.stiffnesses)
+        raise ConfigError("elimination needs three springs of one stiffness", key=shorthand)
+    if any(constants.get(name, 0) != 0 for name in _ACROSS):
+        raise ConfigError("elimination needs loads without horizontal parts", key=_ACROSS[0])
+    (rod1, rod2), (load1, load2) = ([constants[name] for name in names] for names in (_RODS, _UP))
+    found = critical_free_lengths(constants[_BASE], (rod1, rod2), (load1 / k, load2 / k), timeout)
     window = slice.axes[varying]
     return tuple(c for c in found if c.free.high > window.low and c.free.low < window.high)
 

@@ -19,7 +19,7 @@ from typing import Any
 from flint import fmpq
 
 from ptmcad.algebra.numbers import in_order, roots_in
-from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction
+from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
 from ptmcad.answer.regionmap import Kind, MorseIndex
@@ -43,7 +43,7 @@ def intervals(slice: Slice, along: str, at: Mapping[str, Any]) -> CountIntervals
     Parameters
     ----------
     along : the axis that varies, over its window.
-    at : the other axis with its value: text, int or Fraction.
+    at : the other axis with its value: text or a number, of which a float stands for its exact binary value.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def samples_between(along: Axis, numbers: tuple[AlgebraicNumber, ...]) -> tuple[
     lows = [along.low, *(n.high for n in numbers)]
     highs = [*(n.low for n in numbers), along.high]
     samples = (simplest_between(from_fraction(a), from_fraction(b)) for a, b in zip(lows, highs, strict=True))
-    return tuple(Fraction(int(s.p), int(s.q)) for s in samples)
+    return tuple(to_fraction(s) for s in samples)
 
 
 def index_at(line: Line, value: Fraction) -> MorseIndex:

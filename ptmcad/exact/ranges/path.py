@@ -29,8 +29,9 @@ from ptmcad.exact.ranges.line import critical_values
 from ptmcad.exact.ranges.tracking import BITS, Family, Pair, Reached, at_value, bridge, follow
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Slice
-from ptmcad.text.balls import exact
+from ptmcad.text.balls import enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.parsing import number_for
 
 DIGITS = 12
 _MIN_DISTANCE = Fraction(1, 10**5)
@@ -40,9 +41,7 @@ _MIN_STEPS = 64
 """The longest step is this part of the window, so that a polyline through the points looks smooth."""
 
 
-def pose_paths(
-    slice: Slice, along: str, at: Mapping[str, Any], start: Fraction, number: int | None = None
-) -> PosePaths:
+def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, number: int | None = None) -> PosePaths:
     """Follow stable poses along a line, from their places at one value of the axis.
 
     Parameters
@@ -59,17 +58,18 @@ def pose_paths(
     """
     line = line_of(slice, along, at)
     axis = line.along
-    if not axis.low < start < axis.high:
-        raise ConfigError(f"{start} is outside the window of {along}, {axis.low} to {axis.high}", key="--path")
+    value = number_for("--path", start)
+    if not axis.low < value < axis.high:
+        raise ConfigError(f"{value} is outside the window of {along}, {axis.low} to {axis.high}", key="--path")
     numbers = tuple(n for n, _ in critical_values(line))
-    if any(n.compare(start) == 0 for n in numbers):
-        raise ConfigError(f"{along} = {start} is a critical value: start beside it", key="--path")
+    if any(n.compare(value) == 0 for n in numbers):
+        raise ConfigError(f"{along} = {value} is a critical value: start beside it", key="--path")
     system = system_from(slice.model)
-    poses = exact_poses(slice.model, _parameters(system, line, start), DIGITS)
+    poses = exact_poses(slice.model, _parameters(system, line, value), DIGITS)
     stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable]
     if number is not None and number - 1 not in stable:
         raise ConfigError(
-            f"{number} is none of the {len(stable)} stable poses at {along} = {start}, counted from 1", key="--pose"
+            f"{number} is none of the {len(stable)} stable poses at {along} = {value}, counted from 1", key="--pose"
         )
     family = Family(system, line.parameters)
     chosen = stable if number is None else [number - 1]
@@ -77,8 +77,8 @@ def pose_paths(
         slice.name,
         axis,
         line.at,
-        start,
-        tuple(_path(family, line, numbers, poses.equilibria[k], k + 1, start) for k in chosen),
+        value,
+        tuple(_path(family, line, numbers, poses.equilibria[k], k + 1, value) for k in chosen),
     )
 
 
@@ -219,7 +219,7 @@ def _energy(family: Family, line: Line, reached: Reached) -> Enclosure:
                 for _ in range(e):
                     term = term * value
             total += term
-        return Enclosure(exact(total.lower()), exact(total.upper()))
+        return enclosure_of(total)
 
 
 def _close(first: Pair, second: Pair) -> bool:
@@ -230,5 +230,5 @@ def _close(first: Pair, second: Pair) -> bool:
 
 def _point(reached: Reached) -> PathPoint:
     with ctx.workprec(BITS):
-        first, second = (Enclosure(exact(a.lower()), exact(a.upper())) for a in reached.angles)
+        first, second = map(enclosure_of, reached.angles)
     return PathPoint(reached.value, (first, second))

@@ -13,15 +13,13 @@ from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine
-from ptmcad.answer.regionmap import MorseIndex, Wall
-from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
+from ptmcad.algebra.window import Interval
+from ptmcad.answer.regionmap import Wall
+from ptmcad.exact.cad.curves import Curve, by_component
 from ptmcad.exact.cad.stacks import BaseEnd, StackData
 from ptmcad.exact.ranges.line import index_of
-from ptmcad.exact.stages import Variety, domain_limits, problem_of, projection_of, stacks_of
-from ptmcad.exact.variety import discriminant_variety
+from ptmcad.exact.stages import counts_of, problem_of, projection_of, stacks_of, variety_of
 from ptmcad.question.slice import Slice, without_free_lengths
-
-Interval = tuple[fmpq, fmpq]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,23 +79,14 @@ def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
     base = 1 - slice.axis_names.index(along)
     refuse_free_lengths(slice)
     problem = problem_of(slice)
-    window = problem.window
-    found = discriminant_variety(
-        problem.system, problem.parameters, window, domain_limits(problem.system, problem.parameters)
-    )
-    curves, lines = curves_of(found.components, base), lines_of(found.components, base)
-    variety = Variety(found.components, found.complex_solutions, base, curves, lines, (0, 0))
-    stacks = stacks_of(problem, variety, projection_of(problem, variety)).stacks
-    by_number = {c.component: c for c in curves}
-
-    def counted(stack: StackData, height: fmpq) -> MorseIndex:
-        at = (stack.sample, height) if base == 0 else (height, stack.sample)
-        return index_of(problem.count(at).counts)
-
+    variety = variety_of(problem, base=base)
+    stacks = stacks_of(problem, variety, projection_of(problem, variety))
+    stable = (index_of(found.counts)[0] for found in counts_of(problem, stacks).found)
+    curves = by_component(variety.curves)
     return tuple(
         strip
-        for stack in stacks
-        for strip in _over(stack, [counted(stack, h)[0] for h in stack.heights], by_number, window[1 - base])
+        for stack in stacks.stacks
+        for strip in _over(stack, [next(stable) for _ in stack.heights], curves, problem.window[1 - base])
     )
 
 

@@ -25,17 +25,16 @@ from heapq import heappop, heappush
 
 from flint import arb, fmpq
 
-from ptmcad.algebra.chords import side_of_chord, slope_over
-from ptmcad.algebra.numbers import algebraic_number, as_interval, fibre_roots, refined, root_of
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
-from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.algebra.chords import slope_over
+from ptmcad.algebra.numbers import algebraic_number
+from ptmcad.algebra.polynomials import to_fraction
+from ptmcad.algebra.window import Interval
 from ptmcad.answer.intervals import End
 from ptmcad.answer.widths import Maximum, OperationWidths, Place, WidthRow
 from ptmcad.errors import HypothesisError
+from ptmcad.exact.ranges.limits import chord_length, ends_of, limit
 from ptmcad.exact.ranges.line import intervals
 from ptmcad.exact.ranges.strips import (
-    Branch,
-    Interval,
     Strip,
     at_abscissa,
     base_interval,
@@ -152,7 +151,7 @@ class _Search:
             lowest, highest = (limit(b, strip, at[0], _END_WIDTH) for b in (strip.low, strip.high))
             if lowest is None or highest is None:
                 continue
-            (a_low, a_high), (b_low, b_high) = _bounds(lowest), _bounds(highest)
+            (a_low, a_high), (b_low, b_high) = ends_of(lowest), ends_of(highest)
             self.known = max(self.known, b_low - a_high)
             if b_high - a_low < self.known:
                 continue
@@ -277,72 +276,6 @@ def _cut(low: fmpq, high: fmpq) -> fmpq:
     width = high - low
     unit = fmpq(2) ** (int(width.p).bit_length() - int(width.q).bit_length() - 7)
     return unit * (int(((low + width * fmpq(61, 128)) / unit).floor()) | 1)
-
-
-def _bounds(end: End) -> Interval:
-    if isinstance(end, Fraction):
-        return from_fraction(end), from_fraction(end)
-    return as_interval(end)
-
-
-def limit(branch: Branch, strip: Strip, end: fmpq, width: fmpq) -> End | None:
-    """The limit of a branch at a rational end of its strip; None when it could not be separated from other points."""
-    if branch.curve is None:
-        return to_fraction(branch.edge)
-    margin = strip.fibre[1] - strip.fibre[0]
-    wide = (strip.fibre[0] - margin, strip.fibre[1] + margin)
-    distance = strip.sample - end
-    fibre = branch.curve.fibre(end)
-    for _ in range(60):
-        u = end + distance
-        over = (min(u, end), max(u, end))
-        at = at_abscissa(branch, u, strip.fibre, abs(distance) / 2**10)
-        top = bound_over(branch, at.high, 1, over, wide)
-        bottom = bound_over(branch, at.low, -1, over, wide)
-        if top is not None and bottom is not None:
-            found = fibre_roots(fibre, bottom, top)
-            if len(found) == 1:
-                return refined(found[0], to_fraction(width))
-        distance = distance / 4
-    return None
-
-
-def chord_length(strip: Strip, end: fmpq, direction: int, limits: tuple[End, End]) -> fmpq | None:
-    """A length within which the range keeps between parallel chords from its limits at an end; None if not proved."""
-    length = abs(strip.sample - end)
-    for _ in range(40):
-        u = end + direction * length
-        tips = [at_abscissa(b, u, strip.fibre, length / 2**40) for b in (strip.low, strip.high)]
-        starts = [_bounds(e) for e in limits]
-        rises = [
-            ((tip.low + tip.high) / 2 - (start[0] + start[1]) / 2) / (direction * length)
-            for tip, start in zip(tips, starts, strict=True)
-        ]
-        # the lower end rises more than the upper one where the range gets narrower
-        if (rises[0] - rises[1]) * direction > 0:
-            third = (rises[0] - rises[1]) / 3
-            slope = simplest_between(*sorted((rises[1] + third, rises[0] - third)))
-            if all(
-                _avoids_level(branch, strip, end, limit, slope, direction * length, side)
-                for branch, limit, side in zip((strip.low, strip.high), limits, (1, -1), strict=True)
-            ):
-                return length
-        length = length / 4
-    return None
-
-
-def _avoids_level(branch: Branch, strip: Strip, end: fmpq, limit: End, slope: fmpq, length: fmpq, side: int) -> bool:
-    """Whether a branch is proved to stay on one side of the chord from its limit."""
-    start = _bounds(limit)
-    tip = at_abscissa(branch, end + length, strip.fibre, abs(length) / 2**60)
-    chord = (start[0] + slope * length, start[1] + slope * length)
-    if not (tip.low > chord[1] if side > 0 else tip.high < chord[0]):
-        return False
-    if branch.curve is None:
-        return True  # the edge is level and, as the tip shows, the chord leaves it to the right side
-    if isinstance(limit, Fraction):
-        return False
-    return side_of_chord(branch.curve.in_v, end, root_of(limit), slope, length)
 
 
 def width_slopes(strip: Strip, low: fmpq, high: fmpq) -> tuple[arb, arb] | None:

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -32,6 +31,7 @@ from ptmcad.question.config.record import (
     record_of,
 )
 from ptmcad.question.config.resolution import MAX_DEGREE, number_of, point_of, slice_of
+from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.syntax import did_you_mean
@@ -64,7 +64,8 @@ def load(path: str | Path) -> Slice:
 
 
 def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
-    """The slice of a record given as Python data: numbers as text, int or Fraction, never float.
+    """The slice of a record given as Python data: numbers as text, int, Fraction, float (its exact
+    binary value) or one of numpy's.
 
     >>> slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["0", "2"]}, "parameters": {"F3": "-0.1"}}).axis_names
     ('rho', 'L2')
@@ -106,7 +107,7 @@ def slice_from_options(
     if slice is not None:
         record = with_axes(record, slice, given_sets, given_ranges)
     elif config is None:
-        raise ConfigError("give a problem record (a YAML file), or two axes such as --slice L2,rho")
+        raise ConfigError(f"give a problem record (a YAML file), or two axes such as --slice {FIRST},{SECOND}")
     for name, value in given_sets.items():
         if name in record.axes:
             raise value.place.error(f"{name} is an axis and cannot be fixed too: choose other axes with --slice")
@@ -133,8 +134,8 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
 
     Parameters
     ----------
-    values : text (a number, or arithmetic with other parameters), int, Fraction or Decimal; no float, which is not the
-        decimal that was written.
+    values : text (a number, or arithmetic with other parameters), int, Fraction, Decimal, float (its exact binary
+        value) or one of numpy's numbers.
 
     Raises
     ------
@@ -147,8 +148,7 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
         place = Place(name)
         if name not in model.parameters:
             raise ConfigError(unknown_parameter(name, model))
-        node = from_python(str(value) if isinstance(value, Decimal) else value, place)
-        given[name] = number_text(node)
+        given[name] = number_text(from_python(value, place))
     return point_of(Record(model=model, values=given), {})
 
 

@@ -12,6 +12,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Model
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.record import Record, Window, check_axis_name
+from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Place, Scalar
 
@@ -22,7 +23,7 @@ def settings_of(sets: Iterable[str], model: Model) -> dict[str, Scalar]:
     for text in sets:
         name, equals, value = (part.strip() for part in text.partition("="))
         if not equals or not name or not value:
-            raise ConfigError(f"{text[:80]!r} is not NAME=VALUE, such as F3=-10", key="--set")
+            raise ConfigError(f"{text[:80]!r} is not NAME=VALUE, such as {FIRST}=3/2", key="--set")
         place = Place(f"--set {name[:40]}")
         if name not in model.parameters:
             raise place.error(unknown_parameter(name, model))
@@ -39,7 +40,7 @@ def ranges_of(ranges: Iterable[str]) -> dict[str, Window]:
         name, equals, window = (part.strip() for part in text.partition("="))
         low, colon, high = (part.strip() for part in window.partition(":"))
         if not (equals and name and colon and low and high):
-            raise ConfigError(f"{text[:80]!r} is not NAME=LO:HI, such as rho=0:2", key="--range")
+            raise ConfigError(f"{text[:80]!r} is not NAME=LO:HI, such as {FIRST}=0:2", key="--range")
         place = Place(f"--range {name[:40]}")
         if name in windows:
             raise place.error("is given twice: leave one out")
@@ -53,7 +54,7 @@ def with_axes(record: Record, slice: str, sets: Mapping[str, Scalar], ranges: Ma
     parameters = record.model.parameters
     names = [name.strip() for name in slice.split(",")]
     if len(names) != 2 or not all(names):
-        raise place.error(f"{slice[:80]!r} is not X,Y: name two axes, such as L2,rho")
+        raise place.error(f"{slice[:80]!r} is not X,Y: name two axes, such as {FIRST},{SECOND}")
     if names[0] == names[1]:
         raise place.error(f"the two axes are both {names[0][:40]}: name two different ones")
     axes = {}

@@ -13,6 +13,7 @@ from typing import Any
 from ptmcad.mechanism import Model, ptm
 from ptmcad.question.config.model import model_of
 from ptmcad.question.config.parameters import unknown_parameter
+from ptmcad.question.examples import AXES
 from ptmcad.question.slice import Count, unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
@@ -174,7 +175,7 @@ def number_text(node: Node) -> Scalar:
 
 def _axes(node: Node) -> dict[str, Window]:
     if not isinstance(node, Tree):
-        raise node.place.error("expected two axes with their ranges, such as {rho: [0, 2], L2: [0, 2]}")
+        raise node.place.error(f"expected two axes with their ranges, such as {AXES}")
     if len(node.entries) != 2:
         raise node.place.error(f"{len(node.entries)} axes are given: a slice has two, the horizontal one first")
     return {name: _window(name, entry) for name, entry in node.entries.items()}

@@ -14,9 +14,11 @@ from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import Kind, Model, System
 from ptmcad.question.config.record import Record, Window
 from ptmcad.question.domain import fault, unproved
+from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import Axis, Count, Slice
-from ptmcad.text.expressions import Expression, axis, names_in, parse
+from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.parsing import names_in, parse
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Place, Scalar
 
@@ -27,7 +29,7 @@ MAX_DEGREE = 32
 def slice_of(record: Record) -> Slice:
     """Resolve a record to a slice."""
     if not record.axes:
-        raise record.place.below("axes").error("is missing: a slice needs two axes, such as {rho: [0, 2], L2: [0, 2]}")
+        raise record.place.below("axes").error(f"is missing: a slice needs two axes, such as {AXES}")
     for name in record.axes:
         if name in record.values:
             place = record.values[name].place
@@ -50,7 +52,9 @@ def slice_of(record: Record) -> Slice:
             if isinstance(mechanism, System):
                 continue  # a published system may have fewer parameters than a slice has axes
             hint = did_you_mean(name, mechanism.parameters) if name not in mechanism.parameters else ""
-            remedy = f"no parameter depends on it{hint or ';'} use it in an expression, such as F3: {name}"
+            other = next((parameter for parameter in mechanism.parameters if parameter not in record.axes), "")
+            example = f"use it in an expression, such as {other}: {name}" if other else "use it in an expression"
+            remedy = f"no parameter depends on it{hint or ';'} {example}"
             if name in mechanism.shorthands:
                 own = _listed(mechanism.shorthands[name])
                 remedy = f"{own} are all given and none depends on it; use it in one of them"

@@ -49,9 +49,10 @@ from ptmcad.show.document.codec import (
 )
 from ptmcad.show.document.model import MODEL, either
 from ptmcad.show.document.node import Node
-from ptmcad.text.expressions import Expression, parse
+from ptmcad.text.expressions import Expression
 from ptmcad.text.expressions import axis as axis_function
 from ptmcad.text.numerals import decimal, integer_text
+from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.text.syntax import NAME
 

@@ -16,20 +16,8 @@ from typing import TypeVar
 
 from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring
 from ptmcad.answer.regionmap import Status
-from ptmcad.show.document.codec import (
-    COUNT,
-    NATURAL,
-    TEXT,
-    TRUTH,
-    Codec,
-    Key,
-    choice,
-    line,
-    listed,
-    named,
-    optional,
-    record,
-)
+from ptmcad.show.document import codec
+from ptmcad.show.document.codec import NATURAL, TEXT, TRUTH, Codec, line, listed, optional, record
 from ptmcad.show.document.model import MODEL, either
 from ptmcad.show.document.node import Node, opened
 from ptmcad.text.enclosure import Enclosure, exact_text
@@ -71,8 +59,8 @@ def _poses(digits: int) -> Codec[Poses]:
     bare, free = (_pose(digits, free) for free in (False, True))
     return record(
         lambda format, mechanism, system, **rest: Poses(model=either(mechanism, system), **rest),
-        format=Key(TEXT, lambda _: FORMAT),
-        status=choice(Status),
+        format=codec.Key(TEXT, lambda _: FORMAT),
+        status=codec.choice(Status),
         remark=line(MAX_REMARK),
         **MODEL,
         parameters=_by_name(_EXACT),
@@ -108,13 +96,13 @@ def _pose(digits: int, free: bool) -> Codec[Pose]:
         Pose,
         stable=optional(TRUTH),
         **({"admissible": TRUTH} if free else {}),
-        index=COUNT,
+        index=codec.COUNT,
         multiplicity=NATURAL,
         flat=TRUTH,
         angles=listed(number),
         degrees=listed(number),
         cosines_sines=listed(number),
-        reals=Key(listed(number), default=()),
+        reals=codec.Key(listed(number), default=()),
         nodes=_by_name(pair),
         springs=listed(spring),
         energy=optional(number),
@@ -122,11 +110,11 @@ def _pose(digits: int, free: bool) -> Codec[Pose]:
     )
 
 
-def _by_name(codec: Codec[T]) -> Codec[Mapping[str, T]]:
+def _by_name(values: Codec[T]) -> Codec[Mapping[str, T]]:
     """Several of the same by names of points or parameters."""
     return Codec(
-        named(codec).write,
-        lambda node: {_name(place, key): codec.read(place) for key, place in node.mapping().items()},
+        codec.named(values).write,
+        lambda node: {_name(place, key): values.read(place) for key, place in node.mapping().items()},
     )
 
 

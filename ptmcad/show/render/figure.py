@@ -7,6 +7,7 @@ parameter of the poses is what the slice says at that point.
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -46,12 +47,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     x, y = point_of(result.slice, poses)
     shown = [pose for pose in in_order(poses) if pose.stable]
     arrows = arrow_lengths(poses)
-    entries = (
-        Entry(("spring; bars are thick",), spring_mark()),
-        Entry(("fixed support, at A₁",), symbol_mark("support")),
-        Entry(("slider on the base, at A₂",), symbol_mark("slider")),
-        *([Entry(("load",), symbol_mark("load"))] if arrows else []),
-    )
+    entries = (*_PARTS, *_LOADS) if arrows else _PARTS
     values = [assigned(a.name, v) for a, v in zip(result.slice.axes, (x, y), strict=True)]
     head = textwrap.wrap(f"{'Stable poses' if shown else 'No stable pose'} at " + ", ".join(values), 34)
     frame = frame_of(shown, most_height=_MAX_HEIGHT) if shown else None
@@ -76,14 +72,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
         top = chart.get_position().y1 * tall
         figure.set_label(f"{result.slice.heading}\n{regionmap.description(result)} Beside it: {describe(poses)}")
         _mark(chart, result, (x, y))
-        figure.add_artist(
-            Line2D((left + 0.04,), (top - _LINE / 2,), transform=figure.dpi_scale_trans, gid="point-in-head", **_POINT)
-        )
-        for k, line in enumerate(head):
-            figure.text(
-                left + 0.16, top - _LINE * (k + 0.5), line, transform=figure.dpi_scale_trans, fontsize=9,
-                fontweight="bold", va="center", color=INK,
-            )  # fmt: skip
+        _write_head(figure, head, left, top)
         top -= _LINE * len(head) + 0.1
         if frame is not None:
             for number, pose in enumerate(shown, 1):
@@ -99,6 +88,25 @@ _POINT: dict[str, Any] = {
     "marker": "D", "markersize": 6.0, "markerfacecolor": "white", "markeredgecolor": INK, "markeredgewidth": 1.3,
     "linestyle": "none", "zorder": 7, "clip_on": False,
 }  # fmt: skip
+
+
+_PARTS = (
+    Entry(("spring; bars are thick",), spring_mark()),
+    Entry(("fixed support, at A₁",), symbol_mark("support")),
+    Entry(("slider on the base, at A₂",), symbol_mark("slider")),
+)
+_LOADS = (Entry(("load",), symbol_mark("load")),)
+
+
+def _write_head(figure: Figure, lines: Sequence[str], left: float, top: float) -> None:
+    """Where the poses are, with the point's mark."""
+    inches = figure.dpi_scale_trans
+    figure.add_artist(Line2D((left + 0.04,), (top - _LINE / 2,), transform=inches, gid="point-in-head", **_POINT))
+    for k, line in enumerate(lines):
+        figure.text(
+            left + 0.16, top - _LINE * (k + 0.5), line, transform=inches, fontsize=9,
+            fontweight="bold", va="center", color=INK,
+        )  # fmt: skip
 
 
 def _mark(chart: Any, result: RegionMap, point: tuple[Fraction, Fraction]) -> None:

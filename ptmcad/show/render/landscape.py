@@ -32,7 +32,7 @@ from ptmcad.mechanism.evaluate import value_at
 from ptmcad.show.render.axes import Scale, scale_of
 from ptmcad.show.render.clearance import Box, Label, Stroke, place
 from ptmcad.show.render.legend import INK, SWATCH, Entry, Mark, draw_legend
-from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, in_order, kind, write_title
+from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, in_order, kind, titled
 from ptmcad.show.render.printing import settings
 from ptmcad.text.numerals import magnitude
 
@@ -115,16 +115,7 @@ def energy_of(parameters: Mapping[str, Fraction]) -> Energy:
 
 
 def draw_landscape(poses: Poses) -> Figure:
-    """The energy over the torus as contours, with the equilibria.
-
-    Parameters
-    ----------
-    poses : of the mechanism ``ptm``; when it has none (infinitely many equilibria), its remark is the picture.
-
-    Returns
-    -------
-    A figure without a canvas of pyplot, to be written by `ptmcad.show.render.printing.save`.
-    """
+    """The energy over the torus as contours, with the equilibria; takes and returns what `draw_poses` does."""
     shown = in_order(poses)
     if not shown:
         return empty(poses)
@@ -135,9 +126,8 @@ def draw_landscape(poses: Poses) -> Figure:
     title = heading(poses, 90)
     size = (LEFT + SIDE + BAR + KEY + MARGIN, BOTTOM + SIDE + TITLE_LINE * len(title) + 3 * MARGIN)
     with settings():
-        figure = Figure(figsize=size, facecolor="white")
+        figure = titled(title, size, LEFT)
         figure.set_label(f"{' '.join(title)}\nEnergy over the two angles as contours. {describe(poses)}")
-        write_title(figure, title, LEFT)
         axes = figure.add_axes((LEFT / size[0], BOTTOM / size[1], SIDE / size[0], SIDE / size[1]))
         axes.set_gid("landscape")
         colours = LinearSegmentedColormap.from_list("energy", _COLOURS, N=256)

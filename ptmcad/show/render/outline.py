@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ptmcad.algebra.polynomials import coefficients_in, from_fraction, from_plane, to_fraction
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine
 from ptmcad.answer.regionmap import RegionMap, Stack
-from ptmcad.exact.cad.curves import Curve, curves_of
+from ptmcad.exact.cad.curves import Curve, by_component, curves_of
 from ptmcad.show.render.view import Floats, Interval, View
 from ptmcad.text.plane import PlanePolynomial
 
@@ -148,7 +148,7 @@ def outline(result: RegionMap, view: View | None = None) -> Outline:
     """The outline of a map in a view, the whole window when None."""
     view = View.whole(result) if view is None else view
     base = result.base
-    curves = {c.component: c for c in curves_of(result.components, base)}
+    curves = by_component(curves_of(result.components, base))
     roots = tuple(_Abscissa(result, k) for k in range(len(result.critical_values)))
     low, high = view.along(base)
     stacks = []

@@ -60,9 +60,8 @@ def draw_poses(poses: Poses) -> Figure:
     title = heading(poses, round(12.4 * (width - 2 * MARGIN)))
     top = below + MARGIN
     with settings():
-        figure = Figure(figsize=(width, top + TITLE_LINE * len(title) + 0.08 + MARGIN), facecolor="white")
+        figure = titled(title, (width, top + TITLE_LINE * len(title) + 0.08 + MARGIN), MARGIN)
         figure.set_label(f"{' '.join(title)}\n{describe(poses)}")
-        write_title(figure, title, MARGIN)
         for number, pose in enumerate(shown):
             down, across = divmod(number, columns)
             corner = (MARGIN + across * (wide + GAP), top - down * (row + GAP) - HEAD - tall)
@@ -176,22 +175,21 @@ def describe(poses: Poses) -> str:
     return f"Equilibria of the mechanism, {', '.join(values(poses))}. " + "; ".join(parts) + poses.remark
 
 
-def write_title(figure: Figure, lines: Sequence[str], left: float) -> None:
-    """The title at the top."""
-    top = figure.get_size_inches()[1] - MARGIN
+def titled(lines: Sequence[str], size: tuple[float, float], left: float) -> Figure:
+    """A page of a size in inches with a title at the top."""
+    figure = Figure(figsize=size, facecolor="white")
     for k, line in enumerate(lines):
-        figure.text(
-            left, top - TITLE_LINE * (k + 0.5), line, transform=figure.dpi_scale_trans, fontsize=11, va="center"
-        )
+        middle = size[1] - MARGIN - TITLE_LINE * (k + 0.5)
+        figure.text(left, middle, line, transform=figure.dpi_scale_trans, fontsize=11, va="center")
+    return figure
 
 
 def empty(poses: Poses) -> Figure:
     """The picture when there is nothing to draw: it says why."""
     lines = [*heading(poses, 80), "", *textwrap.wrap(poses.remark or "No equilibrium is known here.", 80)]
     with settings():
-        figure = Figure(figsize=(7.0, 2 * MARGIN + TITLE_LINE * len(lines)), facecolor="white")
+        figure = titled(lines, (7.0, 2 * MARGIN + TITLE_LINE * len(lines)), MARGIN)
         figure.set_label(f"{lines[0]}\n{describe(poses)}")
-        write_title(figure, lines, MARGIN)
     return figure
 
 

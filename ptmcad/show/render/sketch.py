@@ -26,7 +26,9 @@ PIN = 2.4
 SUPPORT, GROUND = (7.0, 10.0), 4.0
 SLIDER = (7.5, 4.2)
 """Half its width and height."""
-TURNS = 6
+MIN_TURNS, TURN = 6, 6.0
+"""A spring has so many turns, or one for each such length: else the teeth of a long one lie so flat that it looks like
+stairs."""
 AMPLITUDE = 3.4
 _END, _SHORTEST = 7.0, 19.0
 _ASIDE = (9.0, -9.0, 15.5, -15.5, 22.0, -22.0)
@@ -157,9 +159,10 @@ def _zigzag(start: Position, end: Position, along: Position, aside: float) -> tu
     wound = max(_SHORTEST, length - 2 * _END)
     across = (-along[1], along[0])
     middle = ((start[0] + end[0]) / 2 + across[0] * aside, (start[1] + end[1]) / 2 + across[1] * aside)
+    teeth = 2 * max(MIN_TURNS, round(wound / TURN))
     offsets = [(-wound / 2, 0.0)]
-    for k in range(2 * TURNS):
-        offsets.append((wound * ((k + 0.5) / (2 * TURNS) - 0.5), AMPLITUDE if k % 2 else -AMPLITUDE))
+    for k in range(teeth):
+        offsets.append((wound * ((k + 0.5) / teeth - 0.5), AMPLITUDE if k % 2 else -AMPLITUDE))
     offsets.append((wound / 2, 0.0))
     inner = tuple(
         (middle[0] + along[0] * u + across[0] * v, middle[1] + along[1] * u + across[1] * v) for u, v in offsets

@@ -41,11 +41,11 @@ function verticalRange(cell, pose, size) {
 function zigzag([x, y], [u, v], amplitude) {
   const length = Math.hypot(u - x, v - y);
   const across = length > 0 ? [-(v - y) / length, (u - x) / length] : [0, 0];
-  const turns = 8;
+  const cuts = Math.max(8, 2 * Math.round(0.3 * length / amplitude)); // more on a long spring, so that teeth stay steep
   const points = [[x, y]];
-  for (let k = 0; k <= turns; k += 1) {
-    const t = 0.15 + 0.7 * k / turns;
-    const side = k === 0 || k === turns ? 0 : (k % 2 ? 1 : -1) * Math.min(amplitude, 0.15 * length);
+  for (let k = 0; k <= cuts; k += 1) {
+    const t = 0.15 + 0.7 * k / cuts;
+    const side = k === 0 || k === cuts ? 0 : (k % 2 ? 1 : -1) * Math.min(amplitude, 0.15 * length);
     points.push([x + (u - x) * t + across[0] * side, y + (v - y) * t + across[1] * side]);
   }
   points.push([u, v]);

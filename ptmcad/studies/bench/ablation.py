@@ -7,15 +7,14 @@ processor time. All but times and ratios is the same in the next run.
 
 from __future__ import annotations
 
-import argparse
-import json
 import random
-import statistics
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
+from itertools import chain
 from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any
@@ -26,9 +25,12 @@ from ptmcad.process.extras import require_numba
 from ptmcad.question.config import load
 from ptmcad.question.savings import ALL, SAVINGS, Engine
 from ptmcad.question.slice import Slice
+from ptmcad.studies.bench.command import NO_RECORDS, Command, progress, save
 from ptmcad.studies.bench.process import Outcome, run
+from ptmcad.studies.bench.rounds import ratio, rounds, times
 from ptmcad.studies.bench.sameness import difference
 from ptmcad.studies.bench.suite import machine, versions
+from ptmcad.studies.tables import markdown, measured_with
 from ptmcad.text.expressions import Expression
 
 FORMAT = "ptmcad-ablation/1"
@@ -52,16 +54,16 @@ Progress = Callable[[str], None]
 
 
 def ablation(
-    records: Sequence[Path], rounds: int = 3, seed: int = 1, progress: Progress = lambda _: None
+    records: Sequence[Path], number: int = 3, seed: int = 1, report: Progress = lambda _: None
 ) -> dict[str, Any]:
     """The benchmark as JSON data.
 
     Parameters
     ----------
     records : problem records; of those with free lengths only `CERTIFIED` are taken.
-    rounds : runs of each variant of the exact engine, and of each whole process; certified variants run once.
+    number : runs of each variant of the exact engine, and of each whole process; certified variants run once.
     seed : of the order within a round.
-    progress : called with the name of each record.
+    report : called with the name of each record.
 
     Raises
     ------
@@ -74,21 +76,21 @@ def ablation(
         require_numba()
     rows, free = [], []
     for slice in slices.values():
-        progress(slice.name)
+        report(slice.name)
         if slice.has_free_lengths:
             if slice.name in CERTIFIED:
                 free += [_certified(slice, *part) for part in CERTIFIED[slice.name]]
             continue
-        rows.append(_exact(slice, (*_names(Engine.EXACT), ALL), rounds, order))
-        rows.append(_exact(exchanged(slice), SWAPPED, rounds, order))
+        rows.append(_exact(slice, (*_names(Engine.EXACT), ALL), number, order))
+        rows.append(_exact(exchanged(slice), SWAPPED, number, order))
     paper = [path for path, slice in slices.items() if slice.name in PAPER]
-    processes = [_processes(path, slices[path].name, rounds, order) for path in paper]
+    processes = [_processes(path, slices[path].name, number, order) for path in paper]
     return {
         "format": FORMAT,
         "machine": machine(),
         "versions": versions(),
         "seed": seed,
-        "rounds": rounds,
+        "rounds": number,
         "savings": [{"name": s.name, "engine": s.engine.value, "what": s.what, "why": s.why} for s in SAVINGS],
         "exact": rows,
         "processes": processes,
@@ -115,7 +117,7 @@ def _names(engine: Engine) -> tuple[str, ...]:
     return tuple(s.name for s in SAVINGS if s.engine is engine)
 
 
-def _exact(slice: Slice, names: Sequence[str], rounds: int, order: random.Random) -> dict[str, Any]:
+def _exact(slice: Slice, names: Sequence[str], number: int, order: random.Random) -> dict[str, Any]:
     """One slice by the exact engine: every variant compared, then timed."""
     from ptmcad.ask.classification import classify
 
@@ -124,57 +126,54 @@ def _exact(slice: Slice, names: Sequence[str], rounds: int, order: random.Random
     differences = {
         name: difference(result, classify(slice, without=without)) for name, without in variants.items() if name
     }
+
+    def seconds(without: tuple[str, ...]) -> float:
+        start = process_time()
+        classify(slice, without=without)
+        return process_time() - start
+
+    timed = _timed({name: partial(seconds, without) for name, without in variants.items()}, number, order)
+    for name, found in timed["switched off"].items():
+        found["difference"] = differences[name]
+    return {"record": slice.name, "regions": len(result.regions), "cells": len(result.cells), **timed}
+
+
+def _timed(variants: Mapping[str, Callable[[], float]], number: int, order: random.Random) -> dict[str, Any]:
+    """The times of variants that take turns: of the one without a name, and of the others beside it."""
     seconds: dict[str, list[float]] = {name: [] for name in variants}
-    for _ in range(rounds):
-        for name in order.sample(list(variants), len(variants)):
-            start = process_time()
-            classify(slice, without=variants[name])
-            seconds[name].append(process_time() - start)
+    for turns in rounds(number, lambda _: list(variants), order):
+        for name in turns:
+            seconds[name].append(variants[name]())
+    made = seconds.pop("")
     return {
-        "record": slice.name,
-        "regions": len(result.regions),
-        "cells": len(result.cells),
-        "all made": _summary(seconds[""]),
+        "all made": _summary(made),
         "switched off": {
-            name: _summary(times) | {"ratio": _ratio(times, seconds[""]), "difference": differences[name]}
-            for name, times in seconds.items()
-            if name
+            name: _summary(these) | {"ratio": round(ratio(these, made), 3)} for name, these in seconds.items()
         },
     }
 
 
-def _summary(seconds: Sequence[float]) -> dict[str, float]:
-    return {
-        "median": round(statistics.median(seconds), 4),
-        "least": round(min(seconds), 4),
-        "most": round(max(seconds), 4),
-    }
+def _summary(seconds: Sequence[float]) -> dict[str, Any]:
+    found = times(seconds)
+    return {"median": found.median, "least": found.minimum, "most": found.maximum}
 
 
-def _ratio(these: Sequence[float], those: Sequence[float]) -> float:
-    return round(statistics.median(a / b for a, b in zip(these, those, strict=True)), 3)
-
-
-def _processes(path: Path, name: str, rounds: int, order: random.Random) -> dict[str, Any]:
+def _processes(path: Path, record: str, number: int, order: random.Random) -> dict[str, Any]:
     """Whole processes that write JSON: with all savings, with everything imported, and without any saving."""
-    variants: dict[str, tuple[str, ...]] = {"": (), "imports": ("--without", "imports"), ALL: ("--without", ALL)}
-    seconds: dict[str, list[float]] = {name: [] for name in variants}
     with tempfile.TemporaryDirectory() as folder:
         command = (sys.executable, "-m", "ptmcad", "classify", str(path.resolve()), "--format", "json", "--out", folder)
-        for k in range(rounds + 1):
-            for variant in order.sample(list(variants), len(variants)):
-                usage = run((*command, *variants[variant]), timeout=120)
-                if usage.outcome is not Outcome.DONE:
-                    raise PtmcadError(f"{name}: {usage.outcome.value}: {usage.message}")
-                if k:  # the first round warms the caches
-                    seconds[variant].append(usage.processor_seconds)
-    return {
-        "record": name,
-        "all made": _summary(seconds[""]),
-        "switched off": {
-            v: _summary(times) | {"ratio": _ratio(times, seconds[""])} for v, times in seconds.items() if v
-        },
-    }
+
+        def seconds(*options: str) -> float:
+            usage = run((*command, *options), timeout=120)
+            if usage.outcome is not Outcome.DONE:
+                raise PtmcadError(f"{record}: {usage.outcome.value}: {usage.message}")
+            return usage.processor_seconds
+
+        variants: dict[str, Callable[[], float]] = {"": seconds}
+        for name in ("imports", ALL):
+            variants[name] = partial(seconds, "--without", name)
+        _timed(variants, 1, order)  # warms the caches
+        return {"record": record, **_timed(variants, number, order)}
 
 
 def _certified(
@@ -232,38 +231,32 @@ def to_markdown(found: dict[str, Any]) -> str:
         "",
         f"Rounds: {found['rounds']}, seed {found['seed']}; ratios are medians of those within a round.",
         "",
-        _line(("slice", "ms, all made (least-most)", *names, "same answer")),
-        _line(("---",) * (len(names) + 3)),
     ]
+    cells: list[tuple[str, ...]] = []
     for row in found["exact"]:
         off, made = row["switched off"], row["all made"]
         ratios = (f"{off[n]['ratio']:.2f}" if n in off else "" for n in names)
         same = "no" if any(v["difference"] for v in off.values()) else "yes"
-        times = f"{1000 * made['median']:.0f} ({1000 * made['least']:.0f}-{1000 * made['most']:.0f})"
-        lines.append(_line((row["record"], times, *ratios, same)))
+        spread = f"{1000 * made['median']:.0f} ({1000 * made['least']:.0f}-{1000 * made['most']:.0f})"
+        cells.append((row["record"], spread, *ratios, same))
     lines += [
+        *markdown(("slice", "ms, all made (least-most)", *names, "same answer"), cells),
         "",
         "## Whole processes",
         "",
         "`ptmcad classify RECORD --format json`, processor time of everything, start-up included.",
         "",
-        _line(("slice", "ms, all made", "ms, --without imports", "over", "ms, --without all", "over")),
-        _line(("---",) * 6),
     ]
-    for row in found["processes"]:
-        off = row["switched off"]
-        cells = [f"{1000 * row['all made']['median']:.0f}"]
-        for name in ("imports", ALL):
-            cells += [f"{1000 * off[name]['median']:.0f}", f"{off[name]['ratio']:.2f}"]
-        lines.append(_line((row["record"], *cells)))
-    lines += _certified_lines(found["certified"])
-    lines += [
-        "",
-        "Machine: " + "; ".join(f"{key} {value}" for key, value in found["machine"].items()) + ".",
-        "",
-        "Versions: " + "; ".join(f"{key} {value}" for key, value in found["versions"].items()) + ".",
-    ]
+    header = ("slice", "ms, all made", "ms, --without imports", "over", "ms, --without all", "over")
+    lines += markdown(header, map(_process_cells, found["processes"]))
+    lines += [*_certified_lines(found["certified"]), "", *measured_with(found)]
     return "\n".join(lines) + "\n"
+
+
+def _process_cells(row: dict[str, Any]) -> tuple[str, ...]:
+    off = row["switched off"]
+    switched = [(f"{1000 * off[name]['median']:.0f}", f"{off[name]['ratio']:.2f}") for name in ("imports", ALL)]
+    return row["record"], f"{1000 * row['all made']['median']:.0f}", *chain(*switched)
 
 
 def _certified_lines(rows: Sequence[dict[str, Any]]) -> list[str]:
@@ -277,52 +270,34 @@ def _certified_lines(rows: Sequence[dict[str, Any]]) -> list[str]:
         "Processor time until at most a given share of the window is undetermined, in one thread, over that with all",
         f"savings made; one run each. Above a bound where {PATIENCE:.0f} seconds (of wall time) were not enough.",
         "",
-        _line(("slice", "window", "share", "s, all made", *names, "no contradiction")),
-        _line(("---",) * (len(names) + 5)),
     ]
+    cells = []
     for row in rows:
         off = row["switched off"]
         ratios = (("" if off[n]["reached"] else "> ") + f"{off[n]['ratio']:.2f}" for n in names)
         same = "no" if any(v["difference"] for v in off.values()) else "yes"
         window = ", ".join(f"{low} < {name} < {high}" for name, (low, high) in row["window"].items())
-        lines.append(_line((row["record"], window, row["open"], f"{row['seconds']:.1f}", *ratios, same)))
-    return lines
-
-
-def _line(cells: Sequence[str]) -> str:
-    return "| " + " | ".join(cells) + " |"
+        cells.append((row["record"], window, row["open"], f"{row['seconds']:.1f}", *ratios, same))
+    return [*lines, *markdown(("slice", "window", "share", "s, all made", *names, "no contradiction"), cells)]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, print the page, write ablation.json and ablation.md; 1 when an answer differed, 2 for bad input."""
-    parser = argparse.ArgumentParser(
-        prog="python -m ptmcad.studies.bench.ablation", description="What each saving is worth."
-    )
-    parser.add_argument("records", nargs="*", type=Path, help="problem records; default: configs/*.yaml")
-    parser.add_argument("--out", type=Path, help="folder for ablation.json and ablation.md")
-    parser.add_argument("--rounds", type=int, default=3, help="runs of each variant (default 3)")
-    parser.add_argument("--seed", type=int, default=1, help="of the order within a round (default 1)")
-    chosen = parser.parse_args(arguments)
+    command = Command("bench.ablation", "What each saving is worth.", files="ablation.json and ablation.md", rounds=3)
+    command.add_argument("records", nargs="*", type=Path, help="problem records; default: configs/*.yaml")
+    chosen = command.chosen(arguments)
     records = chosen.records or sorted(Path("configs").glob("*.yaml"))
     if not records:
-        parser.error("no configs/*.yaml here: name the problem records, or change to the project's folder")
-    if chosen.rounds < 1:
-        parser.error("--rounds must be at least 1")
-    try:
-        found = ablation(records, chosen.rounds, chosen.seed, lambda name: print(name, file=sys.stderr, flush=True))
-        if chosen.out is not None:
-            chosen.out.mkdir(parents=True, exist_ok=True)
-            text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
-            (chosen.out / "ablation.json").write_text(text, encoding="utf-8")
-            (chosen.out / "ablation.md").write_text(to_markdown(found), encoding="utf-8")
-    except (PtmcadError, OSError) as error:
-        print(f"python -m ptmcad.studies.bench.ablation: {error}", file=sys.stderr)
-        return 2
-    print(to_markdown(found), end="")
-    differing = any(
-        v["difference"] for row in (*found["exact"], *found["certified"]) for v in row["switched off"].values()
-    )
-    return 1 if differing else 0
+        command.error(NO_RECORDS)
+
+    def work() -> int:
+        found = ablation(records, chosen.rounds, chosen.seed, progress)
+        save(chosen.out, "ablation", found, to_markdown(found))
+        print(to_markdown(found), end="")
+        rows = (*found["exact"], *found["certified"])
+        return int(any(v["difference"] for row in rows for v in row["switched off"].values()))
+
+    return command.status(work)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.studies.sextic import sextic
+
 Array = NDArray[np.float64]
 MAX_IMAGINARY = 1e-7
 """Relative size of imaginary parts that are taken for rounding; nearby values change the result little."""
@@ -50,31 +52,9 @@ def grid_values(question: dict[str, Any], n: int) -> Values:
     }
 
 
-def sextics(p: Values) -> Array:
-    """Coefficients in t = tan(theta2/2), the highest first, of shape (points, 7); see `ptmcad.studies.bench.qepcad`."""
-    b1, b2 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
-    zero = np.zeros_like(b1)
-    # numerators over 1 + t^2, constant term first
-    v = np.stack([p["F3"], 2 * b1, -p["F3"]], axis=1)
-    w = np.stack([-p["F4"], 2 * b2, p["F4"]], axis=1)
-    square = b1 * b1 + (p["k3"] * p["L2"]) ** 2 + p["F3"] ** 2
-    along, up = 2 * b1 * p["k3"] * p["L2"], 4 * p["k3"] * p["L2"] * p["F3"]
-    norm = np.stack([square - along, up, square + along], axis=1)
-    circle = np.stack([zero + 1, zero, zero + 1], axis=1) * ((p["k3"] * p["L1"]) ** 2)[:, None]
-    difference = _product(circle, _product(v, v)) - _product(norm, _product(w, w))
-    return difference[:, ::-1]
-
-
-def _product(a: Array, b: Array) -> Array:
-    result = np.zeros((len(a), a.shape[1] + b.shape[1] - 1))
-    for i in range(a.shape[1]):
-        result[:, i : i + b.shape[1]] += a[:, i : i + 1] * b
-    return result
-
-
 def counts(p: Values) -> NDArray[np.int8]:
     """Stable and total counts at each point, of shape (2, points)."""
-    polynomials = sextics(p)
+    polynomials: Array = np.stack(sextic(p).coefficients[::-1], axis=1)
     size = np.abs(polynomials).max(axis=1, keepdims=True)
     polynomials = polynomials / np.where(size > 0, size, 1)
     while polynomials.shape[1] > 2 and np.abs(polynomials[:, 0]).max() < MIN_LEADING:

@@ -14,7 +14,9 @@ from dataclasses import dataclass
 from enum import Enum
 
 from ptmcad.errors import ConfigError
-from ptmcad.studies.bench.study import Figures, Measurement, Study, Times
+from ptmcad.studies.bench.rounds import Times
+from ptmcad.studies.bench.study import Figures, Measurement, Study
+from ptmcad.studies.tables import columns
 
 MARGIN = 1.1
 SINGLE_RUN_MARGIN = 1.5
@@ -133,16 +135,8 @@ def _pairs(old: Figures, new: Figures) -> Iterator[tuple[str, float, float]]:
 def comparison_table(changes: tuple[Change, ...]) -> str:
     """A line for each change, the bad ones first, and a line that sums up."""
     ordered = sorted(changes, key=lambda c: (c.verdict not in BAD, c.verdict is Verdict.SAME))
-    widths = [max((len(t) for t in column), default=0) for column in zip(*(_cells(c) for c in changes), strict=True)]
-    lines = [
-        "  ".join([*(cell.ljust(width) for cell, width in zip(_cells(c), widths, strict=True)), c.detail])
-        for c in ordered
-    ]
+    lines = columns([(c.verdict.value, c.method, c.setting, c.detail) for c in ordered])
     bad = [c for c in changes if c.verdict in BAD]
     tally = {v: sum(c.verdict is v for c in bad) for v in (Verdict.SLOWER, Verdict.WORSE, Verdict.LOST)}
     summary = ", ".join(f"{number} {verdict.value}" for verdict, number in tally.items() if number)
     return "\n".join([*lines, summary or "nothing became slower or worse beyond noise"])
-
-
-def _cells(change: Change) -> tuple[str, str, str]:
-    return change.verdict.value, change.method, change.setting

@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict
+from collections.abc import Iterator
 from io import StringIO
 from pathlib import Path
 from typing import Any
 
 from ptmcad.errors import ConfigError
+from ptmcad.show.document.codec import TEXT, TRUTH, Codec, Key, line, listed, named, optional, record
 from ptmcad.show.document.node import Node
-from ptmcad.studies.bench.study import FORMAT, Figures, Measurement, Study, Times
+from ptmcad.studies.bench.rounds import Times
+from ptmcad.studies.bench.study import FORMAT, Figures, Measurement, Study
 from ptmcad.text.textfile import read_text
 
 MAX_BYTES = 10_000_000
@@ -30,7 +31,7 @@ MAX_COUNTED = 10**12
 
 def write_study(study: Study) -> str:
     """The study as JSON text."""
-    return json.dumps({"format": FORMAT, **asdict(study)}, indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(_STUDY.write(study), indent=1, ensure_ascii=False) + "\n"
 
 
 def write_table(study: Study) -> str:
@@ -78,92 +79,44 @@ def study_of(text: str) -> Study:
     ValueError
         When the text is not such a document; the message names the place.
     """
-    d = Node(json.loads(text), "").record(
-        "format", "slice", "heading", "machine", "versions", "seed", "rounds", "time_limit", "quick", "verified",
-        "floor", "measurements",
-    )  # fmt: skip
-    if d["format"].text() != FORMAT:
-        raise d["format"].fault(f"is not {FORMAT!r}")
-    return Study(
-        slice=d["slice"].line(200),
-        heading=d["heading"].line(1000),
-        machine=_texts(d["machine"]),
-        versions=_texts(d["versions"]),
-        seed=_whole(d["seed"]),
-        rounds=_whole(d["rounds"]),
-        time_limit=d["time_limit"].number(),
-        quick=_flag(d["quick"]),
-        verified=None if d["verified"].value is None else _flag(d["verified"]),
-        floor=_times(d["floor"]),
-        measurements=d["measurements"].each(_measurement),
-    )
-
-
-def _measurement(node: Node) -> Measurement:
-    m = node.record("method", "setting", "seconds", "computing", "peak", "reason", "note", "figures", "area_width")
-    return Measurement(
-        method=m["method"].line(60),
-        setting=m["setting"].line(60),
-        seconds=_optional(m["seconds"], _times),
-        computing=_optional(m["computing"], _times),
-        peak=_optional(m["peak"], Node.number),
-        reason=m["reason"].line(1000),
-        note=m["note"].line(1000),
-        figures=_optional(m["figures"], lambda n: {count: _figures(f) for count, f in n.mapping().items()}),
-        area_width=_optional(m["area_width"], Node.number),
-    )
-
-
-def _figures(node: Node) -> Figures:
-    f = node.record("wrong", "undetermined", "wrong_centres", "regions", "missed", "faintest", "distance")
-    return Figures(
-        wrong=_pair(f["wrong"]),
-        undetermined=f["undetermined"].number(),
-        wrong_centres=_optional(f["wrong_centres"], _number),
-        regions=_optional(f["regions"], _number),
-        missed=_optional(f["missed"], _number),
-        faintest=_optional(f["faintest"], _pair),
-        distance=_optional(f["distance"], _pair),
-    )
-
-
-def _number(node: Node) -> int:
-    """Of pixels or regions: what nobody can count is not one."""
-    found = _whole(node)
-    if found > MAX_COUNTED:
-        raise node.fault(f"is more than {MAX_COUNTED}")
-    return found
-
-
-def _times(node: Node) -> Times:
-    t = node.record("runs", "median", "minimum", "maximum")
-    seconds = [t[key].number() for key in ("median", "minimum", "maximum")]
-    for key, value in zip(("median", "minimum", "maximum"), seconds, strict=True):
-        if not value > 0:
-            raise t[key].fault("is not a positive number of seconds")
-    return Times(_whole(t["runs"]), *seconds)
-
-
-def _optional(node: Node, read: Any) -> Any:
-    return None if node.value is None else read(node)
-
-
-def _pair(node: Node) -> tuple[float, float]:
-    low, high = node.each(Node.number, 2)
-    return low, high
+    node = Node(json.loads(text), "")
+    if (found := node.mapping().get("format")) is not None and found.text() != FORMAT:
+        raise found.fault(f"is not {FORMAT!r}")
+    return _STUDY.read(node)
 
 
 def _whole(node: Node) -> int:
+    """Of pixels or regions, a seed: what nobody can count is not one."""
     if type(node.value) is not int:
         raise node.fault("is not a whole number")
+    if node.value > MAX_COUNTED:
+        raise node.fault(f"is more than {MAX_COUNTED}")
     return node.value
 
 
-def _flag(node: Node) -> bool:
-    if not isinstance(node.value, bool):
-        raise node.fault("is neither true nor false")
-    return node.value
+def _positive(node: Node) -> float:
+    seconds = node.number()
+    if not seconds > 0:
+        raise node.fault("is not a positive number of seconds")
+    return seconds
 
 
-def _texts(node: Node) -> Mapping[str, str]:
-    return {key: value.line(300) for key, value in node.mapping().items()}
+_WHOLE: Codec[int] = Codec(lambda value: value, _whole)
+_NUMBER: Codec[float] = Codec(lambda value: value, Node.number)
+_SECONDS: Codec[float] = Codec(lambda value: value, _positive)
+_PAIR = listed(_NUMBER, 2)
+_TIMES = record(Times, runs=_WHOLE, median=_SECONDS, minimum=_SECONDS, maximum=_SECONDS)
+_FIGURES = record(
+    Figures, wrong=_PAIR, undetermined=_NUMBER, wrong_centres=optional(_WHOLE), regions=optional(_WHOLE),
+    missed=optional(_WHOLE), faintest=optional(_PAIR), distance=optional(_PAIR),
+)  # fmt: skip
+_MEASUREMENT = record(
+    Measurement, method=line(60), setting=line(60), seconds=optional(_TIMES), computing=optional(_TIMES),
+    peak=optional(_NUMBER), reason=line(1000), note=line(1000), figures=optional(named(_FIGURES)),
+    area_width=optional(_NUMBER),
+)  # fmt: skip
+_STUDY = record(
+    lambda format, **values: Study(**values), format=Key(TEXT, lambda _: FORMAT), slice=line(200), heading=line(1000),
+    machine=named(line(300)), versions=named(line(300)), seed=_WHOLE, rounds=_WHOLE, time_limit=_NUMBER, quick=TRUTH,
+    verified=optional(TRUTH), floor=_TIMES, measurements=listed(_MEASUREMENT),
+)  # fmt: skip

@@ -15,7 +15,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from multiprocessing import get_all_start_methods, get_context
 from pathlib import Path
@@ -33,7 +33,8 @@ from ptmcad.studies.bench.error import MapError, exact_error, grid_error
 from ptmcad.studies.bench.methods import Job, Method, jobs, question
 from ptmcad.studies.bench.process import Outcome, Usage, run
 from ptmcad.studies.bench.reference import COUNTS, Column, Reference, Walls, centres, reference, shown_count, walls
-from ptmcad.studies.bench.study import Figures, Measurement, Study, Times, figures, outward, times
+from ptmcad.studies.bench.rounds import Times, rounds, times
+from ptmcad.studies.bench.study import Figures, Measurement, Study, figures, outward
 from ptmcad.studies.bench.suite import machine, versions
 
 FLOOR = (
@@ -70,16 +71,31 @@ class _Runs:
         return not self.reason and not (self.usages and self.usages[0].seconds > MAX_REPEATED_SECONDS)
 
 
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How a study is made.
+
+    Attributes
+    ----------
+    rounds : runs of each job that takes no longer than `MAX_REPEATED_SECONDS`; others are run once.
+    seed : of the order within a round, and of the starts of the scipy grid.
+    time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
+    quick : fewer and coarser settings.
+    """
+
+    methods: Sequence[Method] = tuple(Method)
+    rounds: int = 3
+    seed: int = 1
+    time_limit: float = 60.0
+    quick: bool = False
+
+
 def measure(
     slice: Slice,
     record: Path,
     verified: Callable[[RegionMap], bool],
+    settings: Settings,
     *,
-    methods: Sequence[Method] = tuple(Method),
-    rounds: int = 3,
-    seed: int = 1,
-    time_limit: float = 60.0,
-    quick: bool = False,
     warm_up: bool = True,
     report: Report = lambda _: None,
 ) -> Study:
@@ -89,10 +105,6 @@ def measure(
     ----------
     record : the slice's own file.
     verified : whether an independent check confirms a map, such as `ptmcad.verify`; the errors rest on it.
-    rounds : runs of each job that takes no longer than `MAX_REPEATED_SECONDS`; others are run once.
-    seed : of the order within a round, and of the starts of the scipy grid.
-    time_limit : seconds for each method's measured runs; settings that do not fit are left out, with the reason.
-    quick : fewer and coarser settings.
     warm_up : run the certified engine once before, because the first run on a machine compiles.
     report : called with what is being done.
 
@@ -110,29 +122,20 @@ def measure(
         sides = _walls(exact)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "question.json").write_text(
-            question(slice, None if exact is None else exact.result), encoding="utf-8"
-        )
-        started, absent = _begin(slice, record, methods, folder, quick, seed)
+        asked = question(slice, None if exact is None else exact.result)
+        (folder / "question.json").write_text(asked, encoding="utf-8")
+        started, absent = _begin(slice, record, folder, settings)
         if warm_up:
             _compile(started)
         report(f"{slice.name}: {len(started)} jobs")
-        floor = _rounds(started, rounds, seed, time_limit, report)
+        floor = _rounds(started, settings, report)
         report(f"{slice.name}: errors")
-        measured = _all_measured(started, slice, exact, sides)
+        measured = _all_measured(_Known(started, slice, exact, sides))
     return Study(
-        slice=slice.name,
-        heading=slice.heading,
-        machine=machine(),
-        versions=versions(),
-        seed=seed,
-        rounds=rounds,
-        time_limit=time_limit,
-        quick=quick,
-        verified=sound,
-        floor=floor,
+        slice=slice.name, heading=slice.heading, machine=machine(), versions=versions(), seed=settings.seed,
+        rounds=settings.rounds, time_limit=settings.time_limit, quick=settings.quick, verified=sound, floor=floor,
         measurements=(*measured, *absent),
-    )
+    )  # fmt: skip
 
 
 def _walls(exact: Reference) -> dict[str, Walls] | None:
@@ -155,13 +158,11 @@ class _TooManyError(Exception):
     """More panels than the measurement may take."""
 
 
-def _begin(
-    slice: Slice, record: Path, methods: Sequence[Method], folder: Path, quick: bool, seed: int
-) -> tuple[list[_Runs], list[Measurement]]:
+def _begin(slice: Slice, record: Path, folder: Path, settings: Settings) -> tuple[list[_Runs], list[Measurement]]:
     started: list[_Runs] = []
     absent: list[Measurement] = []
-    for method in methods:
-        found = jobs(method, slice, record.resolve(), folder, quick, seed)
+    for method in settings.methods:
+        found = jobs(method, slice, record.resolve(), folder, settings.quick, settings.seed)
         if isinstance(found, str):
             absent.append(Measurement(method.value, "", None, reason=found))
         else:
@@ -177,55 +178,54 @@ def _compile(started: Sequence[_Runs]) -> None:
             return
 
 
-def _rounds(runs: Sequence[_Runs], rounds: int, seed: int, time_limit: float, report: Report) -> Times:
+def _rounds(runs: Sequence[_Runs], settings: Settings, report: Report) -> Times:
     """Run all jobs; the times of the reference job are returned."""
-    order = random.Random(seed)
+    order, limit = random.Random(settings.seed), settings.time_limit
     spent = {r.job.method: 0.0 for r in runs}
     last = dict(spent)
     floor = []
     run(FLOOR)
     for rank in range(1 + max((r.job.rank for r in runs), default=0)):
-        turns = [r for r in runs if r.job.rank == rank]
-        for _ in range(rounds):
+        ranked = [r for r in runs if r.job.rank == rank]
+        for turns in rounds(settings.rounds, lambda _, ranked=ranked: ranked, order):  # type: ignore[misc]
             floor.append(run(FLOOR).seconds)
-            order.shuffle(turns)
             for r in turns:
                 method = r.job.method
-                left = time_limit - spent[method]
+                left = limit - spent[method]
                 # a finer tolerance takes no less than the coarser one before it
                 growth = GROWTH if r.job.grows else 1.0 if method is Method.CERTIFIED else 0.0
                 needed = r.usages[-1].seconds if r.usages else growth * last[method]
                 if not r.due or (r.usages and left < needed):
                     continue
                 if left <= needed:
-                    r.reason = f"left out: it does not fit into the {time_limit:g} s for each method"
+                    r.reason = f"left out: it does not fit into the {limit:g} s for each method"
                     continue
                 report(f"{method.value}, {r.job.setting}")
-                last[method] = _run(r, left, time_limit)
+                last[method] = _run(r, left, limit)
                 spent[method] += last[method]
     return times(floor)
 
 
 def _run(r: _Runs, left: float, time_limit: float) -> float:
     """Run a job once, record it, and return the seconds that it took."""
-    total: list[Usage] = []
-    if r.job.method is Method.CERTIFIED:
-        return _run_until(r, left, time_limit)
-    for command, text in r.job.commands:
-        usage = run(command, text=text, timeout=max(left - sum(u.seconds for u in total), 0.1))
-        total.append(qepcad.judged(usage) if r.job.method is Method.QEPCAD else usage)
-        if total[-1].outcome is not Outcome.DONE:
-            break
-    seconds = sum(u.seconds for u in total)
-    last = total[-1]
+    job = r.job
+    if job.method is Method.CERTIFIED:
+        total = [_until(job, left)]
+    else:
+        total = []
+        for command, text in job.commands:
+            usage = run(command, text=text, timeout=max(left - sum(u.seconds for u in total), 0.1))
+            total.append(qepcad.judged(usage) if job.method is Method.QEPCAD else usage)
+            if total[-1].outcome is not Outcome.DONE:
+                break
+    seconds, last = sum(u.seconds for u in total), total[-1]
     if last.outcome is Outcome.DONE:
-        r.usages.append(
-            Usage(last.outcome, seconds, sum(u.processor_seconds for u in total), max(u.peak_mebibytes for u in total))
-        )
-        if r.job.method in (Method.COMPANION, Method.MULTISTART, Method.GCAD):
+        processor, peak = sum(u.processor_seconds for u in total), max(u.peak_mebibytes for u in total)
+        r.usages.append(Usage(last.outcome, seconds, processor, peak))
+        if job.method in (Method.COMPANION, Method.MULTISTART, Method.GCAD):
             r.computing.append(json.loads(last.output)["computing"])
-        elif r.job.answer is not None:
-            r.computing.append(json.loads(r.job.answer.read_text(encoding="utf-8"))["timings"]["total"])
+        elif job.answer is not None:
+            r.computing.append(json.loads(job.answer.read_text(encoding="utf-8"))["timings"]["total"])
     elif not r.usages:
         message = last.message.strip().splitlines()
         r.reason = (
@@ -236,42 +236,41 @@ def _run(r: _Runs, left: float, time_limit: float) -> float:
     return seconds
 
 
-def _run_until(r: _Runs, left: float, time_limit: float) -> float:
-    """The same for a job that has an answer at any time, and a smaller error later."""
-    assert r.job.answer is not None
-    r.job.answer.unlink(missing_ok=True)
-    command = (*r.job.commands[0][0], "--timeout", f"{max(left - GRACE_SECONDS, 0.1):.2f}")
+def _until(job: Job, left: float) -> Usage:
+    """A run that has an answer at any time, and a smaller error later: it is done when there is an answer."""
+    assert job.answer is not None
+    job.answer.unlink(missing_ok=True)
+    command = (*job.commands[0][0], "--timeout", f"{max(left - GRACE_SECONDS, 0.1):.2f}")
     usage = run(command, timeout=left + GRACE_SECONDS)
-    if r.job.answer.exists():
-        r.usages.append(Usage(Outcome.DONE, usage.seconds, usage.processor_seconds, usage.peak_mebibytes))
-        r.computing.append(json.loads(r.job.answer.read_text(encoding="utf-8"))["timings"]["total"])
-    elif not r.usages:
-        message = usage.message.splitlines()
-        r.reason = (
-            f"stopped: the {time_limit:g} s for each method were used up"
-            if "time limit" in usage.message
-            else f"{usage.outcome.value}: {message[-1] if message else 'no message'}"
-        )
-    return usage.seconds
+    if job.answer.exists():
+        return replace(usage, outcome=Outcome.DONE)
+    return replace(usage, outcome=Outcome.TIMED_OUT) if "time limit" in usage.message else usage
 
 
-def _all_measured(
-    started: Sequence[_Runs], slice: Slice, exact: Reference | None, sides: dict[str, Walls] | None
-) -> tuple[Measurement, ...]:
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """What errors are measured with: the runs, and the exact map and its walls where there are any."""
+
+    runs: Sequence[_Runs]
+    slice: Slice
+    exact: Reference | None
+    sides: dict[str, Walls] | None
+
+
+def _all_measured(known: _Known) -> tuple[Measurement, ...]:
     """The errors of all jobs' answers, computed side by side where a system can fork: nothing is timed by now."""
-    processes = min(os.cpu_count() or 1, len(started))
+    processes = min(os.cpu_count() or 1, len(known.runs))
     if processes < 2 or "fork" not in get_all_start_methods():
-        return tuple(_measured(r, slice, exact, sides) for r in started)
-    known = (started, slice, exact, sides)
+        return tuple(_measured(known, r) for r in known.runs)
     with ProcessPoolExecutor(processes, get_context("fork"), _inherit, (known, os.getpid())) as pool:
-        return tuple(pool.map(_measured_here, range(len(started))))
+        return tuple(pool.map(_measured_here, range(len(known.runs))))
 
 
-_inherited: list[tuple[Sequence[_Runs], Slice, Reference | None, dict[str, Walls] | None]] = []
+_inherited: list[_Known] = []
 """In a forked process, what it computes with: far too much to be sent to it."""
 
 
-def _inherit(known: tuple[Sequence[_Runs], Slice, Reference | None, dict[str, Walls] | None], parent: int) -> None:
+def _inherit(known: _Known, parent: int) -> None:
     _inherited[:] = [known]
     threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
 
@@ -284,12 +283,11 @@ def _end_with(parent: int) -> None:
 
 
 def _measured_here(number: int) -> Measurement:
-    started, slice, exact, sides = _inherited[0]
-    return _measured(started[number], slice, exact, sides)
+    return _measured(_inherited[0], _inherited[0].runs[number])
 
 
-def _measured(r: _Runs, slice: Slice, exact: Reference | None, sides: dict[str, Walls] | None) -> Measurement:
-    job = r.job
+def _measured(known: _Known, r: _Runs) -> Measurement:
+    job, exact, sides = r.job, known.exact, known.sides
     if not r.usages:
         return Measurement(job.method.value, job.setting, None, reason=r.reason or "not run")
     found: dict[str, Figures] = {}
@@ -305,7 +303,7 @@ def _measured(r: _Runs, slice: Slice, exact: Reference | None, sides: dict[str, 
             _agree(result, exact)
         if exact is None or sides is None:
             share = outward((result.undetermined, result.undetermined))
-            found[slice.count.value] = Figures(wrong=share, undetermined=share[1])
+            found[known.slice.count.value] = Figures(wrong=share, undetermined=share[1])
             note = "; ".join([note] * bool(note) + [NO_MAP if exact is None else NO_WALLS])
         elif job.method is Method.EXACT:
             found = {count: figures(exact_error(sides[count])) for count in COUNTS}
@@ -317,7 +315,7 @@ def _measured(r: _Runs, slice: Slice, exact: Reference | None, sides: dict[str, 
         if sides is None:
             return Measurement(job.method.value, job.setting, None, reason=NO_WALLS)
         found = grid_figures(exact, sides, np.load(job.answer))
-        note = qepcad.LOSES_PI if qepcad.question(slice) == qepcad.LOSES_PI else ""
+        note = qepcad.LOSES_PI if qepcad.question(known.slice) == qepcad.LOSES_PI else ""
     elif job.method is Method.QEPCAD:
         count = "stable" if "stable" in job.setting else "total"
         found[count] = Figures(wrong=(0.0, 0.0), undetermined=0.0)

@@ -10,6 +10,7 @@ The modules of this package therefore import nothing large.
 from __future__ import annotations
 
 import os
+import resource
 import subprocess
 import tempfile
 import threading
@@ -74,33 +75,13 @@ def run(command: Sequence[str], *, text: str = "", timeout: float | None = None)
     with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
         given.write(text.encode())
         given.seek(0)
-        expired = threading.Event()
         start = time.perf_counter()
         process = subprocess.Popen(command, stdin=given, stdout=output, stderr=errors)
-
-        def expire() -> None:
-            expired.set()
-            process.kill()
-
-        timer = threading.Timer(timeout, expire) if timeout is not None else None
-        if timer is not None:
-            timer.daemon = True
-            timer.start()
-        ended = False
-        try:
-            _, status, resources = os.wait4(process.pid, 0)
-            ended = True
-        finally:
-            if timer is not None:
-                timer.cancel()
-            if not ended:  # interrupted: the process must not outlive its measurement
-                process.kill()
-                process.wait()
+        resources, expired = _awaited(process, timeout)
         seconds = time.perf_counter() - start
-        process.returncode = os.waitstatus_to_exitcode(status)
-        outcome = Outcome.DONE
-        if process.returncode != 0:
-            outcome = Outcome.TIMED_OUT if expired.is_set() else Outcome.FAILED
+        outcome = Outcome.TIMED_OUT if expired else Outcome.FAILED
+        if process.returncode == 0:
+            outcome = Outcome.DONE
         output.seek(0)
         errors.seek(0)
         return Usage(
@@ -113,3 +94,27 @@ def run(command: Sequence[str], *, text: str = "", timeout: float | None = None)
             if outcome is Outcome.DONE
             else errors.read().decode(errors="replace")[-_MESSAGE_LENGTH:].strip(),
         )
+
+
+def _awaited(process: subprocess.Popen[bytes], timeout: float | None) -> tuple[resource.struct_rusage, bool]:
+    """What the process took, and whether it was killed when its time was over; its exit status is set."""
+    expired = threading.Event()
+
+    def expire() -> None:
+        expired.set()
+        process.kill()
+
+    timer = threading.Timer(timeout, expire) if timeout is not None else None
+    if timer is not None:
+        timer.daemon = True
+        timer.start()
+    try:
+        _, status, resources = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    finally:
+        if timer is not None:
+            timer.cancel()
+        if process.returncode is None:  # interrupted: the process must not outlive its measurement
+            process.kill()
+            process.wait()
+    return resources, expired.is_set()

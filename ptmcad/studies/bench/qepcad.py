@@ -6,15 +6,9 @@ outside a set of measure zero, in one-to-one correspondence with the equilibria 
 Not guaranteed: the answer on that set of measure zero. QEPCAD is allowed to be wrong there, as an expert would allow it
 (it is two to five times faster so); and an equilibrium at theta2 = pi has no t2.
 
-The elimination. With b1 = (k2+k3) rho + F3x, b2 = (k1+k3) rho - F4x, P = b1 - k3 L2 c2 and Q = k3 L2 s2 + F3 the first
-equation is Q c1 - P s1 = 0, so (c1, s1) = +-(P, Q)/sqrt(P^2+Q^2); the second, k3 L1 s12 - b2 s2 + F4 c2 = 0, becomes
-
-    k3^2 L1^2 (F3 c2 + b1 s2)^2 = (b2 s2 - F4 c2)^2 (P^2 + Q^2)
-
-once squared. Each of its roots belongs to one of the two signs. With c2 = (1-t^2)/(1+t^2), s2 = 2t/(1+t^2) and the
-denominators cleared it is p(t) = 0, p of degree six. With V = F3 c2 + b1 s2 and W = b2 s2 - F4 c2, up to positive
-factors H11 is V W and, where that is positive, the second derivative of the energy along the curve E1 = 0 is -V p'(t).
-So a root is a stable equilibrium exactly if V W > 0 and V p' < 0.
+The elimination is that of `ptmcad.studies.sextic`, with roots t of p = N. Up to positive factors H11 is V W and, where
+that is positive, the second derivative of the energy along the curve E1 = 0 is -V p'(t). So a root is a stable
+equilibrium exactly if V W > 0 and V p' < 0.
 """
 
 from __future__ import annotations
@@ -26,21 +20,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
-from itertools import zip_longest
 
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.studies.bench.process import Outcome, Usage
-from ptmcad.text.expressions import Expression, constant
+from ptmcad.studies.sextic import sextic
+from ptmcad.text.expressions import Expression
 
 _GARBAGE_COLLECTED_CELLS = 20_000_000
 _ANSWER = re.compile(r"An equivalent quantifier-free formula:\s*(.*?)\n\s*\n", re.DOTALL)
-
-InT = tuple[Expression, ...]
-"""A polynomial in t over Q(x, y): the coefficients of 1, t, t^2, ..."""
-
-_CIRCLE: InT = (constant(1), constant(0), constant(1))
-_COSINE: InT = (constant(1), constant(0), constant(-1))
-_SINE: InT = (constant(0), constant(2))
 
 
 class Task(Enum):
@@ -124,38 +111,11 @@ def question(slice: Slice) -> Question | str:
         return "with free lengths there is no sextic"
     if not all(value.is_polynomial for value in slice.parameters.values()):
         return "a parameter is not a polynomial in the axes"
-    polynomial = sextic(slice)
-    if len(polynomial) < 7 or not polynomial[6].numerator:
+    found = sextic(slice.parameters)
+    if not found.coefficients[6].numerator:
         return LOSES_PI
-    slope = tuple(n * coefficient for n, coefficient in enumerate(polynomial))[1:]
-    v, w = _v_and_w(slice)
-    return Question(_terms(polynomial), _terms(slope), _terms(v), _terms(w), slice.axes)
-
-
-def sextic(slice: Slice) -> InT:
-    """The polynomial in t2 that is left when theta1 has been eliminated, in Q(x, y)[t]."""
-    value = slice.parameters
-    l1, l2, k3, f3 = value["L1"], value["L2"], value["k3"], value["F3"]
-    b1 = (value["k2"] + k3) * value["rho"] + value["F3x"]
-    v, w = _v_and_w(slice)
-    squared_norm = _sum(
-        _scaled(b1 * b1 + k3 * k3 * l2 * l2 + f3 * f3, _CIRCLE),
-        _scaled(-2 * b1 * k3 * l2, _COSINE),
-        _scaled(2 * k3 * l2 * f3, _SINE),
-    )
-    return _sum(
-        _scaled(k3 * k3 * l1 * l1, _product(_CIRCLE, _product(v, v))),
-        _scaled(constant(-1), _product(squared_norm, _product(w, w))),
-    )
-
-
-def _v_and_w(slice: Slice) -> tuple[InT, InT]:
-    """V and W times 1 + t^2."""
-    value = slice.parameters
-    b1 = (value["k2"] + value["k3"]) * value["rho"] + value["F3x"]
-    b2 = (value["k1"] + value["k3"]) * value["rho"] - value["F4x"]
-    v = _sum(_scaled(value["F3"], _COSINE), _scaled(b1, _SINE))
-    return v, _sum(_scaled(b2, _SINE), _scaled(-value["F4"], _COSINE))
+    slope = tuple(n * coefficient for n, coefficient in enumerate(found.coefficients))[1:]
+    return Question(_terms(found.coefficients), _terms(slope), _terms(found.v), _terms(found.w), slice.axes)
 
 
 def program() -> str | None:
@@ -187,26 +147,7 @@ def formula(output: str) -> str:
     return " ".join(found.group(1).split()) if found else ""
 
 
-def _sum(*polynomials: InT) -> InT:
-    total: Sequence[Expression] = ()
-    for polynomial in polynomials:
-        total = [a + b for a, b in zip_longest(total, polynomial, fillvalue=constant(0))]
-    return tuple(total)
-
-
-def _scaled(factor: Expression, polynomial: InT) -> InT:
-    return tuple(factor * coefficient for coefficient in polynomial)
-
-
-def _product(left: InT, right: InT) -> InT:
-    total = [constant(0)] * (len(left) + len(right) - 1)
-    for i, a in enumerate(left):
-        for j, b in enumerate(right):
-            total[i + j] = total[i + j] + a * b
-    return tuple(total)
-
-
-def _terms(polynomial: InT) -> Terms:
+def _terms(polynomial: Sequence[Expression]) -> Terms:
     terms = [(i, j, n, c) for n, coefficient in enumerate(polynomial) for i, j, c in coefficient.numerator]
     scale = math.lcm(*(c.denominator for *_, c in terms))
     content = math.gcd(*(int(c * scale) for *_, c in terms))

@@ -20,8 +20,8 @@ from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, refine, sign_at
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Cell, RegionMap, Status
-from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
-from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Chord, chords, reaching, to_share
+from ptmcad.exact.cad.curves import Curve, by_component, curves_of, lines_of
+from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Branch, Chord, chords, reaching, to_share
 from ptmcad.exact.cad.stacks import roots_over
 from ptmcad.exact.regions import Link, merge
 from ptmcad.question.slice import Count
@@ -125,7 +125,7 @@ def reference(result: RegionMap) -> Reference:
 
 def walls(exact: Reference, check: Callable[[], None] = lambda: None) -> dict[str, Walls]:
     """For each of `COUNTS` the walls that separate its regions."""
-    by_component = {c.component: c for c in exact.curves}
+    curve_of = by_component(exact.curves)
     chains: dict[tuple[int, int], tuple[Chord, ...]] = {}
     reaches: Reaches = {}
     found: dict[str, Walls] = {}
@@ -146,12 +146,10 @@ def walls(exact: Reference, check: Callable[[], None] = lambda: None) -> dict[st
                 if not wide:
                     continue
                 if (s, level) not in chains:
-                    source = by_component[wall.component]
-                    chains[s, level] = chords(
-                        source, wall.root, span, exact.base, exact.fibre, MAX_CHORD_DISTANCE, MIN_STACK_WIDTH, check
-                    )
+                    branch = Branch(curve_of[wall.component], wall.root, exact.base, exact.fibre)
+                    chains[s, level] = chords(branch, span, MAX_CHORD_DISTANCE, MIN_STACK_WIDTH, check)
                 sides += [(c, below, above) for c in chains[s, level]]
-        meeting = [by_component[n] for n in sorted(separating)]
+        meeting = [curve_of[n] for n in sorted(separating)]
         gaps = tuple(_gaps(exact, [c for c, _, _ in sides], meeting, reaches, check))
         found[count] = Walls(*_regions_by_count(exact.result, region_of, count), tuple(sides), tuple(tops), gaps)
     return found

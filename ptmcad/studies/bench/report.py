@@ -6,6 +6,7 @@ import json
 from dataclasses import asdict
 
 from ptmcad.studies.bench.suite import Report, Row, Summary
+from ptmcad.studies.tables import markdown, measured_with
 
 _HEADER = (
     "slice",
@@ -33,13 +34,9 @@ def to_markdown(report: Report) -> str:
         "",
         f"Floor: {_times(report.floor)} s. Rounds: {report.rounds}, seed {report.seed}{_date(report)}.",
         "",
-        _line(_HEADER),
-        _line(("---",) * len(_HEADER)),
-        *(_line(_cells(row)) for row in report.rows),
+        *markdown(_HEADER, map(_cells, report.rows)),
         "",
-        "Machine: " + "; ".join(f"{key} {value}" for key, value in report.machine.items()) + ".",
-        "",
-        "Versions: " + "; ".join(f"{key} {value}" for key, value in report.versions.items()) + ".",
+        *measured_with({"machine": report.machine, "versions": report.versions}),
     ]
     return "\n".join(lines) + "\n"
 
@@ -59,10 +56,6 @@ def _times(found: Summary | str) -> str:
     if isinstance(found, str):
         return found
     return f"{found.median:.3f} ({found.minimum:.3f}-{found.maximum:.3f})"
-
-
-def _line(cells: tuple[str, ...]) -> str:
-    return "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |"
 
 
 def _rounded(value: object) -> object:

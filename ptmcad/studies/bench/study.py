@@ -6,12 +6,12 @@ machine is the same whenever the study is made again with the same seed.
 
 from __future__ import annotations
 
-import statistics
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
 from ptmcad.studies.bench.error import MapError
+from ptmcad.studies.bench.rounds import Times
 from ptmcad.text.numerals import decimal
 
 FORMAT = "ptmcad-bench/1"
@@ -19,16 +19,6 @@ DIGITS = 6
 SEEN_SHARE = 0.99
 """A grid sees a region when it shows this share of it, at least, with its count."""
 Bounds = tuple[float, float]
-
-
-@dataclass(frozen=True, slots=True)
-class Times:
-    """Seconds of repeated runs."""
-
-    runs: int
-    median: float
-    minimum: float
-    maximum: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,11 +87,6 @@ class Study:
     verified: bool | None
     floor: Times
     measurements: tuple[Measurement, ...]
-
-
-def times(seconds: Sequence[float]) -> Times:
-    """Median and spread, rounded to 0.1 ms."""
-    return Times(len(seconds), *(round(x, 4) for x in (statistics.median(seconds), min(seconds), max(seconds))))
 
 
 def figures(error: MapError) -> Figures:

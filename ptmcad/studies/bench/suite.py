@@ -6,7 +6,6 @@ together and ratios can be taken pair by pair. A job that failed or ran out of t
 
 from __future__ import annotations
 
-import importlib.metadata
 import os
 import platform
 import random
@@ -16,23 +15,22 @@ import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from ptmcad.question import config
 from ptmcad.studies.bench import qepcad
 from ptmcad.studies.bench.process import Outcome, Usage, run
+from ptmcad.studies.bench.rounds import Times, ratio, rounds, times
+from ptmcad.studies.tables import installed
 
 FLOOR = (sys.executable, "-c", "import flint, numpy, click, yaml")
 PACKAGES = ("ptmcad", "python-flint", "numpy", "click", "PyYAML", "matplotlib", "sympy", "numba", "scipy", "gcad")
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
-    """Median and extremes of the runs of one job; the peak is the largest of all runs, in MiB."""
+class Summary(Times):
+    """The runs of one job: their wall and median processor seconds, and the largest peak of all, in MiB."""
 
-    runs: int
-    median: float
-    minimum: float
-    maximum: float
     processor: float
     peak: float
 
@@ -67,25 +65,23 @@ class Report:
     rows: tuple[Row, ...]
 
 
+class Plan(NamedTuple):
+    """How often each job runs, with JSON only and with pictures too; seconds for a run; the seed of their order."""
+
+    rounds: int = 5
+    picture_rounds: int = 2
+    timeout: float = 120.0
+    seed: int = 1
+
+
 def measure(
-    records: Sequence[Path],
-    *,
-    rounds: int = 5,
-    picture_rounds: int = 2,
-    timeout: float = 120.0,
-    seed: int = 1,
-    date: str = "",
-    progress: Callable[[str], None] = lambda _: None,
+    records: Sequence[Path], plan: Plan, *, date: str = "", progress: Callable[[str], None] = lambda _: None
 ) -> Report:
     """Run the benchmark.
 
     Parameters
     ----------
     records : problem records.
-    rounds : runs of each job.
-    picture_rounds : runs with pictures too.
-    timeout : seconds after which a run is killed and the job given up.
-    seed : of the order within a round.
     date : recorded as it is.
     progress : called before each round.
 
@@ -97,27 +93,28 @@ def measure(
     for path in records:
         config.load(path)
     with tempfile.TemporaryDirectory() as folder:
-        jobs = [_Job("floor", "", FLOOR, rounds, timeout)]
-        for path in records:
-            jobs.append(_Job("json", path.stem, _classify(path, "json", folder), rounds, timeout))
-            jobs.append(_Job("pictures", path.stem, _classify(path, "json,png,svg", folder), picture_rounds, timeout))
+        floor = _Job(FLOOR, plan.rounds, [])
+        texts = [_Job(_classify(path, "json", folder), plan.rounds, []) for path in records]
+        pictures = [_Job(_classify(path, "json,png,svg", folder), plan.picture_rounds, []) for path in records]
+        for path, job in zip(records, texts, strict=True):
             progress(f"warming up: {path.stem}")
-            run(jobs[-2].command, timeout=timeout)
-        run(FLOOR, timeout=timeout)
-        figures = _rounds(jobs, rounds, seed, progress)
-    floor = figures[jobs[0]]
-    rows = []
-    for path in records:
-        ours, pictures = (job for job in jobs if job.slice == path.stem)
-        rows.append(
-            Row(
-                name=path.stem,
-                text=summary(figures[ours]),
-                over_floor=_ratio(figures[ours], floor),
-                pictures=summary(figures[pictures]),
-            )
-        )
-    return Report(machine(), versions(), date, seed, rounds, summary(floor), tuple(rows))
+            run(job.command, timeout=plan.timeout)
+        run(FLOOR, timeout=plan.timeout)
+        jobs = [floor, *texts, *pictures]
+
+        def due(index: int) -> list[_Job]:
+            """A job that did not get through is not tried again."""
+            return [job for job in jobs if index < job.rounds and _got_through(job.runs)]
+
+        for index, turns in enumerate(rounds(max(job.rounds for job in jobs), due, random.Random(plan.seed))):
+            progress(f"round {index + 1}: {len(turns)} runs")
+            for job in turns:
+                job.runs.append(run(job.command, timeout=plan.timeout))
+    rows = tuple(
+        Row(path.stem, summary(text.runs), _over(text.runs, floor.runs), summary(drawn.runs))
+        for path, text, drawn in zip(records, texts, pictures, strict=True)
+    )
+    return Report(machine(), versions(), date, plan.seed, plan.rounds, summary(floor.runs), rows)
 
 
 def summary(runs: Sequence[Usage]) -> Summary | str:
@@ -128,15 +125,9 @@ def summary(runs: Sequence[Usage]) -> Summary | str:
         if usage.outcome is not Outcome.DONE:
             after = f" after {usage.seconds:.0f} s" if usage.outcome is Outcome.TIMED_OUT else ""
             return f"{usage.outcome.value}{after}{': ' + usage.message if usage.message else ''}"
-    seconds = [usage.seconds for usage in runs]
-    return Summary(
-        runs=len(runs),
-        median=statistics.median(seconds),
-        minimum=min(seconds),
-        maximum=max(seconds),
-        processor=statistics.median(usage.processor_seconds for usage in runs),
-        peak=max(usage.peak_mebibytes for usage in runs),
-    )
+    wall = times([usage.seconds for usage in runs])
+    processor = statistics.median(usage.processor_seconds for usage in runs)
+    return Summary(wall.runs, wall.median, wall.minimum, wall.maximum, processor, max(u.peak_mebibytes for u in runs))
 
 
 def machine() -> dict[str, str]:
@@ -156,12 +147,7 @@ def machine() -> dict[str, str]:
 
 def versions() -> dict[str, str]:
     """Versions of Python, of the packages and of QEPCAD."""
-    found = {"python": platform.python_version()}
-    for package in PACKAGES:
-        try:
-            found[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:
-            found[package] = "not installed"
+    found = {"python": platform.python_version(), **installed(PACKAGES)}
     where = qepcad.program()
     if where is None:
         found["qepcad"] = "not installed"
@@ -171,18 +157,12 @@ def versions() -> dict[str, str]:
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class _Job:
-    """A command that is run in the first `rounds` rounds."""
+class _Job(NamedTuple):
+    """A command that is run in the first rounds, and its runs so far."""
 
-    kind: str
-    slice: str
     command: tuple[str, ...]
     rounds: int
-    timeout: float
-
-    def run(self) -> Usage:
-        return run(self.command, timeout=self.timeout)
+    runs: list[Usage]
 
 
 def _classify(path: Path, formats: str, folder: str) -> tuple[str, ...]:
@@ -190,25 +170,12 @@ def _classify(path: Path, formats: str, folder: str) -> tuple[str, ...]:
     return (str(script), "classify", str(path), "--format", formats, "--out", folder)
 
 
-def _rounds(jobs: Sequence[_Job], rounds: int, seed: int, progress: Callable[[str], None]) -> dict[_Job, list[Usage]]:
-    """Run every job once a round; a job that did not get through is not tried again."""
-    figures: dict[_Job, list[Usage]] = {job: [] for job in jobs}
-    order = random.Random(seed)
-    for index in range(max(rounds, *(job.rounds for job in jobs))):
-        due = [job for job in jobs if index < job.rounds and _got_through(figures[job])]
-        progress(f"round {index + 1}: {len(due)} runs")
-        order.shuffle(due)
-        for job in due:
-            figures[job].append(job.run())
-    return figures
-
-
 def _got_through(runs: Sequence[Usage]) -> bool:
     return all(usage.outcome is Outcome.DONE for usage in runs)
 
 
-def _ratio(numerator: Sequence[Usage], denominator: Sequence[Usage]) -> float:
-    """Median of the ratios of the runs of the same round; 0 where there is none or either did not get through."""
-    if not numerator or not denominator or not _got_through([*numerator, *denominator]):
+def _over(runs: Sequence[Usage], floor: Sequence[Usage]) -> float:
+    """How many times the floor's a job's time is; 0 where either did not get through."""
+    if not runs or not floor or not _got_through([*runs, *floor]):
         return 0.0
-    return statistics.median(a.seconds / b.seconds for a, b in zip(numerator, denominator, strict=False))
+    return ratio([u.seconds for u in runs], [u.seconds for u in floor])

@@ -7,7 +7,6 @@ loaded the compiled code: wall and processor seconds, and the exact share of the
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
 from collections.abc import Sequence
@@ -17,9 +16,10 @@ from time import perf_counter, process_time
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.errors import LimitReached, PtmcadError
+from ptmcad.errors import LimitReached
 from ptmcad.options import Options
 from ptmcad.question.config import load
+from ptmcad.studies.bench.command import Command, save
 from ptmcad.studies.bench.suite import machine, versions
 
 FORMAT = "ptmcad-undetermined/2"
@@ -66,16 +66,14 @@ def measure(record: Path, finest: Fraction, timeout: float, jobs: int) -> dict[s
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, print, and write undetermined.json; the exit status is 0, or 2 for bad input."""
-    parser = argparse.ArgumentParser(
-        prog="python -m ptmcad.studies.bench.undetermined", description="Undetermined area against run time."
-    )
-    parser.add_argument("records", nargs="*", type=Path, help="problem records; default: configs/ with free lengths")
-    parser.add_argument("--out", type=Path, help="folder for undetermined.json")
-    parser.add_argument("--finest", type=Fraction, default=Fraction(1, 25600), help="tolerance (default 1/25600)")
-    parser.add_argument("--timeout", type=float, default=150.0, help="seconds for each run (default 150)")
-    parser.add_argument("--jobs", type=int, default=2, help="threads (default 2)")
-    chosen = parser.parse_args(arguments)
-    try:
+    command = Command("bench.undetermined", "Undetermined area against run time.", files="undetermined.json")
+    command.add_argument("records", nargs="*", type=Path, help="problem records; default: configs/ with free lengths")
+    command.add_argument("--finest", type=Fraction, default=Fraction(1, 25600), help="tolerance (default 1/25600)")
+    command.add_argument("--timeout", type=float, default=150.0, help="seconds for each run (default 150)")
+    command.add_argument("--jobs", type=int, default=2, help="threads (default 2)")
+    chosen = command.chosen(arguments)
+
+    def work() -> int:
         records = chosen.records or [p for p in sorted(Path("configs").glob("*.yaml")) if load(p).has_free_lengths]
         if records:
             measure(records[0], COARSEST, 60.0, chosen.jobs)  # loads the compiled code, or compiles it
@@ -83,19 +81,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for record in records:
             rows.append(measure(record, chosen.finest, chosen.timeout, chosen.jobs))
             print(json.dumps(rows[-1]), flush=True)
-        if chosen.out is not None:
-            data = {
-                "format": FORMAT,
-                "machine": machine(),
-                "versions": versions(),
-                "jobs": chosen.jobs,
-                "rows": rows,
-            }
-            (chosen.out / "undetermined.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
-    except (PtmcadError, OSError) as error:
-        print(f"python -m ptmcad.studies.bench.undetermined: {error}", file=sys.stderr)
-        return 2
-    return 0
+        found = {"format": FORMAT, "machine": machine(), "versions": versions(), "jobs": chosen.jobs, "rows": rows}
+        save(chosen.out, "undetermined", found)
+        return 0
+
+    return command.status(work)
 
 
 if __name__ == "__main__":

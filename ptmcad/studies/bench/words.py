@@ -18,6 +18,7 @@ from ptmcad.studies.bench.study import (
     main_figures,
     smallest_grid,
 )
+from ptmcad.studies.tables import columns, listed, markdown
 
 _NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "index"}
 CURVE_FORMAT = "ptmcad-error-time/1"
@@ -99,10 +100,7 @@ def terminal(study: Study) -> str:
     """The table in columns, and the sentences."""
     cells = [_HEADER, *rows(study)]
     # a reason stands in a column of times, and may be long
-    widths = [
-        max(len(row[k]) for row in cells if k != 2 or row[3] != "-" or row[5] != "-") for k in range(len(_HEADER))
-    ]
-    lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
+    lines = columns(cells, [row[3] == row[5] == "-" for row in cells])
     return "\n".join([*lines, *notes(study), "", *sentences(study)])
 
 
@@ -169,14 +167,14 @@ def page(studies: Sequence[Study]) -> str:
             lines += [f"![Error against seconds for {study.slice}]({study.slice}.bench.svg)", ""]
         said = sentences(study)
         lines += [f"- {s}" for s in said] + ([""] if said else [])
-        lines += [_line(_HEADER), _line(("---",) * len(_HEADER)), *(_line(row) for row in rows(study)), ""]
+        lines += [*markdown(_HEADER, rows(study)), ""]
         lines += [f"\\{note}  " for note in notes(study)] + ([""] if notes(study) else [])
     lines += [
         "## Machine",
         "",
-        "; ".join(f"{key} {value}" for key, value in first.machine.items()) + ".",
+        listed(first.machine),
         "",
-        "; ".join(f"{key} {value}" for key, value in first.versions.items()) + ".",
+        listed(first.versions),
         "",
         f"Seed {first.seed}; the reference job takes {first.floor.median:g} s ({first.floor.minimum:g}-"
         f"{first.floor.maximum:g}).",
@@ -189,7 +187,3 @@ def _checked(study: Study) -> str:
         return "There is no exact map of it: errors are the undetermined share, as the certified engine reports it."
     passed = "passed" if study.verified else "did NOT pass"
     return f"The exact map that errors are measured against {passed} `ptmcad verify`."
-
-
-def _line(cells: Sequence[str]) -> str:
-    return "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |"

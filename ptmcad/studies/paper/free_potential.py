@@ -15,7 +15,8 @@ from functools import lru_cache
 import sympy as sp
 
 from ptmcad.certified.formula import Formula, Graph, Operation
-from ptmcad.certified.mechanism import NAMES, mechanism
+from ptmcad.certified.ptm.statics import Angles, statics
+from ptmcad.mechanism import ptm
 from ptmcad.studies.paper.symbolic import (
     F3,
     F4,
@@ -35,6 +36,7 @@ from ptmcad.studies.paper.symbolic import (
     vanishes,
 )
 
+NAMES = ptm().variables
 LENGTHS = sp.symbols("l1 l2 l3", positive=True)
 l0 = sp.Symbol("l0", positive=True)
 
@@ -77,7 +79,7 @@ def engine_gradient() -> tuple[Expr, Expr]:
     """
     graph = Graph()
     variables = [graph.variable(n) for n in range(len(NAMES) + 2)]
-    formulas = mechanism(graph, dict(zip(NAMES, variables, strict=False)), variables[-2], variables[-1])
+    formulas = statics(dict(zip(NAMES, variables, strict=False)), Angles(variables[-2], variables[-1]))
     known: dict[int, Expr] = {v.number: _PARAMETERS[name] for v, name in zip(variables, NAMES, strict=False)}
     first, second = (sp.expand(_translated(e, known)) for e in formulas.equilibrium)
     return sp.expand(L1 * first), sp.expand(L2 * second)

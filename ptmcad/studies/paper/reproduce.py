@@ -16,9 +16,9 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
-from ptmcad.studies.paper.claim import Claim, Outcome, Verdict
+from ptmcad.studies.paper.claim import Claim, Verdict
 from ptmcad.studies.paper.claims import all_claims
-from ptmcad.studies.paper.pages import Illustration, claims_html, claims_markdown, index_html
+from ptmcad.studies.paper.pages import Illustration, Judged, claims_html, claims_markdown, index_html
 from ptmcad.studies.paper.slices import FIGURES, POINTS, parameters_at, region_map
 from ptmcad.version import __version__
 
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from ptmcad.answer.poses import Poses
 
 Progress = Callable[[str, int, int], None]
-Judged = tuple[Claim, Outcome]
 
 PICTURES = ("png", "svg")
 FILES = (

@@ -15,14 +15,10 @@ from itertools import pairwise
 
 from ptmcad.algebra.polynomials import (
     coefficients_in,
-    from_expression,
     from_fraction,
     from_plane,
     to_fraction,
     univariate,
-)
-from ptmcad.algebra.polynomials import (
-    evaluate as value_of,
 )
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, refine, simplest_between, squarefree_part
 from ptmcad.answer.regionmap import Component, MorseIndex, RegionMap, Solution
@@ -31,7 +27,7 @@ from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models import system_of
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import rational
+from ptmcad.text.parsing import rational
 
 Exact = str | int | Fraction
 """An exact number: text such as 3/2 stands for one."""
@@ -104,12 +100,8 @@ def curves(figure: str) -> tuple[Component, ...]:
 def parameters_at(figure: str, at: Mapping[str, Exact]) -> dict[str, Fraction]:
     """Every parameter of the mechanism at a point of a figure, which need not lie in its window."""
     wanted = slice_of(figure)
-    x, y = (from_fraction(rational(at[name])) for name in wanted.axis_names)
-    values = {}
-    for name, expression in wanted.parameters.items():
-        numerator, denominator = from_expression(expression)
-        values[name] = to_fraction(value_of(numerator, x, y) / value_of(denominator, x, y))
-    return values
+    x, y = (rational(at[name]) for name in wanted.axis_names)
+    return {name: expression.evaluate(x, y) for name, expression in wanted.parameters.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,14 +175,13 @@ def _bounds(end: Fraction | RealRoot) -> tuple[Fraction, Fraction]:
     return to_fraction(end.low), to_fraction(end.high)
 
 
-def ranges(figure: str, along: str, fixed: Exact, high: Exact | None = None) -> tuple[Range, ...]:
+def ranges(figure: str, along: str, fixed: Exact) -> tuple[Range, ...]:
     """The intervals of constant stable count along one axis of a figure, the other axis being fixed.
 
     Parameters
     ----------
     along : the name of the axis that varies, from the window's low end.
     fixed : the other axis's value, which may lie outside the window.
-    high : where the line ends, in place of the window's high end.
 
     Guarantee
     ---------
@@ -200,8 +191,7 @@ def ranges(figure: str, along: str, fixed: Exact, high: Exact | None = None) -> 
     number = map_.slice.axis_names.index(along)
     axis, other = map_.slice.axes[number], map_.slice.axes[1 - number]
     at = rational(fixed)
-    end = axis.high if high is None else rational(high)
-    span = (from_fraction(axis.low), from_fraction(end))
+    span = (from_fraction(axis.low), from_fraction(axis.high))
     # all components: what has no point in the window may have one on a line outside it
     traces = [univariate(coefficients_in(from_plane(c.polynomial), number), from_fraction(at)) for c in map_.components]
     common = traces[0]
@@ -209,7 +199,7 @@ def ranges(figure: str, along: str, fixed: Exact, high: Exact | None = None) -> 
         common = common * p
     roots = list(disjoint(isolate(squarefree_part(common), *span)))
     roots = [refine(r, from_fraction(FINENESS)) for r in roots]
-    ends: list[Fraction | RealRoot] = [axis.low, *roots, end]
+    ends: list[Fraction | RealRoot] = [axis.low, *roots, axis.high]
     found: list[Range] = []
     for a, b in pairwise(ends):
         sample = simplest_between(from_fraction(_bounds(a)[1]), from_fraction(_bounds(b)[0]))
@@ -222,7 +212,7 @@ def ranges(figure: str, along: str, fixed: Exact, high: Exact | None = None) -> 
     return tuple(found)
 
 
-def operation_range(figure: str, along: str, fixed: Exact, high: Exact | None = None) -> Range | None:
+def operation_range(figure: str, along: str, fixed: Exact) -> Range | None:
     """The only interval with two stable equilibria along a line; None when there is none.
 
     Raises
@@ -230,7 +220,7 @@ def operation_range(figure: str, along: str, fixed: Exact, high: Exact | None = 
     ArithmeticError
         When there are several.
     """
-    two = [r for r in ranges(figure, along, fixed, high) if r.stable == 2]
+    two = [r for r in ranges(figure, along, fixed) if r.stable == 2]
     if len(two) > 1:
         raise ArithmeticError(f"{len(two)} intervals with two stable equilibria at {fixed} in {figure}")
     return two[0] if two else None

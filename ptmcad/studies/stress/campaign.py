@@ -6,7 +6,6 @@ A run that was stopped by a time limit says so and keeps the cases that were don
 
 from __future__ import annotations
 
-import importlib.metadata
 import platform
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from ptmcad.process.extras import require_numba
 from ptmcad.studies.stress.case import Case
 from ptmcad.studies.stress.judgement import judge
 from ptmcad.studies.stress.measure import Outcome, run
+from ptmcad.studies.tables import installed
 from ptmcad.version import __version__
 
 PACKAGES = ("python-flint", "numpy", "numba")
@@ -87,18 +87,10 @@ def campaign(
         if progress is not None:
             progress(case.name, k, len(cases))
         outcomes.append(run(case, 1 if case.slow else repeats, judge))
-    return Campaign(tuple(outcomes), len(cases), seed, repeats, _machine(), _versions())
+    return Campaign(
+        tuple(outcomes), len(cases), seed, repeats, _machine(), {"ptmcad": __version__, **installed(PACKAGES)}
+    )
 
 
 def _machine() -> dict[str, str]:
     return {"system": platform.system(), "processor": platform.machine(), "python": platform.python_version()}
-
-
-def _versions() -> dict[str, str]:
-    found = {"ptmcad": __version__}
-    for name in PACKAGES:
-        try:
-            found[name] = importlib.metadata.version(name)
-        except importlib.metadata.PackageNotFoundError:
-            found[name] = "not installed"
-    return found

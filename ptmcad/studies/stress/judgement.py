@@ -16,6 +16,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Slice
+from ptmcad.studies.equilibria import angle_error, scale
 from ptmcad.studies.stress.case import (
     Case,
     LineAnswer,
@@ -25,7 +26,7 @@ from ptmcad.studies.stress.case import (
     PointAnswer,
     PointQuestion,
 )
-from ptmcad.studies.stress.doubles import DoublePose, angle_error, double_poses, scale
+from ptmcad.studies.stress.doubles import DoublePose, double_poses
 from ptmcad.studies.stress.measure import Verdict, as_float
 from ptmcad.studies.stress.reference import ReferencePose, newton_pose, sextic_poses
 from ptmcad.text.balls import exact
@@ -48,6 +49,11 @@ def judge(case: Case, found: Any) -> Verdict:
     raise TypeError(f"{case.name}: the expected answer is of another kind than the question")
 
 
+def _counts(poses: Sequence[DoublePose] | Sequence[ReferencePose]) -> tuple[int, int]:
+    """How many poses there are, and how many stable ones."""
+    return len(poses), sum(pose.index == 0 for pose in poses)
+
+
 def counts_text(total: int | None, stable: int | None) -> str:
     """Such as ``6/2``: equilibria and stable ones."""
     return f"{'?' if total is None else total}/{'?' if stable is None else stable}"
@@ -61,7 +67,7 @@ def _judge_point(question: PointQuestion, expected: PointAnswer, found: Poses) -
     double = double_poses(parameters)
     reference = _reference(parameters, found, double or ())
     total, stable = len(found.equilibria), found.stable
-    known = (len(reference), sum(r.index == 0 for r in reference))
+    known, seen = _counts(reference), _counts(double or ())
     remarks = []
     if found.status not in (Status.EXACT, Status.CERTIFIED):
         remarks.append(f"status {found.status.value}: {found.remark}")
@@ -81,10 +87,10 @@ def _judge_point(question: PointQuestion, expected: PointAnswer, found: Poses) -
     return Verdict(
         expected=counts_text(*(known if expected.total is None else (expected.total, expected.stable))),
         found=counts_text(total, stable) if found.equilibria else "undecided",
-        double="none" if double is None else counts_text(len(double), sum(p.index == 0 for p in double)),
+        double="none" if double is None else counts_text(*seen),
         right=not remarks,
         remarks=tuple(remarks),
-        double_right=double is not None and (len(double), sum(p.index == 0 for p in double)) == known,
+        double_right=double is not None and seen == known,
         error=as_float(error),
         double_error=_double_error(double or (), reference),
         condition=_condition(parameters, found.equilibria),
@@ -217,8 +223,7 @@ def _values(slice: Slice, x: Fraction, y: Fraction) -> dict[str, Fraction]:
 
 
 def _counts_of(slice: Slice, at: Sequence[Fraction]) -> tuple[int, int]:
-    poses = sextic_poses(_values(slice, at[0], at[1]))
-    return len(poses), sum(p.index == 0 for p in poses)
+    return _counts(sextic_poses(_values(slice, at[0], at[1])))
 
 
 def _double_on_grid(found: RegionMap) -> tuple[float, set[int]]:
@@ -234,7 +239,7 @@ def _double_on_grid(found: RegionMap) -> tuple[float, set[int]]:
             if truth.stable is None:
                 continue
             double = double_poses(_values(found.slice, *at))
-            count = -1 if double is None else sum(p.index == 0 for p in double)
+            count = -1 if double is None else _counts(double)[1]
             seen.add(count)
             decided += 1
             wrong += count != truth.stable
@@ -258,8 +263,7 @@ def _judge_line(question: LineQuestion, expected: LineAnswer, found: CountInterv
     width = found.along.high - found.along.low
     for interval in found.intervals:
         values = {name: e.evaluate(interval.sample, Fraction(0)) for name, e in found.parameters.items()}
-        poses = sextic_poses(values)
-        if (len(poses), sum(p.index == 0 for p in poses)) != (interval.total, interval.stable):
+        if _counts(sextic_poses(values)) != (interval.total, interval.stable):
             remarks.append("the second method finds other counts at an interval's sample")
     double, changes = _double_on_line(found)
     middles = [(lower(e) + upper(e)) / 2 for e in ends]
@@ -290,7 +294,7 @@ def _double_on_line(found: CountIntervals) -> tuple[tuple[int, ...], list[Fracti
     for k in range(STEPS):
         at = along.low + step * Fraction(2 * k + 1, 2)
         poses = double_poses({name: e.evaluate(at, Fraction(0)) for name, e in found.parameters.items()})
-        count = -1 if poses is None else sum(p.index == 0 for p in poses)
+        count = -1 if poses is None else _counts(poses)[1]
         if counts and counts[-1] == count:
             continue
         if counts:

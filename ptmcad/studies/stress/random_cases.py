@@ -17,7 +17,7 @@ from ptmcad.studies.stress.constructions import Degenerate as DegeneratePose
 from ptmcad.studies.stress.constructions import beside_cusp, beside_fold, cusp, fold, rational_pose
 from ptmcad.studies.stress.points import CONSTRUCTED, ten
 from ptmcad.studies.stress.reference import Degenerate, sextic_poses
-from ptmcad.text.syntax import Tree
+from ptmcad.text.tree import Tree
 
 KINDS = ("scaled", "mirrored", "swapped", "fold", "cusp")
 MAX_EXPONENT = 30

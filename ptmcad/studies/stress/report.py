@@ -15,6 +15,8 @@ from typing import Any
 from ptmcad.studies.stress.campaign import MAX_COST, Campaign
 from ptmcad.studies.stress.case import Case, LineQuestion, MapQuestion
 from ptmcad.studies.stress.measure import Outcome
+from ptmcad.studies.tables import columns
+from ptmcad.studies.tables import markdown as table_of
 from ptmcad.text.numerals import shortest_text
 
 HEADINGS = ("case", "known", "ptmcad", "double", "double's error", "condition", "bits", "ms", "x tame")
@@ -43,9 +45,7 @@ def cells(outcome: Outcome) -> tuple[str, ...]:
 
 def table(campaign: Campaign) -> str:
     """The campaign as a table for a terminal, with a summary below."""
-    rows = [HEADINGS, *map(cells, campaign.outcomes)]
-    widths = [max(len(row[k]) for row in rows) for k in range(len(HEADINGS))]
-    lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows]
+    lines = columns([HEADINGS, *map(cells, campaign.outcomes)])
     return "\n".join([*lines, "", *summary(campaign)])
 
 
@@ -65,16 +65,10 @@ def markdown(campaign: Campaign) -> str:
         "[What is tried, and what the columns mean](../stress.md).",
     ]
     for family in dict.fromkeys(o.case.family for o in campaign.outcomes):
-        lines += ["", f"## {family[0].upper()}{family[1:]}", "", _row(names), _row(["---"] * len(names))]
-        for outcome in campaign.outcomes:
-            if outcome.case.family == family:
-                row = cells(outcome)
-                lines.append(_row([*(row[k] for k in kept), f"{outcome.cost.work_ratio:.2g}"]))
+        chosen = [(cells(o), o) for o in campaign.outcomes if o.case.family == family]
+        rows = [[*(row[k] for k in kept), f"{o.cost.work_ratio:.2g}"] for row, o in chosen]
+        lines += ["", f"## {family[0].upper()}{family[1:]}", "", *table_of(names, rows)]
     return "\n".join(lines) + "\n"
-
-
-def _row(texts: Sequence[str]) -> str:
-    return f"| {' | '.join(texts)} |"
 
 
 def summary(campaign: Campaign) -> Iterable[str]:
@@ -96,11 +90,7 @@ def summary(campaign: Campaign) -> Iterable[str]:
 
 def listing(cases: Sequence[Case]) -> str:
     """Name, family, question and source of each case."""
-    rows = [(c.name, c.family, question_text(c), c.source) for c in cases]
-    widths = [max((len(row[k]) for row in rows), default=0) for k in range(3)]
-    return "\n".join(
-        "  ".join([*(cell.ljust(w) for cell, w in zip(row, widths, strict=False)), row[3]]) for row in rows
-    )
+    return "\n".join(columns([(c.name, c.family, question_text(c), c.source) for c in cases]))
 
 
 def question_text(case: Case) -> str:

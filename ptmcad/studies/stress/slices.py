@@ -41,10 +41,10 @@ def _scaled_maps() -> Iterator[Case]:
         )
     for e in (-9, 9):
         s = ten(e)
-        question = MapQuestion({"L1": s, "F3": -10 * s, "F4": -10 * s}, _window(rho=(ZERO, 2 * s), L2=(ZERO, 2 * s)))
+        question = MapQuestion({"L1": s, "F3": -10 * s, "F4": -10 * s}, dict(rho=(ZERO, 2 * s), L2=(ZERO, 2 * s)))
         area = (FIG4_AREA[0] * s * s, FIG4_AREA[1] * s * s)
         yield Case(f"map-units-length-1e{e}", "maps", s, question, FIG4, MapAnswer((1, 2), area), f"{SCALING}: {PAPER}")
-        unloaded = MapQuestion({"L1": s}, _window(L2=(ZERO, 4 * s), rho=(ZERO, 4 * s)))
+        unloaded = MapQuestion({"L1": s}, dict(L2=(ZERO, 4 * s), rho=(ZERO, 4 * s)))
         area = (Fraction(7, 2) * s * s,) * 2
         yield Case(f"map-unloaded-length-1e{e}", "maps", s, unloaded, FIG2, MapAnswer((1, 1, 1, 2), area), THEOREM)
 
@@ -61,7 +61,7 @@ def _limits() -> Iterator[Case]:
     )
     for e in (9, 30):
         s = ten(e)
-        question = MapQuestion(LOADED, _window(rho=(ZERO, s), L2=(ZERO, s)))
+        question = MapQuestion(LOADED, dict(rho=(ZERO, s), L2=(ZERO, s)))
         # with f = (F3 + F4)/k = -1/5 the strip has the width (1 - (1/5)^(2/3))^(3/2) = 0.53375 but at its beginning
         strip = (s * Fraction("0.533"), s * Fraction("0.5345"))
         yield Case(f"map-window-1e{e}", "maps", s, question, FIG4, MapAnswer((1, 2), strip), ASTROID, slow=e > 9)
@@ -78,7 +78,7 @@ def _tiny_windows() -> Iterator[Case]:
         ("fold", FOLD, beside_fold, ("F3", "rho")), ("cusp", CUSP, beside_cusp, ("F4", "F4x")),
     ):  # fmt: skip
         p = dict(at.parameters)
-        wide = _window(F3=(p["F3"] - 10, p["F3"] + 10), rho=(ZERO, TWO))
+        wide = dict(F3=(p["F3"] - 10, p["F3"] + 10), rho=(ZERO, TWO))
         if name == "cusp":
             wide = _around(Fraction(10), F4=p["F4"], F4x=p["F4x"])
         tame = MapQuestion(_without(p, axes), wide)
@@ -96,10 +96,8 @@ def _tiny_windows() -> Iterator[Case]:
 
 def _certified_maps() -> Iterator[Case]:
     share = Fraction(1, 10)
-    window = _window(rho=(Fraction(1, 2), TWO), L2=(Fraction(1, 2), TWO))
-    sibling = MapQuestion(
-        {**LOADED, "l0": Fraction(1, 5)}, _window(rho=(Fraction(1, 2), TWO), L2=(Fraction(1, 2), TWO)), share
-    )
+    window = dict(rho=(Fraction(1, 2), TWO), L2=(Fraction(1, 2), TWO))
+    sibling = MapQuestion({**LOADED, "l0": Fraction(1, 5)}, window, share)
     for e in (-12, 12):
         s = ten(e)
         question = MapQuestion({"k": 100 * s, "F3": -10 * s, "F4": -10 * s, "l0": Fraction(1, 5)}, window, share)
@@ -112,35 +110,30 @@ def _certified_maps() -> Iterator[Case]:
 
 
 def _lines() -> Iterator[Case]:
-    window = _window(rho=(ZERO, TWO), L2=(ZERO, TWO))
-    tame = LineQuestion(LOADED, window, "rho", {"L2": Fraction(3, 2)})
+    tame = LineQuestion(LOADED, SQUARE, "rho", {"L2": Fraction(3, 2)})
     ends = ((Fraction("0.498130"), Fraction("0.498132")), (Fraction("1.041432"), Fraction("1.041434")))
     paper = "scaling: the paper's range at L2 = 3/2, known by two other programs"
     for e in (-12, 12):
         s = ten(e)
-        question = LineQuestion({"k": 100 * s, "F3": -10 * s, "F4": -10 * s}, window, "rho", {"L2": Fraction(3, 2)})
+        question = LineQuestion({"k": 100 * s, "F3": -10 * s, "F4": -10 * s}, SQUARE, "rho", {"L2": Fraction(3, 2)})
         yield Case(f"line-units-force-1e{e}", "lines", s, question, tame, LineAnswer((1, 2, 1), ends), paper)
     for e in (-9, 9):
         s = ten(e)
-        question = LineQuestion({"L1": s, "F3": -10 * s, "F4": -10 * s}, _window(rho=(ZERO, 2 * s), L2=(ZERO, 2 * s)),
+        question = LineQuestion({"L1": s, "F3": -10 * s, "F4": -10 * s}, dict(rho=(ZERO, 2 * s), L2=(ZERO, 2 * s)),
                                 "rho", {"L2": 3 * s / 2})  # fmt: skip
         scaled = tuple((low * s, high * s) for low, high in ends)
         yield Case(f"line-units-length-1e{e}", "lines", s, question, tame, LineAnswer((1, 2, 1), scaled), paper)
-    straight = LineQuestion({}, window, "rho", {"L2": Fraction(3, 2)})
+    straight = LineQuestion({}, SQUARE, "rho", {"L2": Fraction(3, 2)})
     for e in (-20, -30):
         second = 1 + ten(e)
-        question = LineQuestion({}, window, "rho", {"L2": second})
+        question = LineQuestion({}, SQUARE, "rho", {"L2": second})
         exact = ((ten(e) / 2,) * 2, ((second + 1) / 2,) * 2)
         answer = LineAnswer((1, 2, 1), exact)
         yield Case(f"line-symmetry-1e{e}", "lines", ten(e), question, straight, answer, THEOREM)
     digits = Fraction(1234567891234567891234567891234567891234, 10**40)
-    question = LineQuestion({}, window, "rho", {"L2": 1 + digits})
+    question = LineQuestion({}, SQUARE, "rho", {"L2": 1 + digits})
     exact = ((digits / 2,) * 2, ((2 + digits) / 2,) * 2)
     yield Case("line-digits-40", "lines", ten(40), question, straight, LineAnswer((1, 2, 1), exact), THEOREM)
-
-
-def _window(**axes: tuple[Fraction, Fraction]) -> dict[str, tuple[Fraction, Fraction]]:
-    return dict(axes)
 
 
 def _around(half: Fraction, **middle: Fraction) -> dict[str, tuple[Fraction, Fraction]]:

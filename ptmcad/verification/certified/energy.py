@@ -1,4 +1,4 @@
-"""The energy's derivatives in balls of Arb, for springs with free lengths: written down once more, with square roots.
+"""The energy's derivatives in balls of Arb, for springs with free lengths: square roots of what the description says.
 
 Guarantee: every ball contains the exact value at each configuration and for all parameters in the balls given; where a
 spring may have length zero, its direction is any unit vector and nothing is claimed of second derivatives.
@@ -7,42 +7,41 @@ A *crease* is a circle of configurations in which a spring with a free length ha
 th1 = 0 where rho = L1, th1 + th2 = pi where rho = 0 and L1 = L2. The energy is smooth on either side of it and can be
 continued across it from each side, but the two continuations differ. `Energy.one_sided` gives them.
 
-With q_i the square of a spring's length l_i, m_i = k_i - k_i l0_i / l_i and the loads F:
+The energy of springs without free lengths and of the loads, and the square q of a spring's length l, are sums of waves
+(`ptmcad.verification.certified.vectors`). A free length l0 adds -k l0 l and a constant, with derivatives by
 
-    q1 = (rho - L2)^2 + 4 rho L2 sin^2(th2/2),    q2 = (rho - L1)^2 + 4 rho L1 sin^2(th1/2),
-    q3 = x^2 + y^2,   x = rho - L1 c1 - L2 c2,   y = L2 s2 - L1 s1,
-    a = (dq3/dth1)/(2 L1) = rho s1 - L2 s12,      b = (dq3/dth2)/(2 L2) = rho s2 - L1 s12,
-    e1 = (dU/dth1)/L1 = m2 rho s1 + m3 a - F3 c1 + F3x s1,   e2 = (dU/dth2)/L2 = m1 rho s2 + m3 b - F4 c2 - F4x s2.
+    l_i = q_i/(2 l),    l_ij = (q_ij/2 - l_i l_j)/l.
 
-The second engine has unit vectors instead of the roots, and differentiates a graph of formulas.
+Derivatives are divided by the lengths of the bars that the angles turn. The second engine has unit vectors instead of
+the roots, and differentiates a graph of formulas.
 """
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
-from flint import arb
+from flint import arb, arb_mat
 
-from ptmcad.verification.derivation import MECHANISM
+from ptmcad.verification.certified.vectors import BARS, CROSSING, ORDER, ROWS, SPRINGS, Spring, Terms, evaluated
 
-NAMES = MECHANISM.variables
 Pair = tuple[arb, arb]
-Sides = tuple[int, int, int]
+Sides = tuple[int, ...]
 """For each spring the side of its crease: 1 or -1, or 0 for the side that the balls are on."""
 _ANY = arb(0, 1)
+_CROSSING = SPRINGS.index(CROSSING)
 
 
-@dataclass(frozen=True, slots=True)
-class Derivatives:
-    """First derivatives e1, e2 as above, and e11 = de1/dth1, e12 = de1/dth2, e21 = de2/dth1, e22 = de2/dth2.
+class Derivatives(NamedTuple):
+    """First derivatives by the angles over the bars' lengths, e1 and e2, and e11, e12, e21, e22, those of e1 and e2.
 
     Attributes
     ----------
-    short : the number (1, 2, 3) of a spring that may have length zero, else 0; then second derivatives are meaningless.
-    rest : e1 and e2 without the free length of spring 3, when spring 3 may have length zero.
-    bare : e2 or e1 without the free length of spring 1 or 2, when ``short`` is its number.
+    rest : e1 and e2 without the free length of the spring between the bars.
+    short : numbers of the springs that may have length zero; if there are any, second derivatives are meaningless.
+    bare : where the first of them is turned by one angle, and the one between the bars is not among them, the first
+        derivative by this angle without the spring's free length, and the second derivative of half its square.
     """
 
     e1: arb
@@ -51,9 +50,39 @@ class Derivatives:
     e12: arb
     e21: arb
     e22: arb
-    short: int
-    rest: Pair | None = None
-    bare: arb | None = None
+    short: tuple[int, ...]
+    rest: Pair
+    bare: Pair | None = None
+
+    @property
+    def crossing(self) -> bool:
+        """Whether the spring between the bars may have length zero."""
+        return _CROSSING in self.short
+
+
+class _Pull(NamedTuple):
+    """A spring at given parameters."""
+
+    number: int
+    spring: Spring
+    free: arb
+    pull: arb
+    zero: arb
+    gap: arb
+    product: arb
+    root: arb
+    crease: bool
+    side: int
+    row: int
+
+    @property
+    def pulls(self) -> bool:
+        # a ball that is not exactly zero: != would ask for one without zero
+        return not (self.pull == 0)  # noqa: SIM201
+
+    def crease_at(self, one: arb, two: arb) -> arb:
+        """What vanishes on the crease."""
+        return ((one + two) / 2).cos() if self.spring.angle is None else ((one, two)[self.spring.angle] / 2).sin()
 
 
 class Energy:
@@ -61,128 +90,130 @@ class Energy:
 
     Parameters
     ----------
-    values : a ball for each of `NAMES`; lengths and stiffnesses positive, free lengths not negative.
-    crease1, crease2 : whether rho = L2, rho = L1 hold exactly; spring 1, 2 then has length zero at th2 = 0, th1 = 0.
-    crease3 : whether rho = 0 and L1 = L2 hold exactly; spring 3 then has length zero at th1 + th2 = pi.
+    values : a ball for each parameter in the energy; lengths and stiffnesses positive, free lengths not negative.
+    creases : for each spring, whether it has surely length zero on a circle; none has where nothing is said.
     sides : the sides of the creases whose formulas are continued across them.
     """
 
-    def __init__(
-        self,
-        values: Mapping[str, arb],
-        crease1: bool = False,
-        crease2: bool = False,
-        crease3: bool = False,
-        sides: Sides = (0, 0, 0),
-    ):
-        self.values = dict(values)
-        self.length1, self.length2, self.rho = values["L1"], values["L2"], values["rho"]
-        self.k1, self.k2, self.k3 = values["k1"], values["k2"], values["k3"]
-        self.p1, self.p2, self.p3 = (values[f"k{i}"] * values[f"l0_{i}"] for i in (1, 2, 3))
-        self.f3, self.f4, self.f3x, self.f4x = values["F3"], values["F4"], values["F3x"], values["F4x"]
-        self.crease1, self.crease2, self.crease3, self.sides = crease1, crease2, crease3, sides
-        zero = arb(0) if crease1 else self.rho - self.length2
-        self.gap1 = zero * zero
-        zero = arb(0) if crease2 else self.rho - self.length1
-        self.gap2 = zero * zero
-        self.product1, self.product2 = 4 * self.rho * self.length2, 4 * self.rho * self.length1
-        # a ball that is not exactly zero: != would ask for one without zero
-        self.free1, self.free2, self.free3 = (not (p == 0) for p in (self.p1, self.p2, self.p3))  # noqa: SIM201
+    def __init__(self, values: Mapping[str, arb], creases: tuple[bool, ...] = (), sides: Sides = ()):
+        self.values, self.creases = dict(values), creases or (False,) * len(SPRINGS)
+        self.bars = tuple(self._value(b) for b in BARS)
+        self.springs: list[_Pull] = []
+        rows = [*ROWS]
+        for number, (spring, crease, side) in enumerate(
+            zip(SPRINGS, self.creases, sides or (0,) * len(SPRINGS), strict=True)
+        ):
+            free, zero, product = self._value(spring.free), self._value(spring.zero), self._value(spring.product)
+            zero = arb(0) if crease else zero
+            pull = self._value(spring.stiffness) * free
+            root = arb(1) if spring.angle is None else product.sqrt() / (2 * self.bars[spring.angle])
+            new = _Pull(number, spring, free, pull, zero, zero * zero, product, root, crease, side, len(rows))
+            self.springs.append(new)
+            if new.pulls:
+                rows += spring.rows if spring.angle is None else spring.rows[spring.angle : 4 : 2]
+        self.turned = [s for s in self.springs if s.pulls and s.spring.angle is not None]
+        self.between = self.springs[_CROSSING]
+        zero = arb(0)
+        self._matrix = arb_mat(
+            [[self._value(row[key]) if key in row else zero for key in (((0, 0), 0), *ORDER)] for row in rows]
+        )
 
-    def __call__(self, th1: arb, th2: arb) -> Derivatives:
+    def _value(self, terms: Terms) -> arb:
+        return arb(evaluated(terms, self.values))
+
+    def _rows(self, one: arb, two: arb) -> list[arb]:
+        """The sums of waves that the derivatives are made of."""
+        s1, c1 = one.sin_cos()
+        s2, c2 = two.sin_cos()
+        s12, c12 = (one + two).sin_cos()
+        rows: list[arb] = (self._matrix * arb_mat(7, 1, [_ONE, c1, s1, c2, s2, c12, s12])).entries()
+        return rows
+
+    def __call__(self, one: arb, two: arb) -> Derivatives:
         """At all configurations in two balls."""
-        rho, length1, length2, k3 = self.rho, self.length1, self.length2, self.k3
-        s1, c1 = th1.sin_cos()
-        s2, c2 = th2.sin_cos()
-        s12, c12 = (th1 + th2).sin_cos()
-        rs1, rs2, rc1, rc2 = rho * s1, rho * s2, rho * c1, rho * c2
-        a, b = rs1 - length2 * s12, rs2 - length1 * s12
-        ac, bc = rc1 - length2 * c12, rc2 - length1 * c12
-        k3c12 = k3 * c12
-        e1 = self.k2 * rs1 + k3 * a - self.f3 * c1 + self.f3x * s1
-        e2 = self.k1 * rs2 + k3 * b - self.f4 * c2 - self.f4x * s2
-        e11 = self.k2 * rc1 + k3 * ac + self.f3 * s1 + self.f3x * c1
-        e22 = self.k1 * rc2 + k3 * bc + self.f4 * s2 - self.f4x * c2
-        e12, e21 = -(length2 * k3c12), -(length1 * k3c12)
-        short = 0
-        if self.free2:
-            slope, bend = self._turning(th1, rs1, rc1, length1, self.gap2, self.product2, self.crease2, self.sides[1])
+        rows = self._rows(one, two)
+        slopes, bends = rows[:2], rows[2:4]
+        length1, length2 = self.bars
+        short, bare = [], None
+        for s in self.turned:
+            k = s.spring.angle or 0
+            slope, bend = self._turning(s, (one, two)[k], rows[s.row], rows[s.row + 1])
             if bend is None:
-                short = 2
+                bare = bare or (slopes[k], rows[s.row + 1])
+                short.append(s.number)
             else:
-                e1 -= self.p2 * slope
-                e11 -= self.p2 * bend
-        if self.free1:
-            slope, bend = self._turning(th2, rs2, rc2, length2, self.gap1, self.product1, self.crease1, self.sides[0])
-            if bend is None:
-                e1 -= self.p2 * (_ANY if short == 2 else 0)
-                short = 1
-            else:
-                e2 -= self.p1 * slope
-                e22 -= self.p1 * bend
-        if not self.free3:
-            return self._finished(e1, e2, e11, e12, e21, e22, short)
-        if self.crease3:
-            # l3 = 2 L |cos((th1 + th2)/2)|, L = L1 = L2
-            s, c = ((th1 + th2) / 2).sin_cos()
-            side = _side(c, self.sides[2])
+                bends[k] -= s.pull * bend
+            slopes[k] -= s.pull * slope
+        e12, e21, rest = length2 * rows[4], length1 * rows[4], (slopes[0], slopes[1])
+        s = self.between
+        if not s.pulls:
+            return Derivatives(*rest, bends[0], e12, e21, bends[1], tuple(short), rest, bare)
+        if s.crease:
+            # l = 2 L |cos((one + two)/2)|, both bars being of length L
+            sine, cosine = ((one + two) / 2).sin_cos()
+            side = _side(cosine, s.side)
             if side:
-                slope, bend = self.p3 * side * s, self.p3 * side * c / 2
-                return self._finished(e1 + slope, e2 + slope, e11 + bend, e12 + bend, e21 + bend, e22 + bend, short)
-        x, y = rho - length1 * c1 - length2 * c2, length2 * s2 - length1 * s1
-        q3 = x * x + y * y
-        if not q3 > 0:
-            if short:
-                d = self._finished(e1, e2, e11, e12, e21, e22, short)
-                e1, e2 = d.e1, d.e2
-            pull = self.p3 * _ANY
-            return Derivatives(e1 - pull, e2 - pull, e11, e12, e21, e22, short or 3, (e1, e2))
-        inverse = q3.rsqrt()
+                slope, bend = s.pull * side * sine, s.pull * side * cosine / 2
+                return Derivatives(slopes[0] + slope, slopes[1] + slope, bends[0] + bend, e12 + bend, e21 + bend,
+                                   bends[1] + bend, tuple(short), rest, bare)  # fmt: skip
+        q = rows[5] * rows[5] + rows[6] * rows[6]
+        if not q > 0:
+            pull = s.pull * _ANY
+            return Derivatives(
+                slopes[0] - pull, slopes[1] - pull, bends[0], e12, e21, bends[1], (*short, s.number), rest
+            )  # fmt: skip
+        a, b, a1, b2, mixed = rows[s.row : s.row + 5]
+        inverse = q.rsqrt()
         u, v = unit(a * inverse), unit(b * inverse)
-        pull = self.p3 * inverse
-        e1 -= self.p3 * u
-        e2 -= self.p3 * v
-        mixed = c12 + u * v
-        e11 -= pull * (ac - length1 * (u * u))
-        e22 -= pull * (bc - length2 * (v * v))
-        e12 += length2 * (pull * mixed)
-        e21 += length1 * (pull * mixed)
-        return self._finished(e1, e2, e11, e12, e21, e22, short)
+        pull = s.pull * inverse
+        cross = rows[4] - pull * (mixed - u * v)
+        return Derivatives(
+            slopes[0] - s.pull * u, slopes[1] - s.pull * v, bends[0] - pull * (a1 - length1 * (u * u)),
+            length2 * cross, length1 * cross, bends[1] - pull * (b2 - length2 * (v * v)), tuple(short), rest, bare,
+        )  # fmt: skip
 
-    def _finished(self, e1: arb, e2: arb, e11: arb, e12: arb, e21: arb, e22: arb, short: int) -> Derivatives:
-        """With any pull of a spring that may have length zero."""
-        if short == 1:
-            return Derivatives(e1, e2 - self.p1 * _ANY, e11, e12, e21, e22, short, None, e2)
-        if short == 2:
-            return Derivatives(e1 - self.p2 * _ANY, e2, e11, e12, e21, e22, short, None, e1)
-        return Derivatives(e1, e2, e11, e12, e21, e22, short)
-
-    def _turning(
-        self, angle: arb, rs: arb, rc: arb, bar: arb, gap: arb, product: arb, crease: bool, given: int
-    ) -> tuple[arb, arb | None]:
-        """(dl/dth)/L and its derivative for the spring between a fixed point and the end of one bar of length L.
+    def _turning(self, s: _Pull, angle: arb, slope: arb, bend: arb) -> tuple[arb, arb | None]:
+        """(dl/dth)/L and its derivative, from those of l^2/2, for a spring that one angle turns, on a bar of length L.
 
         On a crease l = 2 L |sin(th/2)|, of one sign on a side; these formulas are used on the side that is given, or
         that the angle's ball is on.
         """
-        half = angle / 2
-        s, c = half.sin_cos()
-        if crease:
-            side = _side(s, given)
-            return (side * c, -side * s / 2) if side else (_ANY, None)
-        q = gap + product * (s * s)
-        if q > 0:
-            inverse = q.rsqrt()
-            slope = unit(rs * inverse)
-            return slope, inverse * (rc - bar * (slope * slope))
-        return _ANY, None
+        bar = self.bars[s.spring.angle or 0]
+        sine, cosine = (angle / 2).sin_cos()
+        if s.crease:
+            side = _side(sine, s.side)
+            return (side * cosine, -side * sine / 2) if side else (_ANY, None)
+        wave = s.product * (sine * sine)
+        if wave > s.gap:
+            # the same without the quotient of two numbers that vary with the sine
+            short = (1 + s.gap / wave).rsqrt()
+            turned, inverse = cosine * s.root * short, short * wave.rsqrt()
+            turned = unit(turned if sine > 0 else -turned)
+        elif s.gap + wave > 0:
+            inverse = (s.gap + wave).rsqrt()
+            turned = unit(slope * inverse)
+        else:
+            return _ANY, None
+        return turned, inverse * (bend - bar * (turned * turned))
 
     @property
     def creased(self) -> bool:
         """Whether a spring with a free length has no length on a circle."""
-        return (self.crease1 and self.free1) or (self.crease2 and self.free2) or (self.crease3 and self.free3)
+        return any(s.crease and s.pulls for s in self.springs)
 
-    def one_sided(self, th1: arb, th2: arb) -> list[Energy]:
+    def resolution(self, smallest: float) -> tuple[float, float]:
+        """Half widths of the smallest squares worth looking at: small, also against a spring's length next to a crease.
+
+        A spring that one angle turns, if it is that short, turns once around while the angle changes by about its
+        length over the bar's.
+        """
+        sizes = [smallest, smallest]
+        for s in self.turned:
+            k = s.spring.angle or 0
+            sizes[k] = min(smallest, float(s.zero.abs_lower() / self.bars[k]) / 256 or smallest)
+        return sizes[0], sizes[1]
+
+    def one_sided(self, one: arb, two: arb) -> list[Energy]:
         """The energies that are continued across the creases that the balls meet, from either side; else nothing.
 
         A smooth equilibrium in the balls is one of at least one of them. The converse does not hold: a continuation may
@@ -190,73 +221,61 @@ class Energy:
         """
         if not self.creased:
             return []
-        choices = [
-            (1, -1) if crease and free and value.contains(0) else (0,)
-            for crease, free, value in (
-                (self.crease1, self.free1, (th2 / 2).sin()),
-                (self.crease2, self.free2, (th1 / 2).sin()),
-                (self.crease3, self.free3, ((th1 + th2) / 2).cos()),
-            )
-        ]
-        ways = list(itertools.product(*choices))
-        if len(ways) == 1:
-            return []
-        creases = self.crease1, self.crease2, self.crease3
-        return [Energy(self.values, *creases, (one, two, three)) for one, two, three in ways]
+        ways = list(itertools.product(*(
+            (1, -1) if s.crease and s.pulls and s.crease_at(one, two).contains(0) else (0,) for s in self.springs
+        )))  # fmt: skip
+        return [Energy(self.values, self.creases, sides) for sides in ways] if len(ways) > 1 else []
 
-    def cone(self, th1: arb, th2: arb) -> arb:
-        """w1^2 + w2^2 + 2 w1 w2 c12 - (p3 s12)^2, zero at an equilibrium, whatever the direction of spring 3.
+    def cone(self, one: arb, two: arb, d: Derivatives) -> arb:
+        """w1^2 + w2^2 - 2 w1 w2 g - p^2 (1 - g^2), zero at an equilibrium, whatever the crossing spring's direction.
 
-        With w1, w2 what e1, e2 are without the free length of spring 3, an equilibrium demands w_i = p3 t_i . u for a
-        unit vector u, with t1 . t2 = -c12; eliminating u: w1^2 + w2^2 + 2 w1 w2 c12 = p3^2 s12^2. Where l3 = 0, the
-        cone outweighs the slope of the rest when this is negative.
+        With w1, w2 what e1, e2 are without the free length of the spring between the bars, an equilibrium demands
+        w_i = p t_i . u for a unit vector u, with unit vectors t1 . t2 = g; the formula is what eliminating u leaves.
+        Where the spring has no length, the cone outweighs the slope of the rest when this is negative.
         """
-        derivatives = _without_third(self)(th1, th2)
-        w1, w2 = derivatives.e1, derivatives.e2
-        s12, c12 = (th1 + th2).sin_cos()
-        one = w1 + c12 * w2
-        return one * one + s12 * s12 * (w2 * w2 - self.p3 * self.p3)
+        w1, w2 = d.rest
+        sine, cosine = (one + two).sin_cos()
+        first, pull = w1 + cosine * w2, self.between.pull
+        return first * first + sine * sine * (w2 * w2 - pull * pull)
 
-    def lengths_squared(self, th1: arb, th2: arb) -> tuple[arb, arb, arb]:
-        """q1, q2, q3."""
-        s1, c1 = th1.sin_cos()
-        s2, c2 = th2.sin_cos()
-        h1, h2 = (th1 / 2).sin(), (th2 / 2).sin()
-        x = self.rho - self.length1 * c1 - self.length2 * c2
-        y = self.length2 * s2 - self.length1 * s1
-        return self.gap1 + self.product1 * h2 * h2, self.gap2 + self.product2 * h1 * h1, x * x + y * y
+    def squares(self, one: arb, two: arb) -> list[arb]:
+        """The squares of the springs' lengths."""
+        x, y = self._rows(one, two)[5:7]
+        return [x * x + y * y if s.spring.angle is None else s.gap + s.product * s.crease_at(one, two) ** 2
+                for s in self.springs]  # fmt: skip
 
-    def peaks(self, th1: arb, th2: arb, d: Derivatives) -> bool:
-        """Whether no equilibrium in the balls is a minimum, because spring 1 or 2, being short, bends the energy down.
+    def peaks(self, one: arb, two: arb, d: Derivatives) -> bool:
+        """Whether no equilibrium in the balls is a minimum, because a short spring on one bar bends the energy down.
 
-        An equilibrium has slope w = S/p1 of spring 1, S being e2 without its free length; p1 adds
-        -p1 (rho c2 - L2 w^2)/l1 to e22, where l1 may be zero but has an upper bound.
+        An equilibrium has slope w = S/p of the spring, S being its angle's e without the free length; p adds
+        -p (q''/2 - L w^2)/l to the second derivative, where l may be zero but has an upper bound.
         """
         if d.bare is None:
             return False
-        first = d.short == 1
-        angle, pull, bar = (th2, self.p1, self.length2) if first else (th1, self.p2, self.length1)
-        q1, q2, _ = self.lengths_squared(th1, th2)
-        longest = (q1 if first else q2).abs_upper().sqrt()
-        slope = d.bare / pull
-        bend = self.rho * angle.cos() - bar * (slope * slope)
-        return bool(bend > 0 and (d.e22 if first else d.e11) - pull * bend / longest < 0)
+        s = self.springs[d.short[0]]
+        k = s.spring.angle or 0
+        longest = self.squares(one, two)[s.number].abs_upper().sqrt()
+        slope = d.bare[0] / s.pull
+        bend = d.bare[1] - self.bars[k] * (slope * slope)
+        return bool(bend > 0 and (d.e11, d.e22)[k] - s.pull * bend / longest < 0)
 
-    def bends_down(self, th1: arb, th2: arb, d: Derivatives) -> bool:
-        """Whether the Hessian has a negative eigenvalue wherever l3 is not zero in balls in which it may be.
+    def bends_down(self, one: arb, two: arb, d: Derivatives) -> bool:
+        """Whether the Hessian has a negative eigenvalue wherever the crossing spring's length l is not zero.
 
-        With G = J^T J, J being the derivative of A4 - A3 by the angles, tr(adj(G) Hess) of -p3 l3 is -p3 det G / l3 but
-        for a part of at most p3 L1^2 L2^2 (1/L1 + 1/L2); adj(G) is positive semidefinite, so a negative trace decides.
-        All is divided by L1 L2; d.e11 ... are those without the free length of spring 3.
+        With G = J^T J, J being the derivative of the spring's vector by the angles, tr(adj(G) Hess) of -p l is
+        -p det G / l but for a part of at most p L1^2 L2^2 (1/L1 + 1/L2); adj(G) is positive semidefinite, so a negative
+        trace decides. All is divided by L1 L2; d.e11 ... are those without the free length of the spring.
         """
-        s12, c12 = (th1 + th2).sin_cos()
-        l1, l2 = self.length1, self.length2
-        _, _, q3 = self.lengths_squared(th1, th2)
-        longest = q3.abs_upper().sqrt()
+        s12, c12 = (one + two).sin_cos()
+        l1, l2 = self.bars
+        pull = self.between.pull
+        longest = self.squares(one, two)[self.between.number].abs_upper().sqrt()
         # trace of Gram^-1 H, times L1 L2 s12^2
         trace = l2 * d.e11 + l1 * d.e22 + c12 * (l2 * d.e21 + l1 * d.e12)
-        turned = self.p3 * (l1 + l2)
-        return bool(trace + turned - self.p3 * l1 * l2 * (s12 * s12) / longest < 0)
+        return bool(trace + pull * (l1 + l2) - pull * l1 * l2 * (s12 * s12) / longest < 0)
+
+
+_ONE = arb(1)
 
 
 def _side(value: arb, given: int) -> int:
@@ -267,9 +286,3 @@ def _side(value: arb, given: int) -> int:
 def unit(value: arb) -> arb:
     """A ball for a number that is known to lie from -1 to 1, given one ball for it."""
     return value if value.rad() < 1 else _ANY
-
-
-def _without_third(energy: Energy) -> Energy:
-    values = dict(energy.values)
-    values["l0_3"] = arb(0)
-    return Energy(values, energy.crease1, energy.crease2, energy.crease3, energy.sides)

@@ -7,7 +7,8 @@ for, none that is a minimum or degenerate without a negative eigenvalue. What ca
 The test (Krawczyk 1969; Neumaier, Interval Methods for Systems of Equations, 5.1): with C near the inverse of e' at the
 middle m of a square X of half width R, let b bound the norm of I - C e'(X). If b < 1 then X has at most one equilibrium
 for each choice; and if, with d bounding |C e(m)|, d + b r < r for some r <= R, then the square of half width r around m
-has one.
+has one. Where the second derivatives are of different sizes, as next to a place where a spring is short, the unit of
+one angle is a smaller one, and squares are rectangles.
 
 Both ask for one formula on all of X. On a crease (`ptmcad.verification.certified.energy`) there are two, one for each
 side, so no existence or uniqueness is proved in a square that meets one. It may only be discarded, when neither formula
@@ -25,9 +26,12 @@ from math import isfinite, pi
 from flint import arb
 
 from ptmcad.verification.certified.energy import Derivatives, Energy
+from ptmcad.verification.certified.vectors import SPRINGS
 
+Pair = tuple[float, float]
+"""A number for each angle."""
 Square = tuple[float, float, float, float]
-"""Middle and half width in th1, then in th2; exact dyadic numbers."""
+"""Middle and half width in the first angle, then in the second."""
 _HALF_WIDTH = 101 / 32
 """A little more than pi, so that the first square has the whole torus."""
 TORUS: Square = (0.0, _HALF_WIDTH, 0.0, _HALF_WIDTH)
@@ -38,6 +42,10 @@ _CONVERGED_STEP = 2.0**-48
 """Steps of Newton's method below it are not worth another one ..."""
 _MAX_STEP = 2.0**-20
 """... and above it there is nothing to be proved; rounding may keep them between."""
+_MAX_RATIO = 2.0**10
+"""Of second derivatives whose angles have one unit."""
+_NARROWING = 4
+"""Steps by which a rectangle around an equilibrium is made narrower, where units differ."""
 
 
 class Unproved(Exception):
@@ -46,20 +54,20 @@ class Unproved(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Equilibrium:
-    """The only equilibrium within ``alone`` of (th1, th2), and it is within ``radius``; for each choice of parameters.
+    """The only equilibrium within ``alone`` of ``center``, and it is within ``radii``; for each choice of parameters.
 
     ``signs`` are those of the Hessian's eigenvalues, ``within`` the balls of the two angles.
     """
 
-    th1: float
-    th2: float
-    radius: float
-    alone: float
+    center: Pair
+    radii: Pair
+    alone: Pair
     signs: str
 
     @property
     def within(self) -> tuple[arb, arb]:
-        return arb(self.th1, self.radius), arb(self.th2, self.radius)
+        (x, y), (r1, r2) = self.center, self.radii
+        return arb(x, r1), arb(y, r2)
 
 
 def equilibria(
@@ -67,7 +75,7 @@ def equilibria(
     minima: bool,
     start: Iterable[Square] = (TORUS,),
     budget: int = 60_000,
-    smallest: float = MIN_HALF_WIDTH,
+    smallest: Pair = (MIN_HALF_WIDTH, MIN_HALF_WIDTH),
     near: Iterable[Equilibrium] = (),
 ) -> tuple[list[Equilibrium], int]:
     """The equilibria in the squares, and how many squares were looked at.
@@ -76,7 +84,7 @@ def equilibria(
     ----------
     minima : whether only stable equilibria are asked for; others may then be missing.
     budget : number of squares after which the search gives up.
-    smallest : half width of a square that is not halved again.
+    smallest : half widths below which an angle is not halved again.
     near : equilibria for one choice of the parameters; those near them are proved first, which saves a hopeless search.
 
     Raises
@@ -94,15 +102,15 @@ def equilibria(
         used += 1
         if used > budget:
             raise Unproved(f"{budget} squares were not enough")
-        th1, th2 = arb(m1, r1), arb(m2, r2)
-        d = energy(th1, th2)
+        at = arb(m1, r1), arb(m2, r2)
+        d = energy(*at)
         if _excluded(energy, square, d, minima) or any(_inside(square, e) for e in found):
             continue
-        ways = energy.one_sided(th1, th2)
+        ways = energy.one_sided(*at)
         if ways:
             if all(_without_zero(way, square, minima) for way in ways):
                 continue
-        elif d.short == 0:
+        elif not d.short:
             inverse = _inverse(d)
             if inverse is not None:
                 if _off_middle(energy, square, d, inverse):
@@ -112,13 +120,28 @@ def equilibria(
                     found.append(new)
                     if _inside(square, new):
                         continue
-        if max(r1, r2) < smallest:
+        halves = _halves(square, _first(d, r1, r2), smallest)
+        if halves is None:
             raise Unproved(f"an equilibrium near ({m1:.6g}, {m2:.6g}) may be degenerate")
-        if _first(d, r1, r2):
-            waiting += [(m1 - r1 / 2, r1 / 2, m2, r2), (m1 + r1 / 2, r1 / 2, m2, r2)]
-        else:
-            waiting += [(m1, r1, m2 - r2 / 2, r2 / 2), (m1, r1, m2 + r2 / 2, r2 / 2)]
+        waiting += halves
     return found, used
+
+
+def _halves(square: Square, first: bool, smallest: Pair) -> tuple[Square, Square] | None:
+    """Two squares that cover a square, halved in its first or second angle; None when it is too small.
+
+    The angle is the other one where the one that is asked for has been halved enough.
+    """
+    m1, r1, m2, r2 = square
+    for one in (first, not first):
+        m, r = (m1, r1) if one else (m2, r2)
+        half, low, high = r / 2, m - r / 2, m + r / 2
+        if m - low != half or high - m != half:
+            # without this, doubles would leave a gap between the halves, or beside them
+            half += 2.0**-51 * (abs(m) + r)
+        if r >= smallest[not one] and half <= 0.75 * r:
+            return ((low, half, m2, r2), (high, half, m2, r2)) if one else ((m1, r1, low, half), (m1, r1, high, half))
+    return None
 
 
 def _excluded(energy: Energy, square: Square, d: Derivatives, minima: bool) -> bool:
@@ -126,19 +149,17 @@ def _excluded(energy: Energy, square: Square, d: Derivatives, minima: bool) -> b
     if d.e1 > 0 or d.e1 < 0 or d.e2 > 0 or d.e2 < 0:
         return True
     m1, r1, m2, r2 = square
+    at = arb(m1, r1), arb(m2, r2)
     if minima:
-        if d.short == 0 and (d.e11 < 0 or d.e22 < 0 or d.e11 * d.e22 - d.e12 * d.e21 < 0):
+        if not d.short and (d.e11 < 0 or d.e22 < 0 or d.e11 * d.e22 - d.e12 * d.e21 < 0):
             return True
-        if d.bare is not None and energy.peaks(arb(m1, r1), arb(m2, r2), d):
+        if d.bare is not None and energy.peaks(*at, d):
             return True
-    if not energy.free3:
+    if not energy.between.pulls or (not d.crossing and r1 + r2 > 0.25):
         return False
-    if d.rest is None and r1 + r2 > 0.25:
-        return False
-    th1, th2 = arb(m1, r1), arb(m2, r2)
-    if not energy.cone(th1, th2).contains(0):
+    if not energy.cone(*at, d).contains(0):
         return True
-    return minima and d.short == 3 and energy.bends_down(th1, th2, d)
+    return minima and d.crossing and len(d.short) == 1 and energy.bends_down(*at, d)
 
 
 def _without_zero(energy: Energy, square: Square, minima: bool) -> bool:
@@ -196,28 +217,43 @@ def _settled(energy: Energy, square: Square, found: list[Equilibrium]) -> Equili
         x, y = x - step1, y - step2
         if max(abs(x - m1) - r1, abs(y - m2) - r2) > max(r1, r2):
             return None
-        step = max(abs(step1), abs(step2))
+        unit1, unit2 = _units(d)
+        step = max(abs(step1) / unit1, abs(step2) / unit2)
         if step < _CONVERGED_STEP:
             break
     if step > _MAX_STEP:
         return None
-    if any(_within(x, y, e.th1, e.th2, e.alone) for e in found):
+    if any(_within((x, y), e.center, e.alone) for e in found):
         return None
-    return _proved(energy, x, y)
+    return _proved(energy, (x, y))
 
 
 def _persisting(energy: Energy, e: Equilibrium) -> Equilibrium:
     """The equilibrium for all parameters that one for some parameters belongs to."""
-    persisting = _proved(energy, e.th1, e.th2)
+    persisting = _proved(energy, e.center)
     if persisting is None:
-        raise Unproved(f"the equilibrium near ({e.th1:.6g}, {e.th2:.6g}) may not persist")
+        x, y = e.center
+        raise Unproved(f"the equilibrium near ({x:.6g}, {y:.6g}) may not persist")
     return persisting
 
 
-def _proved(energy: Energy, x: float, y: float) -> Equilibrium | None:
+def _units(d: Derivatives) -> Pair:
+    """The units of the two angles: unequal where the second derivatives are of very different sizes."""
+    first, second = float(abs(d.e11.mid())), float(abs(d.e22.mid()))
+    if first > _MAX_RATIO * second > 0:
+        return second / first, 1.0
+    if second > _MAX_RATIO * first > 0:
+        return 1.0, first / second
+    return 1.0, 1.0
+
+
+def _proved(energy: Energy, center: Pair) -> Equilibrium | None:
+    x, y = center
     middle = energy(arb(x), arb(y))
+    unit1, unit2 = (1.0, 1.0) if middle.short else _units(middle)
+    ratio = unit2 / unit1
     for size in _SIZES:
-        d = energy(arb(x, size), arb(y, size))
+        d = energy(arb(x, size * unit1), arb(y, size * unit2))
         if d.short:
             continue
         inverse = _inverse(d)
@@ -225,18 +261,31 @@ def _proved(energy: Energy, x: float, y: float) -> Equilibrium | None:
             continue
         p, q, r, s = inverse
         i11, i12, i21, i22 = _rows(d, inverse)
-        norm = float(max(i11.abs_upper() + i12.abs_upper(), i21.abs_upper() + i22.abs_upper()).upper()) * 1.0001
+        rows = i11.abs_upper() + i12.abs_upper() * ratio, i21.abs_upper() / ratio + i22.abs_upper()
+        norm = float(max(rows).upper()) * 1.0001
         if not norm < 0.9:
             continue
-        off = max((p * middle.e1 + q * middle.e2).abs_upper(), (r * middle.e1 + s * middle.e2).abs_upper())
+        step1, step2 = p * middle.e1 + q * middle.e2, r * middle.e1 + s * middle.e2
+        off = max(step1.abs_upper() / unit1, step2.abs_upper() / unit2)
         radius = float(off.upper()) * 1.01 / (1 - norm) + 2.0**-50
         if radius > size:
             return None
         if not off + arb(norm) * radius < radius:
             return None
-        near = energy(arb(x, radius), arb(y, radius))
+        r1, r2 = radius * unit1, radius * unit2
+        near = energy(arb(x, r1), arb(y, r2))
         signs = _signs(near)
-        return None if signs is None else Equilibrium(x, y, radius, size, signs)
+        if signs is None:
+            return None
+        if unit1 != unit2:
+            # Krawczyk's image of the rectangle, which has the equilibrium too, is narrow in either angle
+            i11, i12, i21, i22 = _rows(near, inverse)
+            for _ in range(_NARROWING):
+                r1, r2 = (
+                    min(r, float((abs(step) + abs(i) * r1 + abs(j) * r2).abs_upper()) * 1.0001)
+                    for r, step, i, j in ((r1, step1, i11, i12), (r2, step2, i21, i22))
+                )
+        return Equilibrium(center, (r1, r2), (size * unit1, size * unit2), signs)
     return None
 
 
@@ -257,28 +306,26 @@ def _turned(difference: float) -> int:
     return round(difference / (2 * pi))
 
 
-def _within(x: float, y: float, th1: float, th2: float, radius: float) -> bool:
-    """Whether two points of the torus are surely nearer than a radius in both angles."""
-    turns1, turns2 = _turned(x - th1), _turned(y - th2)
-    if turns1 == 0 == turns2:
-        return bool(abs(arb(x) - arb(th1)) < radius and abs(arb(y) - arb(th2)) < radius)
-    full = 2 * arb.pi()
-    return bool(abs(arb(x) - arb(th1) - turns1 * full) < radius and abs(arb(y) - arb(th2) - turns2 * full) < radius)
+def _within(one: Pair, other: Pair, radii: Pair) -> bool:
+    """Whether two points of the torus are surely nearer than the radii in both angles."""
+    return all(
+        bool(abs(arb(x) - arb(y) - 2 * turns * arb.pi() if (turns := _turned(x - y)) else arb(x) - arb(y)) < radius)
+        for x, y, radius in zip(one, other, radii, strict=True)
+    )
 
 
 def _inside(square: Square, e: Equilibrium) -> bool:
     """Whether the square is within the part of the torus in which the equilibrium is alone."""
     m1, r1, m2, r2 = square
-    room = e.alone - max(r1, r2)
-    return room > 0 and _within(m1, m2, e.th1, e.th2, room)
+    room = e.alone[0] - r1, e.alone[1] - r2
+    return min(room) > 0 and _within((m1, m2), e.center, room)
 
 
 def _disjoint(one: Equilibrium, two: Equilibrium) -> bool:
     """Whether the boxes of two equilibria are surely disjoint on the torus."""
-    reach = arb(one.radius) + arb(two.radius)
     full = 2 * arb.pi()
-    for x, y in ((one.th1, two.th1), (one.th2, two.th2)):
-        difference = arb(x) - arb(y)
+    for x, y, r, s in zip(one.center, two.center, one.radii, two.radii, strict=True):
+        difference, reach = arb(x) - arb(y), arb(r) + arb(s)
         turns = _turned(x - y)
         if all(abs(difference - (turns + k) * full) > reach for k in (-1, 0, 1)):
             return True
@@ -287,13 +334,12 @@ def _disjoint(one: Equilibrium, two: Equilibrium) -> bool:
 
 def _first(d: Derivatives, r1: float, r2: float) -> bool:
     """Whether the first angle is to be halved: the one that the derivatives vary with more."""
-    if d.short == 1:
-        return r1 > 64 * r2
-    if d.short == 2:
-        return 64 * r1 > r2
+    if d.short:
+        angle = SPRINGS[d.short[0]].angle
+        return r1 >= r2 if angle is None else 16 * r1 > r2 if angle == 0 else r1 > 16 * r2
     by1 = float(d.e11.abs_upper() + d.e21.abs_upper()) * r1
     by2 = float(d.e12.abs_upper() + d.e22.abs_upper()) * r2
-    if d.short or not (isfinite(by1) and isfinite(by2)):
+    if not (isfinite(by1) and isfinite(by2)):
         return r1 >= r2
     return by1 >= by2 if max(r1, r2) < 32 * min(r1, r2) else r1 >= r2
 

@@ -13,8 +13,9 @@ from flint import arb
 from ptmcad.mechanism import Kind
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
-from ptmcad.verification.certified.energy import NAMES, Energy
+from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.vectors import NAMES, SPRINGS
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, POSITIVE, rational
 from ptmcad.verification.parameters import AUXILIARY, written
@@ -88,9 +89,7 @@ def values_at(claims: Claims, x: Fraction, y: Fraction) -> Values:
 
 def energy_at(values: Mapping[str, Fraction]) -> Energy:
     """The energy at exact parameters."""
-    rho, length1, length2 = values["rho"], values["L1"], values["L2"]
-    balls = {name: exact(values[name]) for name in NAMES}
-    return Energy(balls, rho == length2, rho == length1, rho == 0 and length1 == length2)
+    return Energy({name: exact(values[name]) for name in NAMES}, tuple(s.has_crease(values) for s in SPRINGS))
 
 
 def energy_over(slice: Slice, x: arb, y: arb) -> Energy:
@@ -108,14 +107,7 @@ def energy_over(slice: Slice, x: arb, y: arb) -> Energy:
             raise Unproved(f"{name} may be zero")
         if name in NOT_NEGATIVE and not (values[name] >= 0):
             raise Unproved(f"{name} may be negative")
-    rho, length1, length2 = (slice.parameters[name] for name in ("rho", "L1", "L2"))
-    creases = (_equal(rho, length2), _equal(rho, length1), not rho.numerator and _equal(length1, length2))
-    return Energy({name: values[name] for name in NAMES}, *creases)
-
-
-def _equal(one: Expression, two: Expression) -> bool:
-    """Whether two parameters are the same function, however it is written."""
-    return not (one - two).numerator
+    return Energy({name: values[name] for name in NAMES}, tuple(s.has_crease(slice.parameters) for s in SPRINGS))
 
 
 def _over(expression: Expression, x: arb, y: arb) -> arb:

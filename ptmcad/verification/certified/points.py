@@ -14,15 +14,20 @@ from fractions import Fraction
 from flint import arb, ctx
 
 from ptmcad.answer.regionmap import Cell, MorseIndex, Solution
+from ptmcad.mechanism import Kind
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import MIN_HALF_WIDTH, TORUS, Equilibrium, Square, Unproved, equilibria
 from ptmcad.verification.certified.parameters import Values, energy_at, exact, values_at
+from ptmcad.verification.certified.vectors import CROSSING, SPRINGS, TURNED, evaluated
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.derivation import MECHANISM
 from ptmcad.verification.report import Violation
 
 PRECISIONS = (53, 128, 320)
+_BOX_PRECISION = 128
+_BASE = MECHANISM.first(Kind.BASE)
 MINIMA = (Count.STABLE, Count.ADMISSIBLE)
 
 
@@ -80,11 +85,16 @@ def _check_cell(count: Count, cell: Cell, values: Values) -> int:
     if len(cell.solutions) != len(kept):
         raise Violation(f"{len(cell.solutions)} boxes of solutions for {len(kept)} equilibria")
     taken: set[int] = set()
+    with ctx.workprec(_BOX_PRECISION):
+        # the counts may be certain with parameters that were rounded too much to say what is in a small box
+        energy = energy_at(values)
     for k, solution in enumerate(cell.solutions):
         e = _only(energy, solution, k)
         match = [i for i, other in enumerate(kept) if _same(e, other)]
         if len(match) != 1 or match[0] in taken:
-            raise Violation(f"the solution {k} near ({e.th1:.6g}, {e.th2:.6g}) is stored twice, or not asked for")
+            raise Violation(
+                f"the solution {k} near ({e.center[0]:.6g}, {e.center[1]:.6g}) is stored twice, or not asked for"
+            )
         if kept[match[0]].signs != solution.signs:
             raise Violation(
                 f"the Hessian at the solution {k} has eigenvalues of signs {e.signs}, not {solution.signs!r}"
@@ -101,33 +111,20 @@ def all_equilibria(values: Values, count: Count) -> tuple[Energy, list[Equilibri
     Unproved
         When they cannot be decided even then.
     """
-    if count not in MINIMA and (
-        (values["rho"] == values["L2"] and values["l0_1"]) or (values["rho"] == values["L1"] and values["l0_2"])
-    ):
-        raise Unproved("rho equals the length of a bar, where the energy has a crease")
+    if count not in MINIMA and any(evaluated(s.free, values) and s.has_crease(values) for s in TURNED):
+        raise Unproved(f"{_BASE} equals the length of a bar, where the energy has a crease")
     reason: Unproved | None = None
     for bits in PRECISIONS:
         with ctx.workprec(bits):
             energy = energy_at(values)
             try:
-                return energy, equilibria(energy, count in MINIMA, (TORUS,), smallest=_smallest(values))[0]
+                return energy, equilibria(
+                    energy, count in MINIMA, (TORUS,), smallest=energy.resolution(MIN_HALF_WIDTH)
+                )[0]
             except Unproved as unproved:
                 reason = unproved
     assert reason is not None
     raise reason
-
-
-def _smallest(values: Values) -> float:
-    """Half the width of squares that are not halved again: small, also against the length of a spring next to a crease.
-
-    Where rho is nearly L2 or L1, spring 1 or 2 turns once around while an angle changes by about their difference.
-    """
-    gaps = [
-        abs(values["rho"] - values[bar]) / values[bar]
-        for bar, free in (("L2", "l0_1"), ("L1", "l0_2"))
-        if values[free] and values["rho"] != values[bar]
-    ]
-    return min([MIN_HALF_WIDTH, *(float(gap) / 256 for gap in gaps)])
 
 
 def counts_of(energy: Energy, values: Mapping[str, Fraction], found: list[Equilibrium], count: Count) -> Counts:
@@ -160,10 +157,8 @@ def admissible(energy: Energy, e: Equilibrium) -> bool:
     Unproved
         When it is not certain.
     """
-    excess = [
-        q - energy.values[name] ** 2
-        for q, name in zip(energy.lengths_squared(*e.within), ("l0_1", "l0_2", "l0_3"), strict=True)
-    ]
+    squares = energy.squares(*e.within)
+    excess = [q - s.free * s.free for q, s in zip(squares, energy.springs, strict=True)]
     if any(x < 0 for x in excess):
         return False
     if all(x > 0 for x in excess):
@@ -172,21 +167,28 @@ def admissible(energy: Energy, e: Equilibrium) -> bool:
 
 
 def cones(energy: Energy, values: Mapping[str, Fraction]) -> int:
-    """How many of the configurations with l3 = 0 are peaks: those where the cone outweighs the slope of the rest."""
-    rho, l1, l2 = values["rho"], values["L1"], values["L2"]
-    if values["l0_3"] == 0 or not abs(l1 - l2) <= rho <= l1 + l2:
+    """How many of the configurations where the spring between the bars has no length are peaks.
+
+    They are those where the cone outweighs the slope of the rest. There its vectors are the sides of a triangle.
+    """
+    fixed, *arms = (evaluated(z, values) for z in CROSSING.vectors)
+    base, (l1, l2) = abs(fixed), map(abs, arms)
+    if evaluated(CROSSING.free, values) == 0 or not abs(l1 - l2) <= base <= l1 + l2:
         return 0
-    if rho == 0:
-        raise Unproved("rho is zero and the bars are equally long, where spring 3 has no length on a circle")
-    c1, c2 = (rho**2 + l1**2 - l2**2) / (2 * rho * l1), (rho**2 + l2**2 - l1**2) / (2 * rho * l2)
-    th1, th2 = exact(c1).acos(), exact(c2).acos()
+    if base == 0:
+        raise Unproved(f"{_BASE} is zero and the bars are equally long, where "
+                       f"spring {SPRINGS.index(CROSSING) + 1} has no length on a circle")  # fmt: skip
+    angles = [exact((z**2 - y**2 - fixed**2) / (2 * fixed * y)).acos() for y, z in (arms, arms[::-1])]
     peaks = 0
     for side in (1, -1):
-        balance = energy.cone(side * th1, side * th2)
+        at = side * angles[0], side * angles[1]
+        balance = energy.cone(*at, energy(*at))
         if balance < 0:
             peaks += 1
         elif not balance > 0:
-            raise Unproved("an equilibrium may be at the point where spring 3 has length zero")
+            raise Unproved(
+                f"an equilibrium may be at the point where spring {SPRINGS.index(CROSSING) + 1} has length zero"
+            )
     return peaks
 
 
@@ -198,8 +200,8 @@ def _only(energy: Energy, solution: Solution, k: int) -> Equilibrium:
     # floats have the centers and radii of stored boxes exactly, or nearly: then the box is made a little larger
     radius = float(solution.radius) * (1 + 2.0**-40) + 2.0**-50
     start: Square = (x, radius, y, radius)
-    with ctx.workprec(128):
-        inside, _ = equilibria(energy, False, [start], smallest=min(MIN_HALF_WIDTH, radius / 1024))
+    with ctx.workprec(_BOX_PRECISION):
+        inside, _ = equilibria(energy, False, [start], smallest=energy.resolution(min(MIN_HALF_WIDTH, radius / 1024)))
         held = [e for e in inside if _in(e, solution)]
         open_ = [e for e in inside if e not in held and not _out(e, solution)]
     if len(held) != 1 or open_:
@@ -225,6 +227,6 @@ def _same(one: Equilibrium, two: Equilibrium) -> bool:
     """Whether an equilibrium lies where another one is alone."""
     full = 2 * arb.pi()
     return all(
-        bool(abs(angle - middle - round((float(angle.mid()) - middle) / 6.283185307179586) * full) < two.alone)
-        for angle, middle in zip(one.within, (two.th1, two.th2), strict=True)
+        bool(abs(angle - middle - round((float(angle.mid()) - middle) / 6.283185307179586) * full) < alone)
+        for angle, middle, alone in zip(one.within, two.center, two.alone, strict=True)
     )

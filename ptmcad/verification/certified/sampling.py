@@ -256,8 +256,8 @@ def _prove(claims: CertifiedClaims, box: SampleBox, half: Fraction, there: list[
     x, y = (exact(low[i]).union(exact(high[i])) for i in (0, 1))
     energy = energy_over(slice, x, y)
     # squares much smaller than the box of parameters are excluded no better than larger ones
-    smallest = float(max(x.rad(), y.rad())) / 64
-    found, _ = equilibria(energy, slice.count in MINIMA, budget=BUDGET, smallest=max(smallest, 2.0**-30), near=there)
+    smallest = energy.resolution(max(float(max(x.rad(), y.rad())) / 64, 2.0**-30))
+    found, _ = equilibria(energy, slice.count in MINIMA, budget=BUDGET, smallest=smallest, near=there)
     kinds = [e.signs for e in found]
     stable = kinds.count("++")
     cell = claims.result.cells[box.cell]

@@ -13,8 +13,8 @@ from itertools import pairwise
 from ptmcad.answer.regionmap import Status
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import text_of
-from ptmcad.verification.certified.energy import NAMES
 from ptmcad.verification.certified.sweep import Sweep, sweep
+from ptmcad.verification.certified.vectors import NAMES
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, SHORTHANDS
 from ptmcad.verification.report import Violation

@@ -16,7 +16,7 @@ from functools import cache
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.verification.certified.energy import NAMES
+from ptmcad.verification.certified.vectors import NAMES
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import ANGLES, MECHANISM, UNKNOWNS, Configuration, work
 from ptmcad.verification.report import Violation

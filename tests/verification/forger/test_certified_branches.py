@@ -35,16 +35,17 @@ from ptmcad.answer.regionmap import (
 )
 from ptmcad.cover.rectangles import Cover, Rectangle
 from ptmcad.question.slice import Count, Point
-from ptmcad.text.expressions import axis, parse
+from ptmcad.text.expressions import axis
+from ptmcad.text.parsing import parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.certified import points
-from ptmcad.verification.certified.energy import NAMES
 from ptmcad.verification.certified.equilibria import Square, Unproved, equilibria
 from ptmcad.verification.certified.parameters import check_domain, energy_at, energy_over, exact, values_at
 from ptmcad.verification.certified.points import all_equilibria, check_points, cones, counts_of
 from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
 from ptmcad.verification.certified.system import check_potential
+from ptmcad.verification.certified.vectors import NAMES
 from ptmcad.verification.report import Violation
 
 Change = Callable[[RegionMap], RegionMap]
@@ -95,7 +96,7 @@ def made(name: str, count: str = "stable", rectangles: tuple[Rectangle, ...] = U
         given = values_at(claims, *sample)
         energy, found = all_equilibria(given, slice.count)
         c = counts_of(energy, given, found, slice.count)
-        boxes = tuple(Solution((Fraction(e.th1), Fraction(e.th2)), Fraction(1, 2**20), e.signs)
+        boxes = tuple(Solution((Fraction(e.center[0]), Fraction(e.center[1])), Fraction(1, 2**20), e.signs)
                       for e in found if slice.count in (Count.TOTAL, Count.INDEX) or e.signs == "++")  # fmt: skip
         cells.append(Cell(None, n, sample, n, c.total, c.stable, c.index, boxes, c.admissible))
         regions.append(Region(c.stable, c.total, c.index, (window * width / STEPS, window), (n,), sample, c.admissible))
@@ -379,7 +380,7 @@ DEGENERATE: Square = (0.0, 2.0**-20, 0.0, 2.0**-20)
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"start": [DEGENERATE], "smallest": 2.0**-26}, r"an equilibrium near \(.*\) may be degenerate"),
+        ({"start": [DEGENERATE], "smallest": (2.0**-26, 2.0**-26)}, r"an equilibrium near \(.*\) may be degenerate"),
         ({"budget": 3}, "3 squares were not enough"),
     ],
 )
@@ -398,4 +399,4 @@ def test_equilibria_that_are_gone_on_with_are_different_and_persist() -> None:
     with pytest.raises(Unproved, match="two equilibria may meet"):
         equilibria(energy, False, near=[*found, found[0]])
     with pytest.raises(Unproved, match=r"the equilibrium near \(.*\) may not persist"):
-        equilibria(energy, False, near=[replace(found[0], th1=found[0].th1 + 0.5)])
+        equilibria(energy, False, near=[replace(found[0], center=(found[0].center[0] + 0.5, found[0].center[1]))])

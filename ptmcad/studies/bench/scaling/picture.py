@@ -17,6 +17,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.printing import settings
+from ptmcad.studies.bench.scaling.table import grouped, stages_of
 
 SIZE = 9.5
 _STYLES: tuple[tuple[str, str, Any], ...] = (
@@ -34,7 +35,7 @@ _MIN_PEAK = 2.0
 """MiB: memory that never grows by more is not drawn."""
 _CURVE = 60
 
-Groups = dict[float, list[Mapping[str, Any]]]
+Groups = dict[float, list[Any]]
 
 
 def draw_scaling(family: Mapping[str, Any]) -> Figure:
@@ -52,14 +53,10 @@ def draw_scaling(family: Mapping[str, Any]) -> Figure:
     runs = family["runs"]
     if not runs:
         raise ValueError(f"the family {family['name']} has no runs to draw")
-    groups: Groups = {}
-    for run in runs:
-        groups.setdefault(run["size"] if family["against"] == "size" else run["found"][family["against"]], []).append(
-            run
-        )
+    groups = grouped(family)
     memory = any(max(run["memory"].values(), default=0.0) >= _MIN_PEAK for run in runs)
     with settings():
-        staged = len(_stages(runs)) > 1  # then the legend needs a column of its own
+        staged = len(stages_of(runs)) > 1  # then the legend needs a column of its own
         widths = (0.8, 3.7, 2.1 if staged else 1.0, 2.7 if memory else -0.15)
         wide = sum(widths) + 0.25
         figure = Figure(figsize=(wide, 4.1))
@@ -76,7 +73,7 @@ def draw_scaling(family: Mapping[str, Any]) -> Figure:
 
 def _time(axes: Axes, groups: Groups, family: Mapping[str, Any]) -> None:
     places = sorted(groups)
-    stages = _stages(family["runs"])
+    stages = stages_of(family["runs"])
     drawn = [s for s in stages if len(stages) > 1 and any(r["stages"].get(s, 0) > _MIN_SECONDS for r in family["runs"])]
     for stage, (colour, marker, dash) in zip(drawn, _STYLES, strict=False):
         heights = [max(median(run["stages"].get(stage, 0.0) for run in groups[x]), 1e-5) for x in places]
@@ -92,10 +89,6 @@ def _time(axes: Axes, groups: Groups, family: Mapping[str, Any]) -> None:
     handles, labels = axes.get_legend_handles_labels()
     place: dict[str, Any] = {"bbox_to_anchor": (1.01, 1.0)} if drawn else {}
     axes.legend(handles[::-1], labels[::-1], loc="upper left", fontsize=SIZE, frameon=False, handlelength=2.6, **place)
-
-
-def _stages(runs: Sequence[Mapping[str, Any]]) -> list[str]:
-    return list(dict.fromkeys(stage for run in runs for stage in run["stages"]))
 
 
 def _memory(axes: Axes, groups: Groups, fit: Mapping[str, Any] | None) -> None:

@@ -8,11 +8,12 @@ fitted to them.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from functools import partial
 from typing import Any
 
+from ptmcad.studies.bench.rounds import rounds
 from ptmcad.studies.bench.scaling.families import FAMILIES, Family, touch, warm_up
 from ptmcad.studies.bench.scaling.fit import Points, fit
 from ptmcad.studies.bench.scaling.measurement import Run, Unmeasured, in_child
@@ -30,7 +31,7 @@ MIN_MEMORY = 1.0
 
 def scaling(
     families: Sequence[Family] = FAMILIES,
-    rounds: int = ROUNDS,
+    number: int = ROUNDS,
     seed: int = 1,
     *,
     limit: float = MAX_SECONDS,
@@ -40,7 +41,7 @@ def scaling(
 
     Parameters
     ----------
-    rounds : runs of each size, but of a family's heavy sizes.
+    number : runs of each size, but of a family's heavy sizes.
     seed : of slices, of the order within a round, and of the fits' resampling.
     limit : wall seconds after which a run is given up; then this size and larger ones of its family are left out.
     progress : called with what runs.
@@ -55,14 +56,15 @@ def scaling(
     warm_up(any(f.certified for f in families))
     runs: dict[str, list[Run]] = {family.name: [] for family in families}
     reasons: dict[str, dict[int, str]] = {family.name: {} for family in families}
-    order = random.Random(seed)
-    for index in range(rounds):
-        due = [(f, size) for f in families for size in f.sizes if index == 0 or size not in f.heavy]
-        order.shuffle(due)
-        for family, size in due:
+
+    def due(index: int) -> list[tuple[Family, int]]:
+        return [(f, size) for f in families for size in f.sizes if index == 0 or size not in f.heavy]
+
+    for index, turns in enumerate(rounds(number, due, random.Random(seed))):
+        for family, size in turns:
             if any(size >= given_up for given_up in reasons[family.name]):
                 continue
-            progress(f"round {index + 1} of {rounds}: {family.name} {size}")
+            progress(f"round {index + 1} of {number}: {family.name} {size}")
             found = in_child(partial(family.measure, size, seed), limit, partial(touch, family.certified))
             if isinstance(found, Unmeasured):
                 reasons[family.name][size] = found.reason
@@ -73,7 +75,7 @@ def scaling(
         "machine": before,
         "versions": versions(),
         "seed": seed,
-        "rounds": rounds,
+        "rounds": number,
         "families": [_family(f, runs[f.name], reasons[f.name], seed) for f in families],
     }
 
@@ -96,11 +98,6 @@ def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: 
             if f is not None
         },
     }
-
-
-def abscissa(against: str, run: Mapping[str, Any]) -> float:
-    """The place of a run, as data, along its family."""
-    return float(run["size"] if against == "size" else run["found"][against])
 
 
 def _order(against: str, run: Run) -> tuple[float, ...]:

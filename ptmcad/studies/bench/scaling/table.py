@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from statistics import median
 from typing import Any
+
+from ptmcad.studies.tables import markdown, measured_with
 
 MANY = 1000
 _NAMES = {"seconds": "processor time", "wall": "wall time", "memory": "memory", "boxes": "boxes treated"}
@@ -23,27 +25,37 @@ def to_markdown(report: Mapping[str, Any]) -> str:
         "",
         f"Rounds: {report['rounds']}, seed {report['seed']}.",
         "",
-        "Machine: " + "; ".join(f"{key} {value}" for key, value in report["machine"].items()) + ".",
-        "",
-        "Versions: " + "; ".join(f"{key} {value}" for key, value in report["versions"].items()) + ".",
+        *measured_with(report),
     ]
     for family in report["families"]:
         lines += ["", f"## {family['title']}", "", f"Along {family['axis']}. Expected: {family['expected']}.", ""]
-        lines += _fits(family)
-        lines += ["", *_runs(family)]
+        lines += [*_fits(family), "", *_runs(family)]
         lines += [f"\nSize {size} has no figures: {reason}." for size, reason in family["reasons"].items()]
     return "\n".join(lines) + "\n"
 
 
-def _fits(family: Mapping[str, Any]) -> Iterator[str]:
-    yield "| what | from - to | exponent | R^2 | lower, upper | verdict |"
-    yield "|---|---|---|---|---|---|"
-    for name, f in family["fits"].items():
-        yield (
-            f"| {_NAMES.get(name, name)} | {f['first']:g} - {f['last']:g} | {f['exponent']:.2f} "
-            f"({f['low']:.2f} to {f['high']:.2f}) | {f['determination']:.3f} | {f['lower']:.2f}, {f['upper']:.2f} "
-            f"| {f['verdict']}{_beyond(f)} |"
-        )
+def grouped(family: Mapping[str, Any]) -> dict[float, list[Any]]:
+    """A family's runs, as data, by their place along it."""
+    groups: dict[float, list[Any]] = {}
+    for run in family["runs"]:
+        place = run["size"] if family["against"] == "size" else run["found"][family["against"]]
+        groups.setdefault(place, []).append(run)
+    return groups
+
+
+def stages_of(runs: Iterable[Mapping[str, Any]]) -> list[str]:
+    """The stages of runs, as data, in their order."""
+    return list(dict.fromkeys(stage for run in runs for stage in run["stages"]))
+
+
+def _fits(family: Mapping[str, Any]) -> list[str]:
+    rows = [
+        (_NAMES.get(name, name), f"{f['first']:g} - {f['last']:g}",
+         f"{f['exponent']:.2f} ({f['low']:.2f} to {f['high']:.2f})", f"{f['determination']:.3f}",
+         f"{f['lower']:.2f}, {f['upper']:.2f}", f"{f['verdict']}{_beyond(f)}")
+        for name, f in family["fits"].items()
+    ]  # fmt: skip
+    return markdown(("what", "from - to", "exponent", "R^2", "lower, upper", "verdict"), rows)
 
 
 def _beyond(f: Mapping[str, Any]) -> str:
@@ -54,21 +66,17 @@ def _beyond(f: Mapping[str, Any]) -> str:
     return f"; beyond a fixed {fixed}: {f['growth']:.2f} ({f['growth_low']:.2f} to {f['growth_high']:.2f})"
 
 
-def _runs(family: Mapping[str, Any]) -> Iterator[str]:
+def _runs(family: Mapping[str, Any]) -> list[str]:
     """Medians by abscissa, the spread of the seconds, and what was found."""
-    against = family["against"]
-    groups: dict[float, list[Any]] = {}
-    for run in family["runs"]:
-        groups.setdefault(run["size"] if against == "size" else run["found"][against], []).append(run)
-    facts = [k for k in (family["runs"][0]["found"] if family["runs"] else {}) if k != against]
-    stages = list(dict.fromkeys(stage for run in family["runs"] for stage in run["stages"]))
+    groups = grouped(family)
+    facts = [k for k in (family["runs"][0]["found"] if family["runs"] else {}) if k != family["against"]]
+    stages = stages_of(family["runs"])
     stages = stages if len(stages) > 1 else []
-    yield "| " + " | ".join([family["axis"], "runs", "s: median (min - max)", "wall s", *stages, "MiB", *facts]) + " |"
-    yield "|---" * (5 + len(stages) + len(facts)) + "|"
+    rows = []
     for place, runs in sorted(groups.items()):
         seconds, walls = [run["seconds"] for run in runs], [run["wall"] for run in runs]
         memory = [max(run["memory"].values()) for run in runs if run["memory"]]
-        cells = [
+        rows.append([
             f"{place:g}",
             str(len(runs)),
             f"{_number(median(seconds))} ({_number(min(seconds))} - {_number(max(seconds))})",
@@ -76,8 +84,8 @@ def _runs(family: Mapping[str, Any]) -> Iterator[str]:
             *(_number(median(run["stages"].get(stage, 0.0) for run in runs)) for stage in stages),
             f"{median(memory):.1f}" if memory else "-",
             *(_range([run["found"][fact] for run in runs]) for fact in facts),
-        ]
-        yield "| " + " | ".join(cells) + " |"
+        ])  # fmt: skip
+    return markdown((family["axis"], "runs", "s: median (min - max)", "wall s", *stages, "MiB", *facts), rows)
 
 
 def _number(seconds: float) -> str:

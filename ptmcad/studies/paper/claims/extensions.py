@@ -12,8 +12,9 @@ from functools import lru_cache
 
 import sympy as sp
 
+from ptmcad.algebra.elimination import Elimination, eliminate
 from ptmcad.algebra.signed import SignedSolutions, signed_solutions
-from ptmcad.algebra.squared import Elimination, eliminate, squared_equations
+from ptmcad.algebra.squared import squared_equations
 from ptmcad.studies.paper import printed
 from ptmcad.studies.paper.claim import Claim, Fact, Outcome, judge, unchecked
 from ptmcad.studies.paper.free_lengths import FreeLengthDesign, ProvedEquilibrium, proved_equilibria

@@ -15,7 +15,8 @@ from importlib import import_module
 
 import sympy as sp
 
-from ptmcad.algebra.squared import eliminate, squared_equations
+from ptmcad.algebra.elimination import eliminate
+from ptmcad.algebra.squared import squared_equations
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import classify
 from ptmcad.ask.location import locate

@@ -6,50 +6,23 @@ Guarantee: each point of the window at which the chosen count changes lies on th
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula, Graph, length
-from ptmcad.certified.mechanism import Mechanism
-from ptmcad.certified.parameters import PHI_UNIT, parameter_formulas, slice_mechanism
+from ptmcad.certified.parameters import parameter_formulas, values_at
+from ptmcad.certified.ptm.statics import PHI_UNIT, TURN, Statics, present, slice_statics
 from ptmcad.certified.scales import axis_weights
-from ptmcad.certified.search import Boxes
-from ptmcad.certified.system import System, system
+from ptmcad.certified.system import system
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.question.slice import Count, Slice
 
-TORUS = (-3.0, -3.0 + 6.2832)
-"""A little more than a full turn, cut where no symmetric solution lies."""
-PHI = (TORUS[0] / PHI_UNIT, TORUS[1] / PHI_UNIT)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Curve:
-    """One curve: its name, why counts change there, and the system that defines it.
-
-    The variables of its boxes are x, y and those that ``ranges`` gives.
-    """
-
-    name: str
-    reason: str
-    system: System
-    ranges: tuple[tuple[float, float], ...]
-    weights: NDArray[np.float64] | None = None
-    """Of the variables' widths in the choice which one to bisect; equal ones when None."""
-
-    def importance(self) -> NDArray[np.float64]:
-        """The weights of all variables."""
-        return np.ones(2 + len(self.ranges)) if self.weights is None else self.weights
-
-    def start(self, window: Boxes) -> Boxes:
-        """Boxes over rectangles (low x, low y, high x, high y) of the window that hold the whole curve over them."""
-        count = len(window)
-        low = np.tile(np.array([r[0] for r in self.ranges]), (count, 1))
-        high = np.tile(np.array([r[1] for r in self.ranges]), (count, 1))
-        return np.concatenate([window[:, :2], low, window[:, 2:], high], axis=1)
+PHI = (TURN[0] / PHI_UNIT, TURN[1] / PHI_UNIT)
+SHORT_LENGTH = Fraction(1, 8)
+"""Below this length of spring 3, as a part of L1, its direction is a variable of its own."""
 
 
 def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
@@ -59,11 +32,17 @@ def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) ->
     ----------
     without : names of savings to switch off, of `ptmcad.question.savings`.
     """
-    scale = np.array(axis_weights(slice))
+    scale = np.array(axis_weights(slice, slice_statics(Graph(), slice).equilibrium))
     return tuple(
         replace(curve, weights=np.concatenate([scale, np.ones(len(curve.ranges))]))
         for curve in _CURVES[count](slice, without)
     )
+
+
+def distance_from_degeneracy(slice: Slice, x: Fraction, y: Fraction) -> Fraction:
+    """Small where the search takes long, which is best begun first: for small rho and bars of equal length."""
+    values = values_at(slice, x, y)
+    return values["rho"] + abs(values["L1"] - values["L2"])
 
 
 def _stable(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
@@ -85,7 +64,7 @@ def _folds(slice: Slice, without: frozenset[str], *, stable: bool) -> Iterator[C
     reason = "a minimum meets a saddle: det H = 0 with nonnegative diagonal" if stable else "equilibria meet: det H = 0"
     factored = "unloaded-factor" not in without
     graph = Graph()
-    m = slice_mechanism(graph, slice, factored=factored)
+    m = slice_statics(graph, slice, factored=factored)
     there = m.at_equilibrium
     short = SHORT_LENGTH * parameter_formulas(graph, slice)["L1"]
     # unloaded, a stable configuration with spring 3 short is distinguished from the multiples without phi
@@ -100,37 +79,37 @@ def _folds(slice: Slice, without: frozenset[str], *, stable: bool) -> Iterator[C
             (0, 1, 2, 3),
             _dependent(
                 without,
-                [e2, *m.dependent, *_present(m.unit)],
+                [e2, *m.dependent, *present(m.unit)],
                 [there.determinant, m.turned, *([] if stable else [there.levelled])],
             ),
             [*([m.lengths[2] - short] if split else []), *(_semidefinite(m) if stable else [])],
         ),
-        (TORUS, TORUS),
+        (TURN, TURN),
     )
     if not split:
         return
     graph = Graph()
-    m = slice_mechanism(graph, slice, phi=True, factored=factored)
+    m = slice_statics(graph, slice, phi=True, factored=factored)
     there = m.at_equilibrium
     short = SHORT_LENGTH * parameter_formulas(graph, slice)["L1"]
     yield Curve(
         f"{name}, spring 3 short",
         f"{reason}; l3 is at most {SHORT_LENGTH} L1",
         system(
-            [*_present(m.aligned), *m.equilibrium, m.hessian.determinant_times_l3],
+            [*present(m.aligned), *m.equilibrium, m.hessian.determinant_times_l3],
             (0, 1, 2, 3, 4),
             _dependent(
                 without,
-                [*m.dependent, *_present(m.unit)],
+                [*m.dependent, *present(m.unit)],
                 [there.determinant_times_l3, *([m.turned] if stable else [there.levelled])],
             ),
             [m.lengths[2], short - length(*m.vectors[2]), *(_semidefinite(m) if stable else [])],
         ),
-        (TORUS, TORUS, PHI),
+        (TURN, TURN, PHI),
     )
 
 
-def _semidefinite(m: Mechanism) -> list[Formula]:
+def _semidefinite(m: Statics) -> list[Formula]:
     """What is at least zero where the Hessian is positive semidefinite, besides D."""
     return [m.at_equilibrium.p11, m.at_equilibrium.p22, m.turn]
 
@@ -143,13 +122,13 @@ def _dependent(
 
 
 def _cone(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
-    m = slice_mechanism(Graph(), slice, phi=True)
+    m = slice_statics(Graph(), slice, phi=True)
     if m.unit is not None:
         yield Curve(
             "cone",
             "an equilibrium is swallowed by the cone l3 = 0",
             system([*m.vectors[2], *m.equilibrium], (0, 1, 2, 3, 4), _dependent(without, [*m.dependent, m.unit], [])),
-            (TORUS, TORUS, PHI),
+            (TURN, TURN, PHI),
         )
 
 
@@ -171,7 +150,7 @@ def _creases(slice: Slice) -> Iterator[Curve]:
 
 def _admissible(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
     yield from _stable(slice, without)
-    m = slice_mechanism(Graph(), slice)
+    m = slice_statics(Graph(), slice)
     for spring, (extent, free, vector) in enumerate(zip(m.lengths, m.free, m.vectors, strict=True), start=1):
         third, dependent = (vector[0], [vector[1]]) if free.value == 0 else (extent - free, [])
         yield Curve(
@@ -183,16 +162,10 @@ def _admissible(slice: Slice, without: frozenset[str]) -> Iterator[Curve]:
                 _dependent(without, [*m.dependent, *dependent], []),
                 [*_semidefinite(m), m.at_equilibrium.determinant, m.turned],
             ),
-            (TORUS, TORUS),
+            (TURN, TURN),
         )
 
 
-def _present(formula: Formula | None) -> list[Formula]:
-    return [] if formula is None else [formula]
-
-
-SHORT_LENGTH = Fraction(1, 8)
-"""Below this length of spring 3, as a part of L1, its direction is a variable of its own."""
 _CURVES: dict[Count, Callable[[Slice, frozenset[str]], Iterator[Curve]]] = {
     Count.STABLE: _stable,
     Count.TOTAL: _all,

@@ -13,10 +13,10 @@ import sympy
 from support.programs import needs_msolve
 
 from ptmcad.algebra import msolve
-from ptmcad.algebra.critical_lengths import NAMES, critical_system
 from ptmcad.algebra.signed import signed_solutions
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.errors import ConfigError
+from ptmcad.exact.ranges.critical_lengths import NAMES, critical_system
 from ptmcad.exact.ranges.free_lengths import critical_free_lengths, critical_on_line
 from ptmcad.question.config import slice_from_options
 
@@ -35,7 +35,8 @@ def test_equations_are_derivatives_of_the_potential(seed: int) -> None:
     random = Random(seed)
     exact = [Fraction(random.randint(1, 30), 10) for _ in range(5)]
     rho, l1, l2, f3, f4 = map(float, exact)
-    texts = critical_system(exact[0], (exact[1], exact[2]), (exact[3], exact[4]))
+    design = dict(zip(("rho", "L1", "L2", "F3", "F4"), exact, strict=True))
+    texts = critical_system(design | {"F3x": Fraction(0), "F4x": Fraction(0)})
     equations = [sympy.sympify(text.replace("^", "**")) for text in texts]
     ratios = []
     for _ in range(3):

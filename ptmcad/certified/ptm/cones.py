@@ -26,29 +26,51 @@ class Cones:
 
 
 def cones(values: Mapping[str, Fraction]) -> Cones:
-    """The cones of a mechanism with all parameters of `ptmcad.certified.mechanism.NAMES`, in any unit of stiffness."""
+    """The cones of the mechanism at values of all variables of its description, in any unit of stiffness."""
     rho, p1, p2 = values["rho"], values["L1"], values["L2"]
-    pull1, pull2, pull3 = (values[f"k{i}"] * values[f"l0_{i}"] for i in (1, 2, 3))
-    regular = not (pull1 and rho == p2) and not (pull2 and rho == p1)
-    if pull3 == 0:
+    regular = not any(creases_at(values))
+    if values["k3"] * values["l0_3"] == 0:
         return Cones(0, regular)
     if rho == 0:
         return Cones(0, regular and p1 != p2)
-    c1, c2 = (rho**2 + p1**2 - p2**2) / (2 * rho * p1), (rho**2 + p2**2 - p1**2) / (2 * rho * p2)
-    square = p1**2 * (1 - c1**2)
+    square = height_squared(values)
     if square <= 0:
         return Cones(0, regular and square < 0)
+    even, odd = excess_of_pull(values)
+    signs = [_sign(even, side * odd, square) for side in (1, -1)]
+    return Cones(signs.count(-1), regular and 0 not in signs)
+
+
+def creases_at(values: Mapping[str, Fraction]) -> tuple[bool, bool]:
+    """Whether rho = L2 and rho = L1 at a point, so that spring 1 or 2, if it has a free length, may have no length."""
+    rho = values["rho"]
+    return (
+        rho == values["L2"] and bool(values["k1"] * values["l0_1"]),
+        rho == values["L1"] and bool(values["k2"] * values["l0_2"]),
+    )
+
+
+def height_squared(values: Mapping[str, Fraction]) -> Fraction:
+    """H^2; not positive where spring 3 always has a length. rho is not zero."""
+    rho, p1, p2 = values["rho"], values["L1"], values["L2"]
+    return p1**2 - ((rho**2 + p1**2 - p2**2) / (2 * rho)) ** 2
+
+
+def excess_of_pull(values: Mapping[str, Fraction]) -> tuple[Fraction, Fraction]:
+    """The numbers a, b of which a + b H is (|g|^2 - (k3 l0_3)^2) sin(th1 + th2)^2; rho is not zero."""
+    rho, p1, p2 = values["rho"], values["L1"], values["L2"]
+    pull1, pull2, pull3 = (values[f"k{i}"] * values[f"l0_{i}"] for i in (1, 2, 3))
+    c1, c2 = (rho**2 + p1**2 - p2**2) / (2 * rho * p1), (rho**2 + p2**2 - p1**2) / (2 * rho * p2)
     c12 = (rho**2 - p1**2 - p2**2) / (2 * p1 * p2)
     # r1 = a1 H + b1 and r2 = a2 H + b2 are E1 and E2 without spring 3, whose quadratic part vanishes
     a1 = (values["k2"] * rho - pull2 * rho / p2 + values["F3x"]) / p1
     a2 = (values["k1"] * rho - pull1 * rho / p1 - values["F4x"]) / p2
     b1, b2 = -values["F3"] * c1, -values["F4"] * c2
     # |g|^2 s12^2 - pull3^2 s12^2 = even + odd H, with s12 = rho H/(L1 L2)
-    even = (a1**2 + a2**2 + 2 * a1 * a2 * c12 - (pull3 * rho / (p1 * p2)) ** 2) * square
+    even = (a1**2 + a2**2 + 2 * a1 * a2 * c12 - (pull3 * rho / (p1 * p2)) ** 2) * height_squared(values)
     even += b1**2 + b2**2 + 2 * b1 * b2 * c12
     odd = 2 * (a1 * b1 + a2 * b2 + (a1 * b2 + a2 * b1) * c12)
-    signs = [_sign(even, side * odd, square) for side in (1, -1)]
-    return Cones(signs.count(-1), regular and 0 not in signs)
+    return even, odd
 
 
 def _sign(a: Fraction, b: Fraction, square: Fraction) -> int:

@@ -1,0 +1,222 @@
+"""The process that watches a computation, until that has ended, and what it makes of the end.
+
+Guarantee: see `ptmcad.process.supervisor`.
+"""
+
+import math
+import os
+import select
+import signal
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ptmcad.process.handover import Receiver, Topic
+from ptmcad.process.salvage import clean_up, save_last
+from ptmcad.process.streams import report
+
+if TYPE_CHECKING:
+    from ptmcad.process.shortage import Limit, Usage, Waiting
+
+GRACE_SECONDS = 0.3
+"""Seconds from the request to leave to the kill."""
+
+OVERRUN_SECONDS = 0.25
+"""Seconds by which the child may overrun its time limit: it looks at the clock itself, and does so first."""
+
+POLL_SECONDS = 0.25
+"""Seconds between two looks at the child's memory."""
+
+_CHUNK = 1 << 16
+
+
+class Watch:
+    """The parent's side: what the child has reported, what has been asked of it, and what to do at its end."""
+
+    def __init__(self, child: int, messages: int, printed: int, heeded: Sequence[int]) -> None:
+        self.child = child
+        self.messages = messages
+        self.printed = printed
+        self.heeded = heeded
+        self.receiver = Receiver()
+        self.caught: list[int] = []
+        self.text = bytearray()
+        self.reports: dict[Topic, list[str]] = {}
+        self.temporaries: list[str] = []
+        self.out_of_time = False
+        self.waiting: Waiting | None = None
+        self.waits_for_memory = False
+        self.processor_time = 0.0
+
+    def run(self, wake: tuple[int, int], before: set[int | signal.Signals]) -> int:
+        """Watch until the child has ended, tidy up, and return the exit status."""
+        for descriptor in (self.messages, self.printed, *wake):
+            os.set_blocking(descriptor, False)
+        signal.set_wakeup_fd(wake[1], warn_on_full_buffer=False)
+        for number in self.heeded:
+            signal.signal(number, lambda caught, _frame: self.caught.append(caught))
+        signal.signal(signal.SIGCHLD, lambda _number, _frame: None)  # it has to be caught to wake the parent
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        try:
+            ended = self._wait(wake[0])
+            self._read(self.messages)
+            self._read(self.printed)
+            return self._end(ended)
+        except MemoryError:  # of this process, which needs little: it is the caller's limit
+            os.kill(self.child, signal.SIGKILL)  # it may be there, or wait to be asked for its end: not for another yet
+            report("stopped: memory ran out, also for the process that watches; no result could be saved\n")
+            return 3
+
+    def _wait(self, wake: int) -> int:
+        """The child's exit code, or minus the signal that ended it."""
+        open_ends = {self.messages, self.printed, wake}
+        kill_at: float | None = None
+        look_at = time.monotonic() + POLL_SECONDS
+        while True:
+            due = kill_at if kill_at is not None else self._deadline()
+            timeout = POLL_SECONDS if due is None else min(POLL_SECONDS, max(0.0, due - time.monotonic()))
+            for end in select.select(list(open_ends), [], [], timeout)[0]:
+                if not self._read(end):
+                    open_ends.discard(end)
+            child, status, used = os.wait4(self.child, os.WNOHANG)
+            if child:
+                self.processor_time = used.ru_utime + used.ru_stime
+                return os.waitstatus_to_exitcode(status)
+            now = time.monotonic()
+            if kill_at is not None:
+                if now >= kill_at:
+                    os.kill(self.child, signal.SIGKILL)
+                    kill_at = now + 60
+                continue
+            due = self._deadline()
+            self.out_of_time = not self.caught and due is not None and now >= due
+            if not self.caught and not self.out_of_time and now >= look_at:
+                look_at = now + POLL_SECONDS
+                if self._waits_for_memory(now):
+                    self.waits_for_memory = True
+                    os.kill(self.child, signal.SIGKILL)  # it would not listen
+                    kill_at = now + 60
+            if self.caught or self.out_of_time:
+                os.kill(self.child, signal.SIGTERM if signal.SIGTERM in self.heeded else signal.SIGKILL)
+                kill_at = now + GRACE_SECONDS
+
+    def _waits_for_memory(self, now: float) -> bool:
+        """Look at the child's memory."""
+        if self.waiting is None:
+            from ptmcad.process.shortage import Waiting  # not before it is needed: every start would pay for it
+
+            self.waiting = Waiting()
+        from ptmcad.process.shortage import usage_of
+
+        loading = self._loading()
+        return self.waiting.look(usage_of(self.child), self._limits(lifted=bool(loading)), bool(loading), now)
+
+    def _loading(self) -> str:
+        """The libraries that the child was loading when it was last heard of."""
+        return self.reports.get(Topic.LOADING, ["the program"])[0]
+
+    def _limits(self, lifted: bool = False) -> "tuple[Limit, ...]":
+        """The limits on the child's memory, without the option's while that is lifted."""
+        from ptmcad.process.shortage import Limit, caller_limits
+
+        own = self.reports.get(Topic.MEMORY)
+        return (*caller_limits(), *([] if own is None or lifted else [Limit(int(own[0]), False, own[1])]))
+
+    def _deadline(self) -> float | None:
+        limit = float(self.reports[Topic.DEADLINE][0]) if Topic.DEADLINE in self.reports else math.inf
+        return None if limit == math.inf else limit + OVERRUN_SECONDS  # infinite while the clock stands still
+
+    def _read(self, end: int) -> bool:
+        """Take what there is; False at the end of the pipe."""
+        while True:
+            try:
+                data = os.read(end, _CHUNK)
+            except BlockingIOError:
+                return True
+            if not data:
+                return False
+            if end == self.messages:
+                for topic, texts in self.receiver.feed(data):
+                    self.reports[topic] = texts
+                    if topic is Topic.TEMPORARY:
+                        self.temporaries += texts
+                    if topic is Topic.WAITING:
+                        report(f"waiting   another process is writing in {texts[0]}\n")
+            elif end == self.printed:
+                self.text += data
+
+    def _end(self, ended: int) -> int:
+        """Leave nothing behind, say what there is to say, and return the exit status."""
+        # a library may call exit() when memory runs out: then the child has not said that it was done
+        deserted = ended >= 0 and Topic.DONE not in self.reports and ended <= 128
+        if ended < 0 or deserted or self.caught or self.out_of_time or Topic.EXHAUSTED in self.reports:
+            clean_up(self.reports, self.temporaries, GRACE_SECONDS)
+        if self.caught:
+            if Topic.RESUMABLE in self.reports or self.reports.get(Topic.RESULT, [""])[0] == "complete":
+                save_last(self.reports, f"by {signal.Signals(self.caught[0]).name}")
+            return 128 + self.caught[0]
+        text = self.text.decode(errors="replace")
+        why = self._why_stopped(ended, deserted, text)
+        if why:
+            return save_last(self.reports, why)
+        report(text)
+        if deserted:
+            report(f"error: the computation ended by itself with status {ended}; this is a bug, please report it\n")
+            return ended or 1
+        if ended >= 0:
+            return ended
+        if -ended not in self.heeded:
+            report(f"error: the computation crashed ({signal.Signals(-ended).name}); this is a bug, please report it\n")
+        return 128 - ended
+
+    def _why_stopped(self, ended: int, deserted: bool, text: str) -> str:
+        """What ended the child before it was done, in words; empty when nothing did."""
+        if self.out_of_time and (ended < 0 or ended > 128):
+            return f"the time limit of {self.reports[Topic.DEADLINE][1]} was reached"
+        if Topic.EXHAUSTED in self.reports or self.waits_for_memory:
+            return f"the memory limit of {self._limit_reached()} was reached"
+        if -ended in (signal.SIGXCPU, signal.SIGKILL) and self._processor_time_is_over():
+            return "the limit on processor time that the caller has set (ulimit -t) was reached"
+        if ended == -signal.SIGKILL:
+            return "the computation was killed from outside, most likely because memory ran out"
+        crashed = ended < 0 and -ended not in self.heeded
+        if deserted or crashed:
+            from ptmcad.process.shortage import speaks_of_memory
+
+            if speaks_of_memory(text):
+                return f"the memory limit of {self._limit_reached()} was reached"
+            if self._little_memory():
+                last = "".join(text.rstrip().rpartition("\n")[2:])[:200] or "without a word"
+                how = signal.Signals(-ended).name if crashed else last
+                return f"most likely the memory limit of {self._limit_reached()} was reached ({how})"
+        return ""
+
+    def _limit_reached(self) -> str:
+        """The limit that left the child the least room, in words."""
+        limits, most = self._limits(), self._peak_usage()
+        if not limits:
+            return "the system"
+        return min(limits, key=lambda limit: limit.size if most is None else limit.room(most)).text
+
+    def _peak_usage(self) -> "Usage | None":
+        """The most that the child was seen to use; None when it ended too soon to be looked at."""
+        return None if self.waiting is None else self.waiting.most
+
+    def _little_memory(self) -> bool:
+        """Whether a crash is most likely for lack of memory, though nothing says so.
+
+        That is: while libraries were loaded under a small limit, or when half of a limit had been used.
+        """
+        from ptmcad.process.shortage import LOW_LIMIT
+
+        most = self._peak_usage()
+        if self._loading() and any(limit.size < LOW_LIMIT for limit in self._limits(lifted=True)):
+            return True
+        return most is not None and any(2 * limit.room(most) <= limit.size for limit in self._limits())
+
+    def _processor_time_is_over(self) -> bool:
+        """Whether the child had the processor time that the caller allows."""
+        import resource
+
+        soft, hard = resource.getrlimit(resource.RLIMIT_CPU)
+        return any(limit != resource.RLIM_INFINITY and self.processor_time >= limit - 0.5 for limit in (soft, hard))

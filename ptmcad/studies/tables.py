@@ -1,0 +1,50 @@
+"""Tables for pages and terminals, and what the figures in them were measured with."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from collections.abc import Iterable, Mapping, Sequence
+
+
+def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
+    """The lines of a Markdown table."""
+    return [
+        "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |"
+        for cells in (header, ("---",) * len(header), *rows)
+    ]
+
+
+def columns(rows: Sequence[Sequence[str]], unbounded: Sequence[bool] = ()) -> list[str]:
+    """Rows as lines with aligned columns, two spaces apart.
+
+    Parameters
+    ----------
+    unbounded : for each row, whether its third cell may reach over those behind it.
+    """
+    loose = unbounded or [False] * len(rows)
+    widths = [
+        max((len(row[k]) for row, free in zip(rows, loose, strict=True) if k != 2 or not free), default=0)
+        for k in range(len(rows[0]) if rows else 0)
+    ]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+
+
+def listed(found: Mapping[str, str]) -> str:
+    """What a machine or a version is, in one sentence."""
+    return "; ".join(f"{key} {value}" for key, value in found.items()) + "."
+
+
+def measured_with(found: Mapping[str, Mapping[str, str]]) -> list[str]:
+    """The lines on the machine and the versions of a document."""
+    return [f"Machine: {listed(found['machine'])}", "", f"Versions: {listed(found['versions'])}"]
+
+
+def installed(packages: Iterable[str]) -> dict[str, str]:
+    """The packages' versions."""
+    found = {}
+    for package in packages:
+        try:
+            found[package] = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            found[package] = "not installed"
+    return found

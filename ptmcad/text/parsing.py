@@ -1,0 +1,186 @@
+"""What a text means: a rational function in the two axes of a slice, or a number.
+
+Guarantee: every coefficient is exact (``0.1`` is 1/10, ``1e-30`` is 10^-30); nothing is rounded, nothing is evaluated
+as Python. Any text is answered within a fraction of a second, by an `Expression` or by an `ExpressionError`:
+the limits of `ptmcad.text.syntax` and those below bound the work.
+
+>>> from ptmcad.text.expressions import axis
+>>> rho, force = axis(0), axis(1)
+>>> str(parse("-0.1*rho^2 + 3/4", {"rho": rho}))
+'3/4 - 1/10*x^2'
+>>> parse("2*rho*F / rho", {"rho": rho, "F": force}) == 2 * force
+True
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from decimal import Decimal
+from fractions import Fraction
+from functools import partial
+from math import comb
+from operator import add, mul, sub, truediv
+
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.numerals import exactly
+from ptmcad.text.syntax import names_in as names_in_text
+from ptmcad.text.syntax import parse as tree_of
+from ptmcad.text.syntax import unknown_name
+from ptmcad.text.tree import Call, Name, Number, Power, Step, interpret
+
+MAX_EXPONENT = 64
+MAX_DEGREE = 64
+MAX_TERMS = 300
+MAX_BITS = 13_000  # under 4300 decimal digits, so that Python prints it
+MAX_WORK = 100_000
+
+_OPERATION: dict[str, Callable[[Expression, Expression], Expression]] = {"+": add, "-": sub, "*": mul, "/": truediv}
+
+
+def parse(text: object, names: Mapping[str, Expression] | None = None) -> Expression:
+    """Read an arithmetic expression: numbers, names, ``+ - * /``, integer powers ``^`` or ``**``, parentheses.
+
+    ``^`` binds tighter than a sign on its left and groups to the right, as in mathematics: ``-x^2`` is -(x^2).
+
+    Parameters
+    ----------
+    text : the expression, or a number: an int, a Fraction, a float (its exact binary value), a Decimal, or one of
+        numpy's.
+    names : what each name stands for.
+
+    Raises
+    ------
+    ExpressionError
+        With the position of the offending character: not arithmetic, an unknown name, a division by zero, or one of
+        the limits (length, depth, digits, exponent, degree, number of terms, size of numbers).
+    """
+    if isinstance(text, str | Decimal):  # a Decimal's exponent may be huge: a text has limits
+        return interpret(tree_of(str(text)), _InTheAxes(names or {}))
+    try:
+        return constant(exactly(text))
+    except (TypeError, ValueError) as error:
+        raise ExpressionError(str(error)) from error
+
+
+def rational(text: object) -> Fraction:
+    """Read an exact rational number: a text such as ``3/4``, ``-0.1`` or ``1e-30``, or a number as `parse` takes it.
+
+    >>> rational("-0.1"), rational(-0.125)
+    (Fraction(-1, 10), Fraction(-1, 8))
+
+    Raises
+    ------
+    ExpressionError
+        If it is no number.
+    """
+    return parse(text).constant()
+
+
+def number_for(key: str, value: object) -> Fraction:
+    """The number that a caller gave for something.
+
+    Raises
+    ------
+    ConfigError
+        With the key, if it is no number.
+    """
+    try:
+        return rational(value)
+    except ExpressionError as error:
+        raise ConfigError(str(error), key=key) from error
+
+
+def names_in(text: str | int | Fraction) -> tuple[str, ...]:
+    """The names that occur in a text, in order of appearance, each once.
+
+    Raises
+    ------
+    ExpressionError
+        If a character cannot stand in an expression.
+    """
+    if not isinstance(text, str):
+        return ()
+    return names_in_text(text)
+
+
+class _InTheAxes:
+    """The interpretation of a text as a rational function of the axes, with a budget for the arithmetic."""
+
+    def __init__(self, names: Mapping[str, Expression]):
+        self.names = names
+        self.work = 0
+
+    def number(self, number: Number) -> Expression:
+        return constant(number.value)
+
+    def name(self, name: Name) -> Expression:
+        if name.name in self.names:
+            return self.names[name.name]
+        raise unknown_name(name.name, name.position, self.names)
+
+    def call(self, call: Call) -> Expression:
+        if call.function in self.names:
+            raise ExpressionError(f"'{call.function}' is no function here: is an operator missing?", call.position)
+        raise unknown_name(call.function, call.position, self.names)
+
+    def negative(self, value: Expression) -> Expression:
+        return -value
+
+    def joined(self, left: Expression, step: Step, right: Expression) -> Expression:
+        if step.operator == "/" and not right.numerator:
+            raise ExpressionError("division by zero", step.position)
+        spread = (len(left.numerator) + len(left.denominator)) * (len(right.numerator) + len(right.denominator))
+        self.spend(spread * (1 + (_bits(left) + _bits(right)) // 512), step.position)
+        degrees = (left.degree, right.degree)
+        adds_up = step.operator in "*/" or not (left.is_polynomial and right.is_polynomial)
+        if (sum(degrees) if adds_up else max(degrees)) > MAX_DEGREE:
+            raise ExpressionError(f"the degree exceeds {MAX_DEGREE}", step.position)
+        return self.limited(partial(_OPERATION[step.operator], left, right), step.position)
+
+    def power(self, base: Expression, power: Power, exponent: Expression) -> Expression:
+        if not exponent.is_constant or exponent.constant().denominator != 1:
+            raise ExpressionError("the exponent is not an integer", power.position)
+        n = exponent.constant().numerator
+        if n < 0 and not base.numerator:
+            raise ExpressionError("division by zero", power.position)
+        if base.is_constant:
+            if abs(base.constant()) not in (0, 1) and abs(n) * _bits(base) > MAX_BITS:
+                raise ExpressionError(f"the power has more than {MAX_BITS} bits", power.position)
+            if abs(base.constant()) in (0, 1):
+                n = n % 2 if n <= 0 else 2 - n % 2
+        else:
+            if abs(n) > MAX_EXPONENT:
+                raise ExpressionError(f"an exponent of a name is at most {MAX_EXPONENT}", power.position)
+            terms = max(len(base.numerator), len(base.denominator))
+            if abs(n) * base.degree > MAX_DEGREE or abs(n) * _bits(base) > MAX_BITS:
+                raise ExpressionError(
+                    f"the power is too large (degree over {MAX_DEGREE} or numbers over {MAX_BITS} bits)",
+                    power.position,
+                )
+            if min(comb(terms + abs(n) - 1, abs(n)), comb(abs(n) * base.degree + 2, 2)) > MAX_TERMS:
+                raise ExpressionError(f"the power has more than {MAX_TERMS} terms", power.position)
+            self.spend(MAX_TERMS * terms, power.position)
+        return self.limited(partial(base.__pow__, n), power.position)
+
+    def spend(self, work: int, position: int) -> None:
+        self.work += work
+        if self.work > MAX_WORK:
+            raise ExpressionError("the expression takes too much work to expand", position)
+
+    def limited(self, operation: Callable[[], Expression], position: int) -> Expression:
+        value = operation()
+        if max(len(value.numerator), len(value.denominator)) > MAX_TERMS:
+            raise ExpressionError(f"the expression has more than {MAX_TERMS} terms", position)
+        if _bits(value) > MAX_BITS:
+            raise ExpressionError(f"a number in the expression has more than {MAX_BITS} bits", position)
+        return value
+
+
+def _bits(expression: Expression) -> int:
+    """Bits of the largest integer in the coefficients."""
+    return max(
+        (max(c.numerator.bit_length(), c.denominator.bit_length())
+         for _, _, c in expression.numerator + expression.denominator),
+        default=0,
+    )  # fmt: skip
