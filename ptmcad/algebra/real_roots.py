@@ -184,6 +184,13 @@ def has_root_between(p: fmpz_poly, low: fmpq, high: fmpq) -> bool:
     return bound > 0 and bool(isolate(squarefree_part(p), low, high))
 
 
+def is_root_of(divisor: fmpz_poly, root: RealRoot) -> bool:
+    """Whether a divisor of the root's polynomial has the root too."""
+    if divisor.degree() < 1:
+        return False
+    return not sign_at(divisor, root.low) if root.is_rational else has_root_between(divisor, root.low, root.high)
+
+
 def disjoint(roots: Sequence[RealRoot]) -> tuple[RealRoot, ...]:
     """Different real numbers in increasing order, with closed isolating intervals that are pairwise disjoint."""
     ordered = sorted(roots, key=lambda r: (r.low, r.high))

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from itertools import combinations, product
 from math import comb
 
-from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
+from flint import arb, ctx, fmpq, fmpq_mat
 
 from ptmcad.algebra.fibre import (
     Fibre,
@@ -29,10 +29,12 @@ from ptmcad.algebra.fibre import (
     hermite_matrix,
     signature,
     univariate_representation,
+    vanishing,
 )
 from ptmcad.algebra.inertia import negative_eigenvalues
 from ptmcad.algebra.isolation import root_bound
-from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine, sign_at
+from ptmcad.algebra.polynomials import UnivariatePolynomial
+from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate, refine
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, at_point, polynomial_at
 
@@ -181,7 +183,7 @@ def equilibria(system: ParametricSystem, values: Mapping[str, fmpq]) -> Equilibr
     # where coordinates are at most 1, real values of the form come from real solutions only, and so they do elsewhere
     bound = fmpq(sum(representation.form) + 1) if point.is_bounded else root_bound(representation.minimal)
     roots = isolate(representation.minimal, -bound, bound)
-    zeros = [_vanishing(point, representation, p) for p in point.conditions]
+    zeros = [vanishing(point.algebra, representation, _lifted(p, len(representation.form))) for p in point.conditions]
     while (found := _enclosed(system, point, representation, roots, zeros, bits)) is None:
         bits *= 2
     counts = _counts(system, found)
@@ -229,25 +231,6 @@ def _simple(
     raise DegeneratePoint(f"{what} at {_text(values)}")
 
 
-def _vanishing(point: PointSystem, representation: UnivariateRepresentation, p: RationalPolynomial) -> fmpz_poly | None:
-    """A polynomial whose roots among the representation's are those at which p vanishes; None when there are none."""
-    if evaluate(point.algebra, _lifted(p, len(representation.form))).det() != 0:
-        return None
-    degree = max((sum(m) for m in p), default=0)
-    minimal = fmpq_poly(representation.minimal)
-    powers = [fmpq_poly([1])]
-    for _ in range(degree):
-        powers.append(powers[-1] * representation.slope % minimal)
-    total = fmpq_poly([0])
-    for monomial, c in p.items():
-        term = powers[degree - sum(monomial)] * c
-        for coordinate, e in zip(representation.coordinates, monomial, strict=False):
-            for _ in range(e):
-                term = term * coordinate % minimal
-        total += term
-    return fmpz_poly(total.numer()).gcd(representation.minimal)
-
-
 def _lifted(p: RationalPolynomial, width: int) -> RationalPolynomial:
     """The polynomial in more coordinates."""
     return {(*m, *(0,) * (width - len(m))): c for m, c in p.items()}
@@ -258,7 +241,7 @@ def _enclosed(
     point: PointSystem,
     representation: UnivariateRepresentation,
     roots: Sequence[RealRoot],
-    zeros: Sequence[fmpz_poly | None],
+    zeros: Sequence[UnivariatePolynomial | None],
     bits: int,
 ) -> tuple[Equilibrium, ...] | None:
     """The solutions at these roots that count, in disjoint boxes; None when the precision does not decide all signs."""
@@ -293,12 +276,12 @@ def _enclosed(
 
 
 def _condition_signs(
-    point: PointSystem, root: RealRoot, unknowns: list[arb], zeros: Sequence[fmpz_poly | None]
+    point: PointSystem, root: RealRoot, unknowns: list[arb], zeros: Sequence[UnivariatePolynomial | None]
 ) -> str | None:
     """The signs of inequalities and stability conditions at a solution; None when one is not certain."""
     signs = ""
-    for p, vanishing in zip(point.conditions, zeros, strict=True):
-        if vanishing is not None and _is_root(vanishing, root):
+    for p, divisor in zip(point.conditions, zeros, strict=True):
+        if divisor is not None and is_root_of(divisor, root):
             signs += "0"
             continue
         value = _value(p, unknowns)
@@ -306,13 +289,6 @@ def _condition_signs(
             return None
         signs += "+" if value > 0 else "-"
     return signs
-
-
-def _is_root(divisor: fmpz_poly, root: RealRoot) -> bool:
-    """Whether a divisor of the root's polynomial has the root too."""
-    if divisor.degree() < 1:
-        return False
-    return not sign_at(divisor, root.low) if root.is_rational else has_root_between(divisor, root.low, root.high)
 
 
 def _negative_eigenvalues(point: PointSystem, unknowns: list[arb]) -> int | None:

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 
 from ptmcad.answer.regionmap import RegionMap, Status, System
 from ptmcad.errors import ConfigError
+from ptmcad.mechanism import ptm
 from ptmcad.question.config import slice_from_mapping
-from ptmcad.question.slice import FREE_LENGTHS, Axis, Slice
+from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.text.expressions import axis, constant
 from ptmcad.verification.certified.parameters import check_domain
@@ -84,7 +85,7 @@ def test_names_of_axes_need_no_text() -> None:
     check_domain(claims(slice))
 
 
-STIFF, FREE, LOADS = ("k", "k1", "k2", "k3"), ("l0", *FREE_LENGTHS), ("F3", "F4", "F3x")
+STIFF, FREE, LOADS = ("k", "k1", "k2", "k3"), ("l0", *ptm().free_lengths), ("F3", "F4", "F3x")
 AXES = (("rho", "L2"), ("u", "v"), ("k", "u"), ("l0", "v"), ("k1", "L1"), ("l0_2", "F4"), ("F3", "k3"))
 
 
@@ -144,7 +145,7 @@ def test_an_axis_has_no_text_beside_its_parameter() -> None:
 
 def springs(slice: Slice, name: str) -> Slice:
     """All springs have minus what ``name`` says, in the text only."""
-    of = ("k1", "k2", "k3") if name == "k" else FREE_LENGTHS
+    of = ("k1", "k2", "k3") if name == "k" else ptm().free_lengths
     return replace(slice, text={**slice.text, **dict.fromkeys(of, f"-{name}"), name: "-1/5"},
                    parameters={**slice.parameters, **dict.fromkeys(of, constant(Fraction(1, 5)))})  # fmt: skip
 
@@ -160,7 +161,7 @@ def test_the_sign_of_what_is_only_named_is_checked(name: str, stored: bool) -> N
     with pytest.raises(Violation, match=f"{name} is (not positive|negative) somewhere"):
         check_domain(claims(forged))
     with pytest.raises(ConfigError, match=f"{name} is -1/5, but a"):
-        slice_from_mapping({"parameters": {n: forged.text[n] for n in ("k1", "k2", "k3", name, *FREE_LENGTHS)
+        slice_from_mapping({"parameters": {n: forged.text[n] for n in ("k1", "k2", "k3", name, *ptm().free_lengths)
                                            if n in forged.text}, "axes": WINDOW})  # fmt: skip
 
 

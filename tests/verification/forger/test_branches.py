@@ -29,6 +29,7 @@ from ptmcad.answer.regionmap import (
     Status,
     Wall,
 )
+from ptmcad.mechanism import known_of
 from ptmcad.question.slice import Axis, Count, Point
 from ptmcad.text.expressions import axis, constant
 from ptmcad.text.parsing import parse
@@ -213,7 +214,7 @@ HALF = Fraction(1, 2)
 SHAPE: list[tuple[str, Change, str]] = [
     ("fig3", lambda r: replace(r, status=Status.CERTIFIED), "the status 'certified' cannot be checked"),
     ("fig3", lambda r: replace(r, undetermined=HALF), "0.5 of the window is said to be undetermined, but all cells"),
-    ("fig3", with_slice(mechanism="other"), "the mechanism 'other' is not known"),
+    ("fig3", with_slice(model=known_of("other")), "the mechanism 'other' is not known"),
     ("fig3", with_slice(count=Count.ADMISSIBLE), "an exact map has no admissible counts"),
     *(("fig3", partial(lambda name, r: with_slice(parameters={n: e for n, e in {**r.slice.parameters, "L3": constant(1)
         }.items() if n != name})(r), name), "its parameters are others") for name in ("F3", "")),
