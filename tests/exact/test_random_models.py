@@ -63,7 +63,8 @@ def random_mechanism(seed: int) -> dict[str, Any]:
     x, y = "0", "0"
     for k in range(1, bars + 1):
         length = f"{source.randint(2, 6)}/{source.randint(2, 5)}"
-        turn = source.choice([f"th{k}", f"th{k} - th{k - 1}" if k > 1 else f"th{k}"])
+        # angles against the bar before are left to two bars: of three the fibre's basis takes minutes
+        turn = source.choice([f"th{k}", f"th{k} - th{k - 1}" if k == bars == 2 else f"th{k}"])
         x, y = f"{x} + {length}*cos({turn})", f"{y} + {length}*sin({turn})"
         points[f"P{k}"] = [x, y]
     fixed = source.randint(1, 2)

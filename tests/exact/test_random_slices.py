@@ -33,7 +33,7 @@ Point = tuple[Fraction, Fraction]
 Index = tuple[int, int, int]
 
 
-def true_counts(result: RegionMap, at: Point) -> Index | None:
+def true_counts(result: RegionMap, at: Point) -> tuple[int, ...] | None:
     """Minima, saddles and maxima at a point; None when an equilibrium there is singular."""
     values = {name: e.evaluate(*at) for name, e in result.slice.parameters.items()}
     try:

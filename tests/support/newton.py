@@ -7,9 +7,10 @@ there; that nothing is missing is not proved, so that a caller searches on while
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import prod
 from typing import Any
 
 import mpmath
@@ -17,31 +18,32 @@ import numpy as np
 import sympy
 
 mpmath.iv.dps = 60
+
 SEPARATE = 1e-7
 """Solutions nearer to each other than this are taken for one by the search; degenerate points are not asked for."""
 
 
+Evaluation = Callable[[Mapping[str, Any], Any], Any]
+"""An expression at names' values, in mpmath's context of numbers or of intervals."""
+
+
 @dataclass(frozen=True)
 class Model:
-    """Equations, their Jacobian and the conditions of a record, as SymPy expressions in names."""
+    """Equations, their Jacobian and the conditions of a record.
+
+    Attributes
+    ----------
+    arrays : equations and Jacobian, row by row, as functions of NumPy arrays: unknowns, then parameters.
+    """
 
     unknowns: tuple[str, ...]
+    parameters: tuple[str, ...]
     angles: frozenset[str]
-    equations: tuple[Any, ...]
-    jacobian: tuple[tuple[Any, ...], ...]
-    positive: tuple[Any, ...]
+    equations: tuple[Evaluation, ...]
+    jacobian: tuple[tuple[Evaluation, ...], ...]
+    positive: tuple[Evaluation, ...]
     is_potential: bool
-
-    def functions(self, values: Mapping[str, Fraction]) -> tuple[Any, Any]:
-        """Equations and Jacobian at the parameters' values as functions of arrays, one for each unknown."""
-        numbers = {sympy.Symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in values.items()}
-        names = [sympy.Symbol(u) for u in self.unknowns]
-        equations = [e.subs(numbers) for e in self.equations]
-        jacobian = [[d.subs(numbers) for d in row] for row in self.jacobian]
-        return (
-            sympy.lambdify(names, equations, modules="numpy"),
-            sympy.lambdify(names, [d for row in jacobian for d in row], modules="numpy"),
-        )
+    arrays: tuple[Any, Any]
 
 
 def model_of(record: Mapping[str, Any]) -> Model:
@@ -95,14 +97,45 @@ def _model(
     unknowns: Mapping[str, str], equations: Sequence[Any], positive: tuple[Any, ...], is_potential: bool
 ) -> Model:
     symbols = [sympy.Symbol(u) for u in unknowns]
+    jacobian = [[sympy.diff(e, u) for u in symbols] for e in equations]
+    free = set().union(*(e.free_symbols for e in (*equations, *positive))) - set(symbols)
+    parameters = sorted(free, key=str)
+    given = [*symbols, *parameters]
     return Model(
         tuple(unknowns),
+        tuple(map(str, parameters)),
         frozenset(u for u, kind in unknowns.items() if kind == "angle"),
-        tuple(equations),
-        tuple(tuple(sympy.diff(e, u) for u in symbols) for e in equations),
-        positive,
+        tuple(map(_evaluation, equations)),
+        tuple(tuple(map(_evaluation, row)) for row in jacobian),
+        tuple(map(_evaluation, positive)),
         is_potential,
+        (
+            sympy.lambdify(given, list(equations), modules="numpy", cse=True),
+            sympy.lambdify(given, [d for row in jacobian for d in row], modules="numpy", cse=True),
+        ),
     )
+
+
+def _evaluation(e: Any) -> Evaluation:
+    """An expression as nested functions, so that it is taken apart once."""
+    if e.is_Symbol:
+        name = str(e)
+        return lambda at, _: at[name]
+    if e.is_Rational:
+        p, q = int(e.p), int(e.q)
+        return lambda _, context: context.mpf(p) / q
+    parts = tuple(map(_evaluation, e.args))
+    if e.is_Add:
+        return lambda at, context: sum((part(at, context) for part in parts), context.mpf(0))
+    if e.is_Mul:
+        return lambda at, context: prod((part(at, context) for part in parts), start=context.mpf(1))
+    if e.is_Pow and e.exp.is_Integer:
+        n = int(e.exp)
+        return lambda at, context: parts[0](at, context) ** n
+    if e.func in (sympy.cos, sympy.sin):
+        function = e.func.__name__
+        return lambda at, context: getattr(context, function)(parts[0](at, context))
+    raise NotImplementedError(str(e))
 
 
 @dataclass(frozen=True)
@@ -117,7 +150,8 @@ class Found:
 def solutions(model: Model, values: Mapping[str, Fraction], starts: int, seed: int) -> list[Found]:
     """What Newton's method reaches from so many random starts, each solution once and certified."""
     generator = np.random.default_rng(seed)
-    equations, jacobian = model.functions(values)
+    equations, jacobian = model.arrays
+    numbers = [float(values[name]) for name in model.parameters]
     n = len(model.unknowns)
     x = np.empty((n, starts))
     for k, name in enumerate(model.unknowns):
@@ -127,8 +161,10 @@ def solutions(model: Model, values: Mapping[str, Fraction], starts: int, seed: i
             x[k] = generator.choice([-1, 1], starts) * 10 ** generator.uniform(-3, 2.5, starts)
     with np.errstate(all="ignore"):
         for _ in range(60):
-            f = np.array([np.broadcast_to(e, starts) for e in equations(*x)], dtype=float)
-            j = np.array([np.broadcast_to(d, starts) for d in jacobian(*x)], dtype=float).reshape(n, n, starts)
+            f = np.array([np.broadcast_to(e, starts) for e in equations(*x, *numbers)], dtype=float)
+            j = np.array([np.broadcast_to(d, starts) for d in jacobian(*x, *numbers)], dtype=float).reshape(
+                n, n, starts
+            )
             j = np.moveaxis(j, 2, 0)
             regular = np.isfinite(j).all((1, 2)) & np.isfinite(f).all(0)
             regular[regular] &= np.abs(np.linalg.det(j[regular])) > 1e-300
@@ -166,67 +202,49 @@ def _near(model: Model, a: Sequence[Any], b: Sequence[Any]) -> bool:
 
 def _certified(model: Model, values: Mapping[str, Fraction], end: Sequence[float]) -> Found | None:
     """Polished in 50 digits and proved by Krawczyk's test; None when it converges to nothing."""
-    names = [sympy.Symbol(u) for u in model.unknowns]
-    numbers = {sympy.Symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in values.items()}
-    n = len(names)
+    n = len(model.unknowns)
     with mpmath.workdps(50):
-        f = [sympy.lambdify(names, e.subs(numbers), modules="mpmath") for e in model.equations]
-        j = [[sympy.lambdify(names, d.subs(numbers), modules="mpmath") for d in row] for row in model.jacobian]
-        x = mpmath.matrix([mpmath.mpf(c) for c in end])
+        exact = {m: mpmath.mpf(values[m].numerator) / values[m].denominator for m in model.parameters}
+        wide = {m: mpmath.iv.mpf(values[m].numerator) / values[m].denominator for m in model.parameters}
+
+        def numbers(functions: Sequence[Evaluation], at: Sequence[Any]) -> list[Any]:
+            known = {**exact, **dict(zip(model.unknowns, at, strict=True))}
+            return [f(known, mpmath.mp) for f in functions]
+
+        def intervals(functions: Sequence[Evaluation], at: Sequence[Any]) -> list[Any]:
+            known = {**wide, **dict(zip(model.unknowns, at, strict=True))}
+            return [f(known, mpmath.iv) for f in functions]
+
+        x = [mpmath.mpf(c) for c in end]
         try:
             for _ in range(8):
-                slope = mpmath.matrix([[d(*x) for d in row] for row in j])
-                x = x - mpmath.lu_solve(slope, mpmath.matrix([g(*x) for g in f]))
-            inverse = mpmath.matrix([[d(*x) for d in row] for row in j]) ** -1
+                slope = mpmath.matrix([numbers(row, x) for row in model.jacobian])
+                step = mpmath.lu_solve(slope, mpmath.matrix(numbers(model.equations, x)))
+                x = [c - d for c, d in zip(x, step, strict=True)]
+            matrix = mpmath.matrix([numbers(row, x) for row in model.jacobian])
+            inverse = matrix**-1
         except ZeroDivisionError:
             return None
         radius = mpmath.mpf(10) ** -35
         hull = [_interval(c, radius * (1 + abs(c))) for c in x]
-        wide = [[_on_intervals(model.jacobian[i][k].subs(numbers), names, hull) for k in range(n)] for i in range(n)]
-        here = [_on_intervals(e.subs(numbers), names, [_interval(c, 0) for c in x]) for e in model.equations]
+        slopes = [intervals(row, hull) for row in model.jacobian]
+        here = intervals(model.equations, [_interval(c, mpmath.mpf(0)) for c in x])
         inside = _interval(mpmath.mpf(0), radius / 2)
         for i in range(n):
             moved = -sum((mpmath.iv.mpf(inverse[i, m]) * here[m] for m in range(n)), mpmath.iv.mpf(0))
             for k in range(n):
                 entry = mpmath.iv.mpf(int(i == k))
-                entry -= sum((mpmath.iv.mpf(inverse[i, m]) * wide[m][k] for m in range(n)), mpmath.iv.mpf(0))
+                entry -= sum((mpmath.iv.mpf(inverse[i, m]) * slopes[m][k] for m in range(n)), mpmath.iv.mpf(0))
                 moved += entry * (hull[k] - mpmath.iv.mpf(x[k]))
             if moved not in inside:
                 return None
         negative = 0
         if model.is_potential:
-            matrix = mpmath.matrix([[d(*x) for d in row] for row in j])
             eigenvalues = mpmath.eigsy((matrix + matrix.T) / 2, eigvals_only=True)
             assert min(abs(e) for e in eigenvalues) > mpmath.mpf(10) ** -20
             negative = sum(e < 0 for e in eigenvalues)
-        conditions = [sympy.lambdify(names, p.subs(numbers), modules="mpmath")(*x) for p in model.positive]
-        return Found(tuple(x), negative, all(c > 0 for c in conditions))
+        return Found(tuple(x), negative, all(c > 0 for c in numbers(model.positive, x)))
 
 
 def _interval(center: Any, radius: Any) -> Any:
     return mpmath.iv.mpf([center - radius, center + radius])
-
-
-def _on_intervals(expression: Any, names: Sequence[Any], at: Sequence[Any]) -> Any:
-    """The range of an expression over a box."""
-    known = dict(zip(names, at, strict=True))
-
-    def value(e: Any) -> Any:
-        if e.is_Symbol:
-            return known[e]
-        if e.is_Rational:
-            return mpmath.iv.mpf(int(e.p)) / int(e.q)
-        if e.is_Add:
-            return sum((value(a) for a in e.args), mpmath.iv.mpf(0))
-        if e.is_Mul:
-            product = mpmath.iv.mpf(1)
-            for a in e.args:
-                product *= value(a)
-            return product
-        if e.is_Pow and e.exp.is_Integer:
-            return value(e.base) ** int(e.exp)
-        if e.func in (sympy.cos, sympy.sin):
-            return getattr(mpmath.iv, e.func.__name__)(value(e.args[0]))
-        raise NotImplementedError(str(e))
-
-    return value(expression)
