@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from ptmcad.algebra import number_field
 from ptmcad.algebra.number_field import Element, Modulus, RealField, polynomial_at
 from ptmcad.algebra.real_roots import isolate
-from ptmcad.exact import statics
+from ptmcad.exact import stiffness
 
 NUMBERS = st.fractions(-4, 4, max_denominator=12).map(lambda q: fmpq(q.numerator, q.denominator))
 PRIMES = (2, 3, 5, 7, 11, 2**61 - 1)
@@ -118,7 +118,7 @@ def test_a_rational_eigenvalue_is_found_modulo_a_prime_too(other: list[fmpq], q:
     assume(any(other[1:]))
     prime = 2**61 - 1
     trace, determinant = [other[0] + q, *other[1:]], [q * c for c in other]
-    found: Callable[..., object] = statics._eigenvalue
+    found: Callable[..., object] = stiffness._eigenvalue
     assert found(trace, determinant) == q
     images = [[nmod(int(c.p), prime) / nmod(int(c.q), prime) for c in cs] for cs in (trace, determinant)]
     assert found(*images) == nmod(int(q.p), prime) / nmod(int(q.q), prime)

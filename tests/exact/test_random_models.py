@@ -1,6 +1,6 @@
 """Random mechanisms and random systems: counts at random points against Newton's method from many starts.
 
-The oracle (`tests/support/newton.py`) shares no code with the package, and proves each of its solutions.
+The oracle (`tests/support.multistart.py`) shares no code with the package, and proves each of its solutions.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from support.newton import Found, model_of, solutions
+from support.multistart import Found, model_of, solutions
 
 import ptmcad
 from ptmcad.algebra.polynomials import from_fraction

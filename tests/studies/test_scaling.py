@@ -208,7 +208,7 @@ def test_certified_maps_within_a_tolerance(monkeypatch: pytest.MonkeyPatch) -> N
 
     def counting(*arguments: Any) -> Any:
         result = search_curve(*arguments)
-        used.append(result[2])
+        used.append(result.used)
         return result
 
     monkeypatch.setattr(refinement, "search_curve", counting)

@@ -1,250 +1,124 @@
-"""Real solutions of a record's model by Newton's method from many starts, certified in 50 digits.
+"""Equilibria found without ptmcad: a scan in floating point, then Newton's method with mpmath.
 
-Shares no code with the package: SymPy reads the record's texts and differentiates, NumPy searches, mpmath's intervals
-prove by Krawczyk's test that there is exactly one solution in a box around each end of the search. What is found is
-there; that nothing is missing is not proved, so that a caller searches on while it knows of more.
+Everything is derived from the coordinates of the nodes by the chain rule. For fixed th2, dU/dth1 = 0 is linear and
+homogeneous in (cos th1, sin th1), which leaves two opposite th1; along both, the sign changes of dU/dth2 are looked for
+on a grid of th2. `Found` then has every quantity of a pose to about 100 digits.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import prod
-from typing import Any
 
 import mpmath
-import numpy as np
-import sympy
+from mpmath import mpf
 
-mpmath.iv.dps = 60
-
-SEPARATE = 1e-7
-"""Solutions nearer to each other than this are taken for one by the search; degenerate points are not asked for."""
-
-
-Evaluation = Callable[[Mapping[str, Any], Any], Any]
-"""An expression at names' values, in mpmath's context of numbers or of intervals."""
-
-
-@dataclass(frozen=True)
-class Model:
-    """Equations, their Jacobian and the conditions of a record.
-
-    Attributes
-    ----------
-    arrays : equations and Jacobian, row by row, as functions of NumPy arrays: unknowns, then parameters.
-    """
-
-    unknowns: tuple[str, ...]
-    parameters: tuple[str, ...]
-    angles: frozenset[str]
-    equations: tuple[Evaluation, ...]
-    jacobian: tuple[tuple[Evaluation, ...], ...]
-    positive: tuple[Evaluation, ...]
-    is_potential: bool
-    arrays: tuple[Any, Any]
-
-
-def model_of(record: Mapping[str, Any]) -> Model:
-    """The model of a record with a key ``system`` or ``mechanism``."""
-    if "system" in record:
-        given = record["system"]
-        unknowns = given["unknowns"]
-        read = _reader()
-        symbols = [sympy.Symbol(u) for u in unknowns]
-        if "potential" in given:
-            potential = read(given["potential"])
-            equations = [sympy.diff(potential, u) for u in symbols]
-        else:
-            equations = [read(e) for e in given["equations"]]
-        positive = tuple(read(p) for p in given.get("positive", ()))
-        return _model(unknowns, equations, positive, "potential" in given)
-    given = record["mechanism"]
-    read = _reader()
-    points = {name: tuple(read(c) for c in pair) for name, pair in given["points"].items()}
-    energy: Any = sympy.Integer(0)
-    for spring in given.get("springs", ()):
-        (x0, y0), (x1, y1) = (points[p] for p in spring["between"])
-        energy += read(spring["k"]) * ((x1 - x0) ** 2 + (y1 - y0) ** 2) / 2
-    for name, force in given.get("loads", {}).items():
-        energy -= sum(read(f) * c for f, c in zip(force, points[name], strict=True))
-    symbols = [sympy.Symbol(u) for u in given["unknowns"]]
-    return _model(given["unknowns"], [sympy.diff(energy, u) for u in symbols], (), True)
-
-
-def _reader() -> Any:
-    """Texts to expressions with exact numbers."""
-
-    def read(text: object) -> Any:
-        return sympy.sympify(str(text).replace("^", "**"), rational=True, locals=_Names())
-
-    return read
-
-
-class _Names(dict[str, Any]):
-    """Every name but cos and sin is a symbol, also those that SymPy has another meaning for."""
-
-    def __missing__(self, name: str) -> Any:
-        if name in ("cos", "sin"):
-            return getattr(sympy, name)
-        if name in ("Integer", "Rational", "Float", "Symbol"):
-            raise KeyError(name)
-        return sympy.Symbol(name)
-
-
-def _model(
-    unknowns: Mapping[str, str], equations: Sequence[Any], positive: tuple[Any, ...], is_potential: bool
-) -> Model:
-    symbols = [sympy.Symbol(u) for u in unknowns]
-    jacobian = [[sympy.diff(e, u) for u in symbols] for e in equations]
-    free = set().union(*(e.free_symbols for e in (*equations, *positive))) - set(symbols)
-    parameters = sorted(free, key=str)
-    given = [*symbols, *parameters]
-    return Model(
-        tuple(unknowns),
-        tuple(map(str, parameters)),
-        frozenset(u for u, kind in unknowns.items() if kind == "angle"),
-        tuple(map(_evaluation, equations)),
-        tuple(tuple(map(_evaluation, row)) for row in jacobian),
-        tuple(map(_evaluation, positive)),
-        is_potential,
-        (
-            sympy.lambdify(given, list(equations), modules="numpy", cse=True),
-            sympy.lambdify(given, [d for row in jacobian for d in row], modules="numpy", cse=True),
-        ),
-    )
-
-
-def _evaluation(e: Any) -> Evaluation:
-    """An expression as nested functions, so that it is taken apart once."""
-    if e.is_Symbol:
-        name = str(e)
-        return lambda at, _: at[name]
-    if e.is_Rational:
-        p, q = int(e.p), int(e.q)
-        return lambda _, context: context.mpf(p) / q
-    parts = tuple(map(_evaluation, e.args))
-    if e.is_Add:
-        return lambda at, context: sum((part(at, context) for part in parts), context.mpf(0))
-    if e.is_Mul:
-        return lambda at, context: prod((part(at, context) for part in parts), start=context.mpf(1))
-    if e.is_Pow and e.exp.is_Integer:
-        n = int(e.exp)
-        return lambda at, context: parts[0](at, context) ** n
-    if e.func in (sympy.cos, sympy.sin):
-        function = e.func.__name__
-        return lambda at, context: getattr(context, function)(parts[0](at, context))
-    raise NotImplementedError(str(e))
+DIGITS = 110
+GRID = 400
 
 
 @dataclass(frozen=True)
 class Found:
-    """A certified solution: its coordinates to 40 digits, and the number of the Hessian's negative eigenvalues."""
+    """An equilibrium to `DIGITS` digits, the last few of which are not right."""
 
-    at: tuple[Any, ...]
-    negative: int
-    counts: bool
+    angles: tuple[mpf, mpf]
+    nodes: dict[str, tuple[mpf, mpf]]
+    lengths: tuple[mpf, mpf, mpf]
+    forces: tuple[mpf, mpf, mpf]
+    energy: mpf
+    eigenvalues: tuple[mpf, mpf]
+
+    @property
+    def index(self) -> int:
+        return sum(value < 0 for value in self.eigenvalues)
 
 
-def solutions(model: Model, values: Mapping[str, Fraction], starts: int, seed: int) -> list[Found]:
-    """What Newton's method reaches from so many random starts, each solution once and certified."""
-    generator = np.random.default_rng(seed)
-    equations, jacobian = model.arrays
-    numbers = [float(values[name]) for name in model.parameters]
-    n = len(model.unknowns)
-    x = np.empty((n, starts))
-    for k, name in enumerate(model.unknowns):
-        if name in model.angles:
-            x[k] = generator.uniform(-np.pi, np.pi, starts)
-        else:  # of all sizes
-            x[k] = generator.choice([-1, 1], starts) * 10 ** generator.uniform(-3, 2.5, starts)
-    with np.errstate(all="ignore"):
-        for _ in range(60):
-            f = np.array([np.broadcast_to(e, starts) for e in equations(*x, *numbers)], dtype=float)
-            j = np.array([np.broadcast_to(d, starts) for d in jacobian(*x, *numbers)], dtype=float).reshape(
-                n, n, starts
-            )
-            j = np.moveaxis(j, 2, 0)
-            regular = np.isfinite(j).all((1, 2)) & np.isfinite(f).all(0)
-            regular[regular] &= np.abs(np.linalg.det(j[regular])) > 1e-300
-            step = np.zeros((starts, n))
-            step[regular] = np.linalg.solve(j[regular], f.T[regular][..., None])[..., 0]
-            limit = np.array([1.0 if u in model.angles else np.inf for u in model.unknowns])
-            x = x - np.clip(step, -limit, limit).T
-            x[:, ~regular] = np.nan
-    ends: list[tuple[Any, ...]] = []
-    for column in x.T[np.isfinite(x).all(0)]:
-        wrapped = [_wrapped(c) if u in model.angles else c for u, c in zip(model.unknowns, column, strict=True)]
-        if not any(_near(model, wrapped, other) for other in ends):
-            ends.append(tuple(wrapped))
-    found: list[Found] = []
-    for end in ends:
-        certified = _certified(model, values, end)
-        if certified is not None and not any(_near(model, certified.at, other.at) for other in found):
-            found.append(certified)
+def gradient_and_hessian(p: Mapping[str, mpf], th1: mpf, th2: mpf, lib: object) -> tuple[list[mpf], list[mpf]]:
+    """dU/dth1, dU/dth2 and U11, U12, U22 by the chain rule, from the coordinates of A3 and A4."""
+    c1, s1, c2, s2 = lib.cos(th1), lib.sin(th1), lib.cos(th2), lib.sin(th2)  # type: ignore[attr-defined]
+    x3, y3, x4, y4 = p["L1"] * c1, p["L1"] * s1, p["rho"] - p["L2"] * c2, p["L2"] * s2
+    gx3 = p["k2"] * (x3 - p["rho"]) + p["k3"] * (x3 - x4) - p["F3x"]
+    gy3 = p["k2"] * y3 + p["k3"] * (y3 - y4) - p["F3"]
+    gx4 = p["k1"] * x4 + p["k3"] * (x4 - x3) - p["F4x"]
+    gy4 = p["k1"] * y4 + p["k3"] * (y4 - y3) - p["F4"]
+    gradient = [gy3 * p["L1"] * c1 - gx3 * p["L1"] * s1, gx4 * p["L2"] * s2 + gy4 * p["L2"] * c2]
+    hessian = [
+        (p["k2"] + p["k3"]) * p["L1"] ** 2 - gx3 * p["L1"] * c1 - gy3 * p["L1"] * s1,
+        -p["k3"] * p["L1"] * p["L2"] * (c1 * c2 - s1 * s2),
+        (p["k1"] + p["k3"]) * p["L2"] ** 2 + gx4 * p["L2"] * c2 - gy4 * p["L2"] * s2,
+    ]
+    return gradient, hessian
+
+
+def starts(parameters: Mapping[str, Fraction], grid: int) -> list[tuple[float, float]]:
+    """Approximate equilibria, in floating point."""
+    p = {name: float(value) for name, value in parameters.items()}
+    found = []
+    for side in (0.0, math.pi):
+
+        def pose(th2: float, side: float = side) -> tuple[float, float]:
+            # dU/dth1 / L1 = y c1 - x s1
+            x = -(p["k2"] + p["k3"]) * p["rho"] + p["k3"] * p["L2"] * math.cos(th2) - p["F3x"]
+            y = -p["k3"] * p["L2"] * math.sin(th2) - p["F3"]
+            return math.atan2(y, x) + side, th2
+
+        def slope(th2: float) -> float:
+            return gradient_and_hessian(p, *pose(th2), math)[0][1]  # type: ignore[arg-type]
+
+        ends = [2 * math.pi * (k + 0.123) / grid for k in range(grid + 1)]
+        values = [slope(th2) for th2 in ends]
+        for left, right, a, b in zip(ends, ends[1:], values, values[1:], strict=False):
+            if (a < 0) == (b < 0):
+                continue
+            low, high = left, right
+            for _ in range(40):
+                middle = (low + high) / 2
+                low, high = (middle, high) if (slope(middle) < 0) == (a < 0) else (low, middle)
+            found.append(pose((low + high) / 2))
     return found
 
 
-def _wrapped(angle: float) -> float:
-    return float((angle + np.pi) % (2 * np.pi) - np.pi)
+def improved(parameters: Mapping[str, Fraction], start: Sequence[object]) -> Found:
+    """Newton's method from an approximate equilibrium."""
+    with mpmath.workdps(DIGITS):
+        p = {name: mpf(v.numerator) / v.denominator for name, v in parameters.items()}
+        th1, th2 = mpf(start[0]), mpf(start[1])
+        for _ in range(60):
+            (g1, g2), (a, b, c) = gradient_and_hessian(p, th1, th2, mpmath)
+            determinant = a * c - b * b
+            step1, step2 = (c * g1 - b * g2) / determinant, (a * g2 - b * g1) / determinant
+            th1, th2 = th1 - step1, th2 - step2
+            if abs(step1) + abs(step2) < mpf(10) ** (20 - DIGITS):
+                break
+        else:
+            raise ArithmeticError("Newton's method does not converge")
+        th1, th2 = _principal(th1), _principal(th2)
+        x3, y3 = p["L1"] * mpmath.cos(th1), p["L1"] * mpmath.sin(th1)
+        x4, y4 = p["rho"] - p["L2"] * mpmath.cos(th2), p["L2"] * mpmath.sin(th2)
+        lengths = (mpmath.hypot(x4, y4), mpmath.hypot(x3 - p["rho"], y3), mpmath.hypot(x4 - x3, y4 - y3))
+        stiffnesses = (p["k1"], p["k2"], p["k3"])
+        energy = sum(k * length**2 / 2 for k, length in zip(stiffnesses, lengths, strict=True))
+        energy -= p["F3x"] * x3 + p["F3"] * y3 + p["F4x"] * x4 + p["F4"] * y4
+        _, (a, b, c) = gradient_and_hessian(p, th1, th2, mpmath)
+        root = mpmath.sqrt((a - c) ** 2 + 4 * b * b)
+        return Found(
+            (th1, th2),
+            {"A1": (mpf(0), mpf(0)), "A2": (p["rho"], mpf(0)), "A3": (x3, y3), "A4": (x4, y4)},
+            lengths,
+            (p["k1"] * lengths[0], p["k2"] * lengths[1], p["k3"] * lengths[2]),
+            energy,
+            ((a + c - root) / 2, (a + c + root) / 2),
+        )
 
 
-def _near(model: Model, a: Sequence[Any], b: Sequence[Any]) -> bool:
-    for name, p, q in zip(model.unknowns, a, b, strict=True):
-        distance = float(abs(p - q))
-        if name in model.angles:
-            distance = min(distance % (2 * np.pi), 2 * np.pi - distance % (2 * np.pi))
-        if distance > SEPARATE * (1 + float(abs(p))):
-            return False
-    return True
+def _principal(angle: mpf) -> mpf:
+    """The same angle in (-pi, pi], but for rounding."""
+    turn = 2 * mpmath.pi
+    return angle - turn * mpmath.ceil((angle - mpmath.pi) / turn - mpf(10) ** (40 - DIGITS))
 
 
-def _certified(model: Model, values: Mapping[str, Fraction], end: Sequence[float]) -> Found | None:
-    """Polished in 50 digits and proved by Krawczyk's test; None when it converges to nothing."""
-    n = len(model.unknowns)
-    with mpmath.workdps(50):
-        exact = {m: mpmath.mpf(values[m].numerator) / values[m].denominator for m in model.parameters}
-        wide = {m: mpmath.iv.mpf(values[m].numerator) / values[m].denominator for m in model.parameters}
-
-        def numbers(functions: Sequence[Evaluation], at: Sequence[Any]) -> list[Any]:
-            known = {**exact, **dict(zip(model.unknowns, at, strict=True))}
-            return [f(known, mpmath.mp) for f in functions]
-
-        def intervals(functions: Sequence[Evaluation], at: Sequence[Any]) -> list[Any]:
-            known = {**wide, **dict(zip(model.unknowns, at, strict=True))}
-            return [f(known, mpmath.iv) for f in functions]
-
-        x = [mpmath.mpf(c) for c in end]
-        try:
-            for _ in range(8):
-                slope = mpmath.matrix([numbers(row, x) for row in model.jacobian])
-                step = mpmath.lu_solve(slope, mpmath.matrix(numbers(model.equations, x)))
-                x = [c - d for c, d in zip(x, step, strict=True)]
-            matrix = mpmath.matrix([numbers(row, x) for row in model.jacobian])
-            inverse = matrix**-1
-        except ZeroDivisionError:
-            return None
-        radius = mpmath.mpf(10) ** -35
-        hull = [_interval(c, radius * (1 + abs(c))) for c in x]
-        slopes = [intervals(row, hull) for row in model.jacobian]
-        here = intervals(model.equations, [_interval(c, mpmath.mpf(0)) for c in x])
-        inside = _interval(mpmath.mpf(0), radius / 2)
-        for i in range(n):
-            moved = -sum((mpmath.iv.mpf(inverse[i, m]) * here[m] for m in range(n)), mpmath.iv.mpf(0))
-            for k in range(n):
-                entry = mpmath.iv.mpf(int(i == k))
-                entry -= sum((mpmath.iv.mpf(inverse[i, m]) * slopes[m][k] for m in range(n)), mpmath.iv.mpf(0))
-                moved += entry * (hull[k] - mpmath.iv.mpf(x[k]))
-            if moved not in inside:
-                return None
-        negative = 0
-        if model.is_potential:
-            eigenvalues = mpmath.eigsy((matrix + matrix.T) / 2, eigvals_only=True)
-            assert min(abs(e) for e in eigenvalues) > mpmath.mpf(10) ** -20
-            negative = sum(e < 0 for e in eigenvalues)
-        return Found(tuple(x), negative, all(c > 0 for c in numbers(model.positive, x)))
-
-
-def _interval(center: Any, radius: Any) -> Any:
-    return mpmath.iv.mpf([center - radius, center + radius])
+def equilibria(parameters: Mapping[str, Fraction], grid: int = GRID) -> list[Found]:
+    """Every equilibrium that a scan with so many steps finds."""
+    return [improved(parameters, start) for start in starts(parameters, grid)]
