@@ -86,11 +86,26 @@ def from_potential(
     positive: tuple[str, ...],
     nonnegative: tuple[str, ...],
     inequalities: tuple[TrigonometricPolynomial, ...] = (),
+    moments: Mapping[str, TrigonometricPolynomial] | None = None,
+    has_potential: bool = True,
 ) -> ParametricSystem:
-    """The system of critical points of a potential, by differentiation."""
-    gradient = tuple(ring.reduce(ring.derivative(potential, u)) for u in ring.unknowns)
+    """The system of critical points of a potential, by differentiation.
+
+    Parameters
+    ----------
+    moments : generalised forces on unknowns, which are subtracted from the gradient.
+    has_potential : whether the moments are constant in the unknowns: then the gradient's derivative is still symmetric.
+    """
+    gradient = [ring.reduce(ring.derivative(potential, u)) for u in ring.unknowns]
+    for unknown, moment in (moments or {}).items():
+        gradient[ring.unknowns.index(unknown)] -= moment
     return from_equations(
-        ring, gradient, potential=potential, positive=positive, nonnegative=nonnegative, inequalities=inequalities
+        ring,
+        gradient,
+        potential=potential if has_potential else None,
+        positive=positive,
+        nonnegative=nonnegative,
+        inequalities=inequalities,
     )
 
 

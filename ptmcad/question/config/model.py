@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, Model, built_in, described, described_system, mechanism_of, ptm
+from ptmcad.mechanism import Model, built_in, described, described_system, mechanism_of, ptm, recognised
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data, read_file
 
@@ -58,12 +58,15 @@ def _read(node: Tree, file: str | None) -> Model:
     is_system = "equations" in node.entries or "potential" in node.entries
     data = {key: _plain(entry) for key, entry in node.entries.items()}
     try:
-        found: Model = described_system(data) if is_system else described(data)
+        # written down again, the built-in one is the same one
+        return described_system(data) if is_system else recognised(described(data))
     except ConfigError as error:
-        place = _place(node, error.key or "")
-        raise ConfigError(error.message, key=place.key, file=file, line=place.line) from error
-    # written down again, the built-in one is the same one
-    return ptm() if isinstance(found, Mechanism) and found == ptm() else found
+        raise ConfigError.of([_placed(fault, node, file) for fault in error.faults]) from error
+
+
+def _placed(fault: ConfigError, node: Node, file: str | None) -> ConfigError:
+    place = _place(node, fault.key or "")
+    return ConfigError(fault.message, key=place.key, file=file, line=place.line)
 
 
 def _plain(node: Node) -> object:
