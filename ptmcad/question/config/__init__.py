@@ -31,7 +31,7 @@ from ptmcad.question.config.record import (
     portable_file,
     record_of,
 )
-from ptmcad.question.config.resolution import MAX_DEGREE, number_of, point_of, slice_of
+from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, point_of, slice_of
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.syntax import did_you_mean
@@ -58,9 +58,9 @@ def load(path: str | Path) -> Slice:
     Raises
     ------
     ConfigError
-        For anything wrong in it, with file, line and key.
+        For anything wrong in it, with file, line and key; its ``faults`` are all there are.
     """
-    return slice_from_options(path)
+    return checked_slice(read_file(path))
 
 
 def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
@@ -72,7 +72,7 @@ def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
     node = from_python(mapping, Place())
     if not isinstance(node, Tree):
         raise ConfigError("a record is a mapping")
-    return slice_of(record_of(node))
+    return checked_slice(node)
 
 
 def slice_from_options(
@@ -101,6 +101,9 @@ def slice_from_options(
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
+    sets, ranges = tuple(sets), tuple(ranges)
+    if config is not None and slice is None and count is None and not sets and not ranges:
+        return load(config)
     record = record_of(read_file(config)) if config is not None else Record()
     given_sets, given_ranges = settings_of(sets, record.model), ranges_of(ranges)
     if slice is not None:
