@@ -28,6 +28,8 @@ COMMANDS = {
     "bench": "ptmcad.cli.bench",
     "check": "ptmcad.cli.check",
     "classify": "ptmcad.cli.classify",
+    "init": "ptmcad.cli.init",
+    "mechanisms": "ptmcad.cli.mechanisms",
     "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",
     "paper": "ptmcad.cli.paper",

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Model, built_in, described, described_system, mechanism_of, ptm, recognised
+from ptmcad.question.config.starters import NAMES, starter_mechanism
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data, read_file
 
@@ -33,7 +34,11 @@ def model_of(record: Tree) -> Model:
         return mechanism_of(mechanism.text)
     if Path(mechanism.text).suffix.lower() in (".yaml", ".yml"):
         return _from_file(mechanism, record.place.file)
-    hint = did_you_mean(mechanism.text, built_in()) or f"; built in are {', '.join(built_in())}"
+    known = starter_mechanism(mechanism.text)
+    if isinstance(known, Tree):
+        return _read(known, None)
+    names = tuple(name for name in NAMES if starter_mechanism(name) is not None)
+    hint = did_you_mean(mechanism.text, names) or f"; built in are {', '.join(names)}"
     raise mechanism.place.error(
         f"unknown mechanism{hint}; a file that holds one ends in .yaml, and a mapping describes one"
     )
