@@ -16,8 +16,8 @@ from ptmcad.mechanism.description import Mechanism, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.text.syntax import Number, Tree
 
-MAX_WORK = 100_000
-"""Products of terms for one description, about half a second."""
+MAX_WORK = 25_000
+"""Products of terms for one question, a fraction of a second; two bars and a spring take some hundred."""
 
 Monomial = tuple[tuple[str, int], ...]
 """Variables with their exponents, in order; the cosine of an angle is ``cos NAME``, its exponent at most 1."""

@@ -31,6 +31,8 @@ MAX_NAME = 40
 MAX_DEGREE = 64
 """Of a coordinate, stiffness, free length or force in the parameters and the cosines and sines."""
 MAX_UNKNOWNS = 12
+MAX_BODIES = 100
+"""One may be at a point of another, whose coordinates then stand in its own."""
 MAX_ENTRIES = 400
 """Of any list or mapping in a description, so that what is read is read, and proved, in a fraction of a second."""
 PARAMETER_KEYS = ("kind", "default", "range", "alias")

@@ -16,6 +16,7 @@ from ptmcad.mechanism.description import Load, Mechanism, Moment, Spring, Suppor
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.proofs import check_bars, check_unknowns
 from ptmcad.mechanism.reading import (
+    MAX_BODIES,
     Reader,
     check_keys,
     constant,
@@ -84,7 +85,7 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
     points = parts.points()
     bodies = {}
     with faults:
-        bodies = add_bodies(mapping(record.get("bodies", {}), "bodies"), parts.reader, points, faults)
+        bodies = add_bodies(mapping(record.get("bodies", {}), "bodies", MAX_BODIES), parts.reader, points, faults)
     bars, supports, loads = parts.bars(points), parts.supports(points), parts.loads(points)
     moments, torsion = parts.moments(unknowns), parts.torsion()
     found = Mechanism(

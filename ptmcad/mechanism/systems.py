@@ -63,8 +63,9 @@ def described_system(record: Mapping[str, Any]) -> System:
         if found not in parameters and found not in unknowns:
             with faults:
                 parameters[new_name(found, found, {})] = Parameter(found, Kind.NUMBER, "", None)
-                if len(parameters) > MAX_ENTRIES:
-                    raise ConfigError(f"more than {MAX_ENTRIES} parameters", key="equations")
+    with faults:
+        if len(parameters) > MAX_ENTRIES:
+            raise ConfigError(f"{len(parameters)} names of parameters, more than {MAX_ENTRIES}", key="equations")
     faults.check()
     reader = Reader(parameters, unknowns)
     for key, text in texts.items():

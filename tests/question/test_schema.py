@@ -20,7 +20,7 @@ from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import Kind, Support, ptm
 from ptmcad.mechanism.bodies import BODY_KEYS
 from ptmcad.mechanism.description import UnknownKind
-from ptmcad.mechanism.reading import MAX_ENTRIES, MAX_UNKNOWNS, PARAMETER_KEYS
+from ptmcad.mechanism.reading import MAX_BODIES, MAX_ENTRIES, MAX_UNKNOWNS, PARAMETER_KEYS
 from ptmcad.mechanism.record import KEYS, NAMED_RESTS, SPRING_KEYS, TORSION_KEYS
 from ptmcad.mechanism.systems import SYSTEM_KEYS
 from ptmcad.question.config import RECORD_KEYS, slice_from_mapping
@@ -40,7 +40,9 @@ def test_the_keys_are_those_of_config() -> None:
     properties = SCHEMA["properties"]
     assert tuple(properties) == RECORD_KEYS
     assert tuple(properties["parameters"]["properties"]) == tuple(ptm().parameters)
-    assert SCHEMA["then"]["properties"]["parameters"]["propertyNames"]["enum"] == list(ptm().parameters)
+    assert SCHEMA["$defs"]["ptm-parameters"]["properties"]["parameters"]["propertyNames"]["enum"] == list(
+        ptm().parameters
+    )
     assert properties["count"]["enum"] == [member.value for member in Count]
     defaults = {name: str(entry["default"]) for name, entry in properties["parameters"]["properties"].items()}
     assert defaults == {name: parameter.default for name, parameter in ptm().parameters.items()}
@@ -52,8 +54,8 @@ def test_the_keys_of_descriptions_are_those_of_their_readers() -> None:
     assert tuple(system) == SYSTEM_KEYS
     assert tuple(mechanism["springs"]["items"]["properties"]) == SPRING_KEYS
     assert tuple(mechanism["torsion"]["items"]["properties"]) == TORSION_KEYS
-    assert tuple(mechanism["bodies"]["additionalProperties"]["properties"]) == BODY_KEYS
-    entry = SCHEMA["$defs"]["parameters"]["additionalProperties"]["properties"]
+    assert tuple(SCHEMA["$defs"]["body"]["properties"]) == BODY_KEYS
+    entry = SCHEMA["$defs"]["parameter"]["properties"]
     assert tuple(entry) == PARAMETER_KEYS
     assert entry["kind"]["enum"] == [kind.value for kind in Kind]
     assert mechanism["supports"]["additionalProperties"]["enum"] == [kind.value for kind in Support]
@@ -64,7 +66,12 @@ def test_the_keys_of_descriptions_are_those_of_their_readers() -> None:
     built_in = [name for name in NAMES if starter_mechanism(name) is not None]
     assert SCHEMA["properties"]["mechanism"]["anyOf"][0]["enum"] == built_in
     text = json.dumps(SCHEMA["$defs"])
-    assert {int(found) for found in re.findall(r'"max(?:Items|Properties)": (\d+)', text)} == {2, 12, MAX_ENTRIES}
+    assert {int(found) for found in re.findall(r'"max(?:Items|Properties)": (\d+)', text)} == {
+        2,
+        MAX_UNKNOWNS,
+        MAX_BODIES,
+        MAX_ENTRIES,
+    }
 
 
 @pytest.mark.parametrize("name", NAMES)
