@@ -20,6 +20,7 @@ from typing import Any
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
+from ptmcad.question.config.objects import make_mechanism, make_system, plain
 from ptmcad.question.config.options import ranges_of, settings_of, with_axes
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.record import (
@@ -44,9 +45,12 @@ __all__ = [
     "Parameter",
     "file_name",
     "load",
+    "make_mechanism",
+    "make_system",
     "point_from_mapping",
     "point_from_options",
     "portable_file",
+    "slice_from",
     "slice_from_mapping",
     "slice_from_options",
 ]
@@ -66,13 +70,23 @@ def load(path: str | Path) -> Slice:
 def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
     """The slice of a record given as Python data: numbers as text, int or Fraction, never float.
 
+    Expressions may be SymPy's; ``mechanism`` and ``system`` may be objects that `ptmcad.Mechanism` and `ptmcad.System`
+    have made.
+
     >>> slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["0", "2"]}, "parameters": {"F3": "-0.1"}}).axis_names
     ('rho', 'L2')
     """
-    node = from_python(mapping, Place())
+    node = from_python(plain(mapping), Place())
     if not isinstance(node, Tree):
         raise ConfigError("a record is a mapping")
     return checked_slice(node)
+
+
+def slice_from(question: str | Path | Mapping[str, Any] | Slice) -> Slice:
+    """The slice that is meant by a record's file, by a mapping like a record, or by itself."""
+    if isinstance(question, Slice):
+        return question
+    return slice_from_mapping(question) if isinstance(question, Mapping) else load(question)
 
 
 def slice_from_options(
