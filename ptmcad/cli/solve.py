@@ -104,6 +104,8 @@ def command(
     names = file_names(start, formats, landscape)
     with held(limits):
         parameters = point_from_options(config, {} if at is None else point_of(at), sets)
+        if not set(ptm().positive) <= parameters.keys():
+            raise ConfigError("poses are solved of the mechanism ptm only: of others ptmcad.counts_at counts them")
         if names:
             check_writable(out, names)
         from ptmcad.ask.classification import load_certified
