@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from itertools import combinations, product
 from math import comb
 
-from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
+from flint import arb, ctx, fmpq, fmpq_mat
 
 from ptmcad.algebra.fibre import (
     Fibre,
@@ -32,6 +32,7 @@ from ptmcad.algebra.fibre import (
 )
 from ptmcad.algebra.inertia import negative_eigenvalues
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine, root_bound, sign_at
+from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, at_point, polynomial_at
 
@@ -180,7 +181,7 @@ def equilibria(system: ParametricSystem, values: Mapping[str, fmpq]) -> Equilibr
     # where coordinates are at most 1, real values of the form come from real solutions only, and so they do elsewhere
     bound = fmpq(sum(representation.form) + 1) if point.is_bounded else root_bound(representation.minimal)
     roots = isolate(representation.minimal, -bound, bound)
-    zeros = [_vanishing(point, representation, p) for p in point.conditions]
+    zeros = [vanishing_divisor(point.algebra, representation, p) for p in point.conditions]
     while (found := _enclosed(system, point, representation, roots, zeros, bits)) is None:
         bits *= 2
     counts = _counts(system, found)
@@ -228,25 +229,6 @@ def _simple(
     raise DegeneratePoint(f"{what} at {_text(values)}")
 
 
-def _vanishing(point: PointSystem, representation: UnivariateRepresentation, p: RationalPolynomial) -> fmpz_poly | None:
-    """A polynomial whose roots among the representation's are those at which p vanishes; None when there are none."""
-    if evaluate(point.algebra, _lifted(p, len(representation.form))).det() != 0:
-        return None
-    degree = max((sum(m) for m in p), default=0)
-    minimal = fmpq_poly(representation.minimal)
-    powers = [fmpq_poly([1])]
-    for _ in range(degree):
-        powers.append(powers[-1] * representation.slope % minimal)
-    total = fmpq_poly([0])
-    for monomial, c in p.items():
-        term = powers[degree - sum(monomial)] * c
-        for coordinate, e in zip(representation.coordinates, monomial, strict=False):
-            for _ in range(e):
-                term = term * coordinate % minimal
-        total += term
-    return fmpz_poly(total.numer()).gcd(representation.minimal)
-
-
 def _lifted(p: RationalPolynomial, width: int) -> RationalPolynomial:
     """The polynomial in more coordinates."""
     return {(*m, *(0,) * (width - len(m))): c for m, c in p.items()}
@@ -257,7 +239,7 @@ def _enclosed(
     point: PointSystem,
     representation: UnivariateRepresentation,
     roots: Sequence[RealRoot],
-    zeros: Sequence[fmpz_poly | None],
+    zeros: Sequence[Divisor | None],
     bits: int,
 ) -> tuple[Equilibrium, ...] | None:
     """The solutions at these roots that count, in disjoint boxes; None when the precision does not decide all signs."""
@@ -292,7 +274,7 @@ def _enclosed(
 
 
 def _condition_signs(
-    point: PointSystem, root: RealRoot, unknowns: list[arb], zeros: Sequence[fmpz_poly | None]
+    point: PointSystem, root: RealRoot, unknowns: list[arb], zeros: Sequence[Divisor | None]
 ) -> str | None:
     """The signs of inequalities and stability conditions at a solution; None when one is not certain."""
     signs = ""
@@ -307,7 +289,7 @@ def _condition_signs(
     return signs
 
 
-def _is_root(divisor: fmpz_poly, root: RealRoot) -> bool:
+def _is_root(divisor: Divisor, root: RealRoot) -> bool:
     """Whether a divisor of the root's polynomial has the root too."""
     if divisor.degree() < 1:
         return False
