@@ -16,7 +16,7 @@ from ptmcad.mechanism.description import Mechanism, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.text.syntax import Number, Tree
 
-MAX_WORK = 25_000
+MAX_WORK = 12_000
 """Products of terms for one question, a fraction of a second; two bars and a spring take some hundred."""
 
 Monomial = tuple[tuple[str, int], ...]

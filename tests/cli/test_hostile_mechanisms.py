@@ -71,6 +71,9 @@ CASES = {
     "an absolute path": (file("/etc/other.yaml"), "not in the record's folder nor below it"),
     "a link that leads out": (file("link.yaml"), "not in the record's folder nor below it"),
     "a pipe": (file("pipe.yaml"), "is a device or a pipe"),
+    "a null character": (file('"a\\0.yaml"'), "cannot name a file"),
+    "a circle of links": (file("circle.yaml"), "cannot"),
+    "a long name": (file("a" * 5000 + ".yaml"), "File name too long"),
     "a folder": (file("dir.yaml"), "is a folder"),
     "no file": (file("missing.yaml"), "there is no such file"),
 }  # fmt: skip
@@ -88,6 +91,7 @@ def test_hostile_descriptions(
     Path("dir.yaml").mkdir()
     Path("link.yaml").symlink_to(tmp_path / "other.yaml")
     Path("itself.yaml").symlink_to("record.yaml")
+    Path("circle.yaml").symlink_to("circle.yaml")
     Path("other.yaml").write_text(file("record.yaml"), encoding="utf-8")
     text, part = CASES[case]
     Path("record.yaml").write_text(text, encoding="utf-8")

@@ -64,3 +64,18 @@ def test_all_are_listed_with_a_drawing(tmp_path: Path, capsys: pytest.CaptureFix
             assert drawn.count("circle") == len(model.points)
     assert run(["mechanisms", "pendulun"]) == 2
     assert "did you mean 'pendulum'?" in capsys.readouterr().err
+
+
+def test_a_mechanism_by_an_option(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """By name, or in a file anywhere: a description, or a record with one."""
+    window = ["--slice", "H,W", "--range", "H=-3/2:3/2", "--range", "W=-3/2:3/2"]
+    path = tmp_path / "mine.yaml"
+    assert run(["init", "pendulum", "--out", str(path)]) == 0
+    for mechanism in ("pendulum", str(path)):
+        arguments = ["--mechanism", mechanism, "--out", str(tmp_path), "--format", "json"]
+        assert run(["classify", *window, *arguments]) == 0
+        assert "2: 1.1781" in capsys.readouterr().out
+    assert run(["classify", str(path), "--mechanism", "pendulum"]) == 2
+    assert "--mechanism: the record says which" in capsys.readouterr().err
+    assert run(["classify", *window, "--mechanism", "pendulun"]) == 2
+    assert "--mechanism: unknown mechanism; did you mean 'pendulum'?" in capsys.readouterr().err

@@ -20,6 +20,7 @@ from typing import Any
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
+from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
 from ptmcad.question.config.options import ranges_of, settings_of, with_axes
 from ptmcad.question.config.parameters import unknown_parameter
@@ -95,6 +96,7 @@ def slice_from_options(
     sets: Iterable[str] = (),
     ranges: Iterable[str] = (),
     count: str | Count | None = None,
+    mechanism: str | None = None,
 ) -> Slice:
     """The slice of the command line's options, with or without a record under them.
 
@@ -109,6 +111,7 @@ def slice_from_options(
     sets : texts ``NAME=VALUE``.
     ranges : texts ``NAME=LO:HI``, for axes.
     count : which count distinguishes two regions.
+    mechanism : the name of a built-in mechanism, or a YAML file that describes one, in place of a record.
 
     Raises
     ------
@@ -116,9 +119,13 @@ def slice_from_options(
         For anything wrong, with file, line and key, or the option.
     """
     sets, ranges = tuple(sets), tuple(ranges)
+    if config is not None and mechanism is not None:
+        raise ConfigError("the record says which mechanism is meant: leave one out", key="--mechanism")
     if config is not None and slice is None and count is None and not sets and not ranges:
         return load(config)
     record = record_of(read_file(config)) if config is not None else Record()
+    if mechanism is not None:
+        record = Record(model=named_model(Scalar(mechanism, Place("--mechanism"))))
     given_sets, given_ranges = settings_of(sets, record.model), ranges_of(ranges)
     if slice is not None:
         record = with_axes(record, slice, given_sets, given_ranges)

@@ -32,7 +32,7 @@ def model_of(record: Tree) -> Model:
         raise mechanism.place.error("expected a mechanism's name, a mapping that describes one, or a file that does")
     if mechanism.text in built_in():
         return mechanism_of(mechanism.text)
-    if Path(mechanism.text).suffix.lower() in (".yaml", ".yml"):
+    if _is_file(mechanism):
         return _from_file(mechanism, record.place.file)
     known = starter_mechanism(mechanism.text)
     if isinstance(known, Tree):
@@ -44,18 +44,43 @@ def model_of(record: Tree) -> Model:
     )
 
 
+def named_model(name: Scalar) -> Model:
+    """The model of a name, or of a file that is wherever the user says it is: what an option gives.
+
+    Raises
+    ------
+    ConfigError
+        When there is none, or for what is wrong with it.
+    """
+    if _is_file(name):
+        return _from_tree(read_file(name.text))
+    return model_of(Tree({"mechanism": name}, name.place))
+
+
+def _is_file(name: Scalar) -> bool:
+    return Path(name.text).suffix.lower() in (".yaml", ".yml")
+
+
 def _from_file(name: Scalar, record: str | None) -> Model:
-    folder = (Path(record).parent if record else Path()).resolve()
-    path = (folder / name.text).resolve()
+    try:
+        folder = (Path(record).parent if record else Path()).resolve()
+        path = (folder / name.text).resolve()
+        itself = Path(record).resolve() if record else None
+    except (OSError, ValueError, RuntimeError) as error:  # a null character, a circle of links
+        raise name.place.error(f"{name.text!r:.60} cannot name a file: {error}") from error
     if not path.is_relative_to(folder):
         raise name.place.error("the file is not in the record's folder nor below it: move it there")
-    if record and path == Path(record).resolve():
+    if path == itself:
         raise name.place.error("the record names itself as its mechanism's file")
-    tree = read_file(path)
-    inner = tree.entries.get("mechanism", tree)
+    return _from_tree(read_file(path))
+
+
+def _from_tree(tree: Tree) -> Model:
+    """The model of a file: a description, a record with one, or a system."""
+    inner = tree.entries.get("mechanism") or tree.entries.get("system") or tree
     if not isinstance(inner, Tree):
         raise inner.place.error("a mechanism's file describes it: it does not name another one")
-    return _read(inner, str(path))
+    return _read(inner, tree.place.file)
 
 
 def _read(node: Tree, file: str | None) -> Model:
