@@ -79,3 +79,10 @@ def test_a_mechanism_by_an_option(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "--mechanism: the record says which" in capsys.readouterr().err
     assert run(["classify", *window, "--mechanism", "pendulun"]) == 2
     assert "--mechanism: unknown mechanism; did you mean 'pendulum'?" in capsys.readouterr().err
+
+
+def test_indices_of_one_angle_are_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "mine.yaml"
+    assert run(["init", "pendulum", "--out", str(path)]) == 0
+    assert run(["classify", str(path), "--count", "index", "--format", "json", "--out", str(tmp_path)]) == 0
+    assert "(2, 2)" in capsys.readouterr().out

@@ -6,8 +6,6 @@ mechanism as the starter of that name.
 
 from __future__ import annotations
 
-from importlib.resources import files
-
 from ptmcad.text.yamltree import Node, read_text
 
 NAMES = ("ptm", "pendulum", "chain", "platform", "cusp")
@@ -21,6 +19,8 @@ def starter_text(name: str) -> str:
     KeyError
         When there is none.
     """
+    from importlib.resources import files  # which a record without a starter's name can do without
+
     if name not in NAMES:
         raise KeyError(name)
     return files(__package__).joinpath(f"{name}.yaml").read_text(encoding="utf-8")
