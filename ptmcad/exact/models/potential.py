@@ -130,7 +130,6 @@ def _equilibria_of(mechanism: Mechanism) -> ParametricSystem:
         positive=tuple(name for name in mechanism.positive if name in kept),
         nonnegative=tuple(name for name in mechanism.nonnegative if name in kept),
         moments={m.unknown: ring.reduce(evaluate(m.value, _Evaluation(ring))) for m in mechanism.moments},
-        has_potential=mechanism.has_potential,
     )
 
 

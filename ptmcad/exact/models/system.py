@@ -87,18 +87,19 @@ def from_potential(
     nonnegative: tuple[str, ...],
     inequalities: tuple[TrigonometricPolynomial, ...] = (),
     moments: Mapping[str, TrigonometricPolynomial] | None = None,
-    has_potential: bool = True,
 ) -> ParametricSystem:
     """The system of critical points of a potential, by differentiation.
 
     Parameters
     ----------
-    moments : generalised forces on unknowns, which are subtracted from the gradient.
-    has_potential : whether the moments are constant in the unknowns: then the gradient's derivative is still symmetric.
+    moments : generalised forces on unknowns, which are subtracted from the gradient. With one that depends on an
+        unknown there is no potential.
     """
     gradient = [ring.reduce(ring.derivative(potential, u)) for u in ring.unknowns]
+    has_potential = True
     for unknown, moment in (moments or {}).items():
         gradient[ring.unknowns.index(unknown)] -= moment
+        has_potential = has_potential and not any(ring.derivative(moment, u) for u in ring.unknowns)
     return from_equations(
         ring,
         gradient,
