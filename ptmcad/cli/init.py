@@ -19,12 +19,11 @@ from ptmcad.question.config.starters import starter_text
 def command(*, mechanism: str, out: Path | None) -> None:
     """Write a commented record to start from: of MECHANISM, or of a pendulum.
 
-    `ptmcad mechanisms` lists what there is. The record runs as it is.
+    `ptmcad mechanisms` lists what there is. The record runs as it is: `ptmcad classify FILE --out out`.
 
     \b
     Example:
         ptmcad init platform --out mine.yaml
-        ptmcad classify mine.yaml --out out
     """
     text = starter_text(known_starter(mechanism, "MECHANISM"))
     if out is None:
