@@ -21,8 +21,11 @@ if TYPE_CHECKING:
     from ptmcad.ask.classification import classify
     from ptmcad.ask.ranges import intervals, operation_widths, pose_paths
     from ptmcad.ask.solving import solve
+    from ptmcad.ask.stepwise import counts_at, discriminant_variety, open_cad
     from ptmcad.exact.engine import slice_variety
     from ptmcad.question.config import load, slice_from_mapping, slice_from_options
+    from ptmcad.question.config import make_mechanism as Mechanism
+    from ptmcad.question.config import make_system as System
     from ptmcad.question.slice import Count, Point, Slice
     from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
     from ptmcad.verification import VerifyReport, verify
@@ -31,6 +34,11 @@ _HOMES = {
     "load": "question.config",
     "slice_from_mapping": "question.config",
     "slice_from_options": "question.config",
+    "Mechanism": "question.config:make_mechanism",
+    "System": "question.config:make_system",
+    "counts_at": "ask.stepwise",
+    "discriminant_variety": "ask.stepwise",
+    "open_cad": "ask.stepwise",
     "AlgebraicNumber": "text.enclosure",
     "Enclosure": "text.enclosure",
     "classify": "ask.classification",
@@ -54,17 +62,22 @@ __all__ = [
     "AlgebraicNumber",
     "Count",
     "Enclosure",
+    "Mechanism",
     "Point",
     "Pose",
     "Poses",
     "RegionMap",
     "Slice",
     "SliceVariety",
+    "System",
     "VerifyReport",
     "__version__",
     "classify",
+    "counts_at",
+    "discriminant_variety",
     "intervals",
     "load",
+    "open_cad",
     "operation_widths",
     "pose_paths",
     "slice_from_mapping",
@@ -80,5 +93,6 @@ def __getattr__(name: str) -> Any:
     if name in _HOMES:
         from importlib import import_module
 
-        return getattr(import_module(f"ptmcad.{_HOMES[name]}"), name)
+        home, _, other = _HOMES[name].partition(":")
+        return getattr(import_module(f"ptmcad.{home}"), other or name)
     raise AttributeError(f"module 'ptmcad' has no attribute {name!r}")

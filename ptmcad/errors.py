@@ -22,8 +22,13 @@ as they are, whatever the input that it quotes.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from types import TracebackType
+
 MAX_MESSAGE = 1000
 """Characters of a message."""
+MAX_FAULTS = 50
+"""Of one record: whoever wrote it has enough to mend, and a hostile one costs a bounded time."""
 _MAX_PLACE = 300
 
 
@@ -66,6 +71,10 @@ class ConfigError(PtmcadError):
     message : what is wrong and, in the same sentence or the next, the remedy.
     key : dotted path of the offending key, such as ``axes.rho``, or the command-line option.
     file, line : where it stands, when it stands in a file.
+
+    Attributes
+    ----------
+    faults : this one, and the others that were found with it.
     """
 
     def __init__(self, message: str, *, key: str | None = None, file: str | None = None, line: int | None = None):
@@ -73,7 +82,19 @@ class ConfigError(PtmcadError):
         self.key = key
         self.file = file
         self.line = line
+        self._others: tuple[ConfigError, ...] = ()
         super().__init__(message)
+
+    @classmethod
+    def of(cls, faults: Iterable[ConfigError]) -> ConfigError:
+        """The first of some faults, which knows the others; there has to be one."""
+        first, *others = (fault for error in faults for fault in error.faults)
+        first._others = tuple(others)
+        return first
+
+    @property
+    def faults(self) -> tuple[ConfigError, ...]:
+        return (self, *self._others)
 
     def __str__(self) -> str:
         place = ""
@@ -84,6 +105,50 @@ class ConfigError(PtmcadError):
             key = shown(self.key, _MAX_PLACE)
             place = f"{place}: {key}" if place else key
         return shown(f"{place}: {self.message}" if place else self.message)
+
+
+class Faults:
+    """Everything that is wrong with a record: a `ConfigError` in a ``with`` block is noted, and work goes on behind it.
+
+    Guarantee: after `MAX_FAULTS` nothing more is looked for, and those are raised.
+
+    >>> faults = Faults()
+    >>> for key in ("a", "b"):
+    ...     with faults:
+    ...         raise ConfigError("is wrong", key=key)
+    >>> [fault.key for fault in faults.found]
+    ['a', 'b']
+    """
+
+    def __init__(self) -> None:
+        self.found: list[ConfigError] = []
+
+    def __enter__(self) -> None: ...
+
+    def __exit__(
+        self, _kind: type[BaseException] | None, error: BaseException | None, _trace: TracebackType | None
+    ) -> bool:
+        if not isinstance(error, ConfigError) or len(self.found) >= MAX_FAULTS:
+            return False
+        self.found += error.faults
+        if len(self.found) >= MAX_FAULTS:
+            self.check()
+        return True
+
+    def check(self) -> None:
+        """Raise what was found, if anything was.
+
+        Raises
+        ------
+        ConfigError
+            The first fault; it knows the others.
+        """
+        if self.found:
+            raise ConfigError.of([_alone(fault) for fault in self.found])
+
+
+def _alone(fault: ConfigError) -> ConfigError:
+    return ConfigError(fault.message, key=fault.key, file=fault.file, line=fault.line)
 
 
 class ExpressionError(PtmcadError):

@@ -40,6 +40,10 @@ _KNOWN = frozenset(
         "anyOf",
         "oneOf",
         "prefixItems",
+        # what excludes, or asks of one case only: the descriptions say it in words
+        "not",
+        "if",
+        "then",
     ]
 )
 

@@ -192,25 +192,6 @@ def coordinates_at(representation: UnivariateRepresentation, value: arb) -> list
     return [arb_poly(p)(value) / slope for p in representation.coordinates]
 
 
-def vanishing(algebra: Fibre, representation: UnivariateRepresentation, p: RationalPolynomial) -> fmpz_poly | None:
-    """A polynomial whose roots among the representation's are those at which p vanishes; None when there are none."""
-    if evaluate(algebra, p).det() != 0:
-        return None
-    degree = max((sum(m) for m in p), default=0)
-    minimal = fmpq_poly(representation.minimal)
-    powers = [fmpq_poly([1])]
-    for _ in range(degree):
-        powers.append(powers[-1] * representation.slope % minimal)
-    total = fmpq_poly([0])
-    for monomial, c in p.items():
-        term = powers[degree - sum(monomial)] * c
-        for coordinate, e in zip(representation.coordinates, monomial, strict=True):
-            for _ in range(e):
-                term = term * coordinate % minimal
-        total += term
-    return fmpz_poly(total.numer()).gcd(representation.minimal)
-
-
 def hermite_matrix(algebra: Fibre, weight: fmpq_mat) -> fmpq_mat:
     """The matrix trace(weight b_i b_j), weight being a multiplication matrix.
 

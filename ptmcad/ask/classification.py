@@ -9,11 +9,13 @@ Only the engine that is used is loaded.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
+from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.engines import is_certified
@@ -21,13 +23,14 @@ from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import ptm
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
+from ptmcad.question.config import slice_from
 from ptmcad.question.savings import load_all, switched_off
 from ptmcad.question.slice import Count, Slice, without_free_lengths
 from ptmcad.text.numerals import exactly
 
 
 def classify(
-    slice: Slice,
+    slice: Slice | str | Path | Mapping[str, Any],
     engine: str = "auto",
     count: Count | str | None = None,
     timeout: float | None = None,
@@ -46,6 +49,7 @@ def classify(
 
     Parameters
     ----------
+    slice : a slice, the file of a record, or a mapping like a record.
     engine : ``"exact"``, ``"certified"``, or ``"auto"``: certified where springs have a free length, else exact.
     count : which count distinguishes regions; the slice's own when None.
     timeout : seconds after which `LimitReached` is raised; loading the certified engine, and compiling it in the first
@@ -85,7 +89,8 @@ def classify(
         areas=areas,
     )
     try:
-        counted = slice if count is None else replace(slice, count=Count(count))
+        asked = slice_from(slice)
+        counted = asked if count is None else replace(asked, count=Count(count))
     except ValueError as error:
         raise ConfigError(str(error), key="count") from error
     return region_map(counted, options)

@@ -20,13 +20,16 @@ from typing import NoReturn
 
 import click
 
-from ptmcad.errors import LimitReached, PtmcadError, shown
+from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.version import __version__
 
 COMMANDS = {
     "bench": "ptmcad.cli.bench",
+    "check": "ptmcad.cli.check",
     "classify": "ptmcad.cli.classify",
+    "init": "ptmcad.cli.init",
+    "mechanisms": "ptmcad.cli.mechanisms",
     "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",
     "paper": "ptmcad.cli.paper",
@@ -112,7 +115,8 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except MemoryError:
         return _exhausted()
     except PtmcadError as error:
-        click.echo(f"error: {error}", err=True)
+        more = len(error.faults) - 1 if isinstance(error, ConfigError) else 0
+        click.echo(f"error: {error}{f' (and {more} more: ptmcad check lists them)' if more else ''}", err=True)
         return 2
     except OSError as error:  # mostly standard output that is full; files of results raise OutputError
         if error.errno == ENOMEM:

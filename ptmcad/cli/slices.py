@@ -25,6 +25,7 @@ class Asked(NamedTuple):
     axes: str | None
     sets: tuple[str, ...]
     ranges: tuple[str, ...]
+    mechanism: str | None
 
     def slice(self, count: str | None = None) -> Slice:
         """The slice that is meant.
@@ -34,17 +35,18 @@ class Asked(NamedTuple):
         ConfigError
             For anything wrong with the record or the options.
         """
-        return slice_from_options(self.config, self.axes, self.sets, self.ranges, count)
+        return slice_from_options(self.config, self.axes, self.sets, self.ranges, count, self.mechanism)
 
 
 def slice_options(command: F) -> F:
-    """Add CONFIG, ``--slice``, ``--set`` and ``--range``, which the command gets as ``asked``."""
+    """Add CONFIG, ``--mechanism``, ``--slice``, ``--set`` and ``--range``, which the command gets as ``asked``."""
     command = gathered(asked=Asked)(command)
     for add in (
         click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", help="The range of an axis."),
         click.option("--set", "sets", multiple=True, metavar="NAME=VALUE",
                      help="Fix a parameter: a number or an expression."),
         click.option("--slice", "axes", metavar="X,Y", help="The two axes, the horizontal one first."),
+        click.option("--mechanism", metavar="NAME|FILE", help="Without CONFIG: the mechanism.  [default: ptm]"),
         click.argument("config", required=False, type=click.Path(path_type=Path)),
     ):  # fmt: skip
         command = add(command)

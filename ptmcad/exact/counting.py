@@ -29,12 +29,11 @@ from ptmcad.algebra.fibre import (
     hermite_matrix,
     signature,
     univariate_representation,
-    vanishing,
 )
 from ptmcad.algebra.inertia import negative_eigenvalues
 from ptmcad.algebra.isolation import root_bound
-from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate, refine
+from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, at_point, polynomial_at
 
@@ -183,7 +182,7 @@ def equilibria(system: ParametricSystem, values: Mapping[str, fmpq]) -> Equilibr
     # where coordinates are at most 1, real values of the form come from real solutions only, and so they do elsewhere
     bound = fmpq(sum(representation.form) + 1) if point.is_bounded else root_bound(representation.minimal)
     roots = isolate(representation.minimal, -bound, bound)
-    zeros = [vanishing(point.algebra, representation, _lifted(p, len(representation.form))) for p in point.conditions]
+    zeros = [vanishing_divisor(point.algebra, representation, p) for p in point.conditions]
     while (found := _enclosed(system, point, representation, roots, zeros, bits)) is None:
         bits *= 2
     counts = _counts(system, found)
@@ -241,7 +240,7 @@ def _enclosed(
     point: PointSystem,
     representation: UnivariateRepresentation,
     roots: Sequence[RealRoot],
-    zeros: Sequence[UnivariatePolynomial | None],
+    zeros: Sequence[Divisor | None],
     bits: int,
 ) -> tuple[Equilibrium, ...] | None:
     """The solutions at these roots that count, in disjoint boxes; None when the precision does not decide all signs."""
@@ -276,7 +275,7 @@ def _enclosed(
 
 
 def _condition_signs(
-    point: PointSystem, root: RealRoot, unknowns: list[arb], zeros: Sequence[UnivariatePolynomial | None]
+    point: PointSystem, root: RealRoot, unknowns: list[arb], zeros: Sequence[Divisor | None]
 ) -> str | None:
     """The signs of inequalities and stability conditions at a solution; None when one is not certain."""
     signs = ""

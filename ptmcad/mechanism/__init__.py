@@ -5,9 +5,13 @@ Guarantee: nothing here computes an equilibrium; a description that was read can
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from ptmcad.errors import ConfigError
 from ptmcad.mechanism.description import Kind, Mechanism, Model, Parameter, Support, System
 from ptmcad.mechanism.ptm import ptm
-from ptmcad.mechanism.record import described, described_system
+from ptmcad.mechanism.record import described
+from ptmcad.mechanism.systems import described_system
 
 __all__ = [
     "Kind",
@@ -22,6 +26,7 @@ __all__ = [
     "known_of",
     "mechanism_of",
     "ptm",
+    "recognised",
 ]
 
 
@@ -39,6 +44,22 @@ def mechanism_of(name: str) -> Mechanism:
 def built_in() -> tuple[str, ...]:
     """The names of the mechanisms that `mechanism_of` has."""
     return tuple(_BUILT_IN)
+
+
+def recognised(found: Mechanism) -> Mechanism:
+    """A mechanism that was described, or the built-in one that it is, whether or not its symmetries were written down.
+
+    Raises
+    ------
+    ConfigError
+        When it has the name of a built-in one and is another.
+    """
+    if found.name not in _BUILT_IN:
+        return found
+    known = _BUILT_IN[found.name]()
+    if replace(found, symmetries=known.symmetries) != known:
+        raise ConfigError(f"'{found.name}' is the name of a built-in mechanism, which is another", key="name")
+    return known
 
 
 def known_of(name: str) -> Mechanism:

@@ -11,10 +11,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from ptmcad.text.tree import Tree, names_of
+from ptmcad.text.tree import Call, Chain, Number, Step, Tree, names_of
 from ptmcad.text.tree import to_text as text_of
 
 
@@ -105,6 +106,36 @@ class Load(NamedTuple):
         return text_of(self.x), text_of(self.y)
 
 
+class Moment(NamedTuple):
+    """A generalised force that works on an unknown: a moment on an angle, a force on a length."""
+
+    unknown: str
+    value: Tree
+
+
+class TorsionSpring(NamedTuple):
+    """A spring between directions: its energy is stiffness * (1 - cos(angle - rest)).
+
+    Attributes
+    ----------
+    angle : a sum of whole multiples of unknown angles.
+    rest : cosine and sine of the angle at which it is relaxed.
+    """
+
+    angle: Tree
+    stiffness: Tree
+    rest: tuple[Fraction, Fraction]
+
+    @property
+    def energy(self) -> Tree:
+        """As a tree; the cosine of the difference is expanded, since only the rest's cosine and sine are known."""
+        turned = [
+            Chain(Number(value), (Step("*", Call(function, self.angle)),))
+            for value, function in zip(self.rest, ("cos", "sin"), strict=True)
+        ]
+        return Chain(self.stiffness, (Step("*", Chain(Number(Fraction(1)), tuple(Step("-", t) for t in turned))),))
+
+
 @dataclass(frozen=True)
 class Model:
     """What a mechanism and any other parametric system have in common.
@@ -122,9 +153,14 @@ class Model:
     source: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False, kw_only=True)
 
     @property
+    def has_potential(self) -> bool:
+        """Whether solutions are critical points, whose Hessian has an index and tells what is stable."""
+        return True
+
+    @property
     def tells_stability(self) -> bool:
         """Whether it is known what a stable solution is."""
-        return True
+        return self.has_potential
 
     def __hash__(self) -> int:
         return hash((type(self).__name__, self.name, *self.parameters, *self.unknowns))
@@ -212,6 +248,8 @@ class Mechanism(Model):
     bars : pairs of points, for drawings.
     springs, loads : in the record's order.
     symmetries : substitutions of parameters and unknowns under which the energy changes by what no unknown is in.
+    bodies : to the points fixed to them, for drawings.
+    moments : generalised forces that need not come from a potential.
     """
 
     points: Mapping[str, tuple[Tree, Tree]]
@@ -220,8 +258,16 @@ class Mechanism(Model):
     springs: tuple[Spring, ...]
     loads: tuple[Load, ...]
     symmetries: tuple[Mapping[str, Tree], ...] = ()
+    bodies: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    moments: tuple[Moment, ...] = ()
+    torsion: tuple[TorsionSpring, ...] = ()
 
     __hash__ = Model.__hash__
+
+    @property
+    def has_potential(self) -> bool:
+        """A moment that no unknown is in has one, though of several values on a circle."""
+        return not any(self.unknowns.keys() & set(names_of(moment.value)) for moment in self.moments)
 
     @cached_property
     def moving(self) -> tuple[str, ...]:
@@ -252,6 +298,10 @@ class Mechanism(Model):
             yield from (spring.stiffness, spring.free)
         for load in self.loads:
             yield from (load.x, load.y)
+        for moment in self.moments:
+            yield moment.value
+        for torsion in self.torsion:
+            yield from (torsion.angle, torsion.stiffness)
 
 
 @dataclass(frozen=True)
@@ -273,9 +323,13 @@ class System(Model):
     __hash__ = Model.__hash__
 
     @property
+    def has_potential(self) -> bool:
+        return self.potential is not None
+
+    @property
     def tells_stability(self) -> bool:
         """Whether it is known what a stable solution is."""
-        return self.potential is not None or bool(self.stability)
+        return self.has_potential or bool(self.stability)
 
     def _trees(self) -> Iterator[Tree]:
         yield from self.equations

@@ -1,359 +1,265 @@
 """A mechanism's description read from a record: a mapping of texts, numbers, lists and mappings, as YAML gives it.
 
-Guarantee: what is wrong is a `ConfigError` with its key; what `described` returns is consistent, see `description`.
+Guarantee: what is wrong is a `ConfigError` with its key, which knows all other faults; what `described` returns is
+consistent, see `description`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from enum import Enum
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any
 
-from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.mechanism.description import Kind, Load, Mechanism, Parameter, Spring, Support, System, UnknownKind
-from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean, parse
-from ptmcad.text.tree import FUNCTIONS, Name, Negative, Number, Tree, names_of, to_text
+from ptmcad.errors import ConfigError, Faults
+from ptmcad.mechanism.bodies import add_bodies
+from ptmcad.mechanism.description import Load, Mechanism, Moment, Spring, Support, TorsionSpring
+from ptmcad.mechanism.evaluate import value_at
+from ptmcad.mechanism.proofs import check_bars, check_unknowns
+from ptmcad.mechanism.reading import (
+    MAX_BODIES,
+    Reader,
+    check_keys,
+    constant,
+    ends,
+    listed,
+    mapping,
+    member,
+    new_name,
+    parameters_of,
+    point_name,
+    unknowns_of,
+)
+from ptmcad.text.syntax import parse
+from ptmcad.text.tree import Name, Negative, Number, Tree
 
-MAX_NAME = 40
-MAX_DEGREE = 64
-"""Of a coordinate, stiffness, free length or force in the parameters and the cosines and sines."""
-SYSTEM_KEYS = ("name", "parameters", "unknowns", "equations", "potential", "positive", "stable")
-KEYS = ("name", "parameters", "unknowns", "points", "bars", "supports", "springs", "loads", "symmetries")
-_PARAMETER_KEYS = ("kind", "default", "range", "alias")
-_SPRING_KEYS = ("between", "k", "free")
+KEYS = (
+    "name", "parameters", "unknowns", "points", "bodies", "bars", "supports", "springs", "torsion", "loads", "moments",
+    "symmetries",
+)  # fmt: skip
+SPRING_KEYS = ("between", "k", "free")
+TORSION_KEYS = ("angle", "k", "rest")
+DEFAULT_NAME = "mechanism"
+NAMED_RESTS = {
+    "0": (1, 0), "pi/2": (0, 1), "pi": (-1, 0), "-pi": (-1, 0), "-pi/2": (0, -1), "3*pi/2": (0, -1),
+}  # fmt: skip
+"""Cosine and sine of the angles that have both rational and are written with pi."""
+_LATER = {
+    "closing": "closed loops cannot be computed yet: choose the unknowns of an open chain, or write the equations of "
+    "the loop as a 'system:'",
+    "x-joint": "crossed joints cannot be computed yet: write the equations as a 'system:'",
+}
 _ZERO = Number(Fraction(0))
-_UNSET = frozenset({Kind.FREE_LENGTH, Kind.FORCE, Kind.ANGLE})
-"""Kinds that are zero where nothing is said."""
-_Member = TypeVar("_Member", bound=Enum)
-_T = TypeVar("_T")
 
 
-def described(record: Mapping[str, Any]) -> Mechanism:
+def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
     """The mechanism of a record, which is a mapping as YAML gives it: texts, integers, lists and mappings.
+
+    Parameters
+    ----------
+    proved : whether its bars are known to be rigid and its unknowns to be held, as tests prove of built-in ones.
 
     Raises
     ------
     ConfigError
         With the key of what is wrong: an unknown key, kind, name or point, a name that is given twice, a text that is
-        no expression, or one that has no value in every ring.
+        no expression, or one that has no value in every ring; a bar whose length varies, an unknown that no equation
+        holds, a parameter that nothing uses. Its ``faults`` are all of these.
     """
-    _check_keys(record, KEYS, "")
-    for key in ("name", "parameters", "unknowns", "points"):
-        if key not in record:
-            raise ConfigError("is missing", key=key)
-    parameters = _parameters(_mapping(record["parameters"], "parameters"))
-    unknowns = {
-        _new_name(name, f"unknowns.{name}", parameters): _member(UnknownKind, kind, f"unknowns.{name}")
-        for name, kind in _mapping(record["unknowns"], "unknowns").items()
-    }
-    reader = _Reader(parameters, unknowns)
-    points = {
-        _new_name(name, f"points.{name}", {}): reader.pair(pair, f"points.{name}", moving=True)
-        for name, pair in _mapping(record["points"], "points").items()
-    }
-    bars = tuple(_ends(bar, f"bars.{n}", points) for n, bar in enumerate(_list(record.get("bars", ()), "bars"), 1))
-    supports = {
-        _point(name, f"supports.{name}", points): _member(Support, kind, f"supports.{name}")
-        for name, kind in _mapping(record.get("supports", {}), "supports").items()
-    }
-    loads = tuple(
-        Load(_point(name, f"loads.{name}", points), *reader.pair(force, f"loads.{name}"))
-        for name, force in _mapping(record.get("loads", {}), "loads").items()
-    )
-    return Mechanism(
-        _new_name(record["name"], "name", {}),
+    faults = Faults()
+    for key, why in _LATER.items():
+        with faults:
+            if key in record:
+                raise ConfigError(why, key=key)
+    check_keys({key: value for key, value in record.items() if key not in _LATER}, KEYS, "", faults)
+    name, parameters, unknowns = DEFAULT_NAME, {}, {}
+    with faults:
+        name = new_name(record.get("name", DEFAULT_NAME), "name", {})
+    with faults:
+        parameters = parameters_of(mapping(record.get("parameters", {}), "parameters"), faults)
+    for key in ("unknowns", "points"):
+        with faults:
+            if key not in record:
+                raise ConfigError("is missing", key=key)
+    with faults:
+        unknowns = unknowns_of(record["unknowns"], parameters, faults) if "unknowns" in record else {}
+    parts = _Parts(record, Reader(parameters, unknowns), faults)
+    points = parts.points()
+    bodies = {}
+    with faults:
+        bodies = add_bodies(mapping(record.get("bodies", {}), "bodies", MAX_BODIES), parts.reader, points, faults)
+    bars, supports, loads = parts.bars(points), parts.supports(points), parts.loads(points)
+    moments, torsion = parts.moments(unknowns), parts.torsion()
+    found = Mechanism(
+        name,
         parameters,
         unknowns,
         points,
         bars,
         supports,
-        _springs(_list(record.get("springs", ()), "springs"), reader, points),
+        parts.springs(points),
         loads,
-        tuple(reader.symmetry(s, f"symmetries.{n}")
-              for n, s in enumerate(_list(record.get("symmetries", ()), "symmetries"), 1)),
-        source=record,
-    )  # fmt: skip
-
-
-def described_system(record: Mapping[str, Any], name: str = "system") -> System:
-    """The parametric system of a record, which is a mapping as YAML gives it.
-
-    Names that are no unknowns are its parameters; those that the record does not list are numbers without a default.
-
-    Raises
-    ------
-    ConfigError
-        With the key of what is wrong; also where there are not as many equations as unknowns, or where an unknown
-        stands in no equation.
-    """
-    _check_keys(record, SYSTEM_KEYS, "")
-    if "unknowns" not in record:
-        raise ConfigError("is missing", key="unknowns")
-    listed = _parameters(_mapping(record.get("parameters", {}), "parameters"), defaults=False)
-    unknowns = {
-        _new_name(name, f"unknowns.{name}", listed): _member(UnknownKind, kind, f"unknowns.{name}")
-        for name, kind in _mapping(record["unknowns"], "unknowns").items()
-    }
-    if not unknowns:
-        raise ConfigError("there is none", key="unknowns")
-    if ("equations" in record) is ("potential" in record):
-        raise ConfigError("give either equations or a potential", key="equations")
-    trees = {
-        key: [_tree(text, f"{key}.{n}") for n, text in enumerate(_list(record.get(key, ()), key), 1)]
-        for key in ("equations", "positive", "stable")
-    }
-    potential = _tree(record["potential"], "potential") if "potential" in record else None
-    every = [tree for some in trees.values() for tree in some] + ([] if potential is None else [potential])
-    used = dict.fromkeys(name for tree in every for name in names_of(tree))
-    parameters = dict(listed)
-    for found in used:
-        if found not in parameters and found not in unknowns:
-            parameters[_new_name(found, found, {})] = Parameter(found, Kind.NUMBER, "", None)
-    reader = _Reader(parameters, unknowns)
-    for key, some in trees.items():
-        for n, _ in enumerate(some, 1):
-            reader.tree(record[key][n - 1], f"{key}.{n}", moving=True)
-    if potential is not None:
-        reader.tree(record["potential"], "potential", moving=True)
-        if trees["stable"]:
-            raise ConfigError("of a potential the Hessian decides what is stable: leave this out", key="stable")
-    elif len(trees["equations"]) != len(unknowns):
-        raise ConfigError(
-            f"{len(trees['equations'])} equations for {len(unknowns)} unknowns: give as many as there are unknowns",
-            key="equations",
-        )
-    for unknown in unknowns:
-        if not any(unknown in names_of(tree) for tree in (trees["equations"] if potential is None else [potential])):
-            raise ConfigError("no equation holds this unknown", key=f"unknowns.{unknown}")
-    for parameter in listed:
-        if parameter not in used and not any(listed[a].alias_of == parameter for a in listed):
-            raise ConfigError("nothing uses this parameter", key=f"parameters.{parameter}")
-    return System(
-        _new_name(record.get("name", name), "name", {}),
-        parameters,
-        unknowns,
-        tuple(trees["equations"]),
-        potential,
-        tuple(trees["positive"]),
-        tuple(trees["stable"]),
+        parts.symmetries(),
+        bodies,
+        moments,
+        torsion,
         source=record,
     )
+    faults.check()
+    if not proved:
+        check_bars(found, faults)
+        check_unknowns(found, faults)
+    check_use(found, faults)
+    faults.check()
+    return found
 
 
-def _parameters(entries: Mapping[str, Any], *, defaults: bool = True) -> dict[str, Parameter]:
-    """The parameters of a record; with ``defaults`` lengths, stiffnesses and numbers need one."""
-    found: dict[str, Parameter] = {}
-    for name, entry in entries.items():
-        key = f"parameters.{name}"
-        fields = _mapping(entry, key)
-        _check_keys(fields, _PARAMETER_KEYS, key)
-        kind = _member(Kind, fields.get("kind", Kind.NUMBER.value), f"{key}.kind")
-        if defaults and "default" not in fields and kind not in _UNSET:
-            raise ConfigError(f"has no default, which a {kind.noun} needs", key=key)
-        default = _constant(fields.get("default", 0), f"{key}.default") if defaults or "default" in fields else ""
-        window = None
-        if "range" in fields:
-            ends = _list(fields["range"], f"{key}.range")
-            if len(ends) != 2:
-                raise ConfigError("expected a range such as [0, 2]", key=f"{key}.range")
-            window = (_constant(ends[0], f"{key}.range"), _constant(ends[1], f"{key}.range"))
-        found[_new_name(name, key, found)] = Parameter(name, kind, default, window)
-        for alias in _list(fields.get("alias", ()), f"{key}.alias"):
-            if alias in entries:
-                raise ConfigError(f"'{alias}' is a parameter of its own: leave one out", key=f"{key}.alias")
-            found[_new_name(alias, f"{key}.alias", found)] = Parameter(alias, kind, name, window, name)
-    return {name: p for last in (False, True) for name, p in found.items() if (p.kind is Kind.FREE_LENGTH) is last}
+def check_use(mechanism: Mechanism, faults: Faults) -> None:
+    """Note each parameter that nothing uses."""
+    used = {*mechanism.variables, *mechanism.shorthands}
+    for name in mechanism.parameters:
+        with faults:
+            if name not in used:
+                key = mechanism.parameters[name].alias_of
+                raise ConfigError(
+                    f"nothing uses {name}: leave it out, or use it in a point, a spring or a load",
+                    key=f"parameters.{key}.alias" if key else f"parameters.{name}",
+                )
 
 
-def _springs(entries: Sequence[Any], reader: _Reader, points: Mapping[str, object]) -> tuple[Spring, ...]:
-    springs: dict[str, Spring] = {}
-    for n, entry in enumerate(entries, 1):
-        key = f"springs.{n}"
-        fields = _mapping(entry, key)
-        _check_keys(fields, _SPRING_KEYS, key)
+class _Parts:
+    """The parts of a record, each read with its faults noted."""
+
+    def __init__(self, record: Mapping[str, Any], reader: Reader, faults: Faults):
+        self.record = record
+        self.reader = reader
+        self.faults = faults
+
+    def _list(self, key: str) -> Sequence[Any]:
+        with self.faults:
+            return listed(self.record.get(key, ()), key)
+        return ()
+
+    def _mapping(self, key: str) -> Mapping[str, Any]:
+        with self.faults:
+            return mapping(self.record.get(key, {}), key)
+        return {}
+
+    def points(self) -> dict[str, tuple[Tree, Tree]]:
+        found: dict[str, tuple[Tree, Tree]] = {}
+        for name, pair in self._mapping("points").items():
+            with self.faults:
+                new_name(name, f"points.{name}", {})
+                found[name] = (_ZERO, _ZERO)  # known, whatever is wrong with it
+                found[name] = self.reader.pair(pair, f"points.{name}", moving=True)
+        return found
+
+    def bars(self, points: Mapping[str, object]) -> tuple[tuple[str, str], ...]:
+        found = []
+        for n, bar in enumerate(self._list("bars"), 1):
+            with self.faults:
+                found.append(ends(bar, f"bars.{n}", points))
+        return tuple(found)
+
+    def supports(self, points: Mapping[str, object]) -> dict[str, Support]:
+        found = {}
+        for name, kind in self._mapping("supports").items():
+            with self.faults:
+                point_name(name, f"supports.{name}", points)
+                found[name] = member(Support, kind, f"supports.{name}")
+        return found
+
+    def springs(self, points: Mapping[str, object]) -> tuple[Spring, ...]:
+        springs: dict[str, Spring] = {}
+        for n, entry in enumerate(self._list("springs"), 1):
+            with self.faults:
+                spring = self._spring(entry, f"springs.{n}", points)
+                stiffness, between = spring.stiffness, f"{spring.start}{spring.end}"
+                names = (*([stiffness.name] if isinstance(stiffness, Name) else []), between, f"{between}_{n}")
+                name = next(name for name in names if name not in springs)
+                springs[name] = spring._replace(name=name)
+        return tuple(springs.values())
+
+    def _spring(self, entry: object, key: str, points: Mapping[str, object]) -> Spring:
+        fields = mapping(entry, key)
+        check_keys(fields, SPRING_KEYS, key, self.faults)
         for needed in ("between", "k"):
             if needed not in fields:
                 raise ConfigError("is missing", key=f"{key}.{needed}")
-        start, end = _ends(fields["between"], f"{key}.between", points)
-        stiffness = reader.tree(fields["k"], f"{key}.k")
-        free = reader.tree(fields["free"], f"{key}.free") if "free" in fields else _ZERO
-        name = stiffness.name if isinstance(stiffness, Name) else f"{start}{end}"
-        if name in springs:
-            name = f"{start}{end}"
-        if name in springs:
-            name = f"{start}{end}_{n}"
-        springs[name] = Spring(name, start, end, stiffness, free)
-    return tuple(springs.values())
+        start = end = ""
+        stiffness: Tree = _ZERO
+        with self.faults:
+            start, end = ends(fields["between"], f"{key}.between", points)
+        with self.faults:
+            stiffness = self.reader.tree(fields["k"], f"{key}.k")
+        free = self.reader.tree(fields["free"], f"{key}.free") if "free" in fields else _ZERO
+        return Spring("", start, end, stiffness, free)
+
+    def torsion(self) -> tuple[TorsionSpring, ...]:
+        found = []
+        for n, entry in enumerate(self._list("torsion"), 1):
+            key = f"torsion.{n}"
+            with self.faults:
+                fields = mapping(entry, key)
+                check_keys(fields, TORSION_KEYS, key, self.faults)
+                for needed in ("angle", "k"):
+                    if needed not in fields:
+                        raise ConfigError("is missing", key=f"{key}.{needed}")
+                angle = self.reader.angle(fields["angle"], f"{key}.angle")
+                stiffness = self.reader.tree(fields["k"], f"{key}.k")
+                found.append(TorsionSpring(angle, stiffness, _rest(fields.get("rest", 0), f"{key}.rest")))
+        return tuple(found)
+
+    def loads(self, points: Mapping[str, object]) -> tuple[Load, ...]:
+        found = []
+        for name, force in self._mapping("loads").items():
+            key = f"loads.{name}"
+            with self.faults:
+                point_name(name, key, points)
+                if isinstance(force, Mapping):
+                    check_keys(force, ("weight",), key, self.faults)
+                    if "weight" not in force:
+                        raise ConfigError("expected two components, such as [0, -W], or {weight: W}", key=key)
+                    weight = self.reader.tree(force["weight"], f"{key}.weight")
+                    found.append(Load(name, _ZERO, Negative(weight)))
+                else:
+                    found.append(Load(name, *self.reader.pair(force, key)))
+        return tuple(found)
+
+    def moments(self, unknowns: Mapping[str, object]) -> tuple[Moment, ...]:
+        found = []
+        for name, value in self._mapping("moments").items():
+            key = f"moments.{name}"
+            with self.faults:
+                if name not in unknowns:
+                    raise ConfigError(f"there is no unknown {name!r:.60}; they are {', '.join(unknowns)}", key=key)
+                found.append(Moment(name, self.reader.tree(value, key, moving=True)))
+        return tuple(found)
+
+    def symmetries(self) -> tuple[Mapping[str, Tree], ...]:
+        found = []
+        for n, entry in enumerate(self._list("symmetries"), 1):
+            with self.faults:
+                found.append(self.reader.symmetry(entry, f"symmetries.{n}"))
+        return tuple(found)
 
 
-class _Reader:
-    """Reads trees, and refuses those without a value in every ring."""
-
-    def __init__(self, parameters: Mapping[str, Parameter], unknowns: Mapping[str, UnknownKind]):
-        lengths = [name for name, kind in unknowns.items() if kind is not UnknownKind.ANGLE]
-        angles = [name for name, kind in unknowns.items() if kind is UnknownKind.ANGLE]
-        self.fixed = _Names(parameters, (), unknowns)
-        self.moving = _Names((*parameters, *lengths), angles, ())
-        self.names = dict.fromkeys((*parameters, *unknowns))
-
-    def tree(self, value: object, key: str, *, moving: bool = False) -> Tree:
-        tree = _tree(value, key)
-        _located(lambda: evaluate(tree, self.moving if moving else self.fixed), value, key)
-        return tree
-
-    def pair(self, value: object, key: str, *, moving: bool = False) -> tuple[Tree, Tree]:
-        pair = _list(value, key)
-        if len(pair) != 2:
-            raise ConfigError("expected two coordinates, such as [rho, 0]", key=key)
-        return self.tree(pair[0], f"{key}.1", moving=moving), self.tree(pair[1], f"{key}.2", moving=moving)
-
-    def symmetry(self, value: object, key: str) -> dict[str, Tree]:
-        """A substitution; angles stand in it as they are."""
-        trees = {}
-        for name, image in _mapping(value, key).items():
-            tree = _tree(image, f"{key}.{name}")
-            for used in (name, *names_of(tree)):
-                if used not in self.names:
-                    raise ConfigError(f"unknown name '{used}'{did_you_mean(used, self.names)}", key=f"{key}.{name}")
-            trees[name] = tree
-        return trees
-
-
-class _Names:
-    """The ring in which only names and degrees count.
-
-    Parameters
-    ----------
-    constants : parameters, and unknowns on the line where they may stand.
-    angles : that may stand in cosines and sines.
-    excluded : unknowns that may not occur.
-    """
-
-    def __init__(self, constants: Iterable[str], angles: Iterable[str], excluded: Iterable[str]):
-        # dictionaries for their order and for fast look-up: a hostile record has thousands of names
-        self.constants, self.angles, self.excluded = map(dict.fromkeys, (constants, angles, excluded))
-
-    def constant(self, value: Fraction) -> _Degree:
-        return _Degree(0)
-
-    def parameter(self, name: str) -> _Degree:
-        if name in self.angles:
-            raise ExpressionError(f"{name} is an angle: it stands inside of cos or sin")
-        self._check(name, self.constants)
-        return _Degree(1)
-
-    def cos(self, angle: str) -> _Degree:
-        if angle in self.constants:
-            raise ExpressionError(f"{angle} is not an unknown angle")
-        self._check(angle, self.angles)
-        return _Degree(1)
-
-    sin = cos
-
-    def _check(self, name: str, known: Mapping[str, None]) -> None:
-        if name in self.excluded:
-            raise ExpressionError(f"{name} is an unknown: only points may depend on it")
-        if name not in known:
-            hint = did_you_mean(name, self.constants | self.angles) or f"; the names are {', '.join(known)}"
-            raise ExpressionError(f"unknown name '{name[:MAX_NAME]}'{hint}")
-
-
-class _Degree:
-    """What is known of an element: a bound of its degree."""
-
-    __slots__ = ("bound",)
-
-    def __init__(self, bound: int):
-        self.bound = bound
-
-    def __add__(self, other: _Degree) -> _Degree:
-        return self if self.bound >= other.bound else other
-
-    __sub__ = __add__
-
-    def __mul__(self, other: _Degree) -> _Degree:
-        if self.bound + other.bound > MAX_DEGREE:
-            raise ExpressionError(f"the degree exceeds {MAX_DEGREE}")
-        return _Degree(self.bound + other.bound)
-
-
-def _tree(value: object, key: str) -> Tree:
-    if isinstance(value, str):
-        return _located(lambda: parse(value), value, key)
-    if isinstance(value, bool) or not isinstance(value, int | Fraction):
-        raise ConfigError(f"{value!r:.60} is neither an exact number nor an expression as text", key=key)
-    number = Number(abs(Fraction(value)))
-    return Negative(number) if value < 0 else number
-
-
-def _located(work: Callable[[], _T], text: object, key: str) -> _T:
-    """What the work returns; its `ExpressionError` as one that names the key."""
-    try:
-        return work()
-    except ExpressionError as error:
-        where = "" if error.position is None else f" (character {error.position + 1} of {str(text)!r:.60})"
-        raise ConfigError(f"{error.message}{where}", key=key) from None
-
-
-def _constant(value: object, key: str) -> str:
-    """A number as text."""
-    tree = _tree(value, key)
-    if names_of(tree):
-        raise ConfigError(f"expected a number, not an expression in {names_of(tree)[0]}", key=key)
-    return to_text(tree)
-
-
-def _new_name(name: object, key: str, taken: Mapping[str, object]) -> str:
-    if not isinstance(name, str) or not NAME.fullmatch(name) or len(name) > MAX_NAME:
-        raise ConfigError(f"{name!r:.60} is no name: use letters, digits and '_', starting with a letter", key=key)
-    if name in FUNCTIONS or name.lower() in NOT_NUMBERS:
-        raise ConfigError(f"'{name}' has a meaning of its own: choose another name", key=key)
-    if name in taken:
-        raise ConfigError(f"the name '{name}' is given twice: choose another one", key=key)
-    return name
-
-
-def _point(name: object, key: str, points: Mapping[str, object]) -> str:
-    if not isinstance(name, str) or name not in points:
-        hint = did_you_mean(str(name), points) or f"; the points are {', '.join(points)}"
-        raise ConfigError(f"there is no point {name!r:.60}{hint}", key=key)
-    return name
-
-
-def _ends(value: object, key: str, points: Mapping[str, object]) -> tuple[str, str]:
-    pair = _list(value, key)
-    if len(pair) != 2:
-        raise ConfigError("expected two points, such as [A1, A3]", key=key)
-    start, end = (_point(name, key, points) for name in pair)
-    if start == end:
-        raise ConfigError(f"both ends are {start}", key=key)
-    return start, end
-
-
-def _member(kinds: type[_Member], word: object, key: str) -> _Member:
-    for kind in kinds:
-        if kind.value == word:
-            return kind
-    known = ", ".join(str(kind.value) for kind in kinds)
-    raise ConfigError(f"{word!r:.60} is none of {known}{did_you_mean(str(word), known.split(', '))}", key=key)
-
-
-def _mapping(value: object, key: str) -> Mapping[str, Any]:
-    if not isinstance(value, Mapping):
-        raise ConfigError("expected a mapping", key=key)
-    return value
-
-
-def _list(value: object, key: str) -> Sequence[Any]:
-    if not isinstance(value, list | tuple):
-        raise ConfigError("expected a list", key=key)
-    return value
-
-
-def _check_keys(entries: Mapping[str, Any], known: tuple[str, ...], key: str) -> None:
-    for found in entries:
-        if found not in known:
-            hint = did_you_mean(str(found), known) or f"; the keys are {', '.join(known)}"
-            raise ConfigError(f"unknown key{hint}", key=f"{key}.{found}" if key else str(found))
+def _rest(value: object, key: str) -> tuple[Fraction, Fraction]:
+    """The cosine and sine of the angle at which a torsion spring is relaxed."""
+    if isinstance(value, Mapping):
+        faults = Faults()
+        check_keys(value, ("cos", "sin"), key, faults)
+        faults.check()
+        if set(value) != {"cos", "sin"}:
+            raise ConfigError("expected both, such as {cos: 3/5, sin: 4/5}", key=key)
+        c, s = (value_at(parse(constant(value[part], f"{key}.{part}")), {}) for part in ("cos", "sin"))
+        if c * c + s * s != 1:
+            raise ConfigError(f"cos^2 + sin^2 is {c * c + s * s}, not 1: no angle has these", key=key)
+        return c, s
+    named = NAMED_RESTS.get(str(value).replace(" ", "") if isinstance(value, str | int) else "")
+    if named is None:
+        raise ConfigError(
+            f"{value!r:.60} is none of {', '.join(NAMED_RESTS)}: of other angles give the cosine and sine, such as "
+            "{cos: 3/5, sin: 4/5}",
+            key=key,
+        )
+    return Fraction(named[0]), Fraction(named[1])

@@ -27,7 +27,7 @@ def count_text(region: Region, count: Count) -> str:
         return str(region.total)
     if count is Count.ADMISSIBLE:
         return str(region.admissible)
-    return "({}, {}, {})".format(*region.index) if region.index else "?"
+    return f"({', '.join(map(str, region.index))})" if region.index else "?"
 
 
 def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:

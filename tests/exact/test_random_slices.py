@@ -30,7 +30,7 @@ POINTS = 100
 TINY = Fraction(1, 10**40)
 
 Point = tuple[Fraction, Fraction]
-Index = tuple[int, int, int]
+Index = tuple[int, ...]
 
 
 def true_counts(result: RegionMap, at: Point) -> tuple[int, ...] | None:

@@ -162,7 +162,8 @@ BAD = [
     ("range of three", "axes: {rho: [0, 1, 2], L2: [0, 2]}", 1, "axes.rho", "expected a range"),
     ("range with a name", "axes: {rho: [0, L2], L2: [0, 2]}", 1, "axes.rho", "not an expression in L2"),
     ("count", AXES + "count: all", 2, "count", "stable, total, index or admissible"),
-    ("mechanism", AXES + "mechanism: {rods: 3}", 2, "mechanism", "unknown mechanism"),
+    ("mechanism", AXES + "mechanism: {rods: 3}", 2, "mechanism.rods", "unknown key"),
+    ("mechanism's name", AXES + "mechanism: ptn", 2, "mechanism", "unknown mechanism; did you mean 'ptm'?"),
     ("name with a path", AXES + "name: ../x", 2, "name", "cannot name a file"),
     ("name that hides", AXES + "name: .x", 2, "name", "cannot name a file"),
     *(

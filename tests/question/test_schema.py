@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterator
+from copy import deepcopy
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -14,9 +16,15 @@ import yaml
 from support.shipped_records import EXACT
 
 from ptmcad import RegionMap, classify, load
-from ptmcad.errors import LimitReached
-from ptmcad.mechanism import ptm
-from ptmcad.question.config import RECORD_KEYS
+from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.mechanism import Kind, Support, ptm
+from ptmcad.mechanism.bodies import BODY_KEYS
+from ptmcad.mechanism.description import UnknownKind
+from ptmcad.mechanism.reading import MAX_BODIES, MAX_ENTRIES, MAX_UNKNOWNS, PARAMETER_KEYS
+from ptmcad.mechanism.record import KEYS, NAMED_RESTS, SPRING_KEYS, TORSION_KEYS
+from ptmcad.mechanism.systems import SYSTEM_KEYS
+from ptmcad.question.config import RECORD_KEYS, slice_from_mapping
+from ptmcad.question.config.starters import NAMES, starter_mechanism, starter_text
 from ptmcad.question.slice import Count
 from ptmcad.show.document import FORMAT
 
@@ -32,9 +40,87 @@ def test_the_keys_are_those_of_config() -> None:
     properties = SCHEMA["properties"]
     assert tuple(properties) == RECORD_KEYS
     assert tuple(properties["parameters"]["properties"]) == tuple(ptm().parameters)
+    assert SCHEMA["$defs"]["ptm-parameters"]["properties"]["parameters"]["propertyNames"]["enum"] == list(
+        ptm().parameters
+    )
     assert properties["count"]["enum"] == [member.value for member in Count]
     defaults = {name: str(entry["default"]) for name, entry in properties["parameters"]["properties"].items()}
     assert defaults == {name: parameter.default for name, parameter in ptm().parameters.items()}
+
+
+def test_the_keys_of_descriptions_are_those_of_their_readers() -> None:
+    mechanism, system = (SCHEMA["$defs"][name]["properties"] for name in ("mechanism", "system"))
+    assert tuple(mechanism) == KEYS
+    assert tuple(system) == SYSTEM_KEYS
+    assert tuple(mechanism["springs"]["items"]["properties"]) == SPRING_KEYS
+    assert tuple(mechanism["torsion"]["items"]["properties"]) == TORSION_KEYS
+    assert tuple(SCHEMA["$defs"]["body"]["properties"]) == BODY_KEYS
+    entry = SCHEMA["$defs"]["parameter"]["properties"]
+    assert tuple(entry) == PARAMETER_KEYS
+    assert entry["kind"]["enum"] == [kind.value for kind in Kind]
+    assert mechanism["supports"]["additionalProperties"]["enum"] == [kind.value for kind in Support]
+    assert SCHEMA["$defs"]["unknowns"]["additionalProperties"]["enum"] == [kind.value for kind in UnknownKind]
+    assert SCHEMA["$defs"]["unknowns"]["maxProperties"] == MAX_UNKNOWNS
+    rests = mechanism["torsion"]["items"]["properties"]["rest"]["anyOf"][0]["enum"]
+    assert rests == [0, *NAMED_RESTS]
+    built_in = [name for name in NAMES if starter_mechanism(name) is not None]
+    assert SCHEMA["properties"]["mechanism"]["anyOf"][0]["enum"] == built_in
+    text = json.dumps(SCHEMA["$defs"])
+    assert {int(found) for found in re.findall(r'"max(?:Items|Properties)": (\d+)', text)} == {
+        2,
+        MAX_UNKNOWNS,
+        MAX_BODIES,
+        MAX_ENTRIES,
+    }
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_starters_validate(name: str) -> None:
+    jsonschema.validate(yaml.safe_load(starter_text(name)), SCHEMA, cls=jsonschema.Draft202012Validator)
+
+
+MECHANISM = yaml.safe_load(starter_text("platform"))
+
+
+def test_whatever_a_description_may_say_validates_and_is_read() -> None:
+    record = deepcopy(MECHANISM)
+    record["mechanism"] |= {
+        "torsion": [{"angle": "phi - th", "k": 1, "rest": {"cos": "3/5", "sin": "4/5"}}, {"angle": "th", "k": "k"}],
+        "moments": {"th": "W/2"},
+        "symmetries": [{"W": "-W"}],
+    }
+    record["mechanism"]["springs"][0]["free"] = "1/2"
+    jsonschema.validate(record, SCHEMA, cls=jsonschema.Draft202012Validator)
+    slice_from_mapping(record)
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (("mechanism", "springs", 0, "free"), [1]),
+        (("mechanism", "springs", 0, "stiffness"), 1),
+        (("mechanism", "springs", 0, "between"), ["A"]),
+        (("mechanism", "bodies", "plate", "turn"), "th"),
+        (("mechanism", "torsion"), [{"angle": "th", "k": 1, "rest": "pi/3"}]),
+        (("mechanism", "loads", "Q"), {"mass": 1}),
+        (("mechanism", "supports", "A"), "glue"),
+        (("mechanism", "unknowns", "th"), "turn"),
+        (("mechanism", "parameters", "k", "kind"), "spring"),
+        (("mechanism", "points", "sin"), [0, 0]),
+        (("mechanism",), "platfrom"),
+        (("system",), {"unknowns": {"x": "real"}, "equations": ["x"]}),
+        (("system",), {"unknowns": {"x": "real"}}),
+    ],
+)
+def test_wrong_descriptions_neither_validate_nor_are_read(path: tuple[str | int, ...], value: Any) -> None:
+    record = deepcopy(MECHANISM)
+    place: Any = record
+    for key in path[:-1]:
+        place = place[key]
+    place[path[-1]] = value
+    assert not jsonschema.Draft202012Validator(SCHEMA).is_valid(record)
+    with pytest.raises(ConfigError):
+        slice_from_mapping(record)
 
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)

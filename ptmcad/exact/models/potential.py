@@ -79,13 +79,18 @@ def squared_lengths(mechanism: Mechanism) -> tuple[TrigonometricPolynomial, ...]
 
 
 def potential(mechanism: Mechanism) -> TrigonometricPolynomial:
-    """Elastic energy of the springs minus the work of the loads; for ``ptm`` this is (1) of Wenger & Chablat."""
+    """Elastic energy of the springs minus the work of the loads; for ``ptm`` this is (1) of Wenger & Chablat.
+
+    The work of moments, which has several values on a circle or none, is not in it.
+    """
     geometry = geometry_of(mechanism)
     energy = geometry.ring.context.constant(0)
     for spring, stiffness in zip(mechanism.springs, geometry.stiffnesses, strict=True):
         energy += stiffness * _squared(geometry, spring.start, spring.end) * fmpq(1, 2)
     for node, (horizontal, vertical) in geometry.loads:
         energy -= horizontal * geometry.nodes[node][0] + vertical * geometry.nodes[node][1]
+    for torsion in mechanism.torsion:
+        energy += evaluate(torsion.energy, _Evaluation(geometry.ring))
     return geometry.ring.reduce(energy)
 
 
@@ -118,11 +123,13 @@ def _equations_of(model: System) -> ParametricSystem:
 
 def _equilibria_of(mechanism: Mechanism) -> ParametricSystem:
     kept = set(mechanism.without_free_lengths)
+    ring = geometry_of(mechanism).ring
     return from_potential(
-        geometry_of(mechanism).ring,
+        ring,
         potential(mechanism),
         positive=tuple(name for name in mechanism.positive if name in kept),
         nonnegative=tuple(name for name in mechanism.nonnegative if name in kept),
+        moments={m.unknown: ring.reduce(evaluate(m.value, _Evaluation(ring))) for m in mechanism.moments},
     )
 
 

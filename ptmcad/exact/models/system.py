@@ -86,11 +86,27 @@ def from_potential(
     positive: tuple[str, ...],
     nonnegative: tuple[str, ...],
     inequalities: tuple[TrigonometricPolynomial, ...] = (),
+    moments: Mapping[str, TrigonometricPolynomial] | None = None,
 ) -> ParametricSystem:
-    """The system of critical points of a potential, by differentiation."""
-    gradient = tuple(ring.reduce(ring.derivative(potential, u)) for u in ring.unknowns)
+    """The system of critical points of a potential, by differentiation.
+
+    Parameters
+    ----------
+    moments : generalised forces on unknowns, which are subtracted from the gradient. With one that depends on an
+        unknown there is no potential.
+    """
+    gradient = [ring.reduce(ring.derivative(potential, u)) for u in ring.unknowns]
+    has_potential = True
+    for unknown, moment in (moments or {}).items():
+        gradient[ring.unknowns.index(unknown)] -= moment
+        has_potential = has_potential and not any(ring.derivative(moment, u) for u in ring.unknowns)
     return from_equations(
-        ring, gradient, potential=potential, positive=positive, nonnegative=nonnegative, inequalities=inequalities
+        ring,
+        gradient,
+        potential=potential if has_potential else None,
+        positive=positive,
+        nonnegative=nonnegative,
+        inequalities=inequalities,
     )
 
 

@@ -19,6 +19,8 @@ from typing import Any
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
+from ptmcad.question.config.model import named_model
+from ptmcad.question.config.objects import make_mechanism, make_system, plain
 from ptmcad.question.config.options import ranges_of, settings_of, with_axes
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.record import (
@@ -30,7 +32,7 @@ from ptmcad.question.config.record import (
     portable_file,
     record_of,
 )
-from ptmcad.question.config.resolution import MAX_DEGREE, number_of, point_of, slice_of
+from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, point_of, slice_of
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
@@ -44,9 +46,12 @@ __all__ = [
     "Parameter",
     "file_name",
     "load",
+    "make_mechanism",
+    "make_system",
     "point_from_mapping",
     "point_from_options",
     "portable_file",
+    "slice_from",
     "slice_from_mapping",
     "slice_from_options",
 ]
@@ -58,22 +63,32 @@ def load(path: str | Path) -> Slice:
     Raises
     ------
     ConfigError
-        For anything wrong in it, with file, line and key.
+        For anything wrong in it, with file, line and key; its ``faults`` are all there are.
     """
-    return slice_from_options(path)
+    return checked_slice(read_file(path))
 
 
 def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
     """The slice of a record given as Python data: numbers as text, int, Fraction, float (its exact
     binary value) or one of numpy's.
 
+    Expressions may be SymPy's; ``mechanism`` and ``system`` may be objects that `ptmcad.Mechanism` and `ptmcad.System`
+    have made.
+
     >>> slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["0", "2"]}, "parameters": {"F3": "-0.1"}}).axis_names
     ('rho', 'L2')
     """
-    node = from_python(mapping, Place())
+    node = from_python(plain(mapping), Place())
     if not isinstance(node, Tree):
         raise ConfigError("a record is a mapping")
-    return slice_of(record_of(node))
+    return checked_slice(node)
+
+
+def slice_from(question: str | Path | Mapping[str, Any] | Slice) -> Slice:
+    """The slice that is meant by a record's file, by a mapping like a record, or by itself."""
+    if isinstance(question, Slice):
+        return question
+    return slice_from_mapping(question) if isinstance(question, Mapping) else load(question)
 
 
 def slice_from_options(
@@ -82,6 +97,7 @@ def slice_from_options(
     sets: Iterable[str] = (),
     ranges: Iterable[str] = (),
     count: str | Count | None = None,
+    mechanism: str | None = None,
 ) -> Slice:
     """The slice of the command line's options, with or without a record under them.
 
@@ -96,13 +112,21 @@ def slice_from_options(
     sets : texts ``NAME=VALUE``.
     ranges : texts ``NAME=LO:HI``, for axes.
     count : which count distinguishes two regions.
+    mechanism : the name of a built-in mechanism, or a YAML file that describes one, in place of a record.
 
     Raises
     ------
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
+    sets, ranges = tuple(sets), tuple(ranges)
+    if config is not None and mechanism is not None:
+        raise ConfigError("the record says which mechanism is meant: leave one out", key="--mechanism")
+    if config is not None and slice is None and count is None and not sets and not ranges:
+        return load(config)
     record = record_of(read_file(config)) if config is not None else Record()
+    if mechanism is not None:
+        record = Record(model=named_model(Scalar(mechanism, Place("--mechanism"))))
     given_sets, given_ranges = settings_of(sets, record.model), ranges_of(ranges)
     if slice is not None:
         record = with_axes(record, slice, given_sets, given_ranges)

@@ -9,7 +9,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, Model, built_in, described, described_system, mechanism_of, ptm
+from ptmcad.mechanism import Model, built_in, described, described_system, mechanism_of, ptm, recognised
+from ptmcad.question.config.starters import NAMES, starter_mechanism
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data, read_file
 
@@ -31,26 +32,55 @@ def model_of(record: Tree) -> Model:
         raise mechanism.place.error("expected a mechanism's name, a mapping that describes one, or a file that does")
     if mechanism.text in built_in():
         return mechanism_of(mechanism.text)
-    if Path(mechanism.text).suffix.lower() in (".yaml", ".yml"):
+    if _is_file(mechanism):
         return _from_file(mechanism, record.place.file)
-    hint = did_you_mean(mechanism.text, built_in()) or f"; built in are {', '.join(built_in())}"
+    known = starter_mechanism(mechanism.text)
+    if isinstance(known, Tree):
+        return _read(known, None)
+    names = tuple(name for name in NAMES if starter_mechanism(name) is not None)
+    hint = did_you_mean(mechanism.text, names) or f"; built in are {', '.join(names)}"
     raise mechanism.place.error(
         f"unknown mechanism{hint}; a file that holds one ends in .yaml, and a mapping describes one"
     )
 
 
+def named_model(name: Scalar) -> Model:
+    """The model of a name, or of a file that is wherever the user says it is: what an option gives.
+
+    Raises
+    ------
+    ConfigError
+        When there is none, or for what is wrong with it.
+    """
+    if _is_file(name):
+        return _from_tree(read_file(name.text))
+    return model_of(Tree({"mechanism": name}, name.place))
+
+
+def _is_file(name: Scalar) -> bool:
+    return Path(name.text).suffix.lower() in (".yaml", ".yml")
+
+
 def _from_file(name: Scalar, record: str | None) -> Model:
-    folder = (Path(record).parent if record else Path()).resolve()
-    path = (folder / name.text).resolve()
+    try:
+        folder = (Path(record).parent if record else Path()).resolve()
+        path = (folder / name.text).resolve()
+        itself = Path(record).resolve() if record else None
+    except (OSError, ValueError, RuntimeError) as error:  # a null character, a circle of links
+        raise name.place.error(f"{name.text!r:.60} cannot name a file: {error}") from error
     if not path.is_relative_to(folder):
         raise name.place.error("the file is not in the record's folder nor below it: move it there")
-    if record and path == Path(record).resolve():
+    if path == itself:
         raise name.place.error("the record names itself as its mechanism's file")
-    tree = read_file(path)
-    inner = tree.entries.get("mechanism", tree)
+    return _from_tree(read_file(path))
+
+
+def _from_tree(tree: Tree) -> Model:
+    """The model of a file: a description, a record with one, or a system."""
+    inner = tree.entries.get("mechanism") or tree.entries.get("system") or tree
     if not isinstance(inner, Tree):
         raise inner.place.error("a mechanism's file describes it: it does not name another one")
-    return _read(inner, str(path))
+    return _read(inner, tree.place.file)
 
 
 def _read(node: Tree, file: str | None) -> Model:
@@ -58,12 +88,15 @@ def _read(node: Tree, file: str | None) -> Model:
     is_system = "equations" in node.entries or "potential" in node.entries
     data = {key: _plain(entry) for key, entry in node.entries.items()}
     try:
-        found: Model = described_system(data) if is_system else described(data)
+        # written down again, the built-in one is the same one
+        return described_system(data) if is_system else recognised(described(data))
     except ConfigError as error:
-        place = _place(node, error.key or "")
-        raise ConfigError(error.message, key=place.key, file=file, line=place.line) from error
-    # written down again, the built-in one is the same one
-    return ptm() if isinstance(found, Mechanism) and found == ptm() else found
+        raise ConfigError.of([_placed(fault, node, file) for fault in error.faults]) from error
+
+
+def _placed(fault: ConfigError, node: Node, file: str | None) -> ConfigError:
+    place = _place(node, fault.key or "")
+    return ConfigError(fault.message, key=place.key, file=file, line=place.line)
 
 
 def _plain(node: Node) -> object:

@@ -5,11 +5,12 @@ Guarantee: what is wrong with keys and shapes is a `ConfigError` with file, line
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ptmcad.errors import Faults
 from ptmcad.mechanism import Model, ptm
 from ptmcad.question.config.model import model_of
 from ptmcad.question.config.parameters import unknown_parameter
@@ -50,23 +51,45 @@ class Record:
 
 
 def record_of(tree: Tree) -> Record:
-    """Check the keys and shapes of a record."""
+    """Check the keys and shapes of a record.
+
+    Raises
+    ------
+    ConfigError
+        That knows all faults.
+    """
+    faults = Faults()
+    record = read_record(tree, faults)
+    faults.check()
+    return record
+
+
+def read_record(tree: Tree, faults: Faults) -> Record:
+    """A record as far as its keys and shapes are right; what is not is noted, and left out or replaced by 1."""
     for key, node in tree.entries.items():
-        if key not in RECORD_KEYS:
-            hint = did_you_mean(key, RECORD_KEYS) or f"; the keys are {', '.join(RECORD_KEYS)}"
-            raise _node_place(node, key, tree).error(f"unknown key{hint}")
-    entries = tree.entries
-    model = model_of(tree)
-    return Record(
-        name=_file_name(entries["name"]) if "name" in entries else _name_of_file(tree.place.file),
-        title=_title(entries["title"]) if "title" in entries else "",
-        model=model,
-        values=_values(entries["parameters"], model) if "parameters" in entries else {},
-        axes=_axes(entries["axes"]) if "axes" in entries else {},
-        count=count_of(entries["count"]) if "count" in entries else None,
-        reference=_reference(entries["reference"]) if "reference" in entries else {},
-        place=tree.place,
-    )
+        with faults:
+            if key not in RECORD_KEYS:
+                hint = did_you_mean(key, RECORD_KEYS) or f"; the keys are {', '.join(RECORD_KEYS)}"
+                raise _node_place(node, key, tree).error(f"unknown key{hint}")
+    read: dict[str, Any] = {"place": tree.place}
+    model = None
+    with faults:
+        model = read["model"] = model_of(tree)
+    readers: dict[str, Callable[[Node], Any]] = {
+        "name": _file_name,
+        "title": _title,
+        "parameters": lambda node: _values(node, model, faults),
+        "axes": lambda node: _axes(node, faults),
+        "count": count_of,
+        "reference": _reference,
+    }
+    for key, reader in readers.items():
+        with faults:
+            if key in tree.entries:
+                read["values" if key == "parameters" else key] = reader(tree.entries[key])
+            elif key == "name":
+                read[key] = _name_of_file(tree.place.file)
+    return Record(**read)
 
 
 def _node_place(node: Node, key: str, tree: Tree) -> Place:
@@ -145,16 +168,19 @@ def _name_of_file(file: str | None) -> str:
     return _portable(name, Place("name", file))
 
 
-def _values(node: Node, model: Model) -> dict[str, Scalar]:
+def _values(node: Node, model: Model | None, faults: Faults) -> dict[str, Scalar]:
+    """The values that are given; without a model any name is taken."""
     if isinstance(node, Scalar) and node.is_null:
         return {}
     if not isinstance(node, Tree):
-        raise node.place.error(f"expected a mapping such as {{{_example(model)}}}")
+        raise node.place.error(f"expected a mapping such as {{{_example(model or ptm())}}}")
     values = {}
     for name, value in node.entries.items():
-        if name not in model.parameters:
-            raise value.place.error(unknown_parameter(name, model))
-        values[name] = number_text(value)
+        with faults:
+            if model is not None and name not in model.parameters:
+                raise value.place.error(unknown_parameter(name, model))
+            values[name] = Scalar("1", value.place)  # known, whatever is wrong with it
+            values[name] = number_text(value)
     return values
 
 
@@ -173,12 +199,16 @@ def number_text(node: Node) -> Scalar:
     return node
 
 
-def _axes(node: Node) -> dict[str, Window]:
+def _axes(node: Node, faults: Faults) -> dict[str, Window]:
     if not isinstance(node, Tree):
         raise node.place.error(f"expected two axes with their ranges, such as {AXES}")
     if len(node.entries) != 2:
         raise node.place.error(f"{len(node.entries)} axes are given: a slice has two, the horizontal one first")
-    return {name: _window(name, entry) for name, entry in node.entries.items()}
+    axes = {}
+    for name, entry in node.entries.items():
+        with faults:
+            axes[name] = _window(name, entry)
+    return axes
 
 
 def _window(name: str, node: Node) -> Window:

@@ -10,35 +10,81 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
-from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism import Kind, Model, System
-from ptmcad.question.config.record import Record, Window
+from ptmcad.question.config.record import Record, Window, read_record
 from ptmcad.question.domain import fault, unproved
 from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK
 from ptmcad.question.slice import Axis, Count, Slice
-from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import names_in, parse
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Place, Scalar
+from ptmcad.text.yamltree import Place, Scalar, Tree
 
 MAX_DEGREE = 32
 """Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far more."""
 
 
-def slice_of(record: Record) -> Slice:
-    """Resolve a record to a slice."""
-    if not record.axes:
-        raise record.place.below("axes").error(f"is missing: a slice needs two axes, such as {AXES}")
+def checked_slice(tree: Tree) -> Slice:
+    """The slice of a record.
+
+    Raises
+    ------
+    ConfigError
+        That knows all faults of the record, those of keys and shapes and those of what is written there.
+    """
+    faults = Faults()
+    record = read_record(tree, faults)
+    if any((fault.key or "").split(".")[0] in ("mechanism", "system", "axes") for fault in faults.found):
+        faults.check()  # without these nothing can be said of the values
+    return slice_of(record, faults)
+
+
+def slice_of(record: Record, faults: Faults | None = None) -> Slice:
+    """Resolve a record to a slice.
+
+    Parameters
+    ----------
+    faults : what was found in the record before, and is raised with the rest.
+    """
+    faults = faults or Faults()
+    axes, resolved = _resolved(record, faults)
+    faults.check()
+    return _slice(record, axes, resolved)
+
+
+def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression]]:
+    """The axes, and every parameter as a function of them; faults are noted, and none that follows from another."""
+    with faults:
+        if not record.axes:
+            raise record.place.below("axes").error(f"is missing: a slice needs two axes, such as {AXES}")
     for name in record.axes:
-        if name in record.values:
-            place = record.values[name].place
-            raise place.error(f"{name} is an axis and cannot be fixed too: remove it here or from the axes")
-    axes = tuple(_axis(name, window, record.model) for name, window in record.axes.items())
-    resolved = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)}).run()
-    for name, expression in resolved.items():
-        if name not in record.axes:
-            _check_value(name, expression, record, (axes[0], axes[1]))
+        with faults:
+            if name in record.values:
+                place = record.values[name].place
+                raise place.error(f"{name} is an axis and cannot be fixed too: remove it here or from the axes")
+    axes = []
+    for name, window in record.axes.items():
+        with faults:
+            axes.append(_axis(name, window, record.model))
+    resolution = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)})
+    for name in record.model.parameters:
+        with faults:
+            resolution.resolve(name, ())
+    resolved = {name: resolution.done[name] for name in record.model.parameters}
+    if len(axes) == 2:
+        for name, expression in resolved.items():
+            with faults:
+                if name not in record.axes and name not in resolution.faulty:
+                    _check_value(name, expression, record, (axes[0], axes[1]))
+    else:
+        faults.check()
+    return (axes[0], axes[1]), resolved
+
+
+def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expression]) -> Slice:
+    """The slice of a record whose entries are right one by one."""
     mechanism = record.model
     given = {*record.values, *record.axes}
     without_free_lengths = not any(resolved[name].numerator for name in mechanism.free_lengths)
@@ -62,12 +108,12 @@ def slice_of(record: Record) -> Slice:
     return Slice(
         name=record.name or "slice-" + "-".join(record.axes),
         model=record.model,
-        axes=(axes[0], axes[1]),
+        axes=axes,
         parameters=effective,
         count=_count(record),
         title=record.title,
         reference=record.reference,
-        text=_texts(effective, resolved, record, (axes[0], axes[1])),
+        text=_texts(effective, resolved, record, axes),
     )
 
 
@@ -79,7 +125,9 @@ def _count(record: Record) -> Count:
     problem = ""
     if count is Count.STABLE and not model.tells_stability:
         problem = "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"
-    if count is Count.INDEX and isinstance(model, System) and model.potential is None:
+        if not isinstance(model, System):
+            problem = "a moment that depends on an unknown has no potential, which says what is stable: count total"
+    if count is Count.INDEX and not model.has_potential:
         problem = "solutions of equations have no index, which is that of a potential's Hessian: count total"
     if count is Count.ADMISSIBLE and isinstance(model, System):
         problem = "a system has no springs, whose lengths would be admissible: count stable or total"
@@ -191,11 +239,18 @@ def _located(scalar: Scalar, error: ExpressionError) -> ConfigError:
 
 
 class _Resolution:
-    """Replaces names by what they stand for, depth first, refusing cycles."""
+    """Replaces names by what they stand for, depth first, refusing cycles.
+
+    Attributes
+    ----------
+    done : names to what they stand for; 1 for one that could not be resolved.
+    faulty : those, and what depends on them.
+    """
 
     def __init__(self, record: Record, free: Mapping[str, Expression]):
         self.record = record
         self.done = dict(free)
+        self.faulty: set[str] = set()
         self.parameters = record.model.parameters
         self.known = tuple(dict.fromkeys((*free, *self.parameters)))
 
@@ -205,8 +260,16 @@ class _Resolution:
         return {name: self.done[name] for name in self.parameters}
 
     def resolve(self, name: str, chain: tuple[str, ...]) -> Expression:
-        if name in self.done:
-            return self.done[name]
+        if name not in self.done:
+            try:
+                self.done[name] = self._found(name, chain)
+            except ConfigError:
+                self.done[name] = constant(1)
+                self.faulty.add(name)
+                raise
+        return self.done[name]
+
+    def _found(self, name: str, chain: tuple[str, ...]) -> Expression:
         scalar = self.record.values.get(name)
         if scalar is None:
             scalar = Scalar(self.parameters[name].default, self.record.place.below(name))
@@ -219,11 +282,12 @@ class _Resolution:
         for other in _names_in_scalar(scalar):
             if other in self.known:
                 names[other] = self.resolve(other, (*chain, name))
+                if other in self.faulty:
+                    self.faulty.add(name)
             elif other.lower() not in ("nan", "inf", "infinity"):
                 hint = did_you_mean(other, self.known) or f"; the names are {', '.join(self.known)}"
                 raise scalar.place.error(f"unknown name '{other[:40]}'{hint}")
-        self.done[name] = _parsed(scalar, names)
-        return self.done[name]
+        return _parsed(scalar, names)
 
 
 def _check_value(name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis]) -> None:

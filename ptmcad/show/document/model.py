@@ -11,7 +11,7 @@ from typing import Any
 
 from ptmcad.answer.poses import Poses
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Mechanism, Model, System, built_in, described, described_system, known_of
+from ptmcad.mechanism import Mechanism, Model, System, built_in, described, described_system, known_of, recognised
 from ptmcad.question.slice import Slice
 from ptmcad.show.document.codec import Codec, Key
 from ptmcad.show.document.node import Node
@@ -43,7 +43,7 @@ def _mechanism(node: Node) -> Model:
     """The built-in mechanism of a name, one of which nothing is known, or a description."""
     if isinstance(node.value, str):
         return known_of(node.line(MAX_NAME))
-    return _described(node, described)
+    return _described(node, lambda data: recognised(described(data)))
 
 
 def _described(node: Node, read: Callable[[Mapping[str, Any]], Model]) -> Model:

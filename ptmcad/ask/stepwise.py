@@ -1,0 +1,109 @@
+"""The exact engine's steps one by one, for any mechanism or system: the variety, an open CAD, counts at a point.
+
+Guarantee: exact, as the map is that these are the steps of; none of them draws or stores anything.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ptmcad.answer.slicevariety import SliceVariety
+from ptmcad.mechanism import Model
+from ptmcad.question.config import point_from_mapping, slice_from
+from ptmcad.question.slice import Point, Slice, without_free_lengths
+
+if TYPE_CHECKING:
+    from ptmcad.exact.counting import Counts
+
+Question = Slice | str | Path | Mapping[str, Any]
+
+
+def discriminant_variety(question: Question) -> SliceVariety:
+    """The curves in Z[x, y] off which numbers of solutions are locally constant.
+
+    >>> found = discriminant_variety({
+    ...     "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}, "axes": {"a": [-2, 2], "b": [-2, 2]},
+    ... })
+    >>> [component.polynomial.text(("a", "b")) for component in found.components]
+    ['4*a^3 - 27*b^2']
+
+    Parameters
+    ----------
+    question : a slice, the file of a record, or a mapping like a record.
+
+    Raises
+    ------
+    ConfigError
+        When the question is wrong, or springs have a free length.
+    HypothesisError
+        When the slice is degenerate, or has infinitely many solutions.
+
+    References
+    ----------
+    Lazard & Rouillier, Solving parametric polynomial systems, J. Symb. Comp. 42 (2007).
+    """
+    from ptmcad.exact.engine import slice_variety
+
+    return slice_variety(slice_from(question))
+
+
+def open_cad(question: Question) -> tuple[Point, ...]:
+    """A rational point of each cell of an open cylindrical algebraic decomposition of the window.
+
+    The points lie off the variety, and at least one lies in each connected part of the window without the variety.
+
+    Parameters
+    ----------
+    question : a slice, the file of a record, or a mapping like a record.
+
+    Raises
+    ------
+    ConfigError, HypothesisError
+        As `discriminant_variety` does.
+
+    References
+    ----------
+    Strzebonski, Solving systems of strict polynomial inequalities, J. Symb. Comp. 29 (2000).
+    """
+    from ptmcad.algebra.polynomials import to_fraction
+    from ptmcad.exact.stages import problem_of, projection_of, stacks_of, variety_of
+    from ptmcad.question.domain import prove_slice
+
+    slice = slice_from(question)
+    without_free_lengths(slice.model, slice.parameters, "an open CAD is")
+    prove_slice(slice)
+    problem = problem_of(slice)
+    variety = variety_of(problem)
+    stacks = stacks_of(problem, variety, projection_of(problem, variety))
+    return tuple(Point(slice.axis_names, to_fraction(x), to_fraction(y)) for x, y in stacks.points)
+
+
+def counts_at(model: Model, **values: object) -> Counts:
+    """Numbers of solutions of a mechanism or system at a rational point: in all, stable, and by index.
+
+    >>> from ptmcad.question.config import make_system
+    >>> counts_at(make_system(unknowns={"x": "real"}, equations=["x^3 - a*x + b"]), a=1, b="1/10").total
+    3
+
+    Parameters
+    ----------
+    values : of the parameters, as text, int or Fraction; a mechanism's have defaults.
+
+    Raises
+    ------
+    ConfigError
+        For a name or a value that is wrong, with the name; also for springs that have a free length.
+    HypothesisError
+        When some solution is singular, or there are infinitely many.
+    """
+    from ptmcad.algebra.polynomials import from_fraction
+    from ptmcad.exact.counting import count_by_isolation
+    from ptmcad.exact.models import system_from
+    from ptmcad.text.expressions import constant
+
+    point = point_from_mapping(values, model)
+    without_free_lengths(model, {n: constant(v) for n, v in point.items()}, "an exact count is", "use ptmcad.solve")
+    system = system_from(model)
+    return count_by_isolation(system, {name: from_fraction(point[name]) for name in system.ring.parameters})

@@ -1,0 +1,40 @@
+"""``ptmcad check``: everything that is wrong with a record, or what it asks and would cost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.errors import MAX_FAULTS, ConfigError
+from ptmcad.question.config import load
+
+
+@click.command("check")
+@click.argument("record", type=click.Path(path_type=Path))
+@limit_options
+def command(*, record: Path, limits: Limits) -> int:
+    """Say everything that is wrong with a problem record, or what it asks.
+
+    Prints each fault on a line of its own, with file, line and key, and ends with exit status 2. Of a record without
+    one, it prints what is asked, how many complex solutions there are, and roughly what the map will cost.
+
+    \b
+    Example:
+        ptmcad check configs/fig4.yaml
+    """
+    try:
+        slice = load(record)
+    except ConfigError as error:
+        for fault in error.faults:
+            click.echo(f"error: {fault}", err=True)
+        if len(error.faults) >= MAX_FAULTS:
+            click.echo("after so many faults no more were looked for", err=True)
+        return 2
+    with held(limits):
+        with clock_stopped(limits.timeout):  # the time that the import takes is not the computation's
+            from ptmcad.ask.checking import check, check_text
+        for line in check_text(check(slice)):
+            click.echo(line)
+    return 0

@@ -1,0 +1,41 @@
+"""``ptmcad init``: a commented record to start from, which runs as it is."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+
+from ptmcad.cli.mechanisms import known_starter
+from ptmcad.errors import ConfigError, OutputError
+from ptmcad.question.config.starters import starter_text
+
+
+@click.command("init")
+@click.argument("mechanism", default="pendulum")
+@click.option("--out", type=click.Path(path_type=Path), metavar="FILE",
+              help="The file to write; never one that is there.  [default: standard output]")  # fmt: skip
+def command(*, mechanism: str, out: Path | None) -> None:
+    """Write a commented record to start from: of MECHANISM, or of a pendulum.
+
+    `ptmcad mechanisms` lists what there is. The record runs as it is: `ptmcad classify FILE --out out`.
+
+    \b
+    Example:
+        ptmcad init platform --out mine.yaml
+    """
+    text = starter_text(known_starter(mechanism, "MECHANISM"))
+    if out is None:
+        click.echo(text, nl=False)
+        return
+    text = text.replace("THIS-FILE", out.name)
+    try:
+        descriptor = os.open(out, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+    except FileExistsError as error:
+        raise ConfigError("is there already: choose another name, or remove it", key="--out", file=str(out)) from error
+    except (OSError, ValueError) as error:
+        raise OutputError(f"{out} cannot be written: {getattr(error, 'strerror', None) or error}") from error
+    with open(descriptor, "w", encoding="utf-8") as stream:
+        stream.write(text)
+    click.echo(f"wrote {out}; next: ptmcad check {out}, then ptmcad classify {out} --out out")

@@ -1,0 +1,68 @@
+"""``ptmcad mechanisms``: the built-in mechanisms and the systems to start from, with parameters and a drawing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Mechanism, Model
+from ptmcad.process.output import check_writable, text_writer, write_files
+from ptmcad.question.config.model import model_of
+from ptmcad.question.config.starters import NAMES, starter_text
+from ptmcad.text.syntax import did_you_mean
+from ptmcad.text.yamltree import read_text
+
+
+def starter_model(name: str) -> Model:
+    """The model of a starter."""
+    return model_of(read_text(starter_text(name)))
+
+
+def known_starter(name: str, option: str) -> str:
+    """A name that a starter has.
+
+    Raises
+    ------
+    ConfigError
+        When none has it.
+    """
+    if name not in NAMES:
+        hint = did_you_mean(name, NAMES) or f"; there are {', '.join(NAMES)}"
+        raise ConfigError(f"{name!r:.60} is no built-in mechanism{hint}", key=option)
+    return name
+
+
+def description(model: Model) -> str:
+    """Unknowns, parameters and, of a mechanism, a drawing."""
+    unknowns = ", ".join(f"{name} ({kind.value})" for name, kind in model.unknowns.items())
+    lines = [model.name, f"  unknowns    {unknowns}"]
+    for n, (name, parameter) in enumerate(model.parameters.items()):
+        default = f" = {parameter.default}" if parameter.default else ""
+        window = f", usually from {parameter.window[0]} to {parameter.window[1]}" if parameter.window else ""
+        lines.append(f"  {'' if n else 'parameters':<12}{name}{default}, {parameter.kind.noun}{window}")
+    if isinstance(model, Mechanism):
+        from ptmcad.show.linedrawing import approximate_text
+
+        lines += ["", *(f"      {line}" for line in approximate_text(model).splitlines())]
+        lines += ["", "      # bars, . springs, o points; the pose is not an equilibrium"]
+    return "\n".join(lines)
+
+
+@click.command("mechanisms")
+@click.argument("names", nargs=-1)
+@click.option("--out", type=click.Path(path_type=Path), help="Folder for drawings, NAME.svg for each mechanism.")
+def command(*, names: tuple[str, ...], out: Path | None) -> None:
+    """List the built-in mechanisms, with parameters and a drawing; or those of NAMES.
+
+    A record names one (mechanism: pendulum); `ptmcad init` writes a record of one to change.
+    """
+    models = [starter_model(known_starter(name, "NAMES")) for name in names or NAMES]
+    click.echo("\n\n".join(description(model) for model in models))
+    if out is not None:
+        from ptmcad.show.linedrawing import approximate_svg
+
+        drawn = {f"{m.name}.svg": text_writer(approximate_svg(m)) for m in models if isinstance(m, Mechanism)}
+        check_writable(out, tuple(drawn))
+        write_files(out, drawn)

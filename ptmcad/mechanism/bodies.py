@@ -1,0 +1,76 @@
+"""Points fixed to a rigid body: place = at + R(angle) local, R the rotation of an unknown angle or a sum of such.
+
+Guarantee: distances within a body are constant, as `ptmcad.mechanism.proofs` proves of bars between its points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ptmcad.errors import ConfigError, Faults
+from ptmcad.mechanism.reading import Reader, check_keys, mapping, new_name, point_name
+from ptmcad.text.tree import Call, Chain, Step, Tree
+
+BODY_KEYS = ("at", "angle", "points")
+Place = tuple[Tree, Tree]
+
+
+def add_bodies(
+    entries: Mapping[str, Any], reader: Reader, points: dict[str, Place], faults: Faults
+) -> dict[str, tuple[str, ...]]:
+    """Add the bodies' points to the others; bodies to the names of their points.
+
+    A body may be at a point of a body above it.
+    """
+    bodies: dict[str, tuple[str, ...]] = {}
+    for name, entry in entries.items():
+        key = f"bodies.{name}"
+        with faults:
+            new_name(name, key, {})
+            fields = mapping(entry, key)
+            check_keys(fields, BODY_KEYS, key, faults)
+            for needed in BODY_KEYS:
+                if needed not in fields:
+                    raise ConfigError("is missing", key=f"{key}.{needed}")
+            local = mapping(fields["points"], f"{key}.points")
+            bodies[name] = (*((fields["at"],) if isinstance(fields["at"], str) else ()), *local)
+            at, angle = _frame(fields, key, reader, points, faults)
+            for point, pair in local.items():
+                with faults:
+                    new_name(point, f"{key}.points.{point}", points)
+                    points[point] = at  # known, whatever is wrong with it
+                    points[point] = _placed(at, angle, reader.pair(pair, f"{key}.points.{point}"))
+    return bodies
+
+
+def _frame(
+    fields: Mapping[str, Any], key: str, reader: Reader, points: Mapping[str, Place], faults: Faults
+) -> tuple[Place, Tree]:
+    """Where a body is, and how it is turned."""
+    at = angle = None
+    with faults:
+        if isinstance(fields["at"], str):
+            at = points[point_name(fields["at"], f"{key}.at", points)]
+        else:
+            at = reader.pair(fields["at"], f"{key}.at", moving=True)
+    with faults:
+        angle = reader.angle(fields["angle"], f"{key}.angle")
+    nothing = reader.tree(0, key)
+    return at or (nothing, nothing), angle or nothing
+
+
+def _placed(at: Place, angle: Tree, local: Place) -> Place:
+    c, s = Call("cos", angle), Call("sin", angle)
+    (x, y), (a, b) = at, local
+    return _sum(x, "+", a, c, "-", b, s), _sum(y, "+", a, s, "+", b, c)
+
+
+def _sum(start: Tree, *parts: Any) -> Tree:
+    """start + a f + b g; a sum goes on flat, so that bodies on bodies nest no deeper."""
+    steps = tuple(
+        Step(operator, Chain(factor, (Step("*", turned),))) for operator, factor, turned in (parts[:3], parts[3:])
+    )
+    if isinstance(start, Chain) and start.is_sum:
+        return Chain(start.first, start.steps + steps)
+    return Chain(start, steps)

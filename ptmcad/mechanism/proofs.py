@@ -1,0 +1,214 @@
+"""What a description of a mechanism has to satisfy and no single entry shows: rigid bars, and no loose unknown.
+
+Guarantee: exact; decided in Q[parameters, lengths][cos, sin], reduced by cos^2 + sin^2 = 1. A bar is accepted only when
+its length was proved constant, an unknown refused only when its equation was proved to vanish identically.
+
+The ring is a small one of its own: readers and checkers load no algebra.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+
+from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.mechanism.description import Mechanism, UnknownKind
+from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.text.tree import Number, Tree
+
+MAX_WORK = 12_000
+"""Products of terms for one question, a fraction of a second; two bars and a spring take some hundred."""
+
+Monomial = tuple[tuple[str, int], ...]
+"""Variables with their exponents, in order; the cosine of an angle is ``cos NAME``, its exponent at most 1."""
+
+
+class Polynomial:
+    """An element of the ring; it changes only while it is made."""
+
+    __slots__ = ("ring", "terms")
+
+    def __init__(self, ring: Ring, terms: dict[Monomial, Fraction]):
+        self.ring = ring
+        self.terms = terms
+
+    def __add__(self, other: Polynomial) -> Polynomial:
+        return self._plus(other, 1)
+
+    def __sub__(self, other: Polynomial) -> Polynomial:
+        return self._plus(other, -1)
+
+    def _plus(self, other: Polynomial, sign: int) -> Polynomial:
+        terms = dict(self.terms)
+        for monomial, c in other.terms.items():
+            total = terms.get(monomial, 0) + sign * c
+            if total:
+                terms[monomial] = Fraction(total)
+            else:
+                terms.pop(monomial, None)
+        return Polynomial(self.ring, terms)
+
+    def __mul__(self, other: Polynomial) -> Polynomial:
+        self.ring.spend(len(self.terms) * len(other.terms))
+        terms: dict[Monomial, Fraction] = {}
+        for one, a in self.terms.items():
+            for two, b in other.terms.items():
+                for monomial, sign in _product(one, two):
+                    terms[monomial] = terms.get(monomial, Fraction(0)) + sign * a * b
+        return Polynomial(self.ring, {m: c for m, c in terms.items() if c})
+
+    def derivative(self, unknown: str) -> Polynomial:
+        """By an unknown, on the line or on the circle."""
+        cosine, sine = f"cos {unknown}", f"sin {unknown}"
+        total = Polynomial(self.ring, {})
+        for monomial, c in self.terms.items():
+            for variable, e in monomial:
+                if variable not in (unknown, cosine, sine):
+                    continue
+                rest = Polynomial(self.ring, {_with(monomial, variable, e - 1): e * c})
+                if variable == cosine:
+                    total -= rest * self.ring.variable(sine)
+                else:
+                    total += rest if variable == unknown else rest * self.ring.variable(cosine)
+        return total
+
+
+class Ring:
+    """Q[parameters, lengths][cos, sin], as a ring in which trees have values; it stops after `MAX_WORK`."""
+
+    def __init__(self) -> None:
+        self.work = 0
+
+    def spend(self, work: int) -> None:
+        """Note work.
+
+        Raises
+        ------
+        ExpressionError
+            When it is too much.
+        """
+        self.work += work
+        if self.work > MAX_WORK:
+            raise ExpressionError("the expressions are too large to be multiplied out")
+
+    def constant(self, value: Fraction) -> Polynomial:
+        return Polynomial(self, {(): value} if value else {})
+
+    def variable(self, name: str) -> Polynomial:
+        return Polynomial(self, {((name, 1),): Fraction(1)})
+
+    parameter = variable
+
+    def cos(self, angle: str) -> Polynomial:
+        return self.variable(f"cos {angle}")
+
+    def sin(self, angle: str) -> Polynomial:
+        return self.variable(f"sin {angle}")
+
+
+def _with(monomial: Monomial, variable: str, exponent: int) -> Monomial:
+    """The monomial with another exponent of a variable that it has."""
+    return tuple((v, exponent if v == variable else e) for v, e in monomial if v != variable or exponent)
+
+
+def _product(one: Monomial, two: Monomial) -> Iterator[tuple[Monomial, int]]:
+    """The product of two monomials, as terms with cosines to the power of at most 1."""
+    exponents = dict(one)
+    for variable, e in two:
+        exponents[variable] = exponents.get(variable, 0) + e
+    found: list[tuple[dict[str, int], int]] = [(exponents, 1)]
+    for cosine in [v for v, e in exponents.items() if e > 1 and v.startswith("cos ")]:
+        sine = f"sin {cosine[4:]}"
+        split = []
+        for powers, sign in found:  # cos^2 = 1 - sin^2
+            rest = {v: e for v, e in powers.items() if v != cosine}
+            split += [(rest, sign), ({**rest, sine: rest.get(sine, 0) + 2}, -sign)]
+        found = split
+    for powers, sign in found:
+        yield tuple(sorted(powers.items())), sign
+
+
+def check_bars(mechanism: Mechanism, faults: Faults) -> None:
+    """Note each bar whose length varies, or is too large an expression."""
+    points = _Points(mechanism)
+    for n, (start, end) in enumerate(mechanism.bars, 1):
+        key = f"bars.{n}"
+        with faults:
+            try:
+                squared = points.squared(start, end)
+                loose = [u for u in mechanism.unknowns if squared.derivative(u).terms]
+            except ExpressionError as error:
+                raise ConfigError(f"it is not proved that its length is constant: {error.message}", key=key) from None
+            if loose:
+                raise ConfigError(
+                    f"the length of {start}{end} is not constant, it varies with {' and '.join(loose)}: a bar is "
+                    "rigid; leave it out, or make it a spring",
+                    key=key,
+                )
+
+
+def check_unknowns(mechanism: Mechanism, faults: Faults) -> None:
+    """Note each unknown whose equation vanishes identically: nothing holds it."""
+    held: set[str] = set()
+    try:
+        held = _held(mechanism)
+    except ExpressionError:
+        return  # the engines find out
+    for unknown, kind in mechanism.unknowns.items():
+        with faults:
+            if unknown not in held:
+                motion = "turns" if kind is UnknownKind.ANGLE else "moves"
+                raise ConfigError(
+                    f"no equation holds this unknown: no spring or load feels how it {motion}",
+                    key=f"unknowns.{unknown}",
+                )
+
+
+def _held(mechanism: Mechanism) -> set[str]:
+    """The unknowns whose equations do not vanish identically."""
+    points = _Points(mechanism)
+    ring = points.ring
+    held = {moment.unknown for moment in mechanism.moments if points.value(moment.value).terms}
+    energy = ring.constant(Fraction(0))
+    for spring in mechanism.springs:
+        squared = points.squared(spring.start, spring.end)
+        if isinstance(spring.free, Number) and not spring.free.value:
+            energy += points.value(spring.stiffness) * squared
+        else:  # the root of the squared length does not cancel against the rest, but where the stiffness does
+            held.update(u for u in mechanism.unknowns if squared.derivative(u).terms)
+        if len(held) == len(mechanism.unknowns):
+            return held
+    for load in mechanism.loads:
+        work = sum(
+            (points.value(force) * place for force, place in zip((load.x, load.y), points.at(load.point), strict=True)),
+            start=ring.constant(Fraction(0)),
+        )
+        energy -= work + work  # twice the energy throughout
+    for torsion in mechanism.torsion:
+        energy += points.value(torsion.energy) * ring.constant(Fraction(2))
+    return held | {u for u in mechanism.unknowns if energy.derivative(u).terms}
+
+
+class _Points:
+    """The coordinates of a mechanism's points, each computed once."""
+
+    def __init__(self, mechanism: Mechanism):
+        self.trees: Mapping[str, tuple[Tree, Tree]] = mechanism.points
+        self.ring = Ring()
+        self.known: dict[str, tuple[Polynomial, Polynomial]] = {}
+
+    def value(self, tree: Tree) -> Polynomial:
+        return evaluate(tree, self.ring)
+
+    def at(self, name: str) -> tuple[Polynomial, Polynomial]:
+        if name not in self.known:
+            x, y = self.trees[name]
+            self.known[name] = self.value(x), self.value(y)
+        return self.known[name]
+
+    def squared(self, start: str, end: str) -> Polynomial:
+        """The square of a distance."""
+        total = self.ring.constant(Fraction(0))
+        for a, b in zip(self.at(start), self.at(end), strict=True):
+            total += (b - a) * (b - a)
+        return total

@@ -1,0 +1,149 @@
+"""A mechanism as a line drawing, in characters or as SVG: bars, springs, supports and the points' names.
+
+Floating point throughout: a drawing decides nothing. The pose is any, not an equilibrium.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from html import escape
+from math import cos, sin
+
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.mechanism import Mechanism, Support
+from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.text.parsing import rational
+
+WIDTH, HEIGHT = 48, 15
+"""Characters of a drawing in text; one is about twice as high as wide."""
+SIDE, MARGIN, TURNS = 360.0, 40.0, 8
+_ANGLES = (0.9, 2.1, 0.3, 1.6)
+"""Of the pose that is drawn, in turn: no two are alike, so that bars do not hide each other."""
+_SUPPORTS = {Support.PIN: "fixed", Support.SLIDER_X: "slides along x", Support.SLIDER_Y: "slides along y"}
+Place = tuple[float, float]
+
+
+class _Pose:
+    """The floating point numbers, with defaults for parameters and any values for the unknowns."""
+
+    def __init__(self, mechanism: Mechanism):
+        self.values = {name: _default(mechanism, name) for name in mechanism.parameters}
+        self.values |= {name: 0.7 for name in mechanism.reals}
+        self.angles = {name: _ANGLES[n % len(_ANGLES)] for n, name in enumerate(mechanism.angles)}
+
+    def constant(self, value: Fraction) -> float:
+        return float(value)
+
+    def parameter(self, name: str) -> float:
+        if name not in self.values:
+            raise ExpressionError(f"{name} has no value")
+        return self.values[name]
+
+    def cos(self, angle: str) -> float:
+        return cos(self.angles[angle])
+
+    def sin(self, angle: str) -> float:
+        return sin(self.angles[angle])
+
+
+def _default(mechanism: Mechanism, name: str) -> float:
+    parameter = mechanism.parameters[name]
+    if parameter.alias_of:
+        return _default(mechanism, parameter.alias_of)
+    return float(rational(parameter.default)) if parameter.default else 1.0
+
+
+def approximate_places(mechanism: Mechanism) -> dict[str, Place]:
+    """The points at the parameters' defaults, in a pose of no meaning.
+
+    Raises
+    ------
+    ConfigError
+        Where a coordinate is too large for floating point.
+    """
+    pose = _Pose(mechanism)
+    try:
+        return {name: (evaluate(x, pose), evaluate(y, pose)) for name, (x, y) in mechanism.points.items()}
+    except OverflowError as error:
+        raise ConfigError("a coordinate is too large to be drawn", key="points") from error
+
+
+def approximate_text(mechanism: Mechanism) -> str:
+    """The drawing in characters: bars ``#``, springs ``.``, points ``o`` with their names."""
+    canvas = [[" "] * WIDTH for _ in range(HEIGHT)]
+    at = {
+        name: (round(x * (WIDTH - 6)), round((1 - y) * (HEIGHT - 1)))
+        for name, (x, y) in _fitted(approximate_places(mechanism), 2.0 * (HEIGHT - 1) / (WIDTH - 6)).items()
+    }
+    lines = [(spring.start, spring.end, ".") for spring in mechanism.springs] + [(*bar, "#") for bar in mechanism.bars]
+    for start, end, character in lines:
+        for column, row in _line(at[start], at[end]):
+            canvas[row][column] = character
+    for name, (column, row) in at.items():
+        for k, character in enumerate(f"o{name}"[:6]):
+            if k == 0 or canvas[row][column + k] in " .":
+                canvas[row][column + k] = character
+    return "\n".join("".join(row).rstrip() for row in canvas).strip("\n")
+
+
+def _fitted(places: Mapping[str, Place], shape: float) -> dict[str, Place]:
+    """Places in the unit square that stands for a frame as many times as high as wide."""
+    left, right = (pick(x for x, _ in places.values()) for pick in (min, max))
+    low, high = (pick(y for _, y in places.values()) for pick in (min, max))
+    unit = max(right - left, (high - low) / shape) or 1.0
+    across, up = (1 - (right - left) / unit) / 2, (1 - (high - low) / (unit * shape)) / 2
+    return {name: (across + (x - left) / unit, up + (y - low) / (unit * shape)) for name, (x, y) in places.items()}
+
+
+def _line(start: tuple[int, int], end: tuple[int, int]) -> Iterator[tuple[int, int]]:
+    steps = max(abs(end[0] - start[0]), abs(end[1] - start[1]), 1)
+    for k in range(steps + 1):
+        yield tuple(round(a + (b - a) * k / steps) for a, b in zip(start, end, strict=True))  # type: ignore[misc]
+
+
+def approximate_svg(mechanism: Mechanism) -> str:
+    """The drawing as SVG."""
+    inner = SIDE - 2 * MARGIN
+    at = {
+        name: (MARGIN + inner * x, SIDE - MARGIN - inner * y)
+        for name, (x, y) in _fitted(approximate_places(mechanism), 1.0).items()
+    }
+    parts = [f'<title>{escape(mechanism.name)}</title><rect width="{SIDE:g}" height="{SIDE:g}" fill="white"/>']
+    for start, end in mechanism.bars:
+        parts.append(_path([at[start], at[end]], "#17365d", 5))
+    for spring in mechanism.springs:
+        parts.append(_path(list(_zigzag(at[spring.start], at[spring.end])), "#1f1f1f", 1))
+    for name, kind in mechanism.supports.items():
+        x, y = at[name]
+        parts.append(
+            f'<path d="M{x:.1f} {y:.1f} l-8 12 h16 z" fill="white" stroke="#3a3a3a">'
+            f"<title>{_SUPPORTS[kind]}</title></path>"
+        )
+    for name, (x, y) in at.items():
+        parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="white" stroke="#3a3a3a"/>')
+        parts.append(
+            f'<text x="{x + 6:.1f}" y="{y - 6:.1f}" font-size="13" font-family="sans-serif">{escape(name)}</text>'
+        )
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{SIDE:g}" height="{SIDE:g}" viewBox="0 0 {SIDE:g} {SIDE:g}">\n'
+        + "\n".join(parts)
+        + "\n</svg>\n"
+    )
+
+
+def _path(points: list[Place], colour: str, width: float) -> str:
+    text = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+    return f'<polyline points="{text}" fill="none" stroke="{colour}" stroke-width="{width:g}" stroke-linecap="round"/>'
+
+
+def _zigzag(start: Place, end: Place) -> Iterator[Place]:
+    (x0, y0), (x1, y1) = start, end
+    length = max(((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5, 1e-9)
+    across = (-(y1 - y0) / length * 5, (x1 - x0) / length * 5)
+    yield start
+    for k in range(2 * TURNS + 1):
+        share = 0.15 + 0.7 * k / (2 * TURNS)
+        side = 0 if k in (0, 2 * TURNS) else 1 if k % 2 else -1
+        yield (x0 + (x1 - x0) * share + side * across[0], y0 + (y1 - y0) * share + side * across[1])
+    yield end

@@ -1,0 +1,149 @@
+"""Shipped mechanisms and systems: polynomials, counts and areas are those of the literature, or of another computation.
+
+What each figure rests on is said in the record itself, under ``reference``.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+import yaml
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
+
+from ptmcad import RegionMap, Slice, classify, load
+from ptmcad.answer.regionmap import Merge
+from ptmcad.exact.counting import Counts, count_by_isolation, count_by_signature, solutions_at
+from ptmcad.exact.stages import point_values, problem_of, variety_of
+from ptmcad.question.slice import Count
+
+ROOT = Path(__file__).resolve().parents[2]
+RECORDS = sorted((ROOT / "configs").glob("*/*.yaml"))
+LINES_ONLY = {"three-bar-chain"}
+"""Too large for an exact map."""
+MAPPED = [path for path in RECORDS if path.stem not in LINES_ONLY]
+MECHANISMS = {"bistable-slider", "inverted-pendulum", "platform", "three-bar-chain", "two-bar-chain"}
+SYSTEMS = {
+    "cubic", "cubic-and-quadratic", "duffing", "escape", "kuramoto", "orthogonal-3r", "schloegl", "stability-pair",
+    "von-mises-truss",
+}  # fmt: skip
+
+
+def reference(path: Path) -> dict[str, Any]:
+    return dict(yaml.safe_load(path.read_text(encoding="utf-8"))["reference"])
+
+
+@cache
+def mapped(path: Path) -> RegionMap:
+    return classify(load(path))
+
+
+def counts_at(slice: Slice, at: dict[str, Any], signature: bool) -> Counts:
+    problem = problem_of(slice)
+    x, y = (Fraction(at[name]) for name in slice.axis_names)
+    values = point_values(problem.parameters, (fmpq(x.numerator, x.denominator), fmpq(y.numerator, y.denominator)))
+    return (count_by_signature if signature else count_by_isolation)(problem.system, values)
+
+
+def test_all_are_shipped() -> None:
+    assert {path.stem for path in RECORDS if path.parent.name == "mechanisms"} == MECHANISMS
+    assert {path.stem for path in RECORDS if path.parent.name == "systems"} == SYSTEMS
+
+
+@pytest.mark.parametrize("path", RECORDS, ids=lambda path: path.stem)
+def test_records_load_and_validate(path: Path) -> None:
+    import json
+
+    schema = json.loads((ROOT / "ptmcad" / "record.schema.json").read_text(encoding="utf-8"))
+    text = path.read_text(encoding="utf-8")
+    assert text.startswith("# yaml-language-server: $schema=../../ptmcad/record.schema.json\n")
+    jsonschema.validate(yaml.safe_load(text), schema, cls=jsonschema.Draft202012Validator)
+    slice = load(path)
+    assert slice.name == path.stem
+    assert slice.title
+    assert slice.reference["source"]
+
+
+@pytest.mark.parametrize("path", RECORDS, ids=lambda path: path.stem)
+def test_numbers_of_solutions(path: Path) -> None:
+    """At the points of the record, by both methods; and complex ones."""
+    slice, known = load(path), reference(path)
+    for entry in known.get("counts", ()):
+        for signature in (False, True):
+            found = counts_at(slice, entry["at"], signature)
+            told = {key: getattr(found, key) for key in entry if key != "at"}
+            assert told == {key: tuple(v) if isinstance(v, list) else v for key, v in entry.items() if key != "at"}
+    if "complex_solutions" in known:
+        problem = problem_of(slice)
+        at = tuple(fmpq(29, 100) * (b - a) + a for a, b in problem.window)
+        values = point_values(problem.parameters, (at[0], at[1]))
+        assert solutions_at(problem.system, values) == (known["complex_solutions"],) * 2
+
+
+@pytest.mark.parametrize("path", MAPPED, ids=lambda path: path.stem)
+def test_areas_and_regions(path: Path) -> None:
+    known, result = reference(path), mapped(path)
+    stable = result.slice.count is Count.STABLE
+    areas: Counter[int] = Counter()
+    for region in result.regions:
+        count = region.stable if stable else region.total
+        assert count is not None
+        areas[count] += float(sum(region.area) / 2)  # type: ignore[assignment]
+    for count, area in known.get("areas", {}).items():
+        assert areas[count] == pytest.approx(float(area), rel=float(known.get("tolerance", "0.0001")))
+    if "regions" in known:
+        assert len(result.regions) == known["regions"]
+    if "parts" in known:
+        assert len(set(parts(result))) == known["parts"]
+
+
+def parts(result: RegionMap) -> Iterator[int]:
+    """For each cell the first one of the part of the window, without the curves, that it lies in."""
+    first = list(range(len(result.cells)))
+
+    def root(cell: int) -> int:
+        return cell if first[cell] == cell else root(first[cell])
+
+    for adjacency in result.adjacencies:
+        if adjacency.merge is Merge.PROVEN:
+            first[root(adjacency.second)] = root(adjacency.first)
+    yield from (root(cell) for cell in range(len(result.cells)))
+
+
+@pytest.mark.parametrize(
+    "path", [path for path in MAPPED if {"polynomials", "terms"} & reference(path).keys()], ids=lambda path: path.stem
+)
+def test_polynomials(path: Path) -> None:
+    known = reference(path)
+    problem = problem_of(load(path))
+    names = problem.slice.axis_names
+    found = [terms(c.polynomial.text(names), names) for c in variety_of(problem).components]
+    for text in known.get("polynomials", ()):
+        assert terms(text, names) in found or terms(f"-({text})", names) in found
+    if "terms" in known:
+        assert known["terms"] in {len(polynomial) for polynomial in found}
+
+
+def terms(text: str, names: tuple[str, str]) -> dict[tuple[int, ...], Fraction]:
+    """A polynomial, whatever the order of its terms in the text."""
+    ring = fmpq_mpoly_ctx.get(names, Ordering.lex)
+    value = eval(text.replace("^", "**"), dict(zip(names, ring.gens(), strict=True)))
+    return {tuple(map(int, e)): Fraction(int(c.p), int(c.q)) for e, c in (value + ring.constant(0)).terms()}
+
+
+def test_real_solutions_of_the_stability_pair_on_a_lattice() -> None:
+    """Bouzidi and Rouillier: none at 59 points, two at 50 and four at 12."""
+    path = ROOT / "configs" / "systems" / "stability-pair.yaml"
+    slice, lattice = load(path), reference(path)["lattice"]
+    steps = range(lattice["from"], lattice["to"] + 1)
+    offsets = {name: Fraction(text) for name, text in lattice["offsets"].items()}
+    found = Counter(
+        counts_at(slice, {"u1": i + offsets["u1"], "u2": j + offsets["u2"]}, False).total for i in steps for j in steps
+    )
+    assert found == lattice["points"]

@@ -1,0 +1,104 @@
+"""``ptmcad check``: all faults of a record, one a line; or what it asks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from ptmcad.cli import run
+from ptmcad.errors import ConfigError
+from ptmcad.question.config import load, slice_from_mapping
+
+CONFIGS = Path(__file__).resolve().parents[2] / "configs"
+BAD = """\
+name: a/b
+mechanism:
+  parameters:
+    L: {kind: lenght, default: 1}
+    W: {kind: force}
+  unknowns: {th: angle}
+  points:
+    O: [0, 0]
+    P: [L*cos(th), L*sin(t)]
+  springs:
+    - {between: [O, Q], k: 1}
+  loads: {R: [0, W]}
+parameters: {L: [1]}
+axes: {W: [0, 2]}
+count: many
+more: 1
+"""
+FAULTS = [
+    (16, "more"),
+    (4, "mechanism.parameters.L.kind"),
+    (9, "mechanism.points.P.2"),
+    (12, "mechanism.loads.R"),
+    (11, "mechanism.springs.1.between"),
+    (1, "name"),
+    (13, "parameters.L"),
+    (14, "axes"),
+    (15, "count"),
+]
+
+
+def test_all_faults_are_printed_one_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "bad.yaml"
+    path.write_text(BAD, encoding="utf-8")
+    assert run(["check", str(path)]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    lines = err.splitlines()
+    assert len(lines) == len(FAULTS)
+    for line, (number, key) in zip(lines, FAULTS, strict=True):
+        assert line.startswith(f"error: {path}:{number}: {key}: ")
+    assert run(["classify", str(path)]) == 2
+    assert capsys.readouterr().err == f"{lines[0]} (and 8 more: ptmcad check lists them)\n"
+
+
+def test_values_are_checked_together_and_faults_do_not_follow_from_others() -> None:
+    """k2 depends on a faulty one and is not judged; the circle is named once."""
+    with pytest.raises(ConfigError) as caught:
+        slice_from_mapping({
+            "parameters": {"L1": "q", "k2": "1 - L1", "F3": "F4", "F4": "F3", "L2": -1, "rho": 1},
+            "axes": {"rho": [2, 0], "u": [0, 1]},
+        })  # fmt: skip
+    assert [fault.key for fault in caught.value.faults] == [
+        "parameters.rho", "axes.rho", "parameters.L1", "parameters.F3",
+    ]  # fmt: skip
+    with pytest.raises(ConfigError) as caught:
+        slice_from_mapping({
+            "parameters": {"L1": "q", "k2": "1 - L1", "L2": -1, "k3": 0}, "axes": {"rho": [0, 2], "u": [0, 1]},
+        })  # fmt: skip
+    assert [fault.key for fault in caught.value.faults] == ["parameters.L1", "parameters.L2", "parameters.k3"]
+
+
+@pytest.mark.parametrize(
+    ("name", "parts"),
+    [
+        ("fig4", ["mechanism   ptm", "th1 (angle), th2 (angle)", "6 complex ones", "engine      exact", "F3 = -10"]),
+        ("free02", ["not counted", "engine      certified", "l0 = 1/5"]),
+    ],
+)
+def test_a_right_record_is_told(name: str, parts: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["check", str(CONFIGS / f"{name}.yaml")]) == 0
+    out = capsys.readouterr().out
+    assert all(part in out for part in parts)
+
+
+def test_a_system_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "cusp.yaml"
+    path.write_text("system: {unknowns: {x: real}, equations: [x^3 - a*x + b]}\naxes: {a: [0, 1], b: [0, 1]}\n")
+    assert run(["check", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert "system      system" in out
+    assert "3 complex ones" in out
+    assert "count       total" in out
+
+
+def test_loading_knows_all_faults(tmp_path: Path) -> None:
+    path = tmp_path / "bad.yaml"
+    path.write_text(BAD, encoding="utf-8")
+    with pytest.raises(ConfigError) as caught:
+        load(path)
+    assert [(fault.line, fault.key) for fault in caught.value.faults] == FAULTS
