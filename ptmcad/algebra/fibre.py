@@ -95,6 +95,33 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int) -> Fibre | Non
     return Fibre(basis, tuple(matrices))
 
 
+def combined_angles(algebra: Fibre, matrix: Sequence[Sequence[int]], reals: int) -> Fibre:
+    """The fibre with the cosines and sines of sums of its angles as further coordinates, before the others.
+
+    Parameters
+    ----------
+    algebra : its coordinates are cosine and sine of each angle, then so many real unknowns.
+    matrix : the multiples of the angles in each sum, one for each angle.
+
+    Returns
+    -------
+    Coordinates of the sums, the real unknowns, the coordinates of the angles.
+    """
+    size, angles = algebra.dimension, len(matrix)
+    one = fmpq_mat(size, size, [fmpq(int(i == j)) for i in range(size) for j in range(size)])
+    sums: list[fmpq_mat] = []
+    for row in matrix:
+        cosine, sine = one, one * fmpq(0)
+        for k, multiple in enumerate(row):
+            c, s = algebra.multiplication[2 * k], algebra.multiplication[2 * k + 1] * fmpq(-1 if multiple < 0 else 1)
+            for _ in range(abs(multiple)):
+                cosine, sine = cosine * c - sine * s, sine * c + cosine * s
+        sums += [cosine, sine]
+    own, real = algebra.multiplication[: 2 * angles], algebra.multiplication[2 * angles :]
+    basis = tuple((*(0,) * (2 * angles), *m[2 * angles :], *m[: 2 * angles]) for m in algebra.basis)
+    return Fibre(basis, (*sums, *real[:reals], *own))
+
+
 def evaluate(algebra: Fibre, p: RationalPolynomial) -> fmpq_mat:
     """The matrix of multiplication by a polynomial in the unknowns."""
     size = algebra.dimension

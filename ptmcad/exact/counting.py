@@ -36,6 +36,7 @@ from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate, refine
 from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, at_point, polynomial_at
+from ptmcad.exact.models.turns import in_old_angles
 
 
 class DegeneratePoint(HypothesisError):
@@ -65,7 +66,7 @@ class PointSystem:
     Attributes
     ----------
     algebra : of all solutions, or of those at which no inequality's polynomial vanishes (`saturated`); then it has one
-        coordinate more.
+        coordinate more, and where equations are simpler in other angles it has those of these angles too.
     """
 
     jacobian: tuple[tuple[RationalPolynomial, ...], ...]
@@ -97,6 +98,9 @@ def point_system(system: ParametricSystem, values: Mapping[str, fmpq], saturated
         for conditions in (system.inequalities, system.stability)
     )
     ring = system.ring
+    turns = None if saturated else system.turns
+    if turns is not None:
+        equations, _ = at_point(turns.system, values)
     generators = [e for e in equations if e] + [{m: fmpq(c) for m, c in circle.items()} for circle in ring.circles]
     width = ring.width
     if saturated:
@@ -107,6 +111,8 @@ def point_system(system: ParametricSystem, values: Mapping[str, fmpq], saturated
     algebra = fibre(generators, width)
     if algebra is None:
         raise DegeneratePoint(f"infinitely many solutions at {_text(values)}")
+    if turns is not None:
+        algebra = in_old_angles(system, algebra, turns)
     return PointSystem(jacobian, inequalities, stability, algebra, not (ring.reals or saturated))
 
 

@@ -8,6 +8,7 @@ the energy in the quotient algebra.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
@@ -52,8 +53,10 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int) -
         return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, INFINITELY_MANY)
     is_compact = not system.ring.reals
     found = points(point.algebra, 1 if is_compact else None)
+    # where equations are simpler in other angles there are more coordinates than those of the unknowns
+    real = [replace(p, unknowns=p.unknowns[: system.ring.width]) for p in found.real]
     model = _at_point(given, system, point, values, parameters)
-    states = [state for state in _states(model, found.real) if _counts(model, state)]
+    states = [state for state in _states(model, real) if _counts(model, state)]
     results = [pose_of(model, state, digits) for state in states]
     poses = [pose for pose, _ in results]
     degenerate = any(pose.multiplicity > 1 for pose in poses)
@@ -128,7 +131,9 @@ def _energy_ranks(
         return [by_energy.index(k) for k in range(len(poses))]
     # cosines and sines are at most 1
     bound = 1 + sum((abs(c) for c in model.potential.values()), fmpq(0)) if is_compact else None
-    values = real_values(algebra, model.potential, bound)
+    further = len(algebra.multiplication) - len(next(iter(model.potential), ()))
+    potential = {(*m, *(0,) * further): c for m, c in model.potential.items()}
+    values = real_values(algebra, potential, bound)
     return [_rank(state.energy, values) for state in states if state.energy is not None]
 
 

@@ -81,6 +81,8 @@ def discriminant_variety(
     InfiniteSolutionsError, DegenerateSliceError
         When every point of the slice is exceptional.
     """
+    if system.turns is not None:
+        system = system.turns.system  # with the same solutions, and the same determinant but for its sign
     equations, algebra, rows, jacobian_norm = _nondegenerate(on_slice(system, parameters))
     seen = _Components(window, without)
     for polynomial in (*equations.boundary, *limits):

@@ -17,6 +17,7 @@ from flint import fmpq
 from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
 from ptmcad.exact.models.system import ParametricSystem, from_equations, from_potential
+from ptmcad.exact.models.turns import with_turns
 from ptmcad.mechanism import Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.text.tree import Tree
@@ -98,9 +99,9 @@ def potential(mechanism: Mechanism) -> TrigonometricPolynomial:
 def system_from(model: Model) -> ParametricSystem:
     """The equations and Jacobian of a mechanism or system, with all parameters symbolic."""
     if isinstance(model, System):
-        return _equations_of(model)
+        return with_turns(_equations_of(model))
     assert isinstance(model, Mechanism)
-    return _equilibria_of(model)
+    return with_turns(_equilibria_of(model))
 
 
 def _equations_of(model: System) -> ParametricSystem:

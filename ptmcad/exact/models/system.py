@@ -46,6 +46,7 @@ class ParametricSystem:
     stability : where there is no potential a solution is stable where all of these are positive.
     positive : parameters that must be positive (rod lengths and stiffnesses).
     nonnegative : parameters that must not be negative (the base length).
+    turns : the equations in other angles, `ptmcad.exact.models.turns.Turns`, where these are simpler.
     """
 
     ring: TrigonometricRing
@@ -58,6 +59,7 @@ class ParametricSystem:
     stability: tuple[TrigonometricPolynomial, ...] = ()
     positive: tuple[str, ...] = ()
     nonnegative: tuple[str, ...] = ()
+    turns: Any = None
 
     @property
     def dimension(self) -> int:
