@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 
 from ptmcad.answer.regionmap import RegionMap, Status, System
 from ptmcad.errors import ConfigError
+from ptmcad.mechanism import ptm
 from ptmcad.question.config import slice_from_mapping
-from ptmcad.question.slice import FREE_LENGTHS, Axis, Slice
+from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.text.expressions import axis, constant
 from ptmcad.verification.certified.parameters import check_domain
@@ -84,6 +85,7 @@ def test_names_of_axes_need_no_text() -> None:
     check_domain(claims(slice))
 
 
+FREE_LENGTHS = ptm().free_lengths
 STIFF, FREE, LOADS = ("k", "k1", "k2", "k3"), ("l0", *FREE_LENGTHS), ("F3", "F4", "F3x")
 AXES = (("rho", "L2"), ("u", "v"), ("k", "u"), ("l0", "v"), ("k1", "L1"), ("l0_2", "F4"), ("F3", "k3"))
 

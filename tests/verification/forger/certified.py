@@ -19,6 +19,7 @@ from typing import Any
 from forger.consistency import Alteration, drop, put, swapped, window_area
 from ptmcad.answer.regionmap import Cell, RegionMap, Status
 from ptmcad.cover.rectangles import Cover, Rectangle
+from ptmcad.mechanism import known_of
 from ptmcad.question.slice import Point
 from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.structure import CertifiedClaims
@@ -193,7 +194,7 @@ def frame(r: RegionMap) -> Iterator[Alteration]:
     yield partial(replace, r, stacks=(0,))
     yield partial(replace, r, cells=put(r.cells, 0, stack=0))
     yield partial(with_counts, r, 0, stable=-1)
-    yield partial(replace, r, slice=replace(r.slice, mechanism="other"))
+    yield partial(replace, r, slice=replace(r.slice, model=known_of("other")))
     yield partial(replace, r, slice=replace(r.slice, axes=r.slice.axes[::-1]))
     x = r.slice.axes[0]
     yield partial(replace, r, slice=replace(r.slice, axes=put(r.slice.axes, 0, low=x.high, high=x.low)))

@@ -21,6 +21,7 @@ from forger.consistency import (
     with_plan,
 )
 from ptmcad.answer.regionmap import PlanStep, RegionMap, Status
+from ptmcad.mechanism import known_of
 from ptmcad.question.slice import Count
 from ptmcad.text.expressions import Expression, constant
 
@@ -139,7 +140,7 @@ def parameter_missing(r: RegionMap) -> Iterator[Alteration]:
             fewer = {n: e for n, e in r.slice.parameters.items() if n != name}
             text = {n: t for n, t in r.slice.text.items() if n != name}
             yield partial(replace, r, slice=replace(r.slice, parameters=fewer, text=text))
-    yield partial(replace, r, slice=replace(r.slice, mechanism="other"))
+    yield partial(replace, r, slice=replace(r.slice, model=known_of("other")))
 
 
 def another_count(r: RegionMap) -> Iterator[Alteration]:

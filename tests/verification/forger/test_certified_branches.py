@@ -34,6 +34,7 @@ from ptmcad.answer.regionmap import (
     System,
 )
 from ptmcad.cover.rectangles import Cover, Rectangle
+from ptmcad.mechanism import known_of
 from ptmcad.question.slice import Count, Point
 from ptmcad.text.expressions import axis
 from ptmcad.text.parsing import parse
@@ -213,7 +214,7 @@ POWER = "(" * 6 + "(F3/4)" + "^9)" * 6
 ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (check_form, springs, having(status=Status.EXACT), "the status is 'exact', and there is a cover"),
     (check_form, springs, having(cover=None), "the status is 'certified', and there is no cover"),
-    (check_form, springs, with_slice(mechanism="other"), "the mechanism 'other' is not known, or its parameters are"),
+    (check_form, springs, with_slice(model=known_of("other")), "the mechanism 'other' is not known, or its parameters"),
     (check_form, springs, without("F3"), "the mechanism 'ptm' is not known, or its parameters are others"),
     (check_form, springs, with_parameter("L3", "1"), "the mechanism 'ptm' is not known, or its parameters are others"),
     (check_form, springs, with_axis(0, 1, 1), "the window is empty"),
