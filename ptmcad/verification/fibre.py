@@ -249,10 +249,14 @@ class Fibre:
         matrix = fmpq_mat(self.dimension, self.dimension)
         for c, table in zip(form, self.tables[len(self.tables) - len(form) :], strict=True):
             matrix = matrix + table * fmpq(c)
-        power, traces = matrix, []
-        for _ in range(self.dimension):
-            traces.append(sum((power[i, i] for i in range(self.dimension)), fmpq(0)))
-            power = power * matrix
+        # Newton's identities: powers of the matrix would have entries of many more digits than their traces
+        coefficients = [fmpq(c) for c in reversed(matrix.charpoly().coeffs())]
+        traces: list[fmpq] = []
+        for k in range(1, self.dimension + 1):
+            total = coefficients[k] * k
+            for i in range(1, k):
+                total += coefficients[i] * traces[k - i - 1]
+            traces.append(-total)
         return traces
 
 

@@ -27,7 +27,7 @@ import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial, reduce
+from functools import cached_property, partial, reduce
 from itertools import permutations
 from math import gcd, lcm, prod
 
@@ -96,7 +96,7 @@ def factors(p: object) -> list[PlanePolynomial]:
     return found
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FibrePoint:
     """The fibre over a random integer point that lies on no stored component.
 
@@ -119,6 +119,11 @@ class FibrePoint:
     def condition_norm(self, k: int) -> Fraction:
         """The product of a condition over the solutions at which it is not 0."""
         return fraction(self.fibre.norm_where_nonzero(self.fibre.conditions[k]))
+
+    @cached_property
+    def denominator(self) -> int:
+        """The common denominator of the power traces of the linear form."""
+        return lcm(*(int(t.q) for t in self.fibre.form_traces(self.form)))
 
     def own(self, k: int, *others: int) -> int:
         """The value of component k without the primes of the other components' values here, and of other numbers."""
@@ -331,7 +336,7 @@ def _has_poles(k: int, point: FibrePoint) -> bool:
     For a curve without poles it would have to consist of primes of constants.
     """
     own = _far_part(k, point)
-    return _without(own, _denominator(point)) ** 2 < own
+    return _without(own, point.denominator) ** 2 < own
 
 
 def _is_harmless(k: int, point: FibrePoint) -> bool:
@@ -353,15 +358,10 @@ def _constant_coefficient(matrix: fmpq_mat) -> int:
     return int((lowest * lcm(*(int(c.q) for c in coefficients))).p)
 
 
-def _denominator(point: FibrePoint) -> int:
-    """The common denominator of the power traces of a linear form."""
-    return lcm(*(int(t.q) for t in point.fibre.form_traces(point.form)))
-
-
 def _foreign_poles(claims: Claims, point: FibrePoint) -> int:
     """Denominator of the power traces without the primes of the stored components."""
     components = zip(claims.result.components, point.values, strict=True)
-    return _without(_denominator(point), prod(v for c, v in components if c.kind is not Kind.AUXILIARY) * _SMALL_PRIMES)
+    return _without(point.denominator, prod(v for c, v in components if c.kind is not Kind.AUXILIARY) * _SMALL_PRIMES)
 
 
 def _at(claims: Claims, point: FibrePoint) -> str:
