@@ -21,7 +21,7 @@ from ptmcad.verification.plan import check_plan
 from ptmcad.verification.report import Check, VerifyReport, checked
 from ptmcad.verification.solutions import check_solutions
 from ptmcad.verification.structure import check_critical_values, check_stacks
-from ptmcad.verification.variety import check_irreducible, check_norm
+from ptmcad.verification.variety import check_conditions, check_irreducible, check_norm
 from ptmcad.verification.window import check_left_out
 
 NOT_CHECKED = (
@@ -90,7 +90,8 @@ def checks_of(result: RegionMap, seed: int | None) -> tuple[CheckOf, ...]:
         ("equations", "potential from the nodes", check_system),
         ("irreducible components", "factorization", check_irreducible),
         ("variety complete", "norm of det H at random points", partial(check_norm, seed=drawn)),
-        ("boundary components", "factors of the parameters", check_boundary),
+        ("conditions", "norms at random points", partial(check_conditions, seed=drawn)),
+        ("boundary components", "factors of the parameters", partial(check_boundary, seed=drawn)),
         ("left out", "Sturm counts, resultants", check_left_out),
         ("plan", "built once more", check_plan),
         ("auxiliary components", "values at random points", partial(check_auxiliary, seed=drawn)),

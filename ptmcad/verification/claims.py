@@ -14,6 +14,7 @@ from flint import Ordering, arb, fmpq, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.errors import PoleError
+from ptmcad.mechanism import Model, System
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.derivation import rational
@@ -90,6 +91,20 @@ class Claims:
     result: RegionMap
 
     @cached_property
+    def _fibres(self) -> dict[tuple[Fraction, Fraction], Fibre]:
+        return {}
+
+    @property
+    def model(self) -> Model:
+        """The mechanism or system that the slice is of."""
+        return self.result.slice.model
+
+    @property
+    def describes_equilibria(self) -> bool:
+        """Whether solutions are critical points of a potential."""
+        return not isinstance(self.model, System) or self.model.potential is not None
+
+    @cached_property
     def base(self) -> tuple[fmpq, fmpq]:
         axis = self.result.slice.axes[self.result.base]
         return rational(axis.low), rational(axis.high)
@@ -130,15 +145,18 @@ class Claims:
             raise Violation(str(error)) from error
 
     def fibre_at(self, x: Fraction, y: Fraction) -> Fibre:
-        """The equilibria over a point.
+        """The solutions over a point.
 
         Raises
         ------
         Violation
             When there are infinitely many, or a parameter has a pole there.
         """
+        if (x, y) in self._fibres:
+            return self._fibres[x, y]
         try:
-            return fibre(self.parameters_at(x, y))
+            self._fibres[x, y] = fibre(self.model, self.parameters_at(x, y))
+            return self._fibres[x, y]
         except NotFinite:
             names = self.result.slice.axis_names
             raise Violation(

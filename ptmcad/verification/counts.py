@@ -9,34 +9,52 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from ptmcad.mechanism import Model
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import NOT_NEGATIVE, POSITIVE
+from ptmcad.verification.fibre import Counts, Fibre
 from ptmcad.verification.report import Violation
 
 
 def check_counts(claims: Claims) -> str:
-    """Total, stable and Morse index of every cell; Euler sum; lengths and stiffnesses positive."""
+    """Total, stable and index of every cell; on a torus the sum of the signs; lengths and stiffnesses positive."""
+    model = claims.model
+    solution = "an equilibrium" if claims.describes_equilibria else "a solution"
     for n, cell in enumerate(claims.result.cells):
         where = ", ".join(f"{name}={text_of(cell.sample[name])}" for name in cell.sample.names)
-        if (name := _not_positive(claims.parameters_at(*cell.sample))) is not None:
+        if (name := _not_positive(model, claims.parameters_at(*cell.sample))) is not None:
             raise Violation(f"{name} is not positive at {where} in cell {n}")
-        index = claims.fibre_at(*cell.sample).morse_index()
-        if index is None:
-            raise Violation(f"an equilibrium is degenerate at {where} in cell {n}")
-        if index[0] - index[1] + index[2] != 0:
-            raise Violation(f"the Euler sum of {index} at {where} in cell {n} is not zero")
-        if (cell.index, cell.total, cell.stable) != (index, sum(index), index[0]):
-            raise Violation(
-                f"cell {n} is said to have {cell.total} equilibria, {cell.stable} stable, index "
-                f"{cell.index}; at {where} there are {sum(index)}, {index[0]} stable, index {index}"
-            )
+        fibre = claims.fibre_at(*cell.sample)
+        counts = fibre.counts()
+        if counts is None:
+            raise Violation(f"{solution} is degenerate at {where} in cell {n}")
+        if not model.reals and not fibre.point.inequalities and _euler_sum(fibre, counts) != 0:
+            raise Violation(f"the Euler sum of {_text(counts)} at {where} in cell {n} is not zero")
+        stored = Counts(cell.total or 0, cell.stable, cell.index)
+        if cell.total is None or stored != counts:
+            raise Violation(f"cell {n} is said to have {_text(stored)}; at {where} there are {_text(counts)}")
     return f"{len(claims.result.cells)} samples"
 
 
-def _not_positive(values: Mapping[str, Fraction]) -> str | None:
+def _euler_sum(fibre: Fibre, counts: Counts) -> int:
+    """The sum of the signs of the Jacobian's determinant, which is zero on a torus (Poincare and Hopf)."""
+    if counts.index is None:
+        return fibre.balance()
+    return sum(counts.index[::2]) - sum(counts.index[1::2])
+
+
+def _text(counts: Counts) -> str:
+    parts = [f"{counts.total} {'solutions' if counts.index is None else 'equilibria'}"]
+    if counts.stable is not None:
+        parts.append(f"{counts.stable} stable")
+    if counts.index is not None:
+        parts.append(f"index {counts.index}")
+    return ", ".join(parts)
+
+
+def _not_positive(model: Model, values: Mapping[str, Fraction]) -> str | None:
     """A length or stiffness that is not positive, or None."""
-    for name in POSITIVE:
+    for name in model.positive:
         if values[name] <= 0:
             return name
-    return next((name for name in NOT_NEGATIVE if values.get(name, 0) < 0), None)
+    return next((name for name in model.nonnegative if values.get(name, 0) < 0), None)

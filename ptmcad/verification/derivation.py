@@ -1,21 +1,23 @@
-"""The potential of a mechanism, derived here once more from its description: points, springs and loads.
+"""What solutions of a model satisfy, derived here once more from its description.
+
+That is the potential of a mechanism from its points, springs and loads, or what the record of a system lists.
 
 Guarantee: nothing is taken from what the engines derive; the description's trees are read here by a walk of its own, in
-whatever numbers or polynomials the caller has for parameters, cosines and sines. Springs have no free length, unless
-their lengths are asked for.
+whatever numbers or polynomials the caller has for parameters, real unknowns, cosines and sines. Springs have no free
+length, unless their lengths are asked for.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import fmpq
 
-from ptmcad.mechanism import Kind, Mechanism, ptm
+from ptmcad.mechanism import Kind, Mechanism, Model, System, ptm
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree
 
 MECHANISM = ptm()
@@ -29,9 +31,42 @@ SHORTHANDS = tuple(name for name in MECHANISM.shorthands if MECHANISM.kind(name)
 """That a slice may name beside what they stand for."""
 
 
+def parameters_of(model: Model) -> tuple[str, ...]:
+    """The parameters of a model's polynomials: no free lengths of springs, which would bring in roots."""
+    return model.without_free_lengths if isinstance(model, Mechanism) else model.variables
+
+
+def shorthands_of(model: Model) -> tuple[str, ...]:
+    """The parameters that a slice may name beside what they stand for."""
+    return tuple(name for name in model.shorthands if model.kind(name) is not Kind.FREE_LENGTH)
+
+
+def coordinates_of(model: Model) -> tuple[str, ...]:
+    """The coordinates of the unknowns, as the exact engine names them: those of the angles come first."""
+    return tuple(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin")) + model.reals
+
+
+class Formulas(NamedTuple):
+    """What solutions of a model satisfy.
+
+    Attributes
+    ----------
+    potential : whose critical points are meant; None where there are equations.
+    equations : each zero at a solution; none where there is a potential.
+    inequalities, stability : positive at a solution that counts, and at a stable one.
+    """
+
+    potential: Any | None
+    equations: tuple[Any, ...] = ()
+    inequalities: tuple[Any, ...] = ()
+    stability: tuple[Any, ...] = ()
+
+
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """Values of parameters, and cosine and sine of each angle, in numbers that can be added and multiplied together."""
+    """Values of parameters and real unknowns, and cosine and sine of each angle, in numbers that can be added and
+    multiplied together.
+    """
 
     parameters: Mapping[str, Any]
     circles: Mapping[str, tuple[Any, Any]]
@@ -70,9 +105,13 @@ class Configuration:
         if isinstance(argument, Name):
             return self.circles[argument.name]
         cosine, sine = fmpq(1), fmpq(0)
-        for angle, multiple in _multiples(argument, 1):
+        for angle, multiple in _multiples(argument).items():
+            if multiple.denominator != 1 or (multiple and not angle):
+                raise NotImplementedError("the checker knows sums of whole multiples of angles, such as 2*a - b, only")
+            if not angle:
+                continue
             c, s = self.circles[angle]
-            for _ in range(abs(multiple)):
+            for _ in range(abs(int(multiple))):
                 turned = s if multiple > 0 else -s
                 cosine, sine = cosine * c - sine * turned, sine * c + cosine * turned
         return cosine, sine
@@ -80,6 +119,20 @@ class Configuration:
     def points(self, mechanism: Mechanism = MECHANISM) -> dict[str, tuple[Any, Any]]:
         """The coordinates of all points."""
         return {name: (self.value(x), self.value(y)) for name, (x, y) in mechanism.points.items()}
+
+
+def formulas(configuration: Configuration, model: Model) -> Formulas:
+    """What solutions satisfy, in the configuration's numbers."""
+    if isinstance(model, Mechanism):
+        return Formulas(potential(configuration, model))
+    assert isinstance(model, System)
+    value = configuration.value
+    return Formulas(
+        None if model.potential is None else value(model.potential),
+        tuple(map(value, model.equations)),
+        tuple(map(value, model.inequalities)),
+        tuple(map(value, model.stability)),
+    )
 
 
 def potential(configuration: Configuration, mechanism: Mechanism = MECHANISM) -> Any:
@@ -101,21 +154,40 @@ def work(configuration: Configuration, points: Mapping[str, tuple[Any, Any]], me
     return energy
 
 
-def _multiples(tree: Tree, times: int) -> Iterator[tuple[str, int]]:
-    """The angles of a sum, each with its factor."""
+def _multiples(tree: Tree) -> dict[str, Fraction]:
+    """The angles of a sum, each with its factor; what is no multiple of an angle has the empty name."""
     match tree:
+        case Number(number):
+            return {"": number}
         case Name(name):
-            yield name, times
+            return {name: Fraction(1)}
         case Negative(operand):
-            yield from _multiples(operand, -times)
-        case Chain(first, steps) if tree.is_sum:
-            yield from _multiples(first, times)
+            return {name: -multiple for name, multiple in _multiples(operand).items()}
+        case Chain(first, steps):
+            total = _multiples(first)
             for step in steps:
-                yield from _multiples(step.operand, times if step.operator == "+" else -times)
-        case Chain(Number(number), (step,)) if step.operator == "*" and number.denominator == 1:
-            yield from _multiples(step.operand, times * int(number))
-        case _:
-            raise NotImplementedError("the checker knows sums of multiples of angles, such as 2*a - b, only")
+                total = _joined(total, step.operator, _multiples(step.operand))
+            return total
+        case Power(base, exponent):
+            return {"": _number(_multiples(base)) ** int(_number(_multiples(exponent)))}
+        case Call():
+            raise NotImplementedError("the checker knows no angle that is a cosine or sine")
+
+
+def _joined(left: dict[str, Fraction], operator: str, right: dict[str, Fraction]) -> dict[str, Fraction]:
+    if operator in "+-":
+        sign = 1 if operator == "+" else -1
+        return left | {name: left.get(name, Fraction(0)) + sign * multiple for name, multiple in right.items()}
+    if operator == "*" and left.keys() == {""}:
+        left, right = right, left
+    factor = _number(right) if operator == "*" else 1 / _number(right)
+    return {name: multiple * factor for name, multiple in left.items()}
+
+
+def _number(multiples: dict[str, Fraction]) -> Fraction:
+    if multiples.keys() != {""}:
+        raise NotImplementedError("the checker knows no products of angles")
+    return multiples[""]
 
 
 def rational(value: Fraction) -> fmpq:

@@ -1,11 +1,15 @@
-"""The equilibria over one rational point, by a route of its own: geometry, Groebner basis at the point, trace forms.
+"""The solutions over one rational point, by a route of its own: geometry, Groebner basis at the point, trace forms.
 
-Guarantee: exact. The potential is formed from the coordinates of the nodes, in rational numbers, by `derivation`, and
+Guarantee: exact. The equations are formed from the description, in rational numbers, by `derivation`, and are
 differentiated here; nothing is taken from `ptmcad.exact.models`, so a mistake there or here shows as a contradiction.
 
-The order is graded reverse lexicographic with s2 > c2 > s1 > c1, FLINT's own Buchberger algorithm runs at the point
-itself, and counts come from signatures of trace forms: another elimination than the one over Q(x, y) in
+The order is graded reverse lexicographic with the last unknown first, FLINT's own Buchberger algorithm runs at the
+point itself, and counts come from signatures of trace forms: another elimination than the one over Q(x, y) in
 `ptmcad.exact.variety` and another count than the root isolation in `ptmcad.exact.counting`.
+
+The number of negative eigenvalues of a Hessian is that of the changes of sign in the sequence of its leading principal
+minors (Jacobi), in a basis in which none of them vanishes; the sums of the signs of their products over the real
+solutions tell how many solutions have which signs (Tarski queries).
 """
 
 from __future__ import annotations
@@ -15,67 +19,129 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise, product
+from math import prod
+from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
-from ptmcad.verification.derivation import ANGLES, PARAMETERS, Configuration, potential, rational
+from ptmcad.mechanism import Model
+from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, parameters_of, rational
+from ptmcad.verification.inertia import bases, determinant, leading_minors, negative_eigenvalues
 
-_RATIONAL: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("s2", "c2", "s1", "c1"), Ordering.degrevlex)
-_INTEGER: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(("s2", "c2", "s1", "c1"), Ordering.degrevlex)
-_S2, _C2, _S1, _C1 = _RATIONAL.gens()
-
-Monomial = tuple[int, int, int, int]
+Monomial = tuple[int, ...]
+"""Exponents of the ring's variables: the coordinates of the unknowns, last to first."""
 
 
 class NotFinite(ArithmeticError):
     """The equations have infinitely many complex solutions at the point."""
 
 
-def _d(p: fmpq_mpoly, angle: int) -> fmpq_mpoly:
-    """The derivative with respect to the first or the second angle."""
-    c, s, names = (_C1, _S1, ("c1", "s1")) if angle == 1 else (_C2, _S2, ("c2", "s2"))
-    return c * p.derivative(names[1]) - s * p.derivative(names[0])
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """Numbers of the real solutions that count.
+
+    Attributes
+    ----------
+    stable : None where nothing says what a stable solution is.
+    index : numbers by the number of negative eigenvalues of the Hessian; None without a potential.
+    """
+
+    total: int
+    stable: int | None
+    index: tuple[int, ...] | None
+
+
+@dataclass(frozen=True)
+class PointEquations:
+    """The model's polynomials at one point.
+
+    Attributes
+    ----------
+    names : of the ring's variables.
+    equations : of a potential its gradient, by the unknowns in their order.
+    jacobian : their derivatives by the unknowns.
+    """
+
+    names: tuple[str, ...]
+    circles: tuple[fmpq_mpoly, ...]
+    equations: tuple[fmpq_mpoly, ...]
+    jacobian: tuple[tuple[fmpq_mpoly, ...], ...]
+    inequalities: tuple[fmpq_mpoly, ...]
+    stability: tuple[fmpq_mpoly, ...]
+    has_potential: bool
+
+    def generators(self) -> list[fmpq_mpoly]:
+        """Of the ideal of all solutions."""
+        return [*(e for e in self.equations if not e.is_zero()), *self.circles]
 
 
 @dataclass(frozen=True)
 class Fibre:
-    """The algebra Q[c1, s1, c2, s2]/(equilibrium equations) at one point.
+    """The algebra Q[coordinates of the unknowns]/(equations) at one point.
 
     Attributes
     ----------
-    basis : the standard monomials, exponents of (s2, c2, s1, c1).
-    tables : the matrix of multiplication by each of s2, c2, s1, c1; columns are images of the basis.
+    basis : the standard monomials.
+    tables : the matrix of multiplication by each variable; columns are images of the basis.
+    saturated : whether solutions at which an inequality's polynomial vanishes, which do not count, are left out; then
+        the first variable is the inverse of the inequalities' product.
     """
 
     basis: tuple[Monomial, ...]
     tables: tuple[fmpq_mat, ...]
-    hessian: tuple[fmpq_mpoly, fmpq_mpoly, fmpq_mpoly]
+    point: PointEquations
+    saturated: bool = False
 
     @property
     def dimension(self) -> int:
         """Number of complex solutions, with multiplicity."""
         return len(self.basis)
 
+    @property
+    def conditions(self) -> tuple[fmpq_mpoly, ...]:
+        """The inequalities' polynomials, then those of the conditions for stability."""
+        return (*self.point.inequalities, *self.point.stability)
+
     def matrix(self, p: fmpq_mpoly) -> fmpq_mat:
-        """The matrix of multiplication by p."""
+        """The matrix of multiplication by p, a polynomial in the coordinates."""
         total = fmpq_mat(self.dimension, self.dimension)
+        own = self.tables[len(self.tables) - len(self.point.names) :]
         for exponents, c in p.terms():
             term = _identity(self.dimension) * c
-            for table, e in zip(self.tables, exponents, strict=True):
+            for table, e in zip(own, exponents, strict=True):
                 for _ in range(int(e)):
                     term = term * table
             total = total + term
         return total
 
     @cached_property
+    def jacobian_entries(self) -> list[list[fmpq_mat]]:
+        """The Jacobian, whose entries act on the algebra; of a potential it is symmetric."""
+        n = range(len(self.point.jacobian))
+        if not self.point.has_potential:
+            return [[self.matrix(self.point.jacobian[i][j]) for j in n] for i in n]
+        upper = {(i, j): self.matrix(self.point.jacobian[i][j]) for i in n for j in n if i <= j}
+        return [[upper[min(i, j), max(i, j)] for j in n] for i in n]
+
+    @cached_property
     def jacobian(self) -> fmpq_mat:
-        """The matrix of multiplication by det H."""
-        h11, h12, h22 = self.hessian
-        return self.matrix(h11) * self.matrix(h22) - self.matrix(h12) * self.matrix(h12)
+        """The matrix of multiplication by the Jacobian's determinant."""
+        found: fmpq_mat = determinant(self.jacobian_entries)
+        return found
 
     def norm(self) -> fmpq:
-        """The product of det H over all complex solutions."""
+        """The product of the Jacobian's determinant over all complex solutions."""
         return fmpq(self.jacobian.det())
+
+    def minor_norm(self, order: int) -> fmpq:
+        """The product of the Jacobian's leading principal minor of an order over all complex solutions."""
+        return fmpq(determinant([row[:order] for row in self.jacobian_entries[:order]]).det())
+
+    def norm_where_nonzero(self, p: fmpq_mpoly) -> fmpq:
+        """The product of a polynomial over the complex solutions at which it is not zero."""
+        coefficients = [fmpq(c) for c in self.matrix(p).charpoly().coeffs()]
+        k = next(k for k, c in enumerate(coefficients) if c != 0)
+        return coefficients[k] * (-1 if (self.dimension - k) % 2 else 1)
 
     def signature(self, weight: fmpq_mat) -> tuple[int, int]:
         """Numbers of positive and negative squares of the trace form (f, g) -> trace(weight f g).
@@ -100,7 +166,8 @@ class Fibre:
     def determinant_of_traces(self, monomials: Sequence[Monomial]) -> fmpq:
         """The determinant of the matrix with entries trace(f g), for all f and g among the monomials."""
         powers = [self._monomial(m) for m in monomials]
-        return fmpq(fmpq_mat([[_trace_of_product(f, g) for g in powers] for f in powers]).det())
+        n = len(powers)
+        return fmpq(fmpq_mat(n, n, [_trace_of_product(f, g) for f in powers for g in powers]).det())
 
     def _monomial(self, m: Monomial) -> fmpq_mat:
         result = _identity(self.dimension)
@@ -109,97 +176,193 @@ class Fibre:
                 result = result * table
         return result
 
-    def morse_index(self) -> tuple[int, int, int] | None:
-        """Numbers of minima, saddles and maxima; None when some solution is degenerate."""
-        one = _identity(self.dimension)
-        h11, _, h22 = self.hessian
-        trace = self.matrix(h11) + self.matrix(h22)
-        positive, negative = self.signature(self.jacobian)
-        if positive + negative != self.dimension:
+    def counts(self) -> Counts | None:
+        """Numbers of the real solutions that count, by index and stability; None when some solution is degenerate."""
+        if self.norm() == 0:
             return None
-        total = _difference(self.signature(one))
-        balance = positive - negative
-        side = (_difference(self.signature(trace)) + _difference(self.signature(self.jacobian * trace))) // 2
-        definite = (total + balance) // 2
-        return ((definite + side) // 2, (total - balance) // 2, (definite - side) // 2)
+        required = [self.matrix(p) for p in self.point.inequalities]
+        if self.point.has_potential:
+            index = self._index(required)
+            return Counts(sum(index), index[0], index)
+        total = self._sum_of_signs(required, _identity(self.dimension))
+        if not self.point.stability:
+            return Counts(total, None, None)
+        wanted = [*required, *(self.matrix(p) for p in self.point.stability)]
+        return Counts(total, self._sum_of_signs(wanted, _identity(self.dimension)), None)
 
-    def form_traces(self, form: tuple[int, int, int, int]) -> list[fmpq]:
-        """Traces of the powers 1, 2, ..., dimension of a linear form in the unknowns."""
+    def number_of_zeros(self, p: fmpq_mpoly) -> int:
+        """Of the real solutions that count, the number of those at which a polynomial is zero."""
+        required, square = [self.matrix(q) for q in self.point.inequalities], self.matrix(p) * self.matrix(p)
+        one = _identity(self.dimension)
+        return self._sum_of_signs(required, one) - self._sum_of_signs(required, square)
+
+    def balance(self) -> int:
+        """The sum of the signs of the Jacobian's determinant over all real solutions."""
+        positive, negative = self.signature(self.jacobian)
+        return positive - negative
+
+    def _sum_of_signs(self, positive: Sequence[fmpq_mat], weight: fmpq_mat) -> int:
+        """The sum of the weight's signs over the real solutions at which all of some functions are positive.
+
+        For the number 1 where a function is positive, and 0 elsewhere, stands half the sum of the signs of the function
+        and of its square.
+        """
+        total = 0
+        for exponents in product((1, 2), repeat=len(positive)):
+            factor = weight
+            for function, e in zip(positive, exponents, strict=True):
+                for _ in range(e):
+                    factor = factor * function
+            plus, minus = self.signature(factor)
+            total += plus - minus
+        return total >> len(positive)
+
+    def _index(self, required: Sequence[fmpq_mat]) -> tuple[int, ...]:
+        """Numbers of the critical points that count by the number of negative eigenvalues, where none is zero."""
+        minors = self._minors()
+        n = len(minors)
+        sums: dict[tuple[int, ...], int] = {}
+        for chosen in product((0, 1), repeat=n):
+            weight = _identity(self.dimension)
+            for minor, c in zip(minors, chosen, strict=True):
+                weight = weight * minor if c else weight
+            sums[chosen] = self._sum_of_signs(required, weight)
+        index = [0] * (n + 1)
+        for signs in product((1, -1), repeat=n):
+            number = sum(
+                value * prod(s for s, c in zip(signs, chosen, strict=True) if c) for chosen, value in sums.items()
+            )
+            index[negative_eigenvalues(signs)] += number >> n
+        return tuple(index)
+
+    def _minors(self) -> list[fmpq_mat]:
+        """The Hessian's leading principal minors in a basis in which they vanish at no solution."""
+        entries = self.jacobian_entries
+        for basis in bases(len(entries)):
+            minors = leading_minors(entries, basis, len(entries) - 1)
+            if all(m.det() != 0 for m in minors):
+                return [*minors, self.jacobian]
+        raise AssertionError("a regular form has minors that are not zero in almost every basis")
+
+    def form_traces(self, form: Sequence[int]) -> list[fmpq]:
+        """Traces of the powers 1, 2, ..., dimension of a linear form in the coordinates."""
         matrix = fmpq_mat(self.dimension, self.dimension)
-        for c, table in zip(form, self.tables, strict=True):
+        for c, table in zip(form, self.tables[len(self.tables) - len(form) :], strict=True):
             matrix = matrix + table * fmpq(c)
-        power, traces = matrix, []
-        for _ in range(self.dimension):
-            traces.append(sum((power[i, i] for i in range(self.dimension)), fmpq(0)))
-            power = power * matrix
+        # Newton's identities: powers of the matrix would have entries of many more digits than their traces
+        coefficients = [fmpq(c) for c in reversed(matrix.charpoly().coeffs())]
+        traces: list[fmpq] = []
+        for k in range(1, self.dimension + 1):
+            total = coefficients[k] * k
+            for i in range(1, k):
+                total += coefficients[i] * traces[k - i - 1]
+            traces.append(-total)
         return traces
 
 
-def fibre(values: Mapping[str, Fraction]) -> Fibre:
+def fibre(model: Model, values: Mapping[str, Fraction]) -> Fibre:
     """The fibre over rational values of the parameters.
 
-    Raises
-    ------
-    NotFinite
-        When there are infinitely many complex solutions.
-    """
-    energy = _potential(values)
-    e1, e2 = _d(energy, 1), _d(energy, 2)
-    basis, tables = _algebra(_equations(e1, e2))
-    return Fibre(basis, tables, (_d(e1, 1), _d(e1, 2), _d(e2, 2)))
-
-
-def _potential(values: Mapping[str, Fraction]) -> fmpq_mpoly:
-    circles = dict(zip(ANGLES, ((_C1, _S1), (_C2, _S2)), strict=True))
-    energy: fmpq_mpoly = potential(Configuration({name: rational(values[name]) for name in PARAMETERS}, circles))
-    return energy
-
-
-def _equations(e1: fmpq_mpoly, e2: fmpq_mpoly) -> list[fmpq_mpoly]:
-    """The entries of the gradient that are not zero, and the circles."""
-    return [*(e for e in (e1, e2) if not e.is_zero()), _C1 * _C1 + _S1 * _S1 - 1, _C2 * _C2 + _S2 * _S2 - 1]
-
-
-def standard_monomials(values: Mapping[str, Fraction]) -> tuple[Monomial, ...]:
-    """The monomials, exponents of (s2, c2, s1, c1), that are standard in the order with c1 > s1 > c2 > s2.
-
-    It is graded reverse lexicographic, as the one in which `fibre` computes is, which has the unknowns the other way
-    round.
+    Where some solution is degenerate, or an inequality's polynomial vanishes at one, it is that of the solutions at
+    which no inequality's polynomial does.
 
     Raises
     ------
     NotFinite
         When there are infinitely many complex solutions.
     """
-    energy = _potential(values)
-    turned = [
-        _RATIONAL.from_dict({tuple(reversed(_monomial(m))): fmpq(c) for m, c in e.terms()})
-        for e in _equations(_d(energy, 1), _d(energy, 2))
-    ]
-    basis, _ = _algebra(turned)
-    return tuple((a, b, c, d) for d, c, b, a in basis)
+    point = equations_at(model, values)
+    if not point.inequalities:
+        return Fibre(*_algebra(point.generators(), point.names), point)
+    try:
+        found = Fibre(*_algebra(point.generators(), point.names), point)
+        if found.norm() != 0 and all(found.matrix(p).det() != 0 for p in point.inequalities):
+            return found
+    except NotFinite:
+        pass
+    return Fibre(*_algebra(*_saturated(point)), point, saturated=True)
 
 
-def _algebra(equations: list[fmpq_mpoly]) -> tuple[tuple[Monomial, ...], tuple[fmpq_mat, ...]]:
-    integral = []
-    for e in equations:
-        scale = 1
-        for c in e.coeffs():
-            scale = scale * int(c.q)
-        integral.append(_INTEGER.from_dict({m: int((c * scale).p) for m, c in e.to_dict().items()}))
-    vector = fmpz_mpoly_vec([p.primitive()[1] for p in integral], _INTEGER)
-    rules: dict[Monomial, dict[Monomial, fmpq]] = {}
-    for p in vector.buchberger_naive().autoreduction():
-        terms = [(_monomial(m), fmpq(c)) for m, c in p.terms()]
-        (lead, c), tail = terms[0], terms[1:]
-        rules[lead] = {m: -d / c for m, d in tail}
-    if not all(any(sum(lead) == lead[k] for lead in rules) for k in range(4)):
+def equations_at(model: Model, values: Mapping[str, Fraction]) -> PointEquations:
+    """The model's polynomials at rational values of the parameters."""
+    names = tuple(reversed(coordinates_of(model)))
+    ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(names, Ordering.degrevlex)
+    variables = {name: ring.gen(k) for k, name in enumerate(names)}
+    numbers = {name: rational(values[name]) for name in parameters_of(model)}
+    circles = {a: (variables[f"cos_{a}"], variables[f"sin_{a}"]) for a in model.angles}
+    reals = {name: variables[name] for name in model.reals}
+    given = formulas(Configuration(numbers | reals, circles), model)
+
+    def by(p: fmpq_mpoly) -> list[fmpq_mpoly]:
+        """The derivatives by the unknowns."""
+        turns = [c * p.derivative(f"sin_{a}") - s * p.derivative(f"cos_{a}") for a, (c, s) in circles.items()]
+        return turns + [p.derivative(name) for name in reals]
+
+    def polynomial(value: Any) -> fmpq_mpoly:
+        p: fmpq_mpoly = ring.constant(0) + value
+        return p
+
+    if given.potential is not None:
+        equations = tuple(by(polynomial(given.potential)))
+    else:
+        equations = tuple(map(polynomial, given.equations))
+    return PointEquations(
+        names,
+        tuple(c * c + s * s - 1 for c, s in circles.values()),
+        equations,
+        tuple(tuple(by(e)) for e in equations),
+        tuple(map(polynomial, given.inequalities)),
+        tuple(map(polynomial, given.stability)),
+        given.potential is not None,
+    )
+
+
+def _saturated(point: PointEquations) -> tuple[list[fmpq_mpoly], tuple[str, ...]]:
+    """Generators of the ideal of the solutions at which no inequality's polynomial vanishes.
+
+    The inverse of their product is one more variable, the first one.
+    """
+    names = ("", *point.names)
+    ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(names, Ordering.degrevlex)
+
+    def lifted(p: fmpq_mpoly) -> fmpq_mpoly:
+        return ring.from_dict({(0, *m): c for m, c in p.to_dict().items()})
+
+    inverse = ring.gen(0)
+    for p in point.inequalities:
+        inverse = inverse * lifted(p)
+    return [*map(lifted, point.generators()), inverse - 1], names
+
+
+def standard_monomials(model: Model, values: Mapping[str, Fraction]) -> tuple[Monomial, ...]:
+    """The monomials that are standard in the order with the first coordinate before the others.
+
+    It is graded reverse lexicographic, as the one in which `fibre` computes is, which has the coordinates the other way
+    round. Solutions at which an inequality's polynomial vanishes are not left out.
+
+    Raises
+    ------
+    NotFinite
+        When there are infinitely many complex solutions.
+    """
+    point = equations_at(model, values)
+    ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(point.names, Ordering.degrevlex)
+    turned = [ring.from_dict({tuple(reversed(m)): fmpq(c) for m, c in p.to_dict().items()}) for p in point.generators()]
+    basis, _ = _algebra(turned, point.names)
+    return tuple(tuple(reversed(m)) for m in basis)
+
+
+def _algebra(equations: list[fmpq_mpoly], names: tuple[str, ...]) -> tuple[tuple[Monomial, ...], tuple[fmpq_mat, ...]]:
+    """The standard monomials, and the matrix of multiplication by each variable."""
+    rules = _reduced_basis(equations, names)
+    width = range(len(names))
+    if not all(any(sum(lead) == lead[k] for lead in rules) for k in width):
         raise NotFinite
-    bounds = [next(lead[k] for lead in rules if sum(lead) == lead[k]) if (0, 0, 0, 0) not in rules else 0
-              for k in range(4)]  # fmt: skip
+    bounds = [next(lead[k] for lead in rules if sum(lead) == lead[k]) if (0,) * len(names) not in rules else 0
+              for k in width]  # fmt: skip
     basis = tuple(
         sorted(
-            (_monomial(m) for m in product(*map(range, bounds)) if not any(_divides(lead, m) for lead in rules)),
+            (m for m in product(*map(range, bounds)) if not any(_divides(lead, m) for lead in rules)),
             key=lambda m: (sum(m), m),
         )
     )
@@ -223,33 +386,42 @@ def _algebra(equations: list[fmpq_mpoly]) -> tuple[tuple[Monomial, ...], tuple[f
         return row
 
     tables = []
-    for k in range(4):
-        columns = [normal(_monomial(e + (i == k) for i, e in enumerate(m))) for m in basis]
-        tables.append(fmpq_mat([[column[i] for column in columns] for i in range(len(basis))]))
+    for k in width:
+        columns = [normal(tuple(e + (i == k) for i, e in enumerate(m))) for m in basis]
+        tables.append(fmpq_mat(len(basis), len(basis), [column[i] for i in range(len(basis)) for column in columns]))
     return basis, tuple(tables)
 
 
-def _monomial(exponents: object) -> Monomial:
-    a, b, c, d = (int(e) for e in exponents)  # type: ignore[attr-defined]
-    return (a, b, c, d)
+def _reduced_basis(equations: list[fmpq_mpoly], names: tuple[str, ...]) -> dict[Monomial, dict[Monomial, fmpq]]:
+    """A Groebner basis as rules: leading monomial -> what it is modulo the ideal."""
+    ring: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(names, Ordering.degrevlex)
+    integral = []
+    for e in equations:
+        scale = 1
+        for c in e.coeffs():
+            scale = scale * int(c.q)
+        integral.append(ring.from_dict({m: int((c * scale).p) for m, c in e.to_dict().items()}))
+    vector = fmpz_mpoly_vec([p.primitive()[1] for p in integral], ring)
+    rules: dict[Monomial, dict[Monomial, fmpq]] = {}
+    for p in vector.buchberger_naive().autoreduction():
+        terms = [(tuple(int(e) for e in m), fmpq(c)) for m, c in p.terms()]
+        (lead, c), tail = terms[0], terms[1:]
+        rules[lead] = {m: -d / c for m, d in tail}
+    return rules
 
 
-def _divides(a: Monomial, b: tuple[int, ...]) -> bool:
+def _divides(a: Monomial, b: Monomial) -> bool:
     return all(x <= y for x, y in zip(a, b, strict=True))
 
 
 def _times(tail: Monomial, m: Monomial, lead: Monomial) -> Monomial:
-    return _monomial(t + x - y for t, x, y in zip(tail, m, lead, strict=True))
+    return tuple(t + x - y for t, x, y in zip(tail, m, lead, strict=True))
 
 
 def _identity(n: int) -> fmpq_mat:
-    return fmpq_mat([[fmpq(int(i == j)) for j in range(n)] for i in range(n)])
+    return fmpq_mat(n, n, [fmpq(int(i == j)) for i in range(n) for j in range(n)])
 
 
 def _trace_of_product(a: fmpq_mat, b: fmpq_mat) -> fmpq:
     n = a.nrows()
     return sum((a[i, k] * b[k, i] for i in range(n) for k in range(n)), fmpq(0))
-
-
-def _difference(pair: tuple[int, int]) -> int:
-    return pair[0] - pair[1]

@@ -1,7 +1,7 @@
-"""Values in balls with their first and second derivatives by the angles.
+"""Values in balls with their first and second derivatives by the unknowns.
 
 Guarantee: each ball of a result contains what follows from any numbers in the operands' balls; what does not depend on
-an angle has no entry for it, so that nothing is spent on zeros.
+an unknown has no entry for it, so that nothing is spent on zeros.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ Ball = arb | fmpq | int
 
 
 class Jet:
-    """A function of angles at a place.
+    """A function of the unknowns at a place.
 
     Attributes
     ----------
-    slopes : first derivatives, by the number of the angle.
+    slopes : first derivatives, by the number of the unknown.
     bends : second derivatives, by two numbers, the smaller first.
     """
 
@@ -66,6 +66,16 @@ def circle(number: int, cosine: arb, sine: arb) -> tuple[Jet, Jet]:
     """Cosine and sine of the angle of this number."""
     twice = (number, number)
     return Jet(cosine, {number: -sine}, {twice: -cosine}), Jet(sine, {number: cosine}, {twice: -sine})
+
+
+def line(number: int, value: arb) -> Jet:
+    """The real unknown of this number."""
+    return Jet(value, {number: arb(1)}, {})
+
+
+def jet_of(value: Jet | Ball) -> Jet:
+    """What no unknown is in, as a function of the unknowns."""
+    return value if isinstance(value, Jet) else Jet(arb(value), {}, {})
 
 
 _Key = TypeVar("_Key", int, tuple[int, int])

@@ -10,10 +10,11 @@ from collections import defaultdict, deque
 from itertools import pairwise
 
 from ptmcad.answer.regionmap import Cell, Merge, Status
+from ptmcad.mechanism import System
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import approximate_text
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import MECHANISM, PARAMETERS, SHORTHANDS
+from ptmcad.verification.derivation import parameters_of, shorthands_of
 from ptmcad.verification.report import Violation
 
 
@@ -25,10 +26,17 @@ def check_shape(claims: Claims) -> str:
     if r.undetermined != (0 if r.stacks else 1):
         raise Violation(f"{approximate_text(r.undetermined)} of the window is said to be undetermined, but "
                         f"{'all cells' if r.stacks else 'no cells'} are stored")  # fmt: skip
-    if r.slice.mechanism != MECHANISM.name or set(r.slice.parameters) - set(SHORTHANDS) != set(PARAMETERS):
+    model = r.slice.model
+    named = set(r.slice.parameters) - set(shorthands_of(model))
+    if not model.unknowns or named != set(parameters_of(model)):
         raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
     if r.slice.count not in _KEYS:
         raise Violation(f"an exact map has no {r.slice.count.value} counts by which its regions could be distinguished")
+    without_index = isinstance(model, System) and model.potential is None
+    if r.slice.count is (Count.INDEX if without_index else None) or (
+        r.slice.count is Count.STABLE and not model.tells_stability
+    ):
+        raise Violation(f"{model.name} has no {r.slice.count.value} counts by which regions could be distinguished")
     if any(a.low >= a.high for a in r.slice.axes) or r.base not in (0, 1):
         raise Violation("the window is empty")
     if any(c.admissible is not None for c in r.cells) or any(g.admissible is not None for g in r.regions):
@@ -78,6 +86,11 @@ _KEYS = {Count.STABLE: "stable", Count.TOTAL: "total", Count.INDEX: "index"}
 """The counts by which regions of an exact map are distinguished."""
 
 
+def _counts(cell: Cell) -> object:
+    """All that is counted, in few words."""
+    return (cell.total, cell.stable) if cell.index is None else cell.index
+
+
 def _key(cell: Cell, count: Count) -> object:
     return getattr(cell, _KEYS[count])
 
@@ -91,9 +104,9 @@ def check_merges(claims: Claims) -> str:
         equal = _key(first, r.slice.count) == _key(second, r.slice.count)
         if a.component is None:
             kind = Merge.PROVEN
-            if first.index != second.index:
+            if (one := _counts(first)) != (other := _counts(second)):
                 raise Violation(f"adjacency {k} crosses no component, but cells {a.first} and {a.second} have "
-                                f"different counts {first.index} and {second.index}")  # fmt: skip
+                                f"different counts {one} and {other}")  # fmt: skip
         else:
             kind = Merge.EQUAL_COUNT if equal else Merge.SEPARATED
         if kind is Merge.SEPARATED:

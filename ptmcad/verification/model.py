@@ -1,70 +1,122 @@
-"""The mechanism's equations, derived here once more, against the text of those that were solved.
+"""The model's equations, derived here once more, against the text of those that were solved.
 
-Guarantee: potential, gradient and Hessian in the result equal, on the torus cos^2 + sin^2 = 1 of each angle, those that
-follow from the coordinates of the nodes; as polynomials in all parameters, so for every slice at once.
+Guarantee: potential, equations, Jacobian and conditions in the result equal, on the circle cos^2 + sin^2 = 1 of each
+angle, those that follow from the description; as polynomials in all parameters, so for every slice at once. Springs of
+an exact map have no free length.
 """
 
 from __future__ import annotations
 
 import re
-from functools import cache
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
 
 from ptmcad.answer.regionmap import System
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.text.numerals import fraction_of
 from ptmcad.verification.claims import PLANE, Claims
-from ptmcad.verification.derivation import ANGLES, PARAMETERS, UNKNOWNS, Configuration, potential
+from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, parameters_of
 from ptmcad.verification.report import Violation
 
-_RING: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get((*UNKNOWNS, *PARAMETERS), Ordering.lex)
-_NAMES = (*UNKNOWNS, *PARAMETERS)
-_FACTOR = r"(?:[0-9]{1,40}(?:/[1-9][0-9]{0,39})?|[A-Za-z][A-Za-z_0-9]{0,40}(?:\^[0-9]{1,2})?)"
+_FACTOR = r"(?:[0-9]{1,40}(?:/[1-9][0-9]{0,39})?|[A-Za-z][A-Za-z_0-9]{0,44}(?:\^[0-9]{1,2})?)"
 _SUM = re.compile(rf"-?{_FACTOR}(?:\*{_FACTOR})*(?: [+-] {_FACTOR}(?:\*{_FACTOR})*)*", re.ASCII)
 
-
-def _variable(name: str) -> fmpq_mpoly:
-    return _RING.gen(_NAMES.index(name))
-
-
-def _on_torus(p: fmpq_mpoly) -> fmpq_mpoly:
-    """The normal form modulo the circles: at most the first power of each cosine."""
-    for relation in _relations():
-        p = divmod(p, relation)[1]
-    return p
+_Ratio = tuple[fmpq_mpoly, fmpq_mpoly]
+"""Numerator and denominator."""
 
 
-@cache
-def _relations() -> tuple[fmpq_mpoly, ...]:
-    return tuple(c * c + s * s - 1 for c, s in _circles().values())
+@dataclass(frozen=True, slots=True)
+class _Ring:
+    """The polynomials over Q in the coordinates of a model's unknowns and in its parameters."""
+
+    model: Model
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return (*coordinates_of(self.model), *parameters_of(self.model))
+
+    @property
+    def context(self) -> fmpq_mpoly_ctx:
+        return fmpq_mpoly_ctx.get(self.names, Ordering.lex)
+
+    def variable(self, name: str) -> fmpq_mpoly:
+        return self.context.gen(self.names.index(name))
+
+    def circles(self) -> dict[str, tuple[fmpq_mpoly, fmpq_mpoly]]:
+        return {a: (self.variable(f"cos_{a}"), self.variable(f"sin_{a}")) for a in self.model.angles}
+
+    def relations(self) -> tuple[fmpq_mpoly, ...]:
+        return tuple(c * c + s * s - 1 for c, s in self.circles().values())
+
+    def normal(self, p: fmpq_mpoly) -> fmpq_mpoly:
+        """The normal form modulo the circles: at most the first power of each cosine."""
+        for relation in self.relations():
+            p = divmod(p, relation)[1]
+        return p
+
+    def by(self, p: fmpq_mpoly, unknown: str) -> fmpq_mpoly:
+        """The derivative by an unknown."""
+        if unknown in self.model.reals:
+            return p.derivative(unknown)
+        c, s = self.circles()[unknown]
+        return c * p.derivative(f"sin_{unknown}") - s * p.derivative(f"cos_{unknown}")
+
+    def configuration(self) -> Configuration:
+        known = (*parameters_of(self.model), *self.model.reals)
+        return Configuration({name: self.variable(name) for name in known}, self.circles())
 
 
-def _circles() -> dict[str, tuple[fmpq_mpoly, fmpq_mpoly]]:
-    return {angle: (_variable(f"cos_{angle}"), _variable(f"sin_{angle}")) for angle in ANGLES}
+@dataclass(frozen=True, slots=True)
+class _Polynomials:
+    """What solutions of a model satisfy, as polynomials in the coordinates of the unknowns and in the parameters.
+
+    Attributes
+    ----------
+    equations : of a potential its gradient.
+    jacobian : their derivatives by the unknowns, the angles first.
+    """
+
+    ring: _Ring
+    potential: fmpq_mpoly | None
+    equations: tuple[fmpq_mpoly, ...]
+    jacobian: tuple[tuple[fmpq_mpoly, ...], ...]
+    inequalities: tuple[fmpq_mpoly, ...]
+    stability: tuple[fmpq_mpoly, ...]
 
 
-@cache
-def _potential() -> fmpq_mpoly:
-    energy: fmpq_mpoly = potential(Configuration({name: _variable(name) for name in PARAMETERS}, _circles()))
-    return energy
+@lru_cache(maxsize=8)
+def _polynomials(model: Model) -> _Polynomials:
+    ring = _Ring(model)
+    given = formulas(ring.configuration(), model)
+    unknowns = model.angles + model.reals
+
+    def elements(values: Sequence[Any]) -> tuple[fmpq_mpoly, ...]:
+        return tuple(ring.context.constant(0) + value for value in values)
+
+    potential = None if given.potential is None else elements([given.potential])[0]
+    equations = elements(given.equations) if potential is None else tuple(ring.by(potential, u) for u in unknowns)
+    jacobian = tuple(tuple(ring.by(e, u) for u in unknowns) for e in equations)
+    return _Polynomials(ring, potential, equations, jacobian, elements(given.inequalities), elements(given.stability))
 
 
-def _by_angle(p: fmpq_mpoly, angle: int) -> fmpq_mpoly:
-    c, s = UNKNOWNS[2 * angle], UNKNOWNS[2 * angle + 1]
-    return _variable(c) * p.derivative(s) - _variable(s) * p.derivative(c)
-
-
-def _parsed(text: str, what: str) -> fmpq_mpoly:
+def _parsed(ring: _Ring, text: str, what: str) -> fmpq_mpoly:
     """A sum of monomials such as ``-1/2*L1^2*k3 + rho*cos_th1``."""
-    total = _RING.constant(0)
+    names = {name: ring.variable(name) for name in ring.names}
+    total = ring.context.constant(0)
     if len(text) > 100_000 or _SUM.fullmatch(text) is None:
         raise Violation(f"the {what} is not a sum of monomials: {text[:60]}")
+    if text == "0":
+        return total
     for sign, body in re.findall(r"(^-?|[+-]) ?([^ ]+)", text):
-        term = _RING.constant(-1 if sign == "-" else 1)
+        term = ring.context.constant(-1 if sign == "-" else 1)
         for factor in body.split("*"):
             name, _, exponent = factor.partition("^")
-            if name in _NAMES:
-                term *= _variable(name) ** int(exponent or 1)
+            if name in names:
+                term *= names[name] ** int(exponent or 1)
             elif name[0].isdigit() and not exponent:
                 if (value := fraction_of(name)) == 0:
                     raise Violation(f"the {what} has a zero coefficient")
@@ -76,54 +128,108 @@ def _parsed(text: str, what: str) -> fmpq_mpoly:
 
 
 def check_system(claims: Claims) -> str:
-    """The stored equations are those of the mechanism."""
-    system: System = claims.result.system
-    if system.unknowns != UNKNOWNS:
-        raise Violation(f"the unknowns are {system.unknowns}, not {UNKNOWNS}")
-    if (len(system.relations), len(system.gradient), [len(row) for row in system.hessian]) != (2, 2, [2, 2]):
-        raise Violation("two angles have two relations, two equations and a 2 x 2 Hessian")
-    for k, (text, relation) in enumerate(zip(system.relations, _relations(), strict=True)):
-        if _parsed(text, f"relation {k}") != relation:
+    """The stored equations are those of the mechanism or system."""
+    model, system = claims.model, claims.result.system
+    unknowns = coordinates_of(model)
+    if system.unknowns != unknowns:
+        raise Violation(f"the unknowns are {system.unknowns}, not {unknowns}")
+    if len(set(unknowns) | set(parameters_of(model))) != len(unknowns) + len(parameters_of(model)):
+        raise Violation("a parameter has the name of a coordinate, so that no text can be understood")
+    true = _polynomials(model)
+    _check_sizes(system, true)
+    for k, (text, relation) in enumerate(zip(system.relations, true.ring.relations(), strict=True)):
+        if _parsed(true.ring, text, f"relation {k}") != relation:
             raise Violation(f"relation {k} is {relation}, not {text[:60]}")
-    energy = _potential()
-    expected = [("potential", system.potential, energy)]
-    for i in (0, 1):
-        first = _by_angle(energy, i)
-        expected.append((f"gradient's entry {i}", system.gradient[i], first))
-        expected += [(f"Hessian's entry {i},{j}", system.hessian[i][j], _by_angle(first, j)) for j in (0, 1)]
-    for what, text, true in expected:
-        difference = _on_torus(_parsed(text, what) - true)
+    number = 0
+    for what, text, expected in _pairs(system, true):
+        difference = true.ring.normal(_parsed(true.ring, text, what) - expected)
         if not difference.is_zero():
             raise Violation(f"the stored {what} differs from the mechanism's by {str(difference)[:80]}")
-    return f"{len(expected)} polynomials in {len(UNKNOWNS)} unknowns and {len(PARAMETERS)} parameters"
+        number += 1
+    _check_free_lengths(claims, true.ring)
+    return f"{number} polynomials in {len(unknowns)} unknowns and {len(parameters_of(model))} parameters"
+
+
+def _check_sizes(system: System, true: _Polynomials) -> None:
+    n = len(true.equations)
+    if (len(system.gradient), [len(row) for row in system.hessian]) != (n, [n] * n):
+        raise Violation(f"{n} unknowns have {n} equations and a {n} x {n} matrix of derivatives")
+    for what, stored, expected in (
+        ("relations", system.relations, true.ring.relations()),
+        ("inequalities", system.inequalities, true.inequalities),
+        ("conditions for stability", system.stability, true.stability),
+    ):
+        if len(stored) != len(expected):
+            raise Violation(f"there are {len(expected)} {what}, not {len(stored)}")
+    if true.potential is None and system.potential:
+        raise Violation("equations are given, so there is no potential")
+
+
+def _pairs(system: System, true: _Polynomials) -> Iterator[tuple[str, str, fmpq_mpoly]]:
+    """Each stored polynomial: what it is, its text, and what is true."""
+    first, second = "equation {}", "Jacobian's entry {},{}"
+    if true.potential is not None:
+        first, second = "gradient's entry {}", "Hessian's entry {},{}"
+        yield "potential", system.potential, true.potential
+    for i, (text, row, equation) in enumerate(zip(system.gradient, system.hessian, true.equations, strict=True)):
+        yield first.format(i), text, equation
+        for j, entry in enumerate(row):
+            yield second.format(i, j), entry, true.jacobian[i][j]
+    for k, (text, p) in enumerate(zip(system.inequalities, true.inequalities, strict=True)):
+        yield f"inequality {k}", text, p
+    for k, (text, p) in enumerate(zip(system.stability, true.stability, strict=True)):
+        yield f"condition {k} for stability", text, p
+
+
+def _check_free_lengths(claims: Claims, ring: _Ring) -> None:
+    """No spring has a free length on the slice; of one that is no parameter there it is zero."""
+    if not isinstance(claims.model, Mechanism):
+        return
+    known = ring.configuration()
+    zero = {name: ring.context.constant(0) for name in claims.model.free_lengths}
+    within = Configuration({**known.parameters, **zero}, {})
+    for spring in claims.model.springs:
+        free = ring.context.constant(0) + within.value(spring.free)
+        if any(not numerator.is_zero() for numerator, _ in _on_slice(claims, ring, free).values()):
+            raise Violation(f"the spring {spring.name} has a free length, so that the map is of another mechanism")
 
 
 def equation_factors(claims: Claims) -> list[fmpz_mpoly]:
-    """For each entry of the gradient on the slice, the common factor of its coefficients in Z[x, y]."""
-    parameters = claims.result.slice.parameters
-    plane: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("u", "v"), Ordering.lex)
-
-    def polynomial(terms: object) -> fmpq_mpoly:
-        return plane.from_dict({(i, j): fmpq(c.numerator, c.denominator) for i, j, c in terms})  # type: ignore[attr-defined]
-
-    values = {n: (polynomial(parameters[n].numerator), polynomial(parameters[n].denominator)) for n in PARAMETERS}
+    """For each equation on the slice, the common factor of its coefficients in Z[x, y]."""
+    true = _polynomials(claims.model)
     found = []
-    for angle in (0, 1):
-        sums: dict[tuple[int, ...], tuple[fmpq_mpoly, fmpq_mpoly]] = {}
-        for exponents, c in _on_torus(_by_angle(_potential(), angle)).to_dict().items():
-            powers = [int(e) for e in exponents]
-            numerator, denominator = plane.constant(c), plane.constant(1)
-            for name, e in zip(PARAMETERS, powers[len(UNKNOWNS) :], strict=True):
-                numerator, denominator = numerator * values[name][0] ** e, denominator * values[name][1] ** e
-            unknown = tuple(powers[: len(UNKNOWNS)])
-            a, b = sums.get(unknown, (plane.constant(0), plane.constant(1)))
-            sums[unknown] = (a * denominator + numerator * b, b * denominator)
-        common = plane.constant(0)
-        for a, b in sums.values():
+    for equation in true.equations:
+        common = _PLANE.constant(0)
+        for a, b in _on_slice(claims, true.ring, true.ring.normal(equation)).values():
             if not a.is_zero():
                 common = common.gcd(a / a.gcd(b))
         found.append(PLANE.from_dict({m: int(c) for m, c in _integral(common).items()}))
     return found
+
+
+_PLANE: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("u", "v"), Ordering.lex)
+
+
+def _on_slice(claims: Claims, ring: _Ring, p: fmpq_mpoly) -> dict[tuple[int, ...], _Ratio]:
+    """The coefficients, functions of the axes, of a polynomial in the coordinates."""
+    expressions = claims.result.slice.parameters
+
+    def polynomial(terms: object) -> fmpq_mpoly:
+        return _PLANE.from_dict({(i, j): fmpq(c.numerator, c.denominator) for i, j, c in terms})  # type: ignore[attr-defined]
+
+    names = parameters_of(ring.model)
+    values = [(polynomial(expressions[n].numerator), polynomial(expressions[n].denominator)) for n in names]
+    width = len(coordinates_of(ring.model))
+    sums: dict[tuple[int, ...], _Ratio] = {}
+    for exponents, c in p.to_dict().items():
+        powers = [int(e) for e in exponents]
+        numerator, denominator = _PLANE.constant(c), _PLANE.constant(1)
+        for value, e in zip(values, powers[width:], strict=True):
+            numerator, denominator = numerator * value[0] ** e, denominator * value[1] ** e
+        unknown = tuple(powers[:width])
+        a, b = sums.get(unknown, (_PLANE.constant(0), _PLANE.constant(1)))
+        sums[unknown] = (a * denominator + numerator * b, b * denominator)
+    return sums
 
 
 def _integral(p: fmpq_mpoly) -> dict[tuple[int, int], int]:

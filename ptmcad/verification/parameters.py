@@ -1,7 +1,8 @@
 """Checks of the parameters: as they were written, and the curves that bound the domain of the slice.
 
 Guarantee: BOUNDARY components are exactly the irreducible factors of the parameters' denominators, of lengths and
-stiffnesses that vary, and of what is common to all coefficients of an equation.
+stiffnesses that vary, of what is common to all coefficients of an equation, and, as far as they are not critical, of
+the norms of conditions (these up to the probability of `ptmcad.verification.variety`).
 """
 
 from __future__ import annotations
@@ -12,39 +13,41 @@ from math import lcm
 
 from ptmcad.answer.regionmap import Kind
 from ptmcad.errors import ExpressionError
+from ptmcad.mechanism import Model
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.text.parsing import names_in, parse
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import PLANE, Claims
-from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, PARAMETERS, POSITIVE
 from ptmcad.verification.model import equation_factors
 from ptmcad.verification.report import Violation
-from ptmcad.verification.variety import factors
+from ptmcad.verification.variety import BITS, check_identity, condition_exponents, factors, random_points
 
-_BOUNDING = tuple(name for name in PARAMETERS if name in (*POSITIVE, *NOT_NEGATIVE))
-"""Lengths and stiffnesses: where one vanishes, the slice ends."""
-AUXILIARY = (*MECHANISM.shorthands, *MECHANISM.free_lengths)
-"""Names that may be kept as texts alone, because other texts name them: shorthands, which are no parameters of the
-mechanism, and free lengths that are zero."""
+
+def auxiliary(model: Model) -> tuple[str, ...]:
+    """Names that may be kept as texts alone, because other texts name them.
+
+    They are shorthands, which are no parameters of the mechanism, and free lengths that are zero.
+    """
+    return (*model.shorthands, *model.free_lengths)
 
 
 def check_text(claims: Claims) -> str:
     """Each parameter as the user wrote it is the one that was computed with, and an axis stands for itself."""
-    slice = claims.result.slice
+    slice, model = claims.result.slice, claims.result.slice.model
     alone = slice.text.keys() - slice.parameters.keys()
-    if slice.parameters.keys() - slice.text.keys() or not alone <= {*AUXILIARY} - {*slice.axis_names}:
+    if slice.parameters.keys() - slice.text.keys() or not alone <= {*auxiliary(model)} - {*slice.axis_names}:
         raise Violation("a parameter lacks the text that it was written as, or a text its parameter")
     for index, name in enumerate(slice.axis_names):
         if name in slice.parameters and (slice.parameters[name] - axis(index)).numerator:
             raise Violation(f"{name} is an axis, but the parameter {name} is {_shown(slice, name)}")
-    for name in sorted(alone | (MECHANISM.shorthands.keys() & slice.text.keys())):
+    for name in sorted(alone | (model.shorthands.keys() & slice.text.keys())):
         if not any(name in _names(n, text) for n, text in slice.text.items() if n != name):
             raise Violation(f"the parameter {name} is stored, but nothing depends on it")
     for name, expression in written(slice).items():
         if name in slice.parameters and (expression - slice.parameters[name]).numerator:
             raise Violation(f"{name} was written as {slice.text[name][:60]!r}, but is {_shown(slice, name)}")
-        if name in alone and name in MECHANISM.free_lengths and expression.numerator:
+        if name in alone and name in model.free_lengths and expression.numerator:
             raise Violation(f"{name} was written as {slice.text[name][:60]!r}, but is left out as if it were zero")
     return f"{len(slice.text)} parameters"
 
@@ -85,20 +88,12 @@ def _names(name: str, text: str) -> set[str]:
         raise Violation(f"the text kept for {name[:40]!r}, {text[:40]!r}, is no expression: {error}") from error
 
 
-def check_boundary(claims: Claims) -> str:
-    """The BOUNDARY components are those that the slice's expressions ask for."""
+def check_boundary(claims: Claims, seed: str) -> str:
+    """The BOUNDARY components are those that the slice's expressions and the conditions ask for."""
     names = claims.result.slice.axis_names
-    needed: dict[PlanePolynomial, str] = {}
-    for name, e in claims.result.slice.parameters.items():
-        parts = [e.denominator]
-        if name in _BOUNDING:
-            parts.append(e.numerator)
-        for terms in parts:
-            for factor in _expression_factors(terms):
-                needed[factor] = f"it bounds the domain of {name}"
-    for k, common in enumerate(equation_factors(claims)):
-        for factor in factors(common) if not common.is_constant() else []:
-            needed.setdefault(factor, f"equation {k} vanishes on it")
+    needed = _needed(claims)
+    for factor, why in _of_conditions(claims, seed).items():
+        needed.setdefault(factor, why)
     stored = {c.polynomial: c for c in claims.result.components}
     for factor, why in needed.items():
         if factor not in stored:
@@ -109,6 +104,37 @@ def check_boundary(claims: Claims) -> str:
         if c.kind is Kind.BOUNDARY and c.polynomial not in needed:
             raise Violation(f"component {n} is stored as boundary, but bounds nothing: {c.polynomial.text(names)[:60]}")
     return f"{len(needed)} factors of parameters and equations"
+
+
+def _needed(claims: Claims) -> dict[PlanePolynomial, str]:
+    """The factors of parameters and equations, each with the reason why it bounds the slice."""
+    bounding = {*claims.model.positive, *claims.model.nonnegative}
+    needed: dict[PlanePolynomial, str] = {}
+    for name, e in claims.result.slice.parameters.items():
+        parts = [e.denominator]
+        if name in bounding:
+            parts.append(e.numerator)
+        for terms in parts:
+            for factor in _expression_factors(terms):
+                needed[factor] = f"it bounds the domain of {name}"
+    for k, common in enumerate(equation_factors(claims)):
+        for factor in factors(common) if not common.is_constant() else []:
+            needed.setdefault(factor, f"equation {k} vanishes on it")
+    return needed
+
+
+def _of_conditions(claims: Claims, seed: str) -> dict[PlanePolynomial, str]:
+    """The components on which a condition's norm vanishes, but not that of det H, each with the reason."""
+    found: dict[PlanePolynomial, str] = {}
+    conditions = condition_exponents(claims, seed)
+    if not conditions:
+        return found
+    _, critical = check_identity(claims, random_points(claims, seed, BITS))
+    for k, exponents in enumerate(conditions):
+        for c, e, of_jacobian in zip(claims.result.components, exponents, critical, strict=True):
+            if e > 0 and of_jacobian < 1:
+                found.setdefault(c.polynomial, f"the norm of condition {k} vanishes on it")
+    return found
 
 
 def _expression_factors(terms: Sequence[tuple[int, int, Fraction]]) -> list[PlanePolynomial]:

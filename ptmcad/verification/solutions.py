@@ -1,25 +1,31 @@
-"""Checks of the solutions: each stored box contains an equilibrium, with a Hessian of the stored signs.
+"""Checks of the solutions: each stored box contains a solution that counts, with the stored signs.
 
 In each box Newton's method is started from the center; around the point it reaches, a smaller box X within the stored
 one is proved to contain a solution by the interval Newton operator: m - F'(X)^-1 F(m) inside X (Moore; Krawczyk). The
-signs of det H and tr H are then certain on X, or precision is doubled.
+signs of the Hessian's leading minors, of inequalities and of conditions for stability are then certain on X, or
+precision is doubled.
 
 Guarantee: boxes that pass are disjoint and contain at least one solution each. As their number is the total that the
-signatures of `ptmcad.verification.counts` give, each contains exactly one and together they contain all.
+signatures of `ptmcad.verification.counts` give, each contains exactly one and together they contain all. Conditions for
+stability that are said to be zero are so: trace forms give the number of solutions at which one is, and in the other
+boxes it is not.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, islice
+from typing import NamedTuple
 
 from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.regionmap import Cell, Solution
+from ptmcad.mechanism import Model, System
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import ANGLES, PARAMETERS, Configuration, potential, rational
-from ptmcad.verification.jets import circle
+from ptmcad.verification.derivation import Configuration, formulas, parameters_of, rational
+from ptmcad.verification.inertia import bases, leading_minors, negative_eigenvalues
+from ptmcad.verification.jets import circle, jet_of, line
 from ptmcad.verification.report import Violation
 
 BITS = (64, 128, 256, 512, 1024, 2048, 4096)
@@ -32,122 +38,214 @@ def check_solutions(claims: Claims) -> str:
     for n, cell in enumerate(claims.result.cells):
         if len(cell.solutions) != cell.total:
             raise Violation(f"cell {n} has {len(cell.solutions)} boxes of solutions, but {cell.total} equilibria")
-        _check_disjoint(n, cell)
+        _check_disjoint(n, cell, claims.model)
         values = claims.parameters_at(*cell.sample)
-        signs = []
         for k, solution in enumerate(cell.solutions):
-            true = _signs(values, solution)
-            if true is None:
-                raise Violation(f"cell {n}: no solution was found in the box {k} around {_center(solution)}, "
-                                f"radius {float(solution.radius):.1e}")  # fmt: skip
-            if true != solution.signs:
-                raise Violation(f"cell {n}: the Hessian at the solution near {_center(solution)} has eigenvalues of "
-                                f"signs {true}, not {solution.signs[:10]}")  # fmt: skip
-            signs.append(true)
+            _check_signs(claims, values, solution, f"cell {n}: ", k)
             number += 1
-        index = (signs.count("++"), signs.count("+-"), signs.count("--"))
-        if index != cell.index:
-            raise Violation(f"cell {n}: the solutions have index {index}, the cell {cell.index}")
+        _check_zeros(claims, n, cell)
+        if claims.describes_equilibria:
+            _check_index(claims, n, cell)
     return f"{number} boxes"
+
+
+def _check_signs(claims: Claims, values: Mapping[str, Fraction], solution: Solution, where: str, k: int) -> None:
+    """The box holds a solution with these signs.
+
+    Raises
+    ------
+    Violation
+    """
+    true = _signs(claims.model, values, solution)
+    if true is None:
+        raise Violation(f"{where}no solution was found in the box {k} around {_center(solution)}, "
+                        f"radius {float(solution.radius):.1e}")  # fmt: skip
+    if true != solution.signs:
+        what = "Hessian" if claims.describes_equilibria else "list of conditions for stability"
+        are = "eigenvalues of signs" if claims.describes_equilibria else "the signs"
+        raise Violation(f"{where}the {what} at the solution near {_center(solution)} has {are} {true!r}, not "
+                        f"{solution.signs[:10]!r}")  # fmt: skip
+
+
+def _check_index(claims: Claims, n: int, cell: Cell) -> None:
+    size = len(claims.model.unknowns)
+    negative = [solution.signs.count("-") for solution in cell.solutions]
+    index = tuple(negative.count(k) for k in range(size + 1))
+    if index != cell.index:
+        raise Violation(f"cell {n}: the solutions have index {index}, the cell {cell.index}")
+
+
+def _check_zeros(claims: Claims, n: int, cell: Cell) -> None:
+    """As many solutions as trace forms tell have a condition for stability that is zero."""
+    if not any("0" in solution.signs for solution in cell.solutions):
+        return
+    fibre = claims.fibre_at(*cell.sample)
+    for k, p in enumerate(fibre.point.stability):
+        stored = sum(solution.signs[k] == "0" for solution in cell.solutions)
+        if (true := fibre.number_of_zeros(p)) != stored:
+            raise Violation(f"cell {n}: condition {k} for stability is said to be zero at {stored} solutions, but it "
+                            f"is at {true}")  # fmt: skip
 
 
 def _center(solution: Solution) -> str:
     return "(" + ", ".join(f"{float(x):.6g}" for x in solution.center) + ")"
 
 
-def _check_disjoint(n: int, cell: Cell) -> None:
+def _check_disjoint(n: int, cell: Cell, model: Model) -> None:
+    turning = 2 * len(model.angles)
     for k, s in enumerate(cell.solutions):
-        if len(s.center) != 4 or s.radius <= 0 or s.radius > 1 or any(abs(x) > 2 for x in s.center):
+        far = any(abs(x) > 2 for x in s.center[:turning])
+        if len(s.center) != turning + len(model.reals) or s.radius <= 0 or s.radius > 1 or far:
             raise Violation(f"cell {n}: box {k} is not a box around a point of the torus")
     for (j, a), (k, b) in combinations(enumerate(cell.solutions), 2):
         if all(abs(x - y) <= a.radius + b.radius for x, y in zip(a.center, b.center, strict=True)):
             raise Violation(f"cell {n}: the boxes {j} and {k} of its solutions meet")
 
 
-class _Energy:
-    """Gradient and Hessian of the potential in balls, by jets of what the description lists."""
+class _Values(NamedTuple):
+    """The model's functions in balls.
 
-    def __init__(self, values: Mapping[str, Fraction]):
-        self.parameters = {name: arb(rational(values[name])) for name in PARAMETERS}
+    Attributes
+    ----------
+    equations : of a potential its gradient.
+    jacobian : of a potential its Hessian.
+    """
 
-    def __call__(self, x: list[arb]) -> tuple[list[arb], list[list[arb]]]:
-        angles = range(len(ANGLES))
-        circles = {angle: circle(k, x[2 * k], x[2 * k + 1]) for k, angle in enumerate(ANGLES)}
-        energy = potential(Configuration(self.parameters, circles))
+    equations: list[arb]
+    jacobian: list[list[arb]]
+    inequalities: list[arb]
+    stability: list[arb]
+
+
+class _Functions:
+    """What solutions of a model satisfy, in balls, by jets of what the description lists."""
+
+    def __init__(self, model: Model, values: Mapping[str, Fraction]):
+        self.model = model
+        self.parameters = {name: arb(rational(values[name])) for name in parameters_of(model)}
+
+    def __call__(self, x: list[arb]) -> _Values:
+        angles, reals = self.model.angles, self.model.reals
+        circles = {angle: circle(k, x[2 * k], x[2 * k + 1]) for k, angle in enumerate(angles)}
+        lines = {name: line(len(angles) + k, x[2 * len(angles) + k]) for k, name in enumerate(reals)}
+        found = formulas(Configuration(self.parameters | lines, circles), self.model)
+        unknowns = range(len(angles) + len(reals))
         zero = arb(0)
-        return (
-            [energy.slopes.get(i, zero) for i in angles],
-            [[energy.bends.get((min(i, j), max(i, j)), zero) for j in angles] for i in angles],
+        conditions = ([jet_of(p).value for p in some] for some in (found.inequalities, found.stability))
+        if found.potential is not None:
+            energy = jet_of(found.potential)
+            return _Values(
+                [energy.slopes.get(i, zero) for i in unknowns],
+                [[energy.bends.get((min(i, j), max(i, j)), zero) for j in unknowns] for i in unknowns],
+                *conditions,
+            )
+        equations = [jet_of(e) for e in found.equations]
+        return _Values(
+            [e.value for e in equations],
+            [[e.slopes.get(i, zero) for i in unknowns] for e in equations],
+            *conditions,
         )
 
 
-def _signs(values: Mapping[str, Fraction], solution: Solution) -> str | None:
-    """The signs of the Hessian's eigenvalues at a solution that is proved to be in the box; None when none is found."""
-    for bits in BITS:
+def _signs(model: Model, values: Mapping[str, Fraction], solution: Solution) -> str | None:
+    """The signs at a solution that counts and is proved to be in the box; None when none is found.
+
+    Those of the Hessian's eigenvalues, or of the conditions for stability; where one of these is said to be zero it is
+    left to `_check_zeros`.
+    """
+    system = isinstance(model, System) and model.potential is None
+    for attempt, bits in enumerate(BITS):
         with ctx.workprec(bits):
-            proved = _proved(values, solution)
-            if proved is None:
+            functions = _Functions(model, values)
+            found = _proved(functions, solution)
+            if found is None:
                 continue
-            _, ((h11, h12), (_, h22)) = _Energy(values)(proved)
-            determinant, trace = h11 * h22 - h12 * h12, h11 + h22
-            if determinant < 0:
-                return "+-"
-            if determinant > 0 and trace > 0:
-                return "++"
-            if determinant > 0 and trace < 0:
-                return "--"
+            if any(p < 0 for p in found.inequalities):
+                return None
+            if not all(p > 0 for p in found.inequalities):
+                continue
+            signs = _of_conditions(found.stability, solution.signs) if system else _of_hessian(found.jacobian, attempt)
+            if signs is not None:
+                return signs
     return None
 
 
-def _proved(values: Mapping[str, Fraction], solution: Solution) -> list[arb] | None:
-    """Balls for the unknowns, within the box, that contain a solution.
+def _of_hessian(hessian: list[list[arb]], attempt: int) -> str | None:
+    """The signs of a symmetric matrix's eigenvalues, positive ones first; None when they are not certain."""
+    size = len(hessian)
+    basis = next(islice(bases(size), attempt, None))
+    minors = leading_minors(hessian, basis, size)
+    if any(m.contains(0) for m in minors):
+        return None
+    negative = negative_eigenvalues(1 if m > 0 else -1 for m in minors)
+    return "+" * (size - negative) + "-" * negative
 
-    The unknowns are moved along the circles: turned by an angle a, the point (c, s) that Newton's method has reached
-    becomes (c cos a - s sin a, s cos a + c sin a), so that c^2 + s^2 = 1 holds by construction.
+
+def _of_conditions(conditions: list[arb], stored: str) -> str | None:
+    """The conditions' signs, 0 where that is stored and not refuted; None when one is not certain."""
+    if len(stored) != len(conditions):
+        stored = " " * len(conditions)
+    signs = ""
+    for value, sign in zip(conditions, stored, strict=True):
+        if value.contains(0):
+            if sign != "0":
+                return None
+            signs += "0"
+        else:
+            signs += "+" if value > 0 else "-"
+    return signs
+
+
+def _proved(functions: _Functions, solution: Solution) -> _Values | None:
+    """The functions' values on a box within the stored one that is proved to contain a solution.
+
+    Angles are moved along the circles: turned by an angle a, the point (c, s) that Newton's method has reached becomes
+    (c cos a - s sin a, s cos a + c sin a), so that c^2 + s^2 = 1 holds by construction.
     """
-    energy = _Energy(values)
-    c1, s1, c2, s2 = (arb(rational(x)) for x in solution.center)
-    point = [*_normal(c1, s1), *_normal(c2, s2)]
+    turning = 2 * len(functions.model.angles)
+    point = _normal([arb(rational(x)) for x in solution.center], turning)
     step = arb(1)
     for _ in range(_STEPS + ctx.prec.bit_length()):
-        gradient, hessian = energy(point)
-        step_by = _solve(hessian, gradient)
+        values = functions(point)
+        step_by = _solve(values.jacobian, values.equations)
         if step_by is None:
             return None
-        point = [x.mid() for x in _turned(point, [-a.mid() for a in step_by])]
-        point = [*_normal(point[0], point[1]), *_normal(point[2], point[3])]
+        point = [x.mid() for x in _moved(point, [-a.mid() for a in step_by], turning)]
+        point = _normal(point, turning)
         step = max(abs(a.mid()) for a in step_by)
         if step < arb(2) ** (8 - ctx.prec):
             break
     # the point now has exact circles up to rounding, which its balls contain
-    # wide against rounding, narrow against the distance over which the Hessian varies
+    # wide against rounding, narrow against the distance over which the Jacobian varies
     radius = (step * 8 + arb(2) ** (-2 * ctx.prec // 3)).mid()
-    spread = [arb(0).union(radius).union(-radius) for _ in (0, 1)]
-    around = _turned(point, spread)
-    gradient, _ = energy(point)
-    _, hessian = energy(around)
-    image = _solve(hessian, gradient)
+    around = _moved(point, [arb(0).union(radius).union(-radius)] * len(functions.model.unknowns), turning)
+    values = functions(around)
+    image = _solve(values.jacobian, functions(point).equations)
     if image is None or not all(abs(a) < radius for a in image):
         return None
     inside = all(
         abs(x - rational(center)) <= rational(solution.radius)
         for x, center in zip(around, solution.center, strict=True)
     )
-    return around if inside else None
+    return values if inside else None
 
 
-def _normal(c: arb, s: arb) -> tuple[arb, arb]:
-    """The point of the unit circle in the direction (c, s), in balls that contain it."""
-    length = (c * c + s * s).sqrt()
-    return c / length, s / length
+def _normal(point: list[arb], turning: int) -> list[arb]:
+    """The coordinates with those of angles on the unit circle in their direction, in balls that contain it."""
+    found = []
+    for c, s in zip(point[:turning:2], point[1:turning:2], strict=True):
+        length = (c * c + s * s).sqrt()
+        found += [c / length, s / length]
+    return found + point[turning:]
 
 
-def _turned(point: list[arb], by: list[arb]) -> list[arb]:
-    turned = []
-    for k, angle in enumerate(by):
+def _moved(point: list[arb], by: list[arb], turning: int) -> list[arb]:
+    """The coordinates after a step of each unknown."""
+    moved = []
+    for k, angle in enumerate(by[: turning // 2]):
         c, s = point[2 * k], point[2 * k + 1]
-        turned += [c * angle.cos() - s * angle.sin(), s * angle.cos() + c * angle.sin()]
-    return turned
+        moved += [c * angle.cos() - s * angle.sin(), s * angle.cos() + c * angle.sin()]
+    return moved + [x + step for x, step in zip(point[turning:], by[turning // 2 :], strict=True)]
 
 
 def _solve(matrix: list[list[arb]], right: list[arb]) -> list[arb] | None:
@@ -156,4 +254,4 @@ def _solve(matrix: list[list[arb]], right: list[arb]) -> list[arb] | None:
         x = arb_mat(matrix).solve(arb_mat([[r] for r in right]))
     except ZeroDivisionError:
         return None
-    return [x[0, 0], x[1, 0]]
+    return [x[i, 0] for i in range(len(right))]

@@ -1,17 +1,19 @@
 """Checks of the discriminant variety: nothing is missing, nothing is foreign.
 
-The norm N of det H is compared with the product of the stored components at random integer points, of 48 bits in each
-coordinate. If N = c A_1^e1 ... / B_1^f1 ..., its exponents follow from its values at a few of these points
-(`_exponent`) and the identity is checked at the others. A false identity of degree d agrees at one random point with
-probability under d/2^47.
+The norm N of det H, the determinant of the Hessian or of another Jacobian, is compared with the product of the stored
+components at random integer points, of 48 bits in each coordinate. If N = c A_1^e1 ... / B_1^f1 ..., its exponents
+follow from its values at a few of these points (`_exponent`) and the identity is checked at the others. A false
+identity of degree d agrees at one random point with probability under d/2^47. So are the norms of inequalities and of
+conditions for stability, over those solutions at which they are not zero all over the slice.
 
 The points are drawn from a hash of the claims themselves, so that no one can choose claims to fit the points. They lie
 on no stored component: a point on one, where the fibre degenerates, is drawn again.
 
 Guarantee: up to that probability, every CRITICAL component is a factor of N, and no other curve is a factor of it but
-BOUNDARY components; the poles of the unknowns' characteristic polynomials lie on stored components, and every INFINITY
-component consists of such poles. Where one is left out as harmless, the values of det H at the solutions stay away from
-0 near almost all of its points.
+BOUNDARY components; every curve on which a condition's norm vanishes is stored; the poles of the unknowns'
+characteristic polynomials lie on stored components, and every INFINITY component consists of such poles. Where one is
+left out as harmless, all unknowns are angles, and the values of det H and of all conditions at the solutions stay away
+from 0 near almost all of its points.
 
 Conversely, whatever the points are, no true claim about N is rejected: each rejection is a contradiction between exact
 values. Claims about poles, which are recognised by the primes that values have in common, are decided by half of the
@@ -22,19 +24,21 @@ these bits divide further values too, which has a probability near 2^-100.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import reduce
+from functools import cached_property, partial, reduce
 from itertools import permutations
 from math import gcd, lcm, prod
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_poly
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_poly
 
 from ptmcad.answer.regionmap import HARMLESS, Kind
+from ptmcad.mechanism import System
 from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import Claims, PlaneCurve, fraction
+from ptmcad.verification.derivation import coordinates_of
 from ptmcad.verification.fibre import Fibre
 from ptmcad.verification.report import Violation
 
@@ -92,25 +96,34 @@ def factors(p: object) -> list[PlanePolynomial]:
     return found
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FibrePoint:
     """The fibre over a random integer point that lies on no stored component.
 
     Attributes
     ----------
     values : of the components' polynomials there, none zero.
-    form : coefficients of a random linear form in the unknowns.
+    form : coefficients of a random linear form in the coordinates of the unknowns.
     """
 
     x: Fraction
     y: Fraction
     values: tuple[int, ...]
-    form: tuple[int, int, int, int]
+    form: tuple[int, ...]
     fibre: Fibre
 
     def norm(self) -> Fraction:
         """The product of det H over the solutions."""
         return fraction(self.fibre.norm())
+
+    def condition_norm(self, k: int) -> Fraction:
+        """The product of a condition over the solutions at which it is not 0."""
+        return fraction(self.fibre.norm_where_nonzero(self.fibre.conditions[k]))
+
+    @cached_property
+    def denominator(self) -> int:
+        """The common denominator of the power traces of the linear form."""
+        return lcm(*(int(t.q) for t in self.fibre.form_traces(self.form)))
 
     def own(self, k: int, *others: int) -> int:
         """The value of component k without the primes of the other components' values here, and of other numbers."""
@@ -125,14 +138,15 @@ def random_points(claims: Claims, seed: str, bits: int) -> Iterator[FibrePoint]:
     """
     source, forms = random.Random(f"{bits} {seed}"), random.Random(f"form {bits} {seed}")
     polynomials = [PlaneCurve.of(n, c.polynomial, 0).flint() for n, c in enumerate(claims.result.components)]
+    width = len(coordinates_of(claims.result.slice.model))
     while True:
         x, y = (source.getrandbits(bits) - 2 ** (bits - 1) for _ in range(2))
         values = tuple(int(p(x, y)) for p in polynomials)
         if 0 in values:
             bits += 1
         else:
-            a, b, c, d = (1 + forms.getrandbits(16) for _ in range(4))
-            yield FibrePoint(Fraction(x), Fraction(y), values, (a, b, c, d), claims.fibre_at(Fraction(x), Fraction(y)))
+            form = tuple(1 + forms.getrandbits(16) for _ in range(width))
+            yield FibrePoint(Fraction(x), Fraction(y), values, form, claims.fibre_at(Fraction(x), Fraction(y)))
 
 
 def check_norm(claims: Claims, seed: str) -> str:
@@ -145,43 +159,100 @@ def check_norm(claims: Claims, seed: str) -> str:
 def check_identity(claims: Claims, points: Iterator[FibrePoint]) -> tuple[int, list[int]]:
     """The number of points, and the exponents with which the norm is a product of the components."""
     result = claims.result
-    norms: list[tuple[FibrePoint, Fraction]] = []
 
-    def draw() -> None:
-        point = next(points)
+    def norm_at(point: FibrePoint) -> Fraction:
         if point.fibre.dimension != result.complex_solutions:
             raise Violation(f"there are {point.fibre.dimension} complex solutions at {_at(claims, point)}, "
                             f"not {result.complex_solutions}")  # fmt: skip
         norm = point.norm()
         if norm == 0:
             raise Violation(f"det H vanishes at {_at(claims, point)}, which is on no stored component")
-        norms.append((point, norm))
+        return norm
+
+    norms, exponents = _product_of_powers(claims, points, norm_at, "det H")
+    for k, (c, e) in enumerate(zip(result.components, exponents, strict=True)):
+        if c.kind is Kind.CRITICAL and e < 1:
+            raise Violation(f"component {k} is said to be critical, but is no factor of the norm of det H "
+                            f"at {_at(claims, norms[0][0])}")  # fmt: skip
+        if c.kind is Kind.INFINITY and e > 0:
+            raise Violation(f"component {k} is said to be at infinity, but det H vanishes on it")
+    return len(norms), exponents
+
+
+def check_conditions(claims: Claims, seed: str) -> str:
+    """Norms of the inequalities and of the conditions for stability against the stored components."""
+    names = _conditions(claims)
+    if not names:
+        return "none"
+    found = condition_exponents(claims, seed)
+    return f"{len(found)} norms; multiplicities {', '.join(map(str, found))}"
+
+
+def condition_exponents(claims: Claims, seed: str) -> list[list[int]]:
+    """For each inequality and each condition for stability, how often each component divides its norm.
+
+    Raises
+    ------
+    Violation
+        When one is no product of components.
+    """
+    return [
+        _product_of_powers(claims, random_points(claims, seed, BITS), partial(FibrePoint.condition_norm, k=k), name)[1]
+        for k, name in enumerate(_conditions(claims))
+    ]
+
+
+def _conditions(claims: Claims) -> list[str]:
+    """The names of inequalities and of conditions for stability."""
+    model = claims.result.slice.model
+    if not isinstance(model, System):
+        return []
+    return [
+        *(f"inequality {k}" for k in range(len(model.inequalities))),
+        *(f"condition {k} for stability" for k in range(len(model.stability))),
+    ]
+
+
+_Norm = tuple[FibrePoint, Fraction]
+"""A point with the value of a norm there."""
+
+
+def _product_of_powers(
+    claims: Claims, points: Iterator[FibrePoint], norm_at: Callable[[FibrePoint], Fraction], what: str
+) -> tuple[list[_Norm], list[int]]:
+    """A norm at points, and the exponents with which it is a constant times a product of the components.
+
+    Raises
+    ------
+    Violation
+        When it is not.
+    """
+    norms: list[_Norm] = []
+
+    def draw() -> None:
+        point = next(points)
+        norms.append((point, norm_at(point)))
 
     draw()
     exponents: list[int] = []
-    for k, c in enumerate(result.components):
+    for k in range(len(claims.result.components)):
         while (pair := _separating_points(k, norms)) is None:
             draw()
-        exponents.append(e := _exponent(claims, k, *pair))
-        if c.kind is Kind.CRITICAL and e < 1:
-            raise Violation(f"component {k} is said to be critical, but is no factor of the norm of det H "
-                            f"at {_at(claims, pair[0][0])}")  # fmt: skip
-        if c.kind is Kind.INFINITY and e > 0:
-            raise Violation(f"component {k} is said to be at infinity, but det H vanishes on it")
+        exponents.append(_exponent(claims, k, *pair, what))
     for _ in range(max(POINTS - len(norms), FRESH_POINTS)):
         draw()
     constants = [n / prod(Fraction(v) ** e for v, e in zip(p.values, exponents, strict=True)) for p, n in norms]
     for (point, _), constant in zip(norms, constants, strict=True):
         if constant != constants[0]:
-            raise Violation(f"the norm of det H at {_at(claims, point)} is no constant times powers of the stored "
+            raise Violation(f"the norm of {what} at {_at(claims, point)} is no constant times powers of the stored "
                             "components: a curve of the variety is missing or wrong")  # fmt: skip
-    return len(norms), exponents
+    return norms, exponents
 
 
-_Pair = tuple[tuple[FibrePoint, Fraction], tuple[FibrePoint, Fraction], int]
+_Pair = tuple[_Norm, _Norm, int]
 
 
-def _separating_points(k: int, norms: Sequence[tuple[FibrePoint, Fraction]]) -> _Pair | None:
+def _separating_points(k: int, norms: Sequence[_Norm]) -> _Pair | None:
     """Two points that tell component k's exponent: its value at the first has primes that divide no other value at
     either, which are returned as their product with multiplicities. None when there are no such points yet.
 
@@ -195,9 +266,7 @@ def _separating_points(k: int, norms: Sequence[tuple[FibrePoint, Fraction]]) -> 
     return None
 
 
-def _exponent(
-    claims: Claims, k: int, first: tuple[FibrePoint, Fraction], second: tuple[FibrePoint, Fraction], own: int
-) -> int:
+def _exponent(claims: Claims, k: int, first: _Norm, second: _Norm, own: int, what: str) -> int:
     """The exponent e of component k, if the norm is a constant times powers of the components.
 
     The norms' quotient at the two points is free of the constant, and its part with primes of ``own`` is own^e: these
@@ -213,7 +282,7 @@ def _exponent(
         while shared % own == 0:
             shared, e = shared // own, e + 1
         if shared > 1:
-            raise Violation(f"the norm of det H at {_at(claims, first[0])} is no constant times powers of the stored "
+            raise Violation(f"the norm of {what} at {_at(claims, first[0])} is no constant times powers of the stored "
                             f"components, as its prime factors show: component {k}, or another one, is wrong or "
                             "missing")  # fmt: skip
         if e:
@@ -231,6 +300,8 @@ def _check_poles(claims: Claims, points: Iterator[FibrePoint]) -> None:
         if c.kind is Kind.INFINITY:
             asked.append((_has_poles, "at infinity, but solutions have no pole on it"))
         if c.left_out == HARMLESS:
+            if claims.result.slice.model.reals:
+                raise Violation(f"component {k} is left out, but real solutions may leave every bounded set on it")
             asked.append((_is_harmless, "harmless, but det H may vanish at solutions near it"))
         for holds, message in asked:
             while len(clear := [p for p in far if _far_part(k, p).bit_length() > CLEAR_BITS]) < FAR_POINTS:
@@ -265,31 +336,32 @@ def _has_poles(k: int, point: FibrePoint) -> bool:
     For a curve without poles it would have to consist of primes of constants.
     """
     own = _far_part(k, point)
-    return _without(own, _denominator(point)) ** 2 < own
+    return _without(own, point.denominator) ** 2 < own
 
 
 def _is_harmless(k: int, point: FibrePoint) -> bool:
-    """Whether most of component k's own part is no divisor of the constant coefficient of det H's characteristic
-    polynomial.
+    """Whether det H and all conditions stay away from 0 at the solutions near component k.
 
-    That polynomial is made integral and primitive first. On a curve that divides its constant coefficient as a
+    A function does where most of the component's own part is no divisor of the constant coefficient of its
+    characteristic polynomial, which is made integral and primitive first. On a curve that divides that coefficient as a
     polynomial in the axes, all primes of the curve's values divide it.
     """
     own = _far_part(k, point)
-    coefficients = point.fibre.jacobian.charpoly().coeffs()
-    constant = fmpq(coefficients[0]) * lcm(*(int(fmpq(c).q) for c in coefficients))
-    return (own // gcd(own, int(constant.p))) ** 2 > own
+    functions = [point.fibre.jacobian, *(point.fibre.matrix(p) for p in point.fibre.conditions)]
+    return all((own // gcd(own, _constant_coefficient(f))) ** 2 > own for f in functions)
 
 
-def _denominator(point: FibrePoint) -> int:
-    """The common denominator of the power traces of a linear form."""
-    return lcm(*(int(t.q) for t in point.fibre.form_traces(point.form)))
+def _constant_coefficient(matrix: fmpq_mat) -> int:
+    """Of the characteristic polynomial without its factors x, made integral and primitive."""
+    coefficients = [fmpq(c) for c in matrix.charpoly().coeffs()]
+    lowest = next(c for c in coefficients if c != 0)
+    return int((lowest * lcm(*(int(c.q) for c in coefficients))).p)
 
 
 def _foreign_poles(claims: Claims, point: FibrePoint) -> int:
     """Denominator of the power traces without the primes of the stored components."""
     components = zip(claims.result.components, point.values, strict=True)
-    return _without(_denominator(point), prod(v for c, v in components if c.kind is not Kind.AUXILIARY) * _SMALL_PRIMES)
+    return _without(point.denominator, prod(v for c, v in components if c.kind is not Kind.AUXILIARY) * _SMALL_PRIMES)
 
 
 def _at(claims: Claims, point: FibrePoint) -> str:

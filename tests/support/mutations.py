@@ -1,7 +1,8 @@
 """Alterations of a result that make it false, each in random ways.
 
-Each takes a true result and a source of randomness, and returns a result in which one kind of claim is false. Numbers
-are otherwise kept consistent where an honest program would keep them so, to make the lie harder to see.
+Each takes a true result of any model and a source of randomness, and returns a result in which one kind of claim is
+false; it raises `NOTHING` where a result makes no claim of this kind. Numbers are otherwise kept consistent where an
+honest program would keep them so, to make the lie harder to see.
 """
 
 from __future__ import annotations
@@ -26,28 +27,42 @@ def drop(items: tuple, k: int) -> tuple:  # type: ignore[type-arg]
 
 
 Mutation = Callable[[RegionMap, random.Random], RegionMap]
+NOTHING = (IndexError, ValueError)
+"""From an empty choice, or one of more than there are."""
+
+
+def index_of(cell: Cell) -> tuple[int, ...]:
+    """The cell's index.
+
+    Raises
+    ------
+    IndexError
+        When it has none.
+    """
+    if cell.index is None:
+        raise IndexError("no index")
+    return cell.index
 
 
 def count(r: RegionMap, rng: random.Random) -> RegionMap:
     n = rng.randrange(len(r.cells))
-    name = rng.choice(["total", "stable"])
+    name = rng.choice([name for name in ("total", "stable") if getattr(r.cells[n], name) is not None])
     return replace(r, cells=put(r.cells, n, **{name: getattr(r.cells[n], name) + rng.choice([-2, -1, 1, 2])}))
 
 
 def morse_index(r: RegionMap, rng: random.Random) -> RegionMap:
     """Consistent in itself, with a zero Euler sum, and false; with the region's counts changed too."""
     n = rng.randrange(len(r.cells))
-    index = r.cells[n].index
-    assert index is not None
-    new = (index[0] + 1, index[1] + 1, index[2])
+    index = index_of(r.cells[n])
+    new = (index[0] + 1, index[1] + 1, *index[2:])
     return replace(r, cells=put(r.cells, n, index=new, total=sum(new), stable=new[0]))
 
 
 def swapped_index(r: RegionMap, rng: random.Random) -> RegionMap:
     """Minima and maxima exchanged, where they differ."""
-    n = rng.choice([k for k, c in enumerate(r.cells) if c.index is not None and c.index[0] != c.index[2]])
-    a, b, c = r.cells[n].index or (0, 0, 0)
-    return replace(r, cells=put(r.cells, n, index=(c, b, a), stable=c))
+    n = rng.choice([k for k, c in enumerate(r.cells) if c.index is not None and c.index[0] != c.index[-1]])
+    new = index_of(r.cells[n])[::-1]
+    return replace(r, cells=put(r.cells, n, index=new, stable=new[0]))
 
 
 def sample_of_another_cell(r: RegionMap, rng: random.Random) -> RegionMap:
@@ -250,7 +265,7 @@ def with_solutions(r: RegionMap, n: int, solutions: tuple[Solution, ...]) -> Reg
 
 
 def a_solution(r: RegionMap, rng: random.Random) -> tuple[int, int, Solution]:
-    n = a_cell(r, rng)
+    n = rng.choice([k for k, cell in enumerate(r.cells) if cell.solutions])
     k = rng.randrange(len(r.cells[n].solutions))
     return n, k, r.cells[n].solutions[k]
 
@@ -258,7 +273,7 @@ def a_solution(r: RegionMap, rng: random.Random) -> tuple[int, int, Solution]:
 def box_moved(r: RegionMap, rng: random.Random) -> RegionMap:
     """By a few of its own widths, or far away, in one coordinate."""
     n, k, s = a_solution(r, rng)
-    axis = rng.randrange(4)
+    axis = rng.randrange(len(s.center))
     shift = s.radius * rng.choice([3, 10, 10**6]) * rng.choice([-1, 1])
     center = tuple(x + shift if i == axis else x for i, x in enumerate(s.center))
     return with_solutions(r, n, put(r.cells[n].solutions, k, center=center))
@@ -267,7 +282,7 @@ def box_moved(r: RegionMap, rng: random.Random) -> RegionMap:
 def box_shrunk(r: RegionMap, rng: random.Random) -> RegionMap:
     """A part of the box in which the solution, which is near the box's center, is not."""
     n, k, s = a_solution(r, rng)
-    axis = rng.randrange(4)
+    axis = rng.randrange(len(s.center))
     center = tuple(x + s.radius * Fraction(19, 20) if i == axis else x for i, x in enumerate(s.center))
     return with_solutions(r, n, put(r.cells[n].solutions, k, center=center, radius=s.radius / 10**9))
 
@@ -285,8 +300,9 @@ def box_dropped(r: RegionMap, rng: random.Random) -> RegionMap:
 
 def box_twice(r: RegionMap, rng: random.Random) -> RegionMap:
     """One box in place of another: their number is right."""
-    n, k, s = a_solution(r, rng)
-    other = (k + 1) % len(r.cells[n].solutions)
+    n = rng.choice([k for k, cell in enumerate(r.cells) if len(cell.solutions) > 1])
+    k = rng.randrange(len(r.cells[n].solutions))
+    s, other = r.cells[n].solutions[k], (k + 1) % len(r.cells[n].solutions)
     return with_solutions(r, n, put(r.cells[n].solutions, other, center=s.center, radius=s.radius, signs=s.signs))
 
 
@@ -295,8 +311,24 @@ def box_invented(r: RegionMap, rng: random.Random) -> RegionMap:
     n = a_cell(r, rng)
     cell = r.cells[n]
     assert cell.total is not None
-    fake = Solution((Fraction(3, 5), Fraction(4, 5), Fraction(5, 13), Fraction(12, 13)), Fraction(1, 10**9), "+-")
+    circles = [(Fraction(n * n - 4, n * n + 4), Fraction(4 * n, n * n + 4)) for n, _ in enumerate(r.slice.model.angles)]
+    center = [x for circle in circles for x in circle] + [Fraction(7, 3)] * len(r.slice.model.reals)
+    fake = Solution(tuple(center), Fraction(1, 10**9), cell.solutions[0].signs if cell.solutions else "+-")
     return replace(r, cells=put(r.cells, n, solutions=(*cell.solutions, fake), total=cell.total + 1))
+
+
+def box_dropped_and_counts(r: RegionMap, rng: random.Random) -> RegionMap:
+    """A solution is gone, with counts to match."""
+    n, k, s = a_solution(r, rng)
+    cell = r.cells[n]
+    assert cell.total is not None
+    index = cell.index
+    if index is not None:
+        index = tuple(number - (i == s.signs.count("-")) for i, number in enumerate(index))
+    stable = None if cell.stable is None else cell.stable - (not s.signs.strip("+"))
+    return replace(
+        r, cells=put(r.cells, n, solutions=drop(cell.solutions, k), total=cell.total - 1, stable=stable, index=index)
+    )
 
 
 def solutions_of_another_cell(r: RegionMap, rng: random.Random) -> RegionMap:
@@ -346,31 +378,33 @@ def altered(text: str, rng: random.Random) -> str:
 
 
 def potential(r: RegionMap, rng: random.Random) -> RegionMap:
+    if not r.system.potential:
+        raise IndexError("no potential")
     return replace(r, system=replace(r.system, potential=altered(r.system.potential, rng)))
 
 
 def equation(r: RegionMap, rng: random.Random) -> RegionMap:
-    k = rng.randrange(2)
+    k = rng.randrange(len(r.system.gradient))
     gradient = tuple(altered(g, rng) if i == k else g for i, g in enumerate(r.system.gradient))
     return replace(r, system=replace(r.system, gradient=gradient))
 
 
 def hessian(r: RegionMap, rng: random.Random) -> RegionMap:
-    i, j = rng.randrange(2), rng.randrange(2)
+    i, j = rng.randrange(len(r.system.hessian)), rng.randrange(len(r.system.hessian))
     rows = [list(row) for row in r.system.hessian]
     rows[i][j] = altered(rows[i][j], rng)
     return replace(r, system=replace(r.system, hessian=tuple(tuple(row) for row in rows)))
 
 
 def relation(r: RegionMap, rng: random.Random) -> RegionMap:
-    first, second = r.system.relations
-    new = rng.choice([(second, first), (first,), (first + " + 1", second)])
+    first, *others = r.system.relations or rng.choice([])
+    new = rng.choice([(*others, first), tuple(others), (first + " + 1", *others)][0 if others else 1 :])
     return replace(r, system=replace(r.system, relations=new))
 
 
 def unknowns(r: RegionMap, rng: random.Random) -> RegionMap:
     names = list(r.system.unknowns)
-    i, j = rng.sample(range(4), 2)
+    i, j = rng.sample(range(len(names)), 2)
     names[i], names[j] = names[j], names[i]
     return replace(r, system=replace(r.system, unknowns=tuple(names)))
 
@@ -456,7 +490,7 @@ def origins_of(r: RegionMap, k: int) -> set[str]:
                 true.add("vertical line")
             continue
         squares = sympy.Poly(p, v)
-        power = sympy.igcd(*(m[0] for m in squares.monoms()))
+        power = sympy.igcd(0, *(m[0] for m in squares.monoms()))
         deflated = sympy.Poly.from_dict({(m[0] // power,): c for m, c in squares.terms()}, v)
         if deflated.degree() > 1 and meets(sympy.discriminant(deflated, v)):
             true.add(f"component {n}: turning or singular point")
@@ -497,13 +531,13 @@ def area_shifted(r: RegionMap, rng: random.Random) -> RegionMap:
     """By hardly more than the width of the bounds, so that the true area is just outside of them."""
     n = rng.randrange(len(r.regions))
     low, high = r.regions[n].area
-    shift = (high - low) * Fraction(101, 100) * rng.choice([-1, 1])
+    shift = ((high - low) or Fraction(1, 10**9)) * Fraction(101, 100) * rng.choice([-1, 1])
     return replace(r, regions=put(r.regions, n, area=(low + shift, high + shift)))
 
 
 def area_too_narrow(r: RegionMap, rng: random.Random) -> RegionMap:
     """Bounds of a thousandth of the width at one end of the stored ones, which leave room there."""
-    n = rng.randrange(len(r.regions))
+    n = rng.choice([n for n, region in enumerate(r.regions) if region.area[0] < region.area[1]])
     low, high = r.regions[n].area
     part = (high - low) / 1000
     area = rng.choice([(low, low + part), (high - part, high)])
@@ -551,6 +585,8 @@ def text_dropped(r: RegionMap, rng: random.Random) -> RegionMap:
 
 def unused_stiffness(r: RegionMap, rng: random.Random) -> RegionMap:
     """A k that nothing depends on."""
+    if "k" in r.slice.model.variables:
+        raise IndexError("something depends on k")
     parameters = {**r.slice.parameters, "k": constant(rng.randint(1, 99))}
     text = {n: (t if t != "k" else "100") for n, t in r.slice.text.items()}
     text["k"] = parameters["k"].to_text()
@@ -558,13 +594,15 @@ def unused_stiffness(r: RegionMap, rng: random.Random) -> RegionMap:
 
 
 def sum_without_signs(r: RegionMap, rng: random.Random) -> RegionMap:
-    which = rng.choice(["potential", "gradient"])
+    which = rng.choice(["potential", "gradient"][0 if " + " in r.system.potential else 1 :])
     if which == "potential":
         return replace(r, system=replace(r.system, potential=r.system.potential.replace(" + ", " ")))
     return replace(r, system=replace(r.system, gradient=tuple(g.replace(" + ", " ") for g in r.system.gradient)))
 
 
 def number_that_is_none(r: RegionMap, rng: random.Random) -> RegionMap:
+    if not r.system.potential:
+        raise IndexError("no potential")
     head = rng.choice(["1/0*", "1e*", "1L*", "0*", "^2*", "*"])
     return replace(r, system=replace(r.system, potential=head + r.system.potential))
 
@@ -587,10 +625,30 @@ ALL: tuple[Mutation, ...] = (
     critical_polynomial, root_index, wall_component, stack_sample, adjacency_removed, adjacency_added,
     adjacency_component, segment_end, merge_kind, area_bound, area_order, region_number, region_cells, region_count,
     region_sample, complex_solutions, undetermined, base_axis, another_slice, window, box_moved, box_shrunk,
-    box_blown_up, box_dropped, box_twice, box_invented, solutions_of_another_cell, sign, signs_exchanged, potential,
+    box_blown_up, box_dropped, box_dropped_and_counts, box_twice, box_invented, solutions_of_another_cell, sign,
+    signs_exchanged, potential,
     equation, hessian, relation, unknowns, parameter_text, non_adjacency_dropped, non_adjacency_twice,
     non_adjacency_invented, non_adjacency_reason, non_adjacency_cells, non_adjacency_segment, origin,
     component_invented, any_kind, left_out_reason, component_repeated, area_shifted, area_too_narrow,
     area_beyond_the_window, plan_cost, axes_exchanged, text_dropped, unused_stiffness, sum_without_signs,
     number_that_is_none, smooth_line_at_infinity, partial_with_false_areas,
 )  # fmt: skip
+
+LIKELY = {
+    "walls and samples": "sample_of_another_cell sample_beyond_a_wall root_index stack_sample",
+    "variety complete": "changed_component critical_kind complex_solutions smooth_line_at_infinity",
+    "counts": "count morse_index swapped_index box_invented",
+    "merges": "separates merge_kind",
+    "critical values": "moved_critical_value invented_critical_value critical_polynomial",
+    "adjacencies": "adjacency_removed adjacency_added adjacency_component segment_end",
+    "areas": "area_bound area_order area_shifted area_too_narrow area_beyond_the_window "
+             "partial_with_false_areas",
+    "regions": "region_number region_cells region_count region_sample",
+    "plan": "plan_cost",
+    "solutions": "box_moved box_shrunk box_blown_up box_dropped box_dropped_and_counts box_twice "
+                 "solutions_of_another_cell sign signs_exchanged",
+    "non-adjacencies": "non_adjacency_dropped non_adjacency_twice non_adjacency_invented non_adjacency_reason "
+                       "non_adjacency_cells non_adjacency_segment",
+}  # fmt: skip
+"""The alterations that a check is likely to reject: it is tried first, which makes the tests faster, and no weaker."""
+FIRST = {name: check for check, names in LIKELY.items() for name in names.split()}

@@ -85,7 +85,8 @@ def test_names_of_axes_need_no_text() -> None:
     check_domain(claims(slice))
 
 
-STIFF, FREE, LOADS = ("k", "k1", "k2", "k3"), ("l0", *ptm().free_lengths), ("F3", "F4", "F3x")
+FREE_LENGTHS = ptm().free_lengths
+STIFF, FREE, LOADS = ("k", "k1", "k2", "k3"), ("l0", *FREE_LENGTHS), ("F3", "F4", "F3x")
 AXES = (("rho", "L2"), ("u", "v"), ("k", "u"), ("l0", "v"), ("k1", "L1"), ("l0_2", "F4"), ("F3", "k3"))
 
 

@@ -9,7 +9,7 @@ from math import prod
 from random import Random
 
 import pytest
-from flint import fmpq, fmpz_mpoly
+from flint import fmpq, fmpq_mpoly, fmpz_mpoly
 from support.shipped_records import EXACT
 
 import ptmcad
@@ -51,6 +51,7 @@ class KnownFibre:
     dimension: int
     denominators: Sequence[int]
     coefficients: Sequence[Fraction]
+    conditions: Sequence[fmpq_mpoly] = ()
 
     def norm(self) -> fmpq:
         return fmpq(self.product.numerator, self.product.denominator)

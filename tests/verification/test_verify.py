@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from forger.judge import violation
 from support import mutations
-from support.mutations import put
+from support.mutations import FIRST, put
 from support.shipped_records import EXACT
 
 import ptmcad
@@ -23,26 +23,6 @@ from ptmcad.verification.areas import check_areas
 from ptmcad.verification.claims import Claims
 
 CONFIGS = [path.stem for path in EXACT]
-
-
-LIKELY = {
-    "walls and samples": "sample_of_another_cell sample_beyond_a_wall root_index stack_sample",
-    "variety complete": "changed_component critical_kind complex_solutions smooth_line_at_infinity",
-    "counts": "count morse_index swapped_index box_invented",
-    "merges": "separates merge_kind",
-    "critical values": "moved_critical_value invented_critical_value critical_polynomial",
-    "adjacencies": "adjacency_removed adjacency_added adjacency_component segment_end",
-    "areas": "area_bound area_order area_shifted area_too_narrow area_beyond_the_window "
-             "partial_with_false_areas",
-    "regions": "region_number region_cells region_count region_sample",
-    "plan": "plan_cost",
-    "solutions": "box_moved box_shrunk box_blown_up box_dropped box_twice solutions_of_another_cell sign "
-                 "signs_exchanged",
-    "non-adjacencies": "non_adjacency_dropped non_adjacency_twice non_adjacency_invented non_adjacency_reason "
-                       "non_adjacency_cells non_adjacency_segment",
-}  # fmt: skip
-"""The alterations that a check is likely to reject: it is tried first, which makes the tests faster, and no weaker."""
-FIRST = {name: check for check, names in LIKELY.items() for name in names.split()}
 
 
 def stored(result: RegionMap) -> RegionMap:

@@ -18,7 +18,7 @@ from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.vectors import NAMES, SPRINGS
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, POSITIVE, rational
-from ptmcad.verification.parameters import AUXILIARY, written
+from ptmcad.verification.parameters import auxiliary, written
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.signs import Sign, has_no_pole, is_in_domain
 
@@ -43,7 +43,7 @@ def check_domain(claims: Claims) -> str:
         if pole is Sign.WRONG:
             raise Violation(f"{name} has a pole in the window")
         sign = Sign.PROVED
-        kind = MECHANISM.kind(name)
+        kind = slice.model.kind(name)
         if kind.is_positive or kind.may_vanish:
             strict = kind.is_positive or (kind is Kind.BASE and bool(expression.numerator))
             sign = is_in_domain(expression, here, strict)
@@ -60,7 +60,7 @@ def check_domain(claims: Claims) -> str:
 
 def _expressions(slice: Slice) -> dict[str, Expression]:
     """The parameters, and k or l0 (or a free length that is zero) where only an axis or a text mentions it."""
-    named = {name: axis(index) for index, name in enumerate(slice.axis_names) if name in AUXILIARY}
+    named = {name: axis(index) for index, name in enumerate(slice.axis_names) if name in auxiliary(slice.model)}
     return {**named, **written(slice), **slice.parameters}
 
 

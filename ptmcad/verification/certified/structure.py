@@ -97,7 +97,7 @@ def check_form(claims: CertifiedClaims) -> str:
     if r.cover is None or r.status not in (Status.CERTIFIED, Status.PARTIAL):
         raise Violation(f"the status is {r.status.value!r}, and there is {'no' if r.cover is None else 'a'} cover")
     needed, known = set(MECHANISM.without_free_lengths), {*SHORTHANDS, *NAMES}
-    if r.slice.mechanism != MECHANISM.name or not needed <= set(r.slice.parameters) <= known:
+    if r.slice.model != MECHANISM or not needed <= set(r.slice.parameters) <= known:
         raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
     if any(axis.low >= axis.high for axis in r.slice.axes):
         raise Violation("the window is empty")

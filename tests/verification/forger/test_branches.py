@@ -41,7 +41,7 @@ from ptmcad.verification.branches import Effort, PrecisionTooLow, _along, _serie
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
 from ptmcad.verification.derivation import rational
-from ptmcad.verification.fibre import Fibre
+from ptmcad.verification.fibre import Counts, Fibre
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
@@ -54,6 +54,7 @@ from ptmcad.verification.window import check_left_out
 
 Change = Callable[[RegionMap], RegionMap]
 Check = Callable[[Claims], str]
+boundary: Check = partial(check_boundary, seed="branches")
 norm: Check = partial(check_norm, seed="branches")
 auxiliary: Check = partial(check_auxiliary, seed="branches")
 
@@ -256,7 +257,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_system, "fig3", with_system(potential="0*L1"), "the potential has a zero coefficient"),
     (check_system, "fig3", with_system(potential="L9"), "the potential names 'L9'"),
     (check_system, "fig3", with_system(unknowns=("a",)), "the unknowns are"),
-    (check_system, "fig3", with_system(hessian=()), "two angles have two relations"),
+    (check_system, "fig3", with_system(hessian=()), "2 unknowns have 2 equations"),
     (check_system, "fig3", lambda r: with_system(relations=r.system.relations[::-1])(r), "relation 0 is"),
     (check_system, "fig3", with_system(potential="L1"), "the stored potential differs from the mechanism's"),
     (check_irreducible, "fig3", more_components(Component(PlanePolynomial(((0, 0, 3),)), Kind.CRITICAL)), "a constant"),
@@ -275,10 +276,10 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (norm, "fig3", of("components", 0, left_out=HARMLESS), "component 0 is said to be harmless, but det H may vanish"),
     (norm, "fig3", lambda r: kind_of(first(r, kind=Kind.INFINITY), Kind.AUXILIARY)(r), "a pole on no stored component"),
     (norm, "fig3", with_values(k1=0, k2=0, k3=0, F3=0, F4=0), "there are infinitely many solutions at"),
-    (check_boundary, "fig3", lambda r: replace(r, components=drop(r.components, first(r, kind=Kind.BOUNDARY))),
+    (boundary, "fig3", lambda r: replace(r, components=drop(r.components, first(r, kind=Kind.BOUNDARY))),
      "is not stored, but it bounds the domain of|is not stored, but equation"),
-    (check_boundary, "fig3", lambda r: kind_of(first(r, kind=Kind.BOUNDARY), Kind.CRITICAL)(r), "stored as critical,"),
-    (check_boundary, "fig3", kind_of(0, Kind.BOUNDARY), "component 0 is stored as boundary, but bounds nothing"),
+    (boundary, "fig3", lambda r: kind_of(first(r, kind=Kind.BOUNDARY), Kind.CRITICAL)(r), "stored as critical,"),
+    (boundary, "fig3", kind_of(0, Kind.BOUNDARY), "component 0 is stored as boundary, but bounds nothing"),
     (check_left_out, "fig3", of("components", 0, left_out="it is ugly"), "for a reason that cannot be checked"),
     (check_left_out, "fig3", of("components", 0, left_out=NO_POINT), "is left out, but runs through the window"),
     (check_plan, "fig3", lambda r: replace(r, plan=r.plan[1:]), "the plan has 12 steps, not 13"),
@@ -294,7 +295,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (auxiliary, "fig3", kind_of(0, Kind.AUXILIARY), "auxiliary, but no saving was switched off"),
     (auxiliary, "fig3+sign-curve+no-areas", kind_of(0, Kind.AUXILIARY), "auxiliary, but det H vanishes or has poles"),
     (auxiliary, "fig3+sign-curve+no-areas", more_components(Component(LINE, Kind.AUXILIARY, NO_POINT)),
-     "is said to be auxiliary, but is no factor of the norm of H11: "),
+     "is said to be auxiliary, but is no factor of the norm of H11"),
     (auxiliary, "fig3", keeping("sign-curve"), "'sign-curve' was kept, but a factor of the norm of H11 is not stored"),
     (auxiliary, "fig3", keeping("hermite-matrix"), "'hermite-matrix' was kept, but a factor of the Hermite matrix's"),
     (auxiliary, "fig3+sign-curve+no-areas", more_components(Component(PlanePolynomial(()), Kind.AUXILIARY)),
@@ -426,12 +427,12 @@ def test_a_point_at_a_pole() -> None:
 
 
 def test_counts_without_a_zero_euler_sum_are_a_fault_of_the_check(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Fibre, "morse_index", lambda self: (2, 1, 0))
+    monkeypatch.setattr(Fibre, "counts", lambda self: Counts(3, 2, (2, 1, 0)))
     rejected(check_counts, the("fig3"), "the Euler sum of")
 
 
 def test_a_degenerate_sample(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Fibre, "morse_index", lambda self: None)
+    monkeypatch.setattr(Fibre, "counts", lambda self: None)
     rejected(check_counts, the("fig3"), "an equilibrium is degenerate at")
 
 

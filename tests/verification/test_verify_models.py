@@ -1,0 +1,237 @@
+"""The verification of maps of other models than the paper's mechanism: accepted when true, rejected when false."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import pytest
+from forger.judge import violation
+from support import mutations
+from support.maps import once_per_run
+from support.mutations import FIRST
+from support.random_models import random_mechanism, random_system
+
+import ptmcad
+from ptmcad.answer.regionmap import HARMLESS, Component, Kind, RegionMap
+from ptmcad.mechanism import described
+from ptmcad.text.plane import PlanePolynomial
+
+AB = {"a": [-2, 2], "b": [-2, 2]}
+
+RECORDS: dict[str, dict[str, Any]] = {
+    "cusp": {"system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}, "axes": AB},
+    "kuramoto": {
+        "system": {
+            "unknowns": {"p": "angle", "q": "angle"},
+            "equations": ["sin(p-q)+sin(p)-w1", "sin(q-p)+sin(q)-w2"],
+        },
+        "axes": {"w1": [-2, 2], "w2": [-2, 2]},
+    },
+    # one solution is zero everywhere, where the inequality's polynomial vanishes
+    "duffing": {
+        "system": {
+            "unknowns": {"z": "real"},
+            "equations": ["(((W - 1 - 3/4*z)^2 + W/100)*z - G)*z"],
+            "positive": ["z"],
+        },
+        "axes": {"W": [0, 3], "G": [0, 1]},
+        "count": "total",
+    },
+    "pendulum": {
+        "mechanism": {
+            "name": "pendulum",
+            "parameters": {
+                "L": {"kind": "length", "default": 1},
+                "a": {"kind": "base", "default": 1, "range": [0, 3]},
+                "k": {"kind": "stiffness", "default": 1, "range": [0, 4]},
+                "W": {"kind": "force", "range": [-2, 2]},
+            },
+            "unknowns": {"th": "angle"},
+            "points": {"O": [0, 0], "A": [0, "a"], "P": ["L*sin(th)", "L*cos(th)"]},
+            "springs": [{"between": ["A", "P"], "k": "k"}],
+            "loads": {"P": ["1/10", "W"]},
+        },
+        "axes": {"a": [0, 3], "W": [-4, 4]},
+    },
+    # the second condition is zero at the solution x = 0, and one more sign condition has a curve of its own
+    "stable where": {
+        "system": {
+            "unknowns": {"x": "real"},
+            "equations": ["x^3 - a*x"],
+            "stable": ["x + b", "x*(x + 1) + b^2*x"],
+        },
+        "axes": AB,
+        "count": "stable",
+    },
+    "potential with an inequality": {
+        "system": {"unknowns": {"x": "real"}, "potential": "x^4 - a*x^2 + b*x", "positive": ["x + 1"]},
+        "axes": AB,
+        "count": "index",
+    },
+    "pole": {
+        "system": {"unknowns": {"x": "real", "t": "angle"}, "equations": ["a*x^2 + b*x - 1", "sin(t) - x/4"]},
+        "axes": AB,
+    },
+    # three angles
+    "chain": {
+        "system": {
+            "unknowns": {"u": "angle", "v": "angle", "w": "angle"},
+            "potential": "-a*cos(u) - cos(v) - b*sin(w) - cos(2*v - u)*0 - cos(w)",
+        },
+        "axes": {"a": [-2, -1], "b": [1, 2]},
+        "count": "index",
+    },
+    **{f"system {seed}": random_system(seed) for seed in (0, 1, 2, 4, 7, 8)},
+    **{f"mechanism {seed}": random_mechanism(seed) for seed in (0, 3, 6, 9)},
+}
+SMALL = ("cusp", "duffing", "stable where", "potential with an inequality", "system 0", "mechanism 0")
+
+
+@cache
+def map_of(name: str) -> RegionMap:
+    """A map as a reader of its file has it."""
+
+    def compute() -> RegionMap:
+        return ptmcad.classify(ptmcad.slice_from_mapping({"name": "map", **RECORDS[name]}), area_tolerance="1/100")
+
+    return RegionMap.from_json(once_per_run(f"model {name}", compute).to_json())
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_true_maps_are_accepted(name: str) -> None:
+    report = ptmcad.verify(map_of(name))
+    assert report.ok, report.violation
+    assert {c.name for c in report.checks if not c.passed} <= {"plan without trace", "provenance"}
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SMALL else pytest.mark.slow) for n in RECORDS])
+def test_false_alterations_are_rejected(name: str) -> None:
+    accepted = []
+    for mutation in mutations.ALL:
+        try:
+            false = mutation(map_of(name), random.Random(f"{name} {mutation.__name__}"))
+        except mutations.NOTHING:  # this result makes no claim of this kind
+            continue
+        if false == map_of(name):  # a component a for 2*a, or a sum of one term
+            continue
+        if violation(false, FIRST.get(mutation.__name__, "")) is None:
+            accepted.append(mutation.__name__)
+    assert not accepted
+
+
+def test_every_alteration_is_tried_on_some_map() -> None:
+    def can_be_tried(mutation: mutations.Mutation, name: str) -> bool:
+        try:
+            mutation(map_of(name), random.Random(0))
+        except mutations.NOTHING:
+            return False
+        return True
+
+    never = {m.__name__ for m in mutations.ALL if not any(can_be_tried(m, name) for name in SMALL)}
+    assert never <= {"relation", "left_out_reason", "another_slice"}
+
+
+# ------------------------------------------------------------------------------------------ what is false about a model
+
+
+def test_real_solutions_may_leave_over_a_harmless_curve() -> None:
+    """On the torus they stay; a curve of poles of real unknowns must be used."""
+    true = map_of("pole")
+    poles = [n for n, c in enumerate(true.components) if c.kind is Kind.INFINITY and not c.left_out]
+    assert poles
+    for n in poles:
+        false = replace(true, components=mutations.put(true.components, n, left_out=HARMLESS))
+        found = violation(false, "variety complete")
+        assert found is not None
+        assert "real solutions may leave every bounded set" in found[1]
+
+
+def dropped(true: RegionMap, kind: Kind) -> list[RegionMap]:
+    found = [n for n, c in enumerate(true.components) if c.kind is kind]
+    assert found
+    return [replace(true, components=mutations.drop(true.components, n)) for n in found]
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "check"),
+    [
+        ("stable where", Kind.BOUNDARY, "conditions"),
+        ("potential with an inequality", Kind.BOUNDARY, "conditions"),
+        ("cusp", Kind.CRITICAL, "variety complete"),
+        ("pole", Kind.INFINITY, "variety complete"),
+    ],
+)
+def test_a_curve_that_is_missing_is_missed(name: str, kind: Kind, check: str) -> None:
+    for false in dropped(map_of(name), kind):
+        found = violation(false, check)
+        assert found is not None
+        assert found[0] == check
+
+
+def test_a_curve_that_bounds_nothing() -> None:
+    line = Component(PlanePolynomial.of([(1, 0, 1), (0, 0, -7)]), Kind.BOUNDARY, "no point in the window")
+    true = map_of("stable where")
+    found = violation(replace(true, components=(*true.components, line)), "boundary components")
+    assert found is not None
+    assert "bounds nothing" in found[1]
+
+
+def test_a_condition_that_is_said_to_be_zero() -> None:
+    """And one that is zero, but is said to be positive."""
+    true = map_of("stable where")
+    for n, cell in enumerate(true.cells):
+        for k, solution in enumerate(cell.solutions):
+            for sign in "0+-":
+                signs = solution.signs[:-1] + sign
+                if signs != solution.signs:
+                    cells = mutations.put(true.cells, n, solutions=mutations.put(cell.solutions, k, signs=signs))
+                    found = violation(replace(true, cells=cells), "solutions")
+                    assert found is not None
+    assert any("0" in s.signs for c in true.cells for s in c.solutions)
+
+
+def other_system(change: Callable[[dict[str, Any]], Any], name: str) -> RegionMap:
+    """The claims of a map, said of a model that differs."""
+    record = {"name": "map", **RECORDS[name]}
+    key = "system" if "system" in record else "mechanism"
+    model = {**record[key]}
+    change(model)
+    slice = ptmcad.slice_from_mapping({**record, key: model})
+    return replace(map_of(name), slice=replace(map_of(name).slice, model=slice.model))
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "what"),
+    [
+        ("cusp", lambda m: m.update(equations=["x^3 - a*x + 2*b"]), "the stored equation 0 differs"),
+        ("duffing", lambda m: m.update(positive=["z - 1"]), "the stored inequality 0 differs"),
+        ("duffing", lambda m: m.update(positive=["z", "z + 1"]), "there are 2 inequalities, not 1"),
+        ("stable where", lambda m: m.update(stable=["x + b", "x"]), "the stored condition 1 for stability differs"),
+        ("pendulum", lambda m: m.update(loads={"P": ["1/9", "W"]}), "the stored potential differs"),
+    ],
+)
+def test_claims_of_another_model(name: str, change: Callable[[dict[str, Any]], Any], what: str) -> None:
+    found = violation(other_system(change, name), "equations")
+    assert found is not None
+    assert found[0] == "equations"
+    assert what in found[1]
+
+
+def test_a_free_length_makes_it_another_mechanism() -> None:
+    def stretched(m: dict[str, Any]) -> None:
+        m["springs"] = [{"between": ["A", "P"], "k": "k", "free": "1/10"}]
+
+    found = violation(other_system(stretched, "pendulum"), "equations")
+    assert found is not None
+    assert "has a free length" in found[1]
+
+
+def test_a_mechanism_with_the_name_of_a_built_in_one(shipped: Callable[..., RegionMap]) -> None:
+    """What a map claims is about the description, not about its name."""
+    record = {**RECORDS["pendulum"]["mechanism"], "name": "ptm"}
+    false = replace(shipped("fig3"), slice=replace(shipped("fig3").slice, model=described(record)))
+    assert not ptmcad.verify(false).ok
