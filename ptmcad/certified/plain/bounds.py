@@ -5,11 +5,13 @@ Guarantee: over the closed window no solution has a real unknown outside of its 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 
 import numpy as np
 
 from ptmcad.certified.evaluation import Floats, program, run
+from ptmcad.certified.formula import Operation
 from ptmcad.certified.plain.chart import chart
 from ptmcad.certified.plain.problem import FIRST, Problem
 from ptmcad.certified.tape import Tape, enclosing_floats, record
@@ -37,7 +39,7 @@ def ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]:
     window = [(enclosing_floats(axis.low)[0], enclosing_floats(axis.high)[1]) for axis in axes]
     everywhere = [(-inf, inf) if name in problem.reals else TURN for name in problem.unknowns]
     at = chart(problem)
-    tape = record([at.equations])
+    tape = _without_squares(record([at.equations]))
     found = list(everywhere)
     for k, name in enumerate(problem.unknowns):
         if name in problem.reals:
@@ -45,6 +47,16 @@ def ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]:
             bound = _bound(tape, np.array([*window, *found]), FIRST + k, name)
             found[k] = (-bound, bound)
     return tuple(found)
+
+
+def _without_squares(tape: Tape) -> Tape:
+    """Products in place of squares, of which the evaluator encloses unbounded ones by [0, inf]."""
+    squares = tape.operations == Operation.SQUARE
+    return replace(
+        tape,
+        operations=np.where(squares, Operation.MULTIPLY, tape.operations),
+        second=np.where(squares, tape.first, tape.second),
+    )
 
 
 def _bound(tape: Tape, box: Floats, variable: int, name: str) -> float:

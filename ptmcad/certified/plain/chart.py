@@ -70,19 +70,17 @@ def chart(problem: Problem, short: int | None = None) -> Chart:
     parts = [
         [pull * (ux * a + uy * b) for a, b in slope] for pull, (ux, uy), slope in zip(pulls, units, slopes, strict=True)
     ]
-    equations = []
     for i in range(size):
-        total = smooth[i]
         for part in parts:
-            total = total - part[i]
             for j in range(size):
                 entries[i][j] = entries[i][j] - graph.derivative(part[i], problem.variables[j])
-        equations.append(total)
     balances = [
-        _balance(pulls[s], [e + p for e, p in zip(equations, parts[s], strict=True)], slopes[s], pair)
+        # the rest is put together without the spring: taken off again, its part would leave an interval's width behind
+        _balance(pulls[s], _without(smooth, parts[:s] + parts[s + 1 :]), slopes[s], pair)
         for s in range(len(pulls))
         for pair in combinations(range(size), 2)
     ]
+    equations = _without(smooth, parts)
     return Chart(
         tuple(equations),
         tuple(map(tuple, entries)),
@@ -90,6 +88,14 @@ def chart(problem: Problem, short: int | None = None) -> Chart:
         tuple(balances),
         turning,
     )
+
+
+def _without(smooth: Sequence[Formula], parts: Sequence[Sequence[Formula]]) -> list[Formula]:
+    """The smooth part of each equation less the springs' parts."""
+    total = list(smooth)
+    for part in parts:
+        total = [whole - piece for whole, piece in zip(total, part, strict=True)]
+    return total
 
 
 def _balance(

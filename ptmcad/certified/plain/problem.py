@@ -7,7 +7,7 @@ apart has the energy k |d|^2/2 - k l0 |d| + k l0^2/2, so that K = k l0.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from fractions import Fraction
 
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
@@ -22,6 +22,11 @@ MAX_UNKNOWNS = 3
 """Angles and lengths; the time of a search multiplies with every one."""
 FIRST = 2
 """Number of the first unknown among the variables, after the two axes."""
+
+
+_IRRELEVANT = frozenset({"name", "parameters", "unknowns", "source", "bars", "supports", "symmetries"})
+_USED = frozenset({"points", "springs", "loads", "equations", "potential", "inequalities", "stability"})
+"""What a description may have: nothing else may go unnoticed into a proof."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +86,9 @@ def problem_of(slice: Slice) -> Problem:
             "choose stable, total or index",
             key="count",
         )
+    for key in (found.name for found in fields(model)):
+        if key not in _IRRELEVANT | _USED and getattr(model, key):
+            raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key="engine")
     ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
     if isinstance(model, System):
         if model.inequalities or model.stability:
