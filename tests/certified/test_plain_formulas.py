@@ -11,6 +11,7 @@ from flint import arb, arb_mat
 
 import ptmcad
 from ptmcad.certified.formulation import curves, point_counter
+from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain.bounds import ranges
 from ptmcad.certified.plain.chart import chart, extended_determinant
 from ptmcad.certified.plain.points import inertia, plain_counter
@@ -22,6 +23,7 @@ from ptmcad.mechanism import Mechanism
 from ptmcad.mechanism.ptm import RECORD
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
+from ptmcad.show.ranges.certified import table as interval_table
 
 VON_MISES: dict[str, Any] = {
     "name": "von_mises",
@@ -301,3 +303,13 @@ def test_what_a_description_says_beyond_springs_and_loads_does_not_go_unnoticed(
     assert problem_of(replace(slice, model=Twisted(**known))).cones
     with pytest.raises(ConfigError, match="does not take torsion"):
         problem_of(replace(slice, model=Twisted(**known, torsion=("th",))))
+
+
+def test_range_of_the_truss_ends_on_the_astroid() -> None:
+    found = certified_intervals(_slice(VON_MISES), "a", {"f": "1/10"}, 10)
+    table = interval_table(found, 10)
+    assert "peaks" not in table
+    three, one = found.intervals
+    assert (three.index, one.index) == ((2, 1), (1, 0))
+    fold = (1 - 0.05 ** (2 / 3)) ** 1.5  # (f/2)^(2/3) + a^(2/3) = 1
+    assert float(one.low.low) <= fold + 1e-12 and fold - 1e-12 <= float(one.low.high)

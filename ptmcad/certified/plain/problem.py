@@ -123,7 +123,7 @@ def _energy(mechanism: Mechanism, ring: Harmonics) -> tuple[TrigonometricPolynom
         dx, dy = x1 - x0, y1 - y0
         smooth = smooth + (k * (dx * dx + dy * dy)).scaled(Fraction(1, 2))
         pull = constant_of(k * free)
-        if pull.numerator:
+        if pull.numerator and (dx.terms or dy.terms):
             cones.append(Cone(spring.name, pull, (dx, dy)))
     for load in mechanism.loads:
         for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
