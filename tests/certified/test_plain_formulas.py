@@ -10,6 +10,7 @@ import pytest
 from flint import arb, arb_mat
 
 import ptmcad
+from ptmcad.answer.regionmap import Status
 from ptmcad.certified.formulation import curves, point_counter
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.certified.plain.bounds import ranges
@@ -313,3 +314,33 @@ def test_range_of_the_truss_ends_on_the_astroid() -> None:
     assert (three.index, one.index) == ((2, 1), (1, 0))
     fold = (1 - 0.05 ** (2 / 3)) ** 1.5  # (f/2)^(2/3) + a^(2/3) = 1
     assert float(one.low.low) <= fold + 1e-12 and fold - 1e-12 <= float(one.low.high)
+
+
+def test_poses_of_the_truss() -> None:
+    poses = solve(VON_MISES, {"a": "1/2", "f": "1/10"})
+    assert poses.status is Status.CERTIFIED
+    assert [pose.index for pose in poses.equilibria] == [0, 0, 1]
+    assert [pose.admissible for pose in poses.equilibria] == [True, False, False]
+    for pose in poses.equilibria:  # 2 h (1 - 1/l) = f
+        h = float(pose.reals[0].center)
+        length = (h * h + 0.25) ** 0.5
+        assert 2 * h * (1 - 1 / length) == pytest.approx(0.1, abs=1e-9)
+        assert float(pose.eigenvalues[0].center) == pytest.approx(2 - 2 * 0.25 / length**3, rel=1e-9)
+
+
+def test_poses_by_plain_and_refined_formulas_agree() -> None:
+    at = {"L1": "1", "k": "100", "l0": "1/5", "F3": "-10", "F4": "-10", "rho": "7/10", "L2": "3/2"}
+    plain, refined = solve(PLAIN_PTM, at), ptmcad.solve(**at)
+    assert len(plain.equilibria) == len(refined.equilibria) == 6
+    for one, other in zip(plain.equilibria, refined.equilibria, strict=True):
+        for first, second in zip((*one.angles, *one.eigenvalues), (*other.angles, *other.eigenvalues), strict=True):
+            assert first.text(10) == second.text(10)
+
+
+def test_a_number_that_is_zero_without_being_constant_makes_poses_undecided() -> None:
+    assert solve(VON_MISES, {"a": "1/2", "f": "0"}).status is Status.UNDECIDED  # h = 0 is an equilibrium
+
+
+def solve(record: dict[str, Any], at: dict[str, str]) -> ptmcad.Poses:
+    model = _slice(record).model
+    return ptmcad.solve(model=model, **({"l0": "1"} if record is VON_MISES else {}), **at)
