@@ -20,7 +20,6 @@ from typing import Any
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.mechanism import ptm
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import slice_from
@@ -182,12 +181,6 @@ def load_certified(progress: Progress | None = None) -> None:
 
 
 def _check_certified(slice: Slice, options: Options) -> None:
-    if slice.model != ptm():
-        raise ConfigError(
-            f"the certified engine knows the paper's mechanism only, and the slice is of {slice.model.name}: "
-            "set free lengths to zero for the exact engine",
-            key="engine",
-        )
     if options.area_tolerance is not None:
         raise ConfigError(
             "the certified engine bounds areas by what it leaves undetermined: give tolerance instead",

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
 from ptmcad.errors import ConfigError, shown
-from ptmcad.mechanism import Model, ptm
+from ptmcad.mechanism import Mechanism, Model, ptm
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import point_from_mapping
 from ptmcad.question.slice import have_free_lengths
@@ -51,17 +51,14 @@ def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> P
     Raises
     ------
     ConfigError
-        For springs with a free length in another mechanism than the paper's.
+        For springs with a free length in a mechanism that the certified engine does not take.
     """
-    if needs_intervals(model, parameters):
-        if model != ptm():
-            raise ConfigError(
-                f"springs with a free length have known poses in the paper's mechanism only, and this is {model.name}"
-            )
+    if isinstance(model, Mechanism) and needs_intervals(model, parameters):
         with loading("the certified engine"):
+            from ptmcad.certified.plain.poses import plain_poses
             from ptmcad.certified.poses import certified_poses
         check_room("the certified engine")
-        return certified_poses(parameters, digits)
+        return certified_poses(parameters, digits) if model == ptm() else plain_poses(model, parameters, digits)
     from ptmcad.exact.poses import exact_poses
 
     return exact_poses(model, {n: v for n, v in parameters.items() if n not in model.free_lengths}, digits)

@@ -13,7 +13,8 @@ from fractions import Fraction
 from itertools import islice
 
 from ptmcad.answer.regionmap import Cell, PlanStep, Region, RegionMap, Status
-from ptmcad.certified.points import PointCount, PointCounter
+from ptmcad.certified.formulation import Counter
+from ptmcad.certified.points import PointCount
 from ptmcad.certified.statement import system_text
 from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import components
@@ -21,7 +22,6 @@ from ptmcad.cover.borders import area_bounds
 from ptmcad.cover.complement import Components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.samples import samples
-from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Count, Point, Slice
 
 MAX_COUNTED = 500
@@ -36,7 +36,7 @@ class Assembler:
     """Makes maps of one slice."""
 
     slice: Slice
-    counter: PointCounter
+    counter: Counter
     plan: tuple[PlanStep, ...]
     versions: Mapping[str, str]
 
@@ -71,7 +71,7 @@ class Assembler:
         return RegionMap(
             slice=self.slice,
             status=status,
-            system=system_text(ptm()),
+            system=system_text(self.slice.model),
             base=0,
             complex_solutions=0,
             components=(),

@@ -20,10 +20,9 @@ import numpy as np
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.assembly import Assembler
 from ptmcad.certified.covering import Lattice, Thinning, box_rectangles, thinning
+from ptmcad.certified.formulation import curves, distance_from_degeneracy, point_counter
 from ptmcad.certified.loading import load
 from ptmcad.certified.pace import SAFETY, Pace
-from ptmcad.certified.points import point_counter
-from ptmcad.certified.ptm.curves import curves, distance_from_degeneracy
 from ptmcad.certified.refinement import Enclosure, begin, refine
 from ptmcad.certified.search import Boxes
 from ptmcad.certified.statement import plan_of

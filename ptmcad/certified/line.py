@@ -17,8 +17,8 @@ from flint import ctx
 from ptmcad.certified.arb_evaluation import ball, lower, upper
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.curve import Curve
-from ptmcad.certified.points import PointCount, point_counter
-from ptmcad.certified.ptm.curves import curves
+from ptmcad.certified.formulation import curves, point_counter
+from ptmcad.certified.points import PointCount
 from ptmcad.certified.search import Boxes, isolate
 from ptmcad.certified.system import System
 from ptmcad.certified.tape import enclosing_floats

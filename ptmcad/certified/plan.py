@@ -8,6 +8,7 @@ from __future__ import annotations
 from ptmcad.answer.plan import saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import PlanStep
 from ptmcad.certified.ptm.statics import positive_base
+from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Count, Slice
 
 
@@ -18,6 +19,8 @@ def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
     zero = [name for name in zero_parameters(slice) if name not in free_lengths]
     steps = [saving_step("imports", without, "imports of matplotlib and sympy")]
     steps += zero_terms([*zero, *absent])
+    if slice.model != ptm():
+        return (*steps, *_plain(slice, without))
     steps.append(PlanStep("discriminant variety", False, "its degree is out of reach when springs have free lengths"))
     if slice.count in (Count.STABLE, Count.ADMISSIBLE):
         steps += [saving_step("folds-of-saddles", without), saving_step("cones-and-creases", without)]
@@ -25,6 +28,17 @@ def beforehand(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
     if unloaded(slice):
         steps.append(saving_step("unloaded-factor", without))
     return tuple(steps)
+
+
+def _plain(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
+    """The steps of a model without formulas of its own."""
+    reason = (
+        "its degree is out of reach when springs have free lengths"
+        if slice.has_free_lengths
+        else "curves are enclosed, as the certified engine was asked for"
+    )
+    variety = PlanStep("discriminant variety", False, reason)
+    return (variety, saving_step("folds-of-saddles", without)) if slice.count is Count.STABLE else (variety,)
 
 
 def unloaded(slice: Slice) -> bool:

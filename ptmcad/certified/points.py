@@ -197,7 +197,7 @@ def _kinds(
                 return None
             zeros.append(zero)
         else:
-            zeros.append(_Zero(_solution(wide, box, kind), (signs[3], signs[4], signs[5])))
+            zeros.append(_Zero(boxed(wide, box, kind, (TH1, TH2)), (signs[3], signs[4], signs[5])))
     return [zero for zero in zeros if not only_minima or zero.solution.signs == "++"]
 
 
@@ -245,16 +245,22 @@ def _kind(signs: Sequence[int]) -> str | None:
     return None
 
 
-def _solution(unique: Boxes, narrow: Boxes, kind: str) -> Solution:
-    """A square box between the two, its radius a power of two."""
-    center = [0.5 * (narrow[k] + narrow[k + 4]) for k in (TH1, TH2)]
+def boxed(unique: Boxes, narrow: Boxes, signs: str, unknowns: Sequence[int]) -> Solution:
+    """A cube between the two boxes, its radius a power of two.
+
+    Parameters
+    ----------
+    unique, narrow : shape (2v,): low ends, then high ends; ``narrow`` lies in ``unique``.
+    unknowns : numbers of the variables that the cube has, in order.
+    """
+    variables = len(narrow) // 2
+    center = [0.5 * (narrow[k] + narrow[k + variables]) for k in unknowns]
     room = inf
     need = 0.0
-    for c, k in zip(center, (TH1, TH2), strict=True):
-        room = min(room, c - unique[k], unique[k + 4] - c)
-        need = max(need, c - narrow[k], narrow[k + 4] - c)
-    radius = _between(Fraction(need), Fraction(room))
-    return Solution((Fraction(center[0]), Fraction(center[1])), radius, kind)
+    for c, k in zip(center, unknowns, strict=True):
+        room = min(room, c - unique[k], unique[k + variables] - c)
+        need = max(need, c - narrow[k], narrow[k + variables] - c)
+    return Solution(tuple(map(Fraction, center)), _between(Fraction(need), Fraction(room)), signs)
 
 
 def _solution_of_balls(zero: Isolated, kind: str) -> Solution:

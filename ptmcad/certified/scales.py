@@ -1,4 +1,4 @@
-"""How strongly the axes act on the equilibrium, compared with the angles: which variable it pays to bisect.
+"""How strongly the axes act on the equilibrium, compared with the unknowns: which variable it pays to bisect.
 
 Guarantee: none is needed. A search is right with any weights; with good ones it is faster.
 """
@@ -6,6 +6,8 @@ Guarantee: none is needed. A search is right with any weights; with good ones it
 from __future__ import annotations
 
 import random
+from collections.abc import Sequence
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,33 +19,64 @@ from ptmcad.question.slice import Slice
 
 SAMPLES = 200
 _SEED = 1
+_FULL_TURN = (-np.pi, np.pi)
 
 
 def axis_weights(slice: Slice, equilibrium: tuple[Formula, Formula]) -> tuple[float, float]:
-    """The widths of the axes count this much in comparison with an angle's.
+    """The widths of the axes count this much in comparison with an angle's."""
+    x, y, *_ = variable_weights(slice, equilibrium, (_FULL_TURN, _FULL_TURN))
+    return x, y
 
-    It is the ratio of the typical derivatives of the equations of equilibrium by the axis and by the angles, at points
-    of the window that are chosen at random but always the same.
+
+def variable_weights(
+    slice: Slice, equations: Sequence[Formula], ranges: Sequence[tuple[float, float]]
+) -> tuple[float, ...]:
+    """The widths of the axes and of the unknowns count this much; the unknown that acts most has the weight 1.
+
+    It is the ratio of the typical derivatives of the equations of equilibrium by the axes and by the unknowns, at
+    points of the window that are chosen at random but always the same. All unknowns but reals among angles have 1.
+
+    Parameters
+    ----------
+    equations : in the variables 0 and 1, the axes, and one variable for each of the ranges.
     """
-    graph = equilibrium[0].graph
-    tape = record([[graph.derivative(e, v) for v in range(4) for e in equilibrium]])
+    graph = equations[0].graph
+    variables = 2 + len(ranges)
+    slopes = [graph.derivative(e, v) for v in range(variables) for e in equations]
+    middles = _samples(slice, slopes, ranges)
+    sizes = np.abs(middles).reshape(SAMPLES, variables, len(equations)).max(axis=2)
+    usable: NDArray[np.float64] = sizes[np.isfinite(sizes).all(axis=1)]
+    if not len(usable):
+        return (1.0,) * variables
+    typical = np.median(usable, axis=0)
+    most = max(typical[2:])
+    x, y = (float(t / most) if most > 0 and t > 0 else 1.0 for t in typical[:2])
+    return (x, y, *(1.0 for _ in ranges))
+
+
+def typical_lengths(
+    slice: Slice, lengths: Sequence[Formula], ranges: Sequence[tuple[float, float]]
+) -> tuple[Fraction, ...]:
+    """The median of each formula over such points; 1 where it is not positive."""
+    if not lengths:
+        return ()
+    medians = np.median(_samples(slice, list(lengths), ranges), axis=0)
+    return tuple(Fraction(float(m)) if np.isfinite(m) and m > 0 else Fraction(1) for m in medians)
+
+
+def _samples(slice: Slice, formulas: list[Formula], ranges: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
+    """Values of formulas at the points, shape (SAMPLES, formulas), to within rounding."""
+    tape = record([formulas])
     generator = random.Random(_SEED)
     low, high = np.empty(len(tape)), np.empty(len(tape))
-    point = np.empty(4)
-    sizes = np.full((SAMPLES, 4), np.nan)
+    point = np.empty(2 + len(ranges))
+    values = np.full((SAMPLES, len(formulas)), np.nan)
     for k in range(SAMPLES):
         for v, axis in enumerate(slice.axes):
             point[v] = float(axis.low + (axis.high - axis.low) * generator.randrange(1, 1000) / 1000)
-        for v in (2, 3):
-            point[v] = generator.uniform(-np.pi, np.pi)
+        for v, (least, most) in enumerate(ranges, 2):
+            point[v] = generator.uniform(least, most)
         run(program(tape), point, point, low, high, 0, len(tape))
-        with np.errstate(over="ignore", invalid="ignore"):  # samples without a finite slope are left out below
-            slopes = np.abs(low[tape.outputs[0]].reshape(4, 2) + high[tape.outputs[0]].reshape(4, 2)) / 2
-        sizes[k] = slopes.max(axis=1)
-    usable: NDArray[np.float64] = sizes[np.isfinite(sizes).all(axis=1)]
-    if not len(usable):
-        return 1.0, 1.0
-    typical = np.median(usable, axis=0)
-    angles = max(typical[2], typical[3])
-    x, y = (float(t / angles) if angles > 0 and t > 0 else 1.0 for t in typical[:2])
-    return x, y
+        with np.errstate(over="ignore", invalid="ignore"):  # those without a finite value are left out by the callers
+            values[k] = (low[tape.outputs[0]] + high[tape.outputs[0]]) / 2
+    return values

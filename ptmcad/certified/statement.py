@@ -10,13 +10,25 @@ from collections.abc import Sequence
 from ptmcad.answer.regionmap import PlanStep, System
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.plan import beforehand
-from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import System as ParametricSystem
 from ptmcad.question.slice import Slice
 from ptmcad.text.tree import Chain, Negative, Number, Step, Tree, to_text
 
 
-def system_text(mechanism: Mechanism) -> System:
-    """The mechanism's potential with square roots; gradient and Hessian are its derivatives by the unknowns."""
+def system_text(model: Model) -> System:
+    """The potential, of a mechanism with square roots; gradient and Hessian are its derivatives by the unknowns.
+
+    Of a system without a potential the equations.
+    """
+    if isinstance(model, ParametricSystem):
+        potential = "" if model.potential is None else to_text(model.potential)
+        return System(tuple(model.unknowns), (), potential, tuple(map(to_text, model.equations)), ())
+    assert isinstance(model, Mechanism)
+    return System(tuple(model.unknowns), (), _energy(model), (), ())
+
+
+def _energy(mechanism: Mechanism) -> str:
     energy = []
     for spring in mechanism.springs:
         (x0, y0), (x1, y1) = mechanism.points[spring.start], mechanism.points[spring.end]
@@ -27,7 +39,7 @@ def system_text(mechanism: Mechanism) -> System:
         for load in mechanism.loads
         for force, coordinate in zip((load.x, load.y), mechanism.points[load.point], strict=True)
     ]
-    return System(tuple(mechanism.unknowns), (), " + ".join(energy) + "".join(work), (), ())
+    return " + ".join(energy) + "".join(work)
 
 
 def _difference(tree: Tree, less: Tree) -> str:

@@ -112,7 +112,9 @@ def table(result: RegionMap) -> str:
     """Regions, counts, areas, boundary curves with degrees (or the cover), time and error."""
     count = result.slice.count
     tally = Counter(count_text(r, count) for r in result.regions)
-    counts = "; ".join(f"{text} {_NAMES[count]}: {n} region{'s' * (n > 1)}" for text, n in sorted(tally.items()))
+    plain_index = count is Count.INDEX and len(result.slice.model.unknowns) != 2
+    named = "by negative eigenvalues" if plain_index else _NAMES[count]
+    counts = "; ".join(f"{text} {named}: {n} region{'s' * (n > 1)}" for text, n in sorted(tally.items()))
     bounds = [(count_text(r, count), r.area) for r in result.regions]
     if result.cover is not None:
         bounds = _by_count(bounds, result)

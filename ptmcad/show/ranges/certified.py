@@ -16,11 +16,12 @@ from ptmcad.text.numerals import shortest_text
 def table(found: CertifiedIntervals, digits: int) -> str:
     """One row for each interval, then what lies between them."""
     fixed = ", ".join(f"{n} = {shortest_text(v)}" for n, v in found.at.items())
-    rows = [["from", "to", "total", "stable", "min-saddle-max", "peaks", "sample"]]
+    known = any(i.cones is not None for i in found.intervals)  # of the paper's mechanism only
+    rows = [["from", "to", "total", "stable", "min-saddle-max" if known else "index", *["peaks"] * known, "sample"]]
     for i in found.intervals:
-        counts = ["undecided", "", "", ""]
+        counts = ["undecided", "", "", *[""] * known]
         if i.index is not None:
-            counts = [str(sum(i.index)), str(i.index[0]), "-".join(map(str, i.index)), str(i.cones)]
+            counts = [str(sum(i.index)), str(i.index[0]), "-".join(map(str, i.index)), *[str(i.cones)] * known]
         rows.append([_text(i.low, digits, up=True), _text(i.high, digits), *counts, shortest_text(i.sample)])
     lines = [f"{found.along.name} in ({shortest_text(found.along.low)}, {shortest_text(found.along.high)}) at {fixed}"]
     lines += ["", *aligned(rows)]
@@ -33,7 +34,8 @@ def table(found: CertifiedIntervals, digits: int) -> str:
             note = "" if change.proved else "undecided whether there is a "
             changes.append([place, note + " and a ".join(change.names)])
         lines += ["", *aligned(changes)]
-    lines += ["", "peaks: configurations without length of spring A3A4 in which the energy has a peak"]
+    if known:
+        lines += ["", "peaks: configurations without length of spring A3A4 in which the energy has a peak"]
     return "\n".join(lines)
 
 

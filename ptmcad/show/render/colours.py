@@ -53,7 +53,9 @@ def fill_of(region: Region, count: Count) -> Fill:
 
 
 def fill_of_index(index: MorseIndex) -> Fill:
-    """The fill for numbers of minima, saddles and maxima."""
+    """The fill for numbers of minima, saddles and maxima; of other than two unknowns for minima and all others."""
+    if len(index) != 3:
+        return _of(ONE_MAXIMUM, index[0], sum(index[1:]))
     minima, _, maxima = index
     return _of(ONE_MAXIMUM if maxima <= 1 else TWO_MAXIMA, minima, (1, 0, 0)[maxima] if maxima < 3 else maxima - 2)
 

@@ -1,0 +1,163 @@
+"""The curves of a slice at which counts change, for any problem: folds, and equilibria that a spring's cone swallows.
+
+Guarantee: each point of the window at which the chosen count changes lies on the projection of one of the curves
+(docs/soundness.md, "Plain formulas").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from ptmcad.certified.curve import Curve
+from ptmcad.certified.formula import Formula
+from ptmcad.certified.parameters import expression_formula
+from ptmcad.certified.plain.bounds import TURN, Range, ranges
+from ptmcad.certified.plain.chart import Chart, chart, determinant, extended_determinant, principal_minors
+from ptmcad.certified.plain.problem import FIRST, Problem, problem_of
+from ptmcad.certified.scales import typical_lengths, variable_weights
+from ptmcad.certified.system import system
+from ptmcad.question.slice import Count, Slice
+
+SHORT_SHARE = Fraction(1, 8)
+"""A spring shorter than this part of its typical length is searched in its chart."""
+TURNING_WEIGHT = 0.25
+"""Of phi, which follows from the unknowns, in the choice which variable to bisect."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Search:
+    """What all curves of a slice have in common."""
+
+    problem: Problem
+    ranges: tuple[Range, ...]
+    weights: tuple[float, ...]
+    short: tuple[Fraction, ...]
+    stable: bool
+
+
+def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
+    """The curves at which ``count`` may change.
+
+    Parameters
+    ----------
+    without : names of savings to switch off, of `ptmcad.question.savings`.
+
+    Raises
+    ------
+    ConfigError, GeometryError
+        As `problem_of` and `ranges` do.
+    """
+    problem = problem_of(slice)
+    found = ranges(problem, slice.axes)
+    at = chart(problem)
+    search = _Search(
+        problem,
+        found,
+        variable_weights(slice, at.equations, found),
+        tuple(_rounded(SHORT_SHARE * x) for x in typical_lengths(slice, at.lengths, found)),
+        problem.is_gradient and count is Count.STABLE and "folds-of-saddles" not in without,
+    )
+    if len(problem.unknowns) == 1:
+        return (_fold(search, at), *_points_without_length(search, at))
+    return (_fold(search, at), *_short_folds(search), *_cones(search))
+
+
+def _rounded(value: Fraction) -> Fraction:
+    """A power of two near a positive number; any would do."""
+    result = Fraction(1)
+    while result > value:
+        result /= 2
+    while 2 * result < value:
+        result *= 2
+    return result
+
+
+def _fold(search: _Search, at: Chart) -> Curve:
+    """Solutions with a singular Jacobian, every spring with a free length long where the short ones have a chart."""
+    charted = len(search.problem.unknowns) > 1
+    long = [extent - short for extent, short in zip(at.lengths, search.short, strict=True) if charted]
+    semidefinite: list[Formula] = principal_minors(at.hessian) if search.stable else []
+    return Curve(
+        _name(search),
+        _reason(search),
+        system(
+            [*at.equations, determinant(at.hessian)],
+            (0, 1, *search.problem.variables),
+            ((), at.balances),
+            [*long, *semidefinite],
+        ),
+        search.ranges,
+        np.array(search.weights),
+    )
+
+
+def _short_folds(search: _Search) -> Iterator[Curve]:
+    """The same where one spring is short, in its chart; the other ones may have any length."""
+    for s, cone in enumerate(search.problem.cones):
+        at = chart(search.problem, s)
+        aligned, along, *turned = at.turning
+        semidefinite = []
+        if search.stable:  # |d| times the diagonal of the Hessian, whose last part is K (u x dd)^2 / |d|
+            pull = expression_formula(along.graph, cone.pull)
+            semidefinite = [along * at.hessian[i][i] - pull * slope.squared() for i, slope in enumerate(turned)]
+        yield Curve(
+            f"{_name(search)}, spring {cone.name} short",
+            f"{_reason(search)}; spring {cone.name} is at most {search.short[s]} long",
+            system(
+                [aligned, *at.equations, extended_determinant(at, search.problem)],
+                (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
+                ((), at.balances),
+                [along, search.short[s] - at.lengths[s], *semidefinite],
+            ),
+            (*search.ranges, TURN),
+            np.array([*search.weights, TURNING_WEIGHT]),
+        )
+
+
+def _points_without_length(search: _Search, at: Chart) -> Iterator[Curve]:
+    """The same as `_cones` for one unknown, where two equations d = 0 leave curves and need no direction."""
+    (unknown,) = (at.equations[0].graph.variable(k) for k in search.problem.variables)
+    for cone in search.problem.cones:
+        vanishing = [d.formula(unknown.graph, [unknown]) for d in cone.difference]
+        yield Curve(
+            f"cone {cone.name}",
+            f"an equilibrium is swallowed where spring {cone.name} has no length",
+            system([f for f in vanishing if f.value != 0], (0, 1, FIRST), ((), at.equations)),
+            search.ranges,
+            np.array(search.weights),
+        )
+
+
+def _cones(search: _Search) -> Iterator[Curve]:
+    """Equilibria that come to a configuration in which a spring with a free length has none."""
+    for s, cone in enumerate(search.problem.cones):
+        at = chart(search.problem, s)
+        graph = at.equations[0].graph
+        unknowns = [graph.variable(k) for k in search.problem.variables]
+        # a coordinate that is zero everywhere says nothing
+        vanishing = [f for f in (d.formula(graph, unknowns) for d in cone.difference) if f.value != 0]
+        yield Curve(
+            f"cone {cone.name}",
+            f"an equilibrium is swallowed where spring {cone.name} has no length",
+            system(
+                [*vanishing, *at.equations],
+                (0, 1, *search.problem.variables, FIRST + len(search.problem.unknowns)),
+                ((), at.balances),
+            ),
+            (*search.ranges, TURN),
+            np.array([*search.weights, TURNING_WEIGHT]),
+        )
+
+
+def _name(search: _Search) -> str:
+    return "fold of a stable equilibrium" if search.stable else "fold"
+
+
+def _reason(search: _Search) -> str:
+    if search.stable:
+        return "a minimum meets a saddle: det H = 0 with no negative principal minor"
+    return "equilibria meet: det H = 0" if search.problem.is_gradient else "solutions meet: the Jacobian is singular"

@@ -1,0 +1,168 @@
+"""The equilibria at a point of any mechanism with springs of free lengths, with everything asked of a pose.
+
+Guarantee: all equilibria are there, each proved; every number settles the digits asked for. What could not be decided,
+such as a number that is zero without being a constant, makes the whole answer UNDECIDED.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from flint import acb_mat, arb, arb_mat, ctx
+
+from ptmcad.answer.poses import Pose, Poses, Spring
+from ptmcad.answer.regionmap import Solution, Status
+from ptmcad.certified.arb_evaluation import ball, run_arb
+from ptmcad.certified.arb_isolation import Box, refined
+from ptmcad.certified.formula import Graph
+from ptmcad.certified.plain.points import PlainCounter, plain_counter
+from ptmcad.certified.potential import potential
+from ptmcad.certified.tape import Tape, record
+from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism.evaluate import value_at
+from ptmcad.question.domain import prove_slice
+from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.text.balls import enclosed
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.expressions import axis
+
+MAX_DOUBLINGS = 4
+"""Of the bits, for a number that is not distinguished from zero."""
+NOT_TOLD = (
+    "the equilibria could not be distinguished: there are infinitely many, one is nearly degenerate, or a spring has "
+    "nearly no length there"
+)
+ZERO = "a number of an equilibrium could not be distinguished from zero"
+
+
+def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits: int) -> Poses:
+    """All equilibria of a mechanism.
+
+    Parameters
+    ----------
+    parameters : all variables of the description.
+    digits : significant digits that every enclosure settles.
+
+    Raises
+    ------
+    ConfigError, GeometryError
+        As `ptmcad.certified.plain.points.plain_counter` does, or where a parameter is not what its kind asks for.
+    """
+    unit = (Fraction(0), Fraction(1))
+    constants = {name: 0 * axis(0) + value for name, value in parameters.items()}
+    slice = Slice("point", mechanism, (Axis("x", *unit), Axis("y", *unit)), constants, Count.INDEX)
+    prove_slice(slice)
+    counter = plain_counter(slice)
+    counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
+    if not counts.decided:
+        return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
+    written, poses, most = _tape(mechanism, parameters), [], 0
+    for solution in counts.solutions:
+        pose, bits = _pose(mechanism, parameters, written, counter, solution, digits)
+        most = max(most, bits)
+        if pose is None:
+            return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, most, ZERO)
+        poses.append(pose)
+    ordered = sorted(poses, key=lambda pose: (not pose.stable, pose.known_energy.center))
+    return Poses(mechanism, parameters, tuple(ordered), Status.CERTIFIED, digits, most)
+
+
+def _tape(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[Tape, tuple[str, ...]]:
+    """Everything asked of a pose as a tape, and the names of its outputs; the Hessian's entries come row by row."""
+    graph = Graph()
+    unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, 2)}
+    at = potential(mechanism, {name: graph.constant(value) for name, value in parameters.items()}, unknowns)
+    found = {f"cos {angle}": unknowns[angle].cos() for angle in mechanism.angles}
+    found |= {f"sin {angle}": unknowns[angle].sin() for angle in mechanism.angles}
+    found |= {f"real {name}": unknowns[name] for name in mechanism.reals}
+    found |= {f"{name} {n}": coordinate for name, pair in at.points.items() for n, coordinate in enumerate(pair)}
+    found |= {f"length {n}": length for n, length in enumerate(at.lengths)}
+    found |= {f"force {n}": force for n, force in enumerate(at.forces)}
+    found["energy"] = at.energy
+    slopes = [graph.derivative(at.energy, v.variable) for v in unknowns.values()]
+    hessian = [graph.derivative(slope, v.variable) for slope in slopes for v in unknowns.values()]
+    return record([list(found.values()), hessian]), tuple(found)
+
+
+def _pose(
+    mechanism: Mechanism,
+    parameters: Mapping[str, Fraction],
+    written: tuple[Tape, tuple[str, ...]],
+    counter: PlainCounter,
+    solution: Solution,
+    digits: int,
+) -> tuple[Pose | None, int]:
+    """The pose with all numbers settled, and the bits that this took; None when some number is not."""
+    tape, names = written
+    bits, found = 64 + 4 * digits, dict[str, Enclosure]()
+    for _ in range(MAX_DOUBLINGS):
+        with ctx.workprec(bits):
+            radius = solution.radius
+            box: Box = (arb(0), arb(0), *(ball(c - radius, c + radius) for c in solution.center))
+        box = refined(counter.equations, box, bits)
+        with ctx.workprec(bits):
+            values = run_arb(tape, box, bits)
+            numbers = {name: values[int(place)] for name, place in zip(names, tape.outputs[0], strict=True)}
+            for angle in mechanism.angles:
+                radians = arb.atan2(numbers[f"sin {angle}"], numbers[f"cos {angle}"])
+                numbers |= {angle: radians, f"degrees {angle}": radians * 180 / arb.pi()}
+            size = len(mechanism.unknowns)
+            entries = arb_mat(size, size, [values[int(place)] for place in tape.outputs[1]])
+            numbers |= {f"eigenvalue {n}": value for n, value in enumerate(_eigenvalues(entries))}
+            constants = {n: tape.constants.get(int(k)) for n, k in zip(names, tape.outputs[0], strict=True)}
+            for name in numbers.keys() - found.keys():
+                exact = constants.get(name)
+                settled = enclosed(numbers[name], digits) if exact is None else Enclosure(exact, exact)
+                if settled is not None:
+                    found[name] = settled
+        if found.keys() == numbers.keys() and f"eigenvalue {size - 1}" in found:
+            return _assembled(mechanism, parameters, found, solution.signs.count("-")), bits
+        bits *= 2
+    return None, bits // 2
+
+
+def _eigenvalues(matrix: arb_mat) -> list[arb]:
+    """The eigenvalues of a symmetric matrix, the smallest first; none where they are not separated."""
+    if matrix.nrows() == 1:
+        return [matrix[0, 0]]
+    try:
+        found = acb_mat(matrix).eig()
+    except ValueError:
+        return []
+    return sorted((value.real for value in found), key=lambda value: float(value.mid()))
+
+
+def _assembled(
+    mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Mapping[str, Enclosure], index: int
+) -> Pose:
+    springs = tuple(
+        Spring(
+            spring.name,
+            spring.start,
+            spring.end,
+            value_at(spring.stiffness, parameters),
+            at[f"length {n}"],
+            at[f"force {n}"],
+            value_at(spring.free, parameters),
+        )
+        for n, spring in enumerate(mechanism.springs)
+    )
+    eigenvalues = tuple(at[f"eigenvalue {n}"] for n in range(len(mechanism.unknowns)))
+    if sum(value.high < 0 for value in eigenvalues) != index:
+        raise ArithmeticError("the Hessian's eigenvalues contradict the index that was proved")
+    return Pose(
+        angles=tuple(at[angle] for angle in mechanism.angles),
+        degrees=tuple(at[f"degrees {angle}"] for angle in mechanism.angles),
+        cosines_sines=tuple(at[f"{part} {angle}"] for angle in mechanism.angles for part in ("cos", "sin")),
+        nodes={name: (at[f"{name} 0"], at[f"{name} 1"]) for name in mechanism.points},
+        springs=springs,
+        energy=at["energy"],
+        eigenvalues=eigenvalues,
+        multiplicity=1,
+        index=index,
+        stable=index == 0,
+        flat=False,
+        admissible=index == 0 and all(spring.force.low > 0 for spring in springs),
+        reals=tuple(at[f"real {name}"] for name in mechanism.reals),
+    )

@@ -1,0 +1,136 @@
+"""The critical points of a slice's potential: a smooth part, and a cone for each spring with a free length.
+
+Guarantee: every term is read off the description. Up to a constant the potential is V - sum of K_s |d_s|, with V and
+the coordinates of d_s trigonometric polynomials: a spring of stiffness k and free length l0 between points that are d
+apart has the energy k |d|^2/2 - k l0 |d| + k l0^2/2, so that K = k l0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from fractions import Fraction
+
+from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
+from ptmcad.errors import ConfigError, GeometryError
+from ptmcad.mechanism import Mechanism, System
+from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.question.positivity import Need, Proved, decide
+from ptmcad.question.slice import Count, Slice
+from ptmcad.text.expressions import Expression, constant
+
+MAX_UNKNOWNS = 3
+"""Angles and lengths; the time of a search multiplies with every one."""
+FIRST = 2
+"""Number of the first unknown among the variables, after the two axes."""
+
+
+_IRRELEVANT = frozenset({"name", "parameters", "unknowns", "source", "bars", "supports", "symmetries"})
+_USED = frozenset({"points", "springs", "loads", "equations", "potential", "inequalities", "stability"})
+"""What a description may have: nothing else may go unnoticed into a proof."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cone:
+    """A spring with a free length: its name, K, and the difference d of its ends' coordinates."""
+
+    name: str
+    pull: Expression
+    difference: tuple[TrigonometricPolynomial, TrigonometricPolynomial]
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Equations, one for each unknown, and the cones whose slopes are to be taken off them.
+
+    Attributes
+    ----------
+    unknowns : names in the description's order; variables 2, 3 ... of formulas.
+    reals : those that are no angles.
+    equations : of a potential V the derivatives by the unknowns.
+    is_gradient : whether they are; then the Jacobian is a Hessian.
+    """
+
+    unknowns: tuple[str, ...]
+    reals: tuple[str, ...]
+    equations: tuple[TrigonometricPolynomial, ...]
+    cones: tuple[Cone, ...]
+    is_gradient: bool
+
+    @property
+    def variables(self) -> tuple[int, ...]:
+        """The unknowns' numbers among the variables."""
+        return tuple(range(FIRST, FIRST + len(self.unknowns)))
+
+
+def problem_of(slice: Slice) -> Problem:
+    """The problem of a slice's model.
+
+    Raises
+    ------
+    ConfigError
+        When the plain formulas do not take the model or the count: more than `MAX_UNKNOWNS` unknowns, conditions on
+        solutions, or `Count.ADMISSIBLE`.
+    GeometryError
+        When it is not proved that k l0 is nowhere negative in the window: only then is a spring without length, whose
+        energy has a peak there, no stable equilibrium that is not counted.
+    """
+    model = slice.model
+    if len(model.unknowns) > MAX_UNKNOWNS:
+        raise ConfigError(
+            f"the certified engine takes up to {MAX_UNKNOWNS} unknowns, and {model.name} has {len(model.unknowns)}",
+            key="engine",
+        )
+    if slice.count is Count.ADMISSIBLE:
+        raise ConfigError(
+            f"the certified engine counts admissible equilibria of the paper's mechanism only, not of {model.name}: "
+            "choose stable, total or index",
+            key="count",
+        )
+    for key in (found.name for found in fields(model)):
+        if key not in _IRRELEVANT | _USED and getattr(model, key):
+            raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key="engine")
+    ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
+    if isinstance(model, System):
+        if model.inequalities or model.stability:
+            raise ConfigError(
+                f"the certified engine takes no sign conditions, and {model.name} has some: choose exact", key="engine"
+            )
+        if model.potential is None:
+            equations = tuple(evaluate(tree, ring) for tree in model.equations)
+            return Problem(ring.unknowns, ring.reals, equations, (), False)
+        return Problem(ring.unknowns, ring.reals, _gradient(evaluate(model.potential, ring), ring), (), True)
+    assert isinstance(model, Mechanism)
+    smooth, cones = _energy(model, ring)
+    for cone in cones:
+        if not isinstance(decide(cone.pull, slice.axes, Need.NOT_NEGATIVE), Proved):
+            raise GeometryError(
+                f"it is not proved that stiffness times free length of spring {cone.name} is nowhere negative in the "
+                "window: narrow the window"
+            )
+    return Problem(ring.unknowns, ring.reals, _gradient(smooth, ring), cones, True)
+
+
+def _gradient(energy: TrigonometricPolynomial, ring: Harmonics) -> tuple[TrigonometricPolynomial, ...]:
+    return tuple(energy.derivative(k) for k in range(len(ring.unknowns)))
+
+
+def _energy(mechanism: Mechanism, ring: Harmonics) -> tuple[TrigonometricPolynomial, tuple[Cone, ...]]:
+    points = {name: (evaluate(x, ring), evaluate(y, ring)) for name, (x, y) in mechanism.points.items()}
+    smooth, cones = ring.constant(Fraction(0)), []
+    for spring in mechanism.springs:
+        (x0, y0), (x1, y1) = points[spring.start], points[spring.end]
+        k, free = evaluate(spring.stiffness, ring), evaluate(spring.free, ring)
+        dx, dy = x1 - x0, y1 - y0
+        smooth = smooth + (k * (dx * dx + dy * dy)).scaled(Fraction(1, 2))
+        pull = constant_of(k * free)
+        if pull.numerator and (dx.terms or dy.terms):
+            cones.append(Cone(spring.name, pull, (dx, dy)))
+    for load in mechanism.loads:
+        for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
+            smooth = smooth - evaluate(force, ring) * coordinate
+    return smooth, tuple(cones)
+
+
+def constant_of(value: TrigonometricPolynomial) -> Expression:
+    """The function of the axes that a polynomial without unknowns is."""
+    return next((a for a, _ in value.terms.values()), constant(0))

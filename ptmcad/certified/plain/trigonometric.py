@@ -1,0 +1,152 @@
+"""Polynomials in real unknowns and in the cosines and sines of unknown angles, over Q(x, y).
+
+Guarantee: exact, and in the normal form of Fourier: a sum of terms coefficient * cos(m.t) * h^e and coefficient *
+sin(m.t) * h^e with different (m, e), in which cos(t)^2 + sin(t)^2 is 1. Written out as formulas, each harmonic stands
+once, so that intervals lose little where a product of cosines and sines would have lost much.
+
+>>> ring = Harmonics(("t",), ())
+>>> ring.cos("t") * ring.cos("t") + ring.sin("t") * ring.sin("t") == ring.constant(Fraction(1))
+True
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from ptmcad.certified.formula import Formula, Graph
+from ptmcad.certified.parameters import expression_formula
+from ptmcad.errors import ExpressionError
+from ptmcad.text.expressions import Expression, constant
+
+Multi = tuple[int, ...]
+"""One integer for each unknown: the multiple of an angle, or the power of a real unknown."""
+_HALF = Fraction(1, 2)
+_NOTHING = constant(0)
+
+
+@dataclass(frozen=True, slots=True)
+class TrigonometricPolynomial:
+    """A sum of harmonics.
+
+    Attributes
+    ----------
+    terms : (m, e) to the coefficients of cos(m.t) h^e and of sin(m.t) h^e; the first entry of m that is not zero is
+        positive, and no term is zero.
+    """
+
+    terms: Mapping[tuple[Multi, Multi], tuple[Expression, Expression]]
+
+    def __add__(self, other: TrigonometricPolynomial) -> TrigonometricPolynomial:
+        return _collected([*self.terms.items(), *other.terms.items()])
+
+    def __sub__(self, other: TrigonometricPolynomial) -> TrigonometricPolynomial:
+        return self + other.scaled(Fraction(-1))
+
+    def __mul__(self, other: TrigonometricPolynomial) -> TrigonometricPolynomial:
+        found = []
+        for (m, e), (a, b) in self.terms.items():
+            for (n, f), (c, d) in other.terms.items():
+                power = tuple(p + q for p, q in zip(e, f, strict=True))
+                above = tuple(p + q for p, q in zip(m, n, strict=True))
+                below = tuple(p - q for p, q in zip(m, n, strict=True))
+                ac, bd, ad, bc = a * c * _HALF, b * d * _HALF, a * d * _HALF, b * c * _HALF
+                found += [((above, power), (ac - bd, ad + bc)), ((below, power), (ac + bd, bc - ad))]
+        return _collected(found)
+
+    def scaled(self, factor: Expression | Fraction) -> TrigonometricPolynomial:
+        """Times a number or a function of the axes."""
+        return _collected([(key, (a * factor, b * factor)) for key, (a, b) in self.terms.items()])
+
+    def derivative(self, unknown: int) -> TrigonometricPolynomial:
+        """The partial derivative by the unknown of this number, an angle or not."""
+        found = []
+        for (m, e), (a, b) in self.terms.items():
+            if m[unknown]:
+                found.append(((m, e), (b * m[unknown], a * -m[unknown])))
+            if e[unknown]:
+                lower = tuple(p - (k == unknown) for k, p in enumerate(e))
+                found.append(((m, lower), (a * e[unknown], b * e[unknown])))
+        return _collected(found)
+
+    def formula(self, graph: Graph, unknowns: Sequence[Formula]) -> Formula:
+        """The polynomial as a formula: by Horner's rule in each real unknown, over sums of harmonics."""
+        return _horner(graph, unknowns, dict(self.terms), 0)
+
+
+_Terms = dict[tuple[Multi, Multi], tuple[Expression, Expression]]
+
+
+def _horner(graph: Graph, unknowns: Sequence[Formula], terms: _Terms, unknown: int) -> Formula:
+    """The terms' sum without the powers of earlier unknowns."""
+    if unknown == len(unknowns):
+        total = graph.constant(0)
+        for (m, _), (a, b) in sorted(terms.items(), key=lambda term: term[0]):
+            angle = graph.constant(0)
+            for multiple, variable in zip(m, unknowns, strict=True):
+                angle = angle + multiple * variable
+            if angle.value is not None:  # no angle: the cosine is 1
+                total = total + expression_formula(graph, a)
+                continue
+            for coefficient, wave in ((a, angle.cos()), (b, angle.sin())):
+                total = total + expression_formula(graph, coefficient) * wave
+        return total
+    by_power: dict[int, _Terms] = {}
+    for (m, e), coefficients in terms.items():
+        by_power.setdefault(e[unknown], {})[m, e] = coefficients
+    total = graph.constant(0)
+    for power in range(max(by_power, default=0), -1, -1):
+        total = total * unknowns[unknown] + _horner(graph, unknowns, by_power.get(power, {}), unknown + 1)
+    return total
+
+
+def _collected(
+    terms: Sequence[tuple[tuple[Multi, Multi], tuple[Expression, Expression]]],
+) -> TrigonometricPolynomial:
+    """The sum of terms that need not be different, nor have a first multiple that is positive."""
+    total: dict[tuple[Multi, Multi], tuple[Expression, Expression]] = {}
+    for (m, e), (a, b) in terms:
+        lead = next((multiple for multiple in m if multiple), 0)
+        multiples = tuple(-multiple for multiple in m) if lead < 0 else m
+        sine = _NOTHING if lead == 0 else -b if lead < 0 else b
+        known = total.get((multiples, e), (_NOTHING, _NOTHING))
+        total[multiples, e] = (known[0] + a, known[1] + sine)
+    return TrigonometricPolynomial({key: (a, b) for key, (a, b) in total.items() if a.numerator or b.numerator})
+
+
+@dataclass(frozen=True, slots=True)
+class Harmonics:
+    """The ring of these polynomials, for `ptmcad.mechanism.evaluate`.
+
+    Attributes
+    ----------
+    unknowns : their names; multiples and powers come in this order.
+    reals : those that are no angles.
+    parameters : functions of the axes by name; a parameter that is missing is zero.
+    """
+
+    unknowns: tuple[str, ...]
+    reals: tuple[str, ...]
+    parameters: Mapping[str, Expression] = field(default_factory=dict)
+
+    def constant(self, value: Fraction) -> TrigonometricPolynomial:
+        return self._term(constant(value), _NOTHING)
+
+    def parameter(self, name: str) -> TrigonometricPolynomial:
+        if name in self.reals:
+            return self._term(constant(1), _NOTHING, power=name)
+        if name in self.unknowns:
+            raise ExpressionError(f"{name} is an angle: it stands inside of cos or sin")
+        return self._term(self.parameters.get(name, _NOTHING), _NOTHING)
+
+    def cos(self, angle: str) -> TrigonometricPolynomial:
+        return self._term(constant(1), _NOTHING, angle=angle)
+
+    def sin(self, angle: str) -> TrigonometricPolynomial:
+        return self._term(_NOTHING, constant(1), angle=angle)
+
+    def _term(self, a: Expression, b: Expression, angle: str = "", power: str = "") -> TrigonometricPolynomial:
+        multiples = tuple(int(name == angle) for name in self.unknowns)
+        powers = tuple(int(name == power) for name in self.unknowns)
+        return _collected([((multiples, powers), (a, b))])

@@ -1,0 +1,346 @@
+"""Plain formulas: any mechanism or potential with one to three unknowns, derived from its description."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from flint import arb, arb_mat
+
+import ptmcad
+from ptmcad.answer.regionmap import Status
+from ptmcad.certified.formulation import curves, point_counter
+from ptmcad.certified.intervals import certified_intervals
+from ptmcad.certified.plain.bounds import ranges
+from ptmcad.certified.plain.chart import chart, extended_determinant
+from ptmcad.certified.plain.points import inertia, plain_counter
+from ptmcad.certified.plain.problem import problem_of
+from ptmcad.certified.plain.trigonometric import Harmonics
+from ptmcad.certified.tape import record
+from ptmcad.errors import ConfigError, GeometryError
+from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism.ptm import RECORD
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.slice import Count, Slice
+from ptmcad.show.ranges.certified import table as interval_table
+
+VON_MISES: dict[str, Any] = {
+    "name": "von_mises",
+    "mechanism": {
+        "name": "von_mises",
+        "parameters": {
+            "a": {"kind": "base", "default": 1},
+            "k": {"kind": "stiffness", "default": 1},
+            "l0": {"kind": "free length", "default": 1},
+            "f": {"kind": "force"},
+        },
+        "unknowns": {"h": "length"},
+        "points": {"A": ["-a", 0], "B": ["a", 0], "P": [0, "h"]},
+        "springs": [{"between": ["A", "P"], "k": "k", "free": "l0"}, {"between": ["B", "P"], "k": "k", "free": "l0"}],
+        "loads": {"P": [0, "f"]},
+    },
+    "parameters": {"l0": 1},
+    "axes": {"a": [0, 2], "f": [-1, 1]},
+    "count": "index",
+}
+CHAIN: dict[str, Any] = {
+    "name": "chain",
+    "mechanism": {
+        "name": "chain",
+        "parameters": {"a": {"kind": "base", "default": 1}, "F": {"kind": "force"}},
+        "unknowns": {"s": "angle", "t": "angle"},
+        "points": {
+            "O": [0, 0],
+            "A": [0, "a"],
+            "P": ["sin(s)", "cos(s)"],
+            "Q": ["sin(s) + sin(t)", "cos(s) + cos(t)"],
+        },
+        "bars": [["O", "P"], ["P", "Q"]],
+        "springs": [{"between": ["A", "P"], "k": 1}, {"between": ["A", "Q"], "k": 1}],
+        "loads": {"P": ["1/10", 0], "Q": [0, "F"]},
+    },
+    "axes": {"a": [1, 3], "F": [-1, 2]},
+    "count": "index",
+}
+THREE_ANGLES: dict[str, Any] = {
+    "name": "three_angles",
+    "system": {
+        "unknowns": {"t0": "angle", "t1": "angle", "t2": "angle"},
+        "potential": "-F*(cos(t0)+cos(t1)+cos(t2)) - k*(cos(t0-t1)+cos(t1-t2)) - G*sin(t0)",
+    },
+    "parameters": {"G": "1/3"},
+    "axes": {"k": [0, 1], "F": [1, 2]},
+    "count": "index",
+}
+PENDULUM: dict[str, Any] = {
+    "name": "pendulum",
+    "mechanism": {
+        "name": "pendulum",
+        "parameters": {
+            "a": {"kind": "base", "default": 1},
+            "l0": {"kind": "free length", "default": 0},
+            "W": {"kind": "force"},
+        },
+        "unknowns": {"th": "angle"},
+        "points": {"O": [0, 0], "A": [0, "a"], "P": ["sin(th)", "cos(th)"]},
+        "bars": [["O", "P"]],
+        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
+        "loads": {"P": ["1/10", "W"]},
+    },
+    "parameters": {"l0": "1/2"},
+    "axes": {"a": [0, 3], "W": [-4, 4]},
+    "count": "index",
+}
+PLAIN_PTM: dict[str, Any] = {
+    "name": "plain_ptm",
+    "mechanism": {key: value for key, value in RECORD.items() if key != "symmetries"} | {"name": "plain_ptm"},
+    "parameters": {"L1": 1, "k": 100, "l0": "1/5", "F3": -10, "F4": -10},
+    "axes": {"rho": ["1/20", 2], "L2": [0, 2]},
+    "count": "index",
+}
+
+
+def _slice(record: dict[str, Any], **changes: Any) -> Slice:
+    return slice_from_mapping(record | changes)
+
+
+def _bounds(result: ptmcad.RegionMap, **count: Any) -> tuple[Fraction, Fraction]:
+    """The area of the regions with a count, when the undetermined part belongs to them or not."""
+    horizontal, vertical = result.slice.axes
+    window = (horizontal.high - horizontal.low) * (vertical.high - vertical.low)
+    ((name, value),) = count.items()
+    area = sum((r.area[0] for r in result.regions if getattr(r, name) == value), Fraction(0))
+    return area, area + result.undetermined * window
+
+
+def test_von_mises_truss_has_three_equilibria_inside_of_the_astroid_of_area_1_0069() -> None:
+    result = ptmcad.classify(_slice(VON_MISES), tolerance="1/200")
+    low, high = _bounds(result, total=3)
+    assert low <= Fraction("1.0069") <= high
+    assert {cell.index for cell in result.cells} == {(1, 0), (2, 1)}
+    inside = result.locate(a="1/2", f="1/10")
+    assert (inside.total, inside.stable) == (3, 2)
+
+
+@pytest.mark.parametrize("fixed", ["stable", "total"])
+def test_other_counts_of_the_truss_agree(fixed: str) -> None:
+    result = ptmcad.classify(_slice(VON_MISES), count=fixed, tolerance="1/50")
+    at = result.locate(a="1/2", f="1/10")
+    assert (at.stable if fixed == "stable" else at.total) == (2 if fixed == "stable" else 3)
+
+
+def test_bound_of_a_length_is_proved_or_the_slice_refused() -> None:
+    slice = _slice(VON_MISES)
+    ((low, high),) = ranges(problem_of(slice), slice.axes)
+    assert low == -high and 1.5 < high <= 4  # 2 h = f + 2 h/l with |f| < 1 has no solution beyond 3/2
+    unbounded = {"name": "ramp", "system": {"unknowns": {"x": "real"}, "potential": "a*x + b*x^3"},
+                 "axes": {"a": [-1, 1], "b": [-1, 1]}}  # fmt: skip
+    with pytest.raises(ConfigError, match="no bound of the unknown x"):
+        ptmcad.classify(slice_from_mapping(unbounded), engine="certified")
+
+
+def test_pendulum_counts_cones_as_no_equilibria() -> None:
+    result = ptmcad.classify(_slice(PENDULUM), tolerance="1/100")
+    assert {cell.index for cell in result.cells} == {(1, 1), (2, 2)}
+    for cell in result.cells:  # the energy at 4000 angles
+        a, load = map(float, cell.sample)
+        assert cell.stable == _minima(a, load)
+
+
+def _minima(a: float, load: float, samples: int = 4000) -> int:
+    from math import cos, pi, sin, sqrt
+
+    def energy(th: float) -> float:
+        length = sqrt(sin(th) ** 2 + (cos(th) - a) ** 2)
+        return (length - 0.5) ** 2 / 2 - sin(th) / 10 - load * cos(th)
+
+    values = [energy(2 * pi * k / samples) for k in range(samples)]
+    return sum(values[k - 1] > values[k] < values[(k + 1) % samples] for k in range(samples))
+
+
+def test_two_angles_without_free_lengths_agree_with_the_exact_engine() -> None:
+    slice = _slice(CHAIN)
+    exact, certified = ptmcad.classify(slice), ptmcad.classify(slice, engine="certified", tolerance="1/200")
+    for index in {region.index for region in exact.regions}:
+        low, high = _bounds(certified, index=index)
+        assert low <= sum(r.area[1] for r in exact.regions if r.index == index)
+        assert sum(r.area[0] for r in exact.regions if r.index == index) <= high
+    for cell in certified.cells:
+        at = exact.locate(a=cell.sample[0], F=cell.sample[1])
+        assert (at.index, at.total) == (cell.index, cell.total)
+
+
+def test_three_angles_have_the_index_counts_of_three_dimensions() -> None:
+    result = ptmcad.classify(_slice(THREE_ANGLES), engine="certified", tolerance="1/100")
+    assert result.undetermined <= Fraction(1, 100)
+    assert {cell.index for cell in result.cells} == {(1, 3, 3, 1), (1, 3, 4, 2)}
+    for cell in result.cells:
+        exact = ptmcad.solve(model=result.slice.model, G="1/3", k=cell.sample[0], F=cell.sample[1], digits=3)
+        found = [pose.index for pose in exact.equilibria]
+        assert tuple(found.count(k) for k in range(4)) == cell.index
+
+
+POINTS = [("7/10", "3/2"), ("11/10", "6/5"), ("1/2", "1/3"), ("9/10", "19/20"), ("3/2", "1/2"), ("1/5", "1/4")]
+
+
+@pytest.mark.parametrize("l0", ["0", "1/5", "1/2"])
+def test_plain_and_refined_formulas_count_the_same_equilibria_of_the_papers_mechanism(l0: str) -> None:
+    plain = _slice(PLAIN_PTM, parameters={**PLAIN_PTM["parameters"], "l0": l0})
+    refined = _slice(PLAIN_PTM, mechanism="ptm", parameters={**PLAIN_PTM["parameters"], "l0": l0})
+    counters = [point_counter(plain), point_counter(refined)]
+    for x, y in POINTS:
+        first, second = (counter.at(Fraction(x), Fraction(y), Count.INDEX) for counter in counters)
+        assert first.decided and second.decided
+        assert (first.total, first.stable, first.index) == (second.total, second.stable, second.index), (x, y)
+        stable = counters[0].at(Fraction(x), Fraction(y), Count.STABLE)
+        assert stable.decided and stable.stable == first.stable
+
+
+def test_map_by_plain_formulas_agrees_with_the_one_by_refined_formulas() -> None:
+    window = {"rho": ["3/5", "6/5"], "L2": ["6/5", "9/5"]}
+    maps = [
+        ptmcad.classify(_slice(PLAIN_PTM, mechanism=mechanism, axes=window, count="stable"), tolerance="1/20")
+        for mechanism in (PLAIN_PTM["mechanism"], "ptm")
+    ]
+    for one, other in (maps, maps[::-1]):
+        located = [(cell, other.locate(rho=cell.sample[0], L2=cell.sample[1])) for cell in one.cells]
+        assert all(at.stable in (cell.stable, None) for cell, at in located)
+    stable = [{cell.stable for cell in one.cells} for one in maps]
+    assert stable[0] == stable[1]
+
+
+def test_extended_determinant_is_the_hessians_times_the_length() -> None:
+    from math import atan2, hypot
+
+    import numpy as np
+
+    from ptmcad.certified.evaluation import program, run
+
+    problem = problem_of(_slice(PLAIN_PTM))
+    direct = chart(problem)
+    (h11, h12), (_, h22) = direct.hessian
+    plain = record([[h11, h12, h22, *direct.equations]])
+    for s, cone in enumerate(problem.cones):
+        turned = chart(problem, s)
+        graph = turned.equations[0].graph
+        dx, dy = (d.formula(graph, [graph.variable(2), graph.variable(3)]) for d in cone.difference)
+        tape = record([[extended_determinant(turned, problem), *turned.equations, dx, dy, *turned.balances]])
+        point = np.array([0.7, 1.5, 0.4, -1.1, 0.0])
+
+        def values(written: Any, at: Any) -> list[float]:
+            low, high = np.empty((2, len(written)))
+            assert run(program(written), at, at, low, high, 0, len(written))
+            return [(low[k] + high[k]) / 2 for k in written.outputs[0]]
+
+        _, _, _, x, y, *_ = values(tape, point)
+        point[4] = atan2(y, x)
+        determinant, e1, e2, *_ = values(tape, point)
+        a, b, c, *equations = values(plain, point[:4])
+        assert abs(determinant) == pytest.approx(abs(a * c - b * b) * hypot(x, y), rel=1e-9)
+        assert [e1, e2] == pytest.approx(equations, rel=1e-9)
+
+
+def test_every_spring_with_a_free_length_has_a_chart_and_a_cone() -> None:
+    names = [curve.name for curve in curves(_slice(PLAIN_PTM), Count.INDEX)]
+    assert names == ["fold", *(f"fold, spring k{n} short" for n in (1, 2, 3)), *(f"cone k{n}" for n in (1, 2, 3))]
+
+
+def test_harmonics_are_in_normal_form() -> None:
+    ring = Harmonics(("s", "t"), ())
+    c, s = ring.cos("s"), ring.sin("s")
+    assert c * c + s * s == ring.constant(Fraction(1))
+    d, u = ring.cos("t"), ring.sin("t")
+    difference = c * d + s * u  # cos(s - t)
+    assert set(difference.terms) == {((1, -1), (0, 0))}
+    assert difference.derivative(0).derivative(1) == difference
+    assert difference - difference == ring.constant(Fraction(0))
+
+
+@pytest.mark.parametrize(
+    ("entries", "negative"),
+    [([1, 0, 0, 1], 0), ([0, 1, 1, 0], 1), ([-1, 2, 2, -5], 2), ([1, 1, 1, 1], None), ([arb(0, 1), 0, 0, 1], None)],
+)
+def test_inertia(entries: list[Any], negative: int | None) -> None:
+    assert inertia(arb_mat(2, 2, entries)) == negative
+
+
+def test_what_the_plain_formulas_do_not_take_is_refused_by_name() -> None:
+    with pytest.raises(ConfigError, match="admissible equilibria of the paper's mechanism only"):
+        plain_counter(replace(_slice(VON_MISES), count=Count.ADMISSIBLE))
+    four: dict[str, Any] = {"unknowns": {f"t{n}": "angle" for n in range(4)},
+                            "potential": "cos(t0) + a*cos(t1) + b*cos(t2) + cos(t3)"}  # fmt: skip
+    with pytest.raises(ConfigError, match="up to 3 unknowns"):
+        plain_counter(slice_from_mapping({"name": "four", "system": four, "axes": {"a": [1, 2], "b": [1, 2]}}))
+    positive = {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"], "positive": ["x"]}
+    with pytest.raises(ConfigError, match="no sign conditions"):
+        plain_counter(slice_from_mapping({"name": "cusp", "system": positive, "axes": {"a": [1, 2], "b": [1, 2]}}))
+    springs = [{"between": ["A", "P"], "k": 1, "free": "l0 - 1"}]
+    upwards = {**PENDULUM, "mechanism": {**PENDULUM["mechanism"], "springs": springs}}
+    with pytest.raises(GeometryError, match="stiffness times free length of spring AP"):
+        plain_counter(slice_from_mapping(upwards))
+
+
+def test_equations_without_a_potential_are_counted() -> None:
+    cusp = {"name": "cusp", "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
+            "axes": {"a": [-2, 2], "b": [-2, 2]}}  # fmt: skip
+    slice = slice_from_mapping(cusp)
+    exact, certified = ptmcad.classify(slice), ptmcad.classify(slice, engine="certified", tolerance="1/100")
+    for cell in certified.cells:
+        assert exact.locate(a=cell.sample[0], b=cell.sample[1]).total == cell.total
+    assert {cell.total for cell in certified.cells} == {1, 3}
+
+
+def test_what_a_description_says_beyond_springs_and_loads_does_not_go_unnoticed() -> None:
+    @dataclass(frozen=True)
+    class Twisted(Mechanism):
+        torsion: tuple[str, ...] = ()
+
+        __hash__ = Mechanism.__hash__
+
+    slice = _slice(PENDULUM)
+    known = {f.name: getattr(slice.model, f.name) for f in fields(slice.model)}
+    assert problem_of(replace(slice, model=Twisted(**known))).cones
+    with pytest.raises(ConfigError, match="does not take torsion"):
+        problem_of(replace(slice, model=Twisted(**known, torsion=("th",))))
+
+
+def test_range_of_the_truss_ends_on_the_astroid() -> None:
+    found = certified_intervals(_slice(VON_MISES), "a", {"f": "1/10"}, 10)
+    table = interval_table(found, 10)
+    assert "peaks" not in table
+    three, one = found.intervals
+    assert (three.index, one.index) == ((2, 1), (1, 0))
+    fold = (1 - 0.05 ** (2 / 3)) ** 1.5  # (f/2)^(2/3) + a^(2/3) = 1
+    assert float(one.low.low) <= fold + 1e-12 and fold - 1e-12 <= float(one.low.high)
+
+
+def test_poses_of_the_truss() -> None:
+    poses = solve(VON_MISES, {"a": "1/2", "f": "1/10"})
+    assert poses.status is Status.CERTIFIED
+    assert [pose.index for pose in poses.equilibria] == [0, 0, 1]
+    assert [pose.admissible for pose in poses.equilibria] == [True, False, False]
+    for pose in poses.equilibria:  # 2 h (1 - 1/l) = f
+        h = float(pose.reals[0].center)
+        length = (h * h + 0.25) ** 0.5
+        assert 2 * h * (1 - 1 / length) == pytest.approx(0.1, abs=1e-9)
+        assert float(pose.eigenvalues[0].center) == pytest.approx(2 - 2 * 0.25 / length**3, rel=1e-9)
+
+
+def test_poses_by_plain_and_refined_formulas_agree() -> None:
+    at = {"L1": "1", "k": "100", "l0": "1/5", "F3": "-10", "F4": "-10", "rho": "7/10", "L2": "3/2"}
+    plain, refined = solve(PLAIN_PTM, at), ptmcad.solve(**at)
+    assert len(plain.equilibria) == len(refined.equilibria) == 6
+    for one, other in zip(plain.equilibria, refined.equilibria, strict=True):
+        for first, second in zip((*one.angles, *one.eigenvalues), (*other.angles, *other.eigenvalues), strict=True):
+            assert first.text(10) == second.text(10)
+
+
+def test_a_number_that_is_zero_without_being_constant_makes_poses_undecided() -> None:
+    assert solve(VON_MISES, {"a": "1/2", "f": "0"}).status is Status.UNDECIDED  # h = 0 is an equilibrium
+
+
+def solve(record: dict[str, Any], at: dict[str, str]) -> ptmcad.Poses:
+    model = _slice(record).model
+    return ptmcad.solve(model=model, **({"l0": "1"} if record is VON_MISES else {}), **at)
