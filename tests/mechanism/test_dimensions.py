@@ -11,9 +11,10 @@ from flint import fmpq
 
 from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
 from ptmcad.algebra.trigonometric import TrigonometricRing
+from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Kind
 from ptmcad.errors import DimensionError
-from ptmcad.exact.counting import Counts, count_by_isolation, count_by_signature, solutions_at
+from ptmcad.exact.counting import count_by_isolation, count_by_signature, solutions_at
 from ptmcad.exact.models import ParametricSystem, system_of
 from ptmcad.exact.models.system import from_potential
 from ptmcad.exact.ranges.tracking import Family

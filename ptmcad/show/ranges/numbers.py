@@ -76,4 +76,4 @@ def enclosure_data(enclosure: Enclosure) -> list[str]:
 def finer(interval: CountInterval, width: Fraction) -> CountInterval:
     """The same interval with its ends isolated within ``width`` > 0."""
     low, high = (e if isinstance(e, Fraction) else refined(e, width) for e in (interval.low, interval.high))
-    return CountInterval(low, high, interval.index, interval.sample)
+    return CountInterval(low, high, interval.counts, interval.sample)

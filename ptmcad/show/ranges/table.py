@@ -14,6 +14,8 @@ from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.intervals import CountInterval, CountIntervals, CriticalFreeLength, End
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePaths
 from ptmcad.answer.widths import Maximum, OperationWidths
+from ptmcad.answer.words import noun
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.show.ranges.numbers import end_text, settled, width_text
 from ptmcad.text.balls import enclosed
 from ptmcad.text.enclosure import Enclosure
@@ -29,11 +31,15 @@ def table(found: CountIntervals, digits: int = 10) -> str:
     """One row for each interval, then what happens at their ends, then the operation range."""
     name = found.along.name
     fixed = ", ".join(f"{n} = {shortest_text(v)}" for n, v in found.at.items())
-    rows = [["from", "to", "total", "stable", "min-saddle-max", "sample"]]
+    first = found.intervals[0]
+    stable = ["stable"] * (first.stable is not None)
+    index = [] if first.index is None else [_INDEX_HEADS.get(len(first.index), "index")]
+    rows = [["from", "to", "total", *stable, *index, "sample"]]
     for i in found.intervals:
-        index = "-".join(map(str, i.index))
-        ends = [end_text(i.low, digits), end_text(i.high, digits)]
-        rows.append([*ends, str(i.total), str(i.stable), index, shortest_text(i.sample)])
+        counts = [str(i.total)]
+        counts += [str(i.stable)] if stable else []
+        counts += ["-".join(map(str, i.index))] if i.index is not None else []
+        rows.append([end_text(i.low, digits), end_text(i.high, digits), *counts, shortest_text(i.sample)])
     lines = [f"{name} in ({shortest_text(found.along.low)}, {shortest_text(found.along.high)}) at {fixed}", ""]
     lines += aligned(rows)
     if found.changes:
@@ -43,9 +49,26 @@ def table(found: CountIntervals, digits: int = 10) -> str:
         lines += aligned(changes)
     lines.append("")
     if not found.operation:
-        lines.append("operation range: none, there are nowhere two stable equilibria")
+        lines.append(f"operation range: none, {nowhere(found.model, found.working)}")
+    if found.operation and not isinstance(found.model, Mechanism):
+        lines.append(f"operation range: where {working_text(found.model, found.working)}")
     lines += [f"operation range: {_range_text(i, digits)}" for i in found.operation]
     return "\n".join(lines)
+
+
+_INDEX_HEADS = {2: "min-max", 3: "min-saddle-max"}
+_WORDS = ("no", "one", "two", "three", "four")
+
+
+def working_text(model: Model, number: int) -> str:
+    """What there is in an operation range, such as two stable equilibria."""
+    many = _WORDS[number] if number < len(_WORDS) else str(number)
+    return f"{many} {'stable ' * model.tells_stability}{noun(model, number)}"
+
+
+def nowhere(model: Model, number: int) -> str:
+    """Why there is no operation range."""
+    return f"there {'is' if number == 1 else 'are'} nowhere {working_text(model, number)}"
 
 
 def _range_text(interval: CountInterval, digits: int) -> str:
@@ -87,7 +110,7 @@ def width_table(found: OperationWidths, digits: int = 10) -> str:
         lines.append(f"* the edge of the window of {found.along.name}")
     lines.append("")
     if not found.maxima:
-        lines.append("widest operation range: none, there are nowhere two stable equilibria")
+        lines.append(f"widest operation range: none, {nowhere(found.model, found.working)}")
     for m in found.maxima:
         lines.append(f"widest operation range: {maximum_text(m, found.over.name, digits)}")
     return "\n".join(lines)

@@ -18,15 +18,17 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
+from ptmcad.answer.counts import Counts, MorseIndex
 from ptmcad.answer.intervals import CountIntervals, End
 from ptmcad.answer.paths import Fate, PathPoint, PosePaths
-from ptmcad.answer.regionmap import MorseIndex
 from ptmcad.answer.widths import OperationWidths
+from ptmcad.answer.words import counted, noun
+from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.ranges.numbers import end_text, width_text
-from ptmcad.show.ranges.table import maximum_text
+from ptmcad.show.ranges.table import maximum_text, working_text
 from ptmcad.show.render.axes import scale_of, symbol, unit
-from ptmcad.show.render.colours import fill_of_index
+from ptmcad.show.render.colours import fill_of_counts, fill_of_index
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.printing import settings
 from ptmcad.text.numerals import shortest_text
@@ -57,13 +59,13 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
         scale = scale_of(found.along.low, found.along.high)
         for i in found.intervals:
             low, high = _place(i.low, found.along), _place(i.high, found.along)
-            fill = fill_of_index(i.index)
+            fill = fill_of_counts(i.counts)
             axes.add_patch(Rectangle((low, 0), high - low, 1, facecolor=fill.face, hatch=fill.hatch or None,
                                      edgecolor=INK, linewidth=0.6))  # fmt: skip
             if (high - low) * WIDE * 72 > 4 * SIZE:
-                axes.text((low + high) / 2, 0.5, str(i.stable), ha="center", va="center", fontsize=SIZE + 3,
+                axes.text((low + high) / 2, 0.5, str(i.counts.working), ha="center", va="center", fontsize=SIZE + 3,
                           bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5, "alpha": 0.85})  # fmt: skip
-            if i.stable == 2:
+            if i in found.operation:
                 axes.plot([low, high], [1.2, 1.2], color=INK, linewidth=1.6, clip_on=False, marker="|", markersize=6)
         axes.set_xlim(0, 1)
         axes.set_ylim(0, 1)
@@ -82,19 +84,28 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
 
 
 def _bar_legend(found: CountIntervals) -> list[Entry]:
-    entries = [Entry(("stable equilibria",), strong=True)]
-    seen: list[MorseIndex] = []
+    model = found.model
+    entries = [Entry((f"{'stable ' * model.tells_stability}{noun(model)}",), strong=True)]
+    seen: list[Counts] = []
     for i in found.intervals:
-        if i.index not in seen:
-            seen.append(i.index)
-            minima, saddles, maxima = i.index
-            rest = f"{saddles} saddles, {maxima} maxim{'um' if maxima == 1 else 'a'}"
-            entries.append(Entry((f"{minima}   of {i.total} equilibria", rest), fill_of_index(i.index)))
+        if i.counts not in seen:
+            seen.append(i.counts)
+            head = str(i.total) if i.stable is None else f"{i.stable}   of {counted(model, i.total)}"
+            entries.append(Entry((head, *_unstable(i.index)), fill_of_counts(i.counts)))
     for i in found.operation:
         entries.append(Entry(("operation range (bracket)", f"width {width_text(i, _DIGITS)}")))
     if any(c.before == c.after for c in found.changes):
-        entries.append(Entry(("a label within one colour:", "equilibria touch, counts unchanged")))
+        entries.append(Entry(("a label within one colour:", f"{noun(model)} touch, counts unchanged")))
     return entries
+
+
+def _unstable(index: MorseIndex | None) -> tuple[str, ...]:
+    """The numbers of saddles and maxima in words, as far as there can be any."""
+    if index is None:
+        return ()
+    saddles, maxima = sum(index[1:-1]), index[-1]
+    between = [f"{saddles} saddles"] if len(index) > 2 else []
+    return (", ".join([*between, f"{maxima} maxim{'um' if maxima == 1 else 'a'}"]),)
 
 
 def _labels(
@@ -131,7 +142,7 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
     """The operation ranges at the tabulated values, and their width with its largest value."""
     title = textwrap.wrap(slice.heading, _COLUMNS)[:3]
     lines = [maximum_text(m, found.over.name, _DIGITS) for m in found.maxima] or ["there is no operation range"]
-    texts = ["above: where two equilibria are stable; below: how wide that is; diamond: the widest"]
+    texts = [f"above: {_where(found)}; below: how wide that is; diamond: the widest"]
     texts += [part for line in lines for part in textwrap.wrap(f"widest: {line}", _COLUMNS)]
     foot = 0.55 + 0.2 * len(texts)
     tall = 2.3 + 1.9 + 0.35 + foot + 0.1
@@ -170,6 +181,13 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
         for k, line in enumerate(texts):
             figure.text(LEFT, foot - 0.55 - 0.2 * k, line, transform=figure.dpi_scale_trans, fontsize=SIZE, va="center")
     return figure
+
+
+def _where(found: OperationWidths) -> str:
+    """What the operation range is."""
+    if found.working == 2 and isinstance(found.model, Mechanism):
+        return "where two equilibria are stable"
+    return f"where there {'is' if found.working == 1 else 'are'} {working_text(found.model, found.working)}"
 
 
 def draw_paths(slice: Slice, found: PosePaths) -> Figure:
@@ -285,7 +303,8 @@ def _short(value: Fraction) -> str:
 
 def _words(found: CountIntervals) -> str:
     parts = [
-        f"{end_text(i.low, _DIGITS)} to {end_text(i.high, _DIGITS)}: {i.stable} stable of {i.total}"
+        f"{end_text(i.low, _DIGITS)} to {end_text(i.high, _DIGITS)}: "
+        + (f"{i.total} in all" if i.stable is None else f"{i.stable} stable of {i.total}")
         for i in found.intervals
     ]
     return f"Intervals of {found.along.name}: {'; '.join(parts)}."
