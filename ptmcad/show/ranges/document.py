@@ -15,7 +15,7 @@ from ptmcad.answer.intervals import CertifiedIntervals, CountInterval, CountInte
 from ptmcad.answer.paths import PathEnd, PathPoint, PosePaths
 from ptmcad.answer.widths import OperationWidths
 from ptmcad.question.slice import Axis
-from ptmcad.show.ranges.numbers import enclosure_data, end_data, number_data, settled, width_text
+from ptmcad.show.ranges.numbers import enclosure_data, end_data, known, number_data, settled, width_text
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import text_of
 from ptmcad.version import __version__
@@ -164,7 +164,13 @@ DIGITS = 12
 
 
 def _point(point: PathPoint) -> dict[str, Any]:
-    return {"value": text_of(point.value), "angles": [settled(a, DIGITS) or "0" for a in point.angles]}
+    return {"value": text_of(point.value), "angles": _numbers(point.angles)} | (
+        {"reals": [known(x, DIGITS) for x in point.reals]} if point.reals else {}
+    )
+
+
+def _numbers(unknowns: Sequence[Enclosure]) -> list[str]:
+    return [settled(a, DIGITS) or "0" for a in unknowns]
 
 
 def document(name: str, mechanism: str, parts: dict[str, Any]) -> str:

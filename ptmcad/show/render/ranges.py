@@ -41,6 +41,7 @@ _DIGITS = 7
 _COLOURS = ("#0b5394", "#b45f06", "#38761d", "#741b47")
 _DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (2, 2)), (0, (6, 2, 1, 2)))
 _COLUMNS = 100
+_LOST = (Fate.VANISH, Fate.UNSTABLE, Fate.EXCLUDED)
 
 
 def draw_range(slice: Slice, found: CountIntervals) -> Figure:
@@ -191,44 +192,55 @@ def _where(found: OperationWidths) -> str:
 
 
 def draw_paths(slice: Slice, found: PosePaths) -> Figure:
-    """Both angles of each followed pose along the axis; an arrow shows each snap."""
+    """The unknowns of each followed pose along the axis, a panel for each; an arrow shows each snap."""
     fixed = ", ".join(f"{symbol(n)} = {_short(v)}" for n, v in found.at.items())
     title = textwrap.wrap(f"{slice.heading}; {fixed}", _COLUMNS)[:3]
-    entries = [Entry(("stable poses",), strong=True)]
+    model = found.model
+    what = "pose" if isinstance(model, Mechanism) else "solution"
+    stable = "stable " * model.tells_stability
+    entries = [Entry((f"{stable}{what}s",), strong=True)]
     for k, path in enumerate(found.paths):
-        entries.append(Entry((f"pose {path.number} at {symbol(found.along.name)} = {_short(found.start)}",), _line(k)))
+        entries.append(
+            Entry((f"{what} {path.number} at {symbol(found.along.name)} = {_short(found.start)}",), _line(k))
+        )
     if any(e.fate is Fate.SNAP for p in found.paths for e in (p.low, p.high)):
         entries.append(Entry(("a pose vanishes (ring), and the", "mechanism snaps (arrow)"), _snap_mark))
     if any(e.fate is Fate.MERGE for p in found.paths for e in (p.low, p.high)):
         entries.append(Entry(("poses merge into one (square),", "without a snap"), _merge_mark))
+    if any(e.fate in _LOST for p in found.paths for e in (p.low, p.high)):
+        entries.append(Entry((f"a {what} ends (cross)",), _loss_mark))
     panel, foot = 2.0, 0.55
-    tall = 2 * panel + 0.25 + foot
-    words = f"Angles of {len(found.paths)} stable poses along {found.along.name}."
+    names = (*model.angles, *model.reals)
+    last = len(names) - 1
+    tall = max(len(names) * panel + 0.25 * last + foot, height(tuple(entries)) + 0.2)
+    kind = "Unknowns" if model.reals else "Angles"
+    words = f"{kind} of {len(found.paths)} {stable}{what}s along {found.along.name}."
     with settings():
         figure = _figure(title, (LEFT + WIDE + RIGHT + KEY, tall), words)
         scale = scale_of(found.along.low, found.along.high)
-        for number in (0, 1):
-            axes = _axes(figure, (LEFT, foot + (1 - number) * (panel + 0.25), WIDE, panel))
+        for number, name in enumerate(names):
+            axes = _axes(figure, (LEFT, tall - panel - number * (panel + 0.25), WIDE, panel))
             for k, path in enumerate(found.paths):
                 colour, dash = _COLOURS[k % len(_COLOURS)], _DASHES[k % len(_DASHES)]
                 xs = [_scaled(p.value, found.along) for p in path.points]
                 axes.plot(xs, [_angle(p, number) for p in path.points], color=colour, linestyle=dash, linewidth=1.6)
                 for end in (path.low, path.high):
-                    if end.fate is Fate.WINDOW or end.target is None:
+                    if end.fate in (Fate.WINDOW, Fate.UNDECIDED):
                         continue
                     x, y = _scaled(end.last.value, found.along), _angle(end.last, number)
-                    marker = "o" if end.fate is Fate.SNAP else "s"
+                    marker = {Fate.SNAP: "o", Fate.MERGE: "s"}.get(end.fate, "x")
                     axes.plot([x], [y], marker, color=colour, fillstyle="none", markersize=6)
-                    if end.fate is Fate.SNAP:
+                    if end.fate is Fate.SNAP and end.target is not None:
                         tip = (_scaled(end.target.value, found.along), _angle(end.target, number))
                         axes.annotate("", tip, (x, y), arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.0,
                                                                    "shrinkA": 4, "shrinkB": 1})  # fmt: skip
             axes.axhline(0, color=INK, linewidth=0.4)
             axes.set_xlim(scale.low, scale.high)
             axes.margins(y=0.08)
-            axes.tick_params(labelsize=SIZE, labelbottom=number == 1)
-            axes.set_ylabel(f"θ{'₁₂'[number]} (degrees)", fontsize=SIZE + 2)
-            if number == 1:
+            axes.tick_params(labelsize=SIZE, labelbottom=number == last)
+            degrees_note = " (degrees)" if number < len(model.angles) else ""
+            axes.set_ylabel(f"{symbol(name)}{degrees_note}", fontsize=SIZE + 2)
+            if number == last:
                 axes.set_xlabel(_axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=2)
         draw_legend(figure, tuple(entries), LEFT + WIDE + RIGHT, tall - 0.05)
     return figure
@@ -249,6 +261,10 @@ def _snap_mark(figure: Any, left: float, middle: float) -> None:
 
 def _merge_mark(figure: Any, left: float, middle: float) -> None:
     _marker(figure, left, middle, "s")
+
+
+def _loss_mark(figure: Any, left: float, middle: float) -> None:
+    _marker(figure, left, middle, "x")
 
 
 def _marker(figure: Any, left: float, middle: float, marker: str) -> None:
@@ -287,7 +303,9 @@ def _scaled_end(end: End, axis: Axis) -> float:
 
 
 def _angle(point: PathPoint, number: int) -> float:
-    return degrees(float(point.angles[number]))
+    if number < len(point.angles):
+        return degrees(float(point.angles[number]))
+    return float(point.reals[number - len(point.angles)])
 
 
 def _axis_name(slice: Slice, axis: Axis) -> str:
