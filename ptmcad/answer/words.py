@@ -30,9 +30,8 @@ def kind_name(negative: int, unknowns: int) -> str:
 def index_words(entries: int) -> str:
     """What the entries of an index stand for.
 
-    >>> index_words(3), index_words(2)
-    ('minima-saddles-maxima', 'minima-maxima')
+    >>> index_words(3), index_words(4)
+    ('minima-saddles-maxima', 'minima-saddles of index 1-saddles of index 2-maxima')
     """
-    if entries <= 2:
-        return "-".join(("minima", "maxima")[:entries])
-    return "minima-saddles-maxima" if entries == 3 else "by negative eigenvalues: 0 (minima) to the number of unknowns"
+    saddles = ["saddles"] if entries == 3 else [f"saddles of index {k}" for k in range(1, entries - 1)]
+    return "-".join(["minima", *saddles, "maxima"])

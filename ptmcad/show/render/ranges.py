@@ -212,14 +212,16 @@ def draw_paths(slice: Slice, found: PosePaths) -> Figure:
     panel, foot = 2.0, 0.55
     names = (*model.angles, *model.reals)
     last = len(names) - 1
-    tall = max(len(names) * panel + 0.25 * last + foot, height(tuple(entries)) + 0.2)
+    tall = len(names) * panel + 0.25 * last + foot
+    spare = max(0.0, height(tuple(entries)) + 0.2 - tall)
+    tall += spare
     kind = "Unknowns" if model.reals else "Angles"
     words = f"{kind} of {len(found.paths)} {stable}{what}s along {found.along.name}."
     with settings():
         figure = _figure(title, (LEFT + WIDE + RIGHT + KEY, tall), words)
         scale = scale_of(found.along.low, found.along.high)
         for number, name in enumerate(names):
-            axes = _axes(figure, (LEFT, tall - panel - number * (panel + 0.25), WIDE, panel))
+            axes = _axes(figure, (LEFT, foot + spare + (last - number) * (panel + 0.25), WIDE, panel))
             for k, path in enumerate(found.paths):
                 colour, dash = _COLOURS[k % len(_COLOURS)], _DASHES[k % len(_DASHES)]
                 xs = [_scaled(p.value, found.along) for p in path.points]
