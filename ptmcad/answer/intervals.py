@@ -10,7 +10,10 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
-from ptmcad.answer.regionmap import Kind, MorseIndex
+from ptmcad.answer.counts import Counts, MorseIndex
+from ptmcad.answer.regionmap import Kind
+from ptmcad.answer.words import kind_name
+from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.expressions import Expression
@@ -20,10 +23,12 @@ End = AlgebraicNumber | Fraction
 
 
 class Event(Enum):
-    """What happens to the numbers of equilibria at a critical value: which of them meet, only a path shows."""
+    """What happens to the numbers of solutions at a critical value: which of them meet, only a path shows."""
 
-    STABLE_PAIR = "one stable equilibrium and one saddle"
-    UNSTABLE_PAIR = "one saddle and one maximum"
+    STABLE_PAIR = "a stable critical point and one of index 1"
+    UNSTABLE_PAIR = "two unstable critical points"
+    PAIR = "two solutions"
+    SINGLE = "one solution"
     STABILITY = "indices change without a pair"
     SEVERAL = "several pairs"
     UNCHANGED = "the counts do not change"
@@ -36,31 +41,48 @@ class Change:
     Attributes
     ----------
     kind : the kind of the variety's component through it.
-    before, after : numbers of minima, saddles and maxima on the two sides.
+    before, after : the numbers of solutions on the two sides.
     """
 
     at: AlgebraicNumber
     kind: Kind
-    before: MorseIndex
-    after: MorseIndex
+    before: Counts
+    after: Counts
 
     @property
     def event(self) -> Event:
-        minima, saddles, maxima = (b - a for a, b in zip(self.before, self.after, strict=True))
-        if (minima, saddles, maxima) == (0, 0, 0):
+        if self.before == self.after:
             return Event.UNCHANGED
-        if abs(saddles) == 1:
-            return Event.STABLE_PAIR if minima == saddles else Event.UNSTABLE_PAIR
-        return Event.STABILITY if saddles == 0 else Event.SEVERAL
+        if (first := self._pair()) is not None:
+            return Event.UNSTABLE_PAIR if first else Event.STABLE_PAIR
+        change = abs(self.after.total - self.before.total)
+        if change == 2 and self.before.index is None:
+            return Event.PAIR
+        return {0: Event.STABILITY, 1: Event.SINGLE}.get(change, Event.SEVERAL)
+
+    def _pair(self) -> int | None:
+        """The smaller index of the two solutions that are more or less by one; None when no two neighbours are."""
+        if self.before.index is None or self.after.index is None:
+            return None
+        changed = {k: b - a for k, (a, b) in enumerate(zip(self.before.index, self.after.index, strict=True)) if a != b}
+        first = min(changed, default=0)
+        pair = changed in ({first: 1, first + 1: 1}, {first: -1, first + 1: -1})
+        return first if pair else None
 
     @property
     def text(self) -> str:
         """The event in words, read in the direction of growing values."""
-        event = self.event
-        if event in (Event.UNCHANGED, Event.STABILITY):
+        event, first = self.event, self._pair()
+        if event is Event.UNCHANGED:
             return str(event.value)
-        grows = sum(self.after) > sum(self.before)
-        return f"{event.value} {'more' if grows else 'less'}"
+        if event is Event.STABILITY:
+            return str(event.value) if self.before.index is not None else "solutions change their stability"
+        what = event.value if self.before.index is not None or event is not Event.SEVERAL else "several solutions"
+        if first is not None and self.before.index is not None:
+            names = [kind_name(k, len(self.before.index) - 1) for k in (first, first + 1)]
+            what = " and ".join(f"one {'stable equilibrium' if name == 'minimum' else name}" for name in names)
+            what = "two saddles" if names == ["saddle", "saddle"] else what
+        return f"{what} {'more' if self.after.total > self.before.total else 'less'}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,22 +92,25 @@ class CountInterval:
     Attributes
     ----------
     low, high : its ends; a Fraction is the window's edge.
-    index : numbers of minima, saddles and maxima.
     sample : a rational number in it that is no critical value.
     """
 
     low: End
     high: End
-    index: MorseIndex
+    counts: Counts
     sample: Fraction
 
     @property
     def total(self) -> int:
-        return sum(self.index)
+        return self.counts.total
 
     @property
-    def stable(self) -> int:
-        return self.index[0]
+    def stable(self) -> int | None:
+        return self.counts.stable
+
+    @property
+    def index(self) -> MorseIndex | None:
+        return self.counts.index
 
     @property
     def width(self) -> Enclosure:
@@ -102,23 +127,30 @@ class CountIntervals:
     name : of the slice.
     along : the axis with its window.
     at : what was fixed on the line.
-    parameters : every parameter of the mechanism as an expression in ``along`` (its first axis; no second one occurs).
+    parameters : every parameter of the model as an expression in ``along`` (its first axis; no second one occurs).
     intervals : from the window's lower edge to its upper one.
     changes : all critical values in the window in increasing order, those where no count changes among them.
+    working : the number of stable solutions in the operation range, or of all where nothing says what is stable.
     """
 
     name: str
-    mechanism: str
+    model: Model
     along: Axis
     at: Mapping[str, Fraction]
     parameters: Mapping[str, Expression]
     intervals: tuple[CountInterval, ...]
     changes: tuple[Change, ...]
+    working: int
+
+    @property
+    def mechanism(self) -> str:
+        """The model's name."""
+        return self.model.name
 
     @property
     def operation(self) -> tuple[CountInterval, ...]:
-        """The paper's operation range: the intervals with two stable equilibria."""
-        return tuple(i for i in self.intervals if i.stable == 2)
+        """The operation range: the intervals with so many stable solutions; of the paper's mechanism two."""
+        return tuple(i for i in self.intervals if i.counts.working == self.working)
 
 
 def lower(end: End) -> Fraction:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
+from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
@@ -17,15 +18,23 @@ class Fate(Enum):
     WINDOW = "is stable up to the window's edge"
     SNAP = "vanishes and the mechanism snaps"
     MERGE = "merges with others into one stable pose, without a snap"
+    VANISH = "vanishes, and where it goes from there is not decided"
+    UNSTABLE = "loses its stability"
+    EXCLUDED = "leaves what the inequalities allow"
     UNDECIDED = "could not be followed further"
 
 
 @dataclass(frozen=True, slots=True)
 class PathPoint:
-    """The pose's angles at a value of the axis (not wrapped into one turn, so that they are continuous)."""
+    """The unknowns at a value of the axis (angles not wrapped into one turn, so that they are continuous).
+
+    ``sides`` tells of each moving point of a mechanism whether it is proved to be above the x axis (1) or below (-1).
+    """
 
     value: Fraction
-    angles: tuple[Enclosure, Enclosure]
+    angles: tuple[Enclosure, ...]
+    reals: tuple[Enclosure, ...] = ()
+    sides: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,12 +45,12 @@ class PathEnd:
     ----------
     at : the critical value or the window's edge.
     last : the last point of the path, close to ``at``.
-    meeting : of the equilibria on the path's side, the Morse indices (numbers of negative eigenvalues) of those that
-        meet there, the path's own included.
+    meeting : of the solutions on the path's side, the Morse indices (numbers of negative eigenvalues) of those that
+        meet there, the path's own included; without a potential 0 for a stable one, and 1 for another.
     leaving : the same for those into which they go on beyond.
-    energy : of the pose at ``last``.
+    energy : of the pose at ``last``; None where there is none.
     target : the stable pose beyond, to which the mechanism goes, close to ``at``; None at the window's edge.
-    target_energy : its energy.
+    target_energy : its energy, if it has one.
     """
 
     fate: Fate
@@ -62,8 +71,9 @@ class PosePath:
     ----------
     number : of the pose at the start, counted from 1 in the order of ``ptmcad solve``.
     points : in increasing order of the axis, the start among them.
-    upright : whether y3 > 0 and y4 > 0 are proved for all values between the first and the last point.
-    reverse : whether y3 < 0 and y4 < 0 are.
+    upright : whether all moving points of the mechanism are proved to be above the x axis (of the paper's, y3 > 0 and
+        y4 > 0) for all values between the first and the last point.
+    reverse : whether all are proved to be below it.
     """
 
     number: int
@@ -77,9 +87,10 @@ class PosePath:
 
 @dataclass(frozen=True, slots=True)
 class PosePaths:
-    """The paths of stable poses on a line."""
+    """The paths of stable poses on a line; of all solutions where nothing says what a stable one is."""
 
     name: str
+    model: Model
     along: Axis
     at: Mapping[str, Fraction]
     start: Fraction

@@ -12,12 +12,10 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer import with_methods
+from ptmcad.answer.counts import MorseIndex
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Point, Slice
 from ptmcad.text.plane import PlanePolynomial
-
-MorseIndex = tuple[int, ...]
-"""Numbers of critical points by their number of negative eigenvalues: of two unknowns minima, saddles and maxima."""
 
 
 class Status(Enum):

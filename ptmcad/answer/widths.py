@@ -10,6 +10,7 @@ from enum import Enum
 from fractions import Fraction
 
 from ptmcad.answer.intervals import CountInterval, End
+from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 
@@ -55,10 +56,12 @@ class WidthRow:
 @dataclass(frozen=True, slots=True)
 class OperationWidths:
     """The answer of ``--over``; ``maxima`` is empty when there is no operation range in the window, and has several
-    entries when places tie or could not be distinguished."""
+    entries when places tie or could not be distinguished. ``working`` is the number of stable solutions in a range."""
 
     name: str
     along: Axis
     over: Axis
     rows: tuple[WidthRow, ...]
     maxima: tuple[Maximum, ...]
+    model: Model
+    working: int

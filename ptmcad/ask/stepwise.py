@@ -15,7 +15,7 @@ from ptmcad.question.config import point_from_mapping, slice_from
 from ptmcad.question.slice import Point, Slice, without_free_lengths
 
 if TYPE_CHECKING:
-    from ptmcad.exact.counting import Counts
+    from ptmcad.answer.counts import Counts
 
 Question = Slice | str | Path | Mapping[str, Any]
 

@@ -14,7 +14,8 @@ from math import frexp, inf
 import numpy as np
 from flint import arb, ctx
 
-from ptmcad.answer.regionmap import MorseIndex, Solution
+from ptmcad.answer.counts import MorseIndex
+from ptmcad.answer.regionmap import Solution
 from ptmcad.certified.arb_evaluation import ball, lower, run_arb, upper
 from ptmcad.certified.arb_isolation import Box, Isolated, isolate_arb, refined
 from ptmcad.certified.distinct import distinct

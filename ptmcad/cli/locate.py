@@ -10,6 +10,7 @@ from pathlib import Path
 import click
 
 from ptmcad.answer.regionmap import Location, RegionMap
+from ptmcad.answer.words import index_words
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.stored import read_result
 from ptmcad.errors import ConfigError, shown
@@ -132,7 +133,7 @@ def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str]) 
     yield f"{'point':{width}}{', '.join(f'{name} = {value}' for name, value in point.items())}"
     for name, value in zip(fields, answer(location, fields), strict=True):
         if value:
-            note = " (minima-saddles-maxima)" if name == "index" else ""
+            note = "" if name != "index" or location.index is None else f" ({index_words(len(location.index))})"
             yield f"{name:{width}}{value}{note}"
 
 

@@ -267,7 +267,9 @@ def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
 @limit_options
 @gathered(asked=AskedLine, wanted=Wanted, output=Output)
 def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits) -> None:
-    """Find the intervals of constant count along one axis; the operation range is where two equilibria are stable.
+    """Find the intervals of constant count along one axis, and the operation range, where the most are stable.
+
+    Of the paper's mechanism these are two equilibria; where nothing says what is stable, all solutions are counted.
 
     Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. With free lengths
     they are enclosed by interval arithmetic, and what could not be decided is reported. All digits of the

@@ -13,9 +13,11 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
 from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, point_from_options
 from ptmcad.question.examples import POINT
+from ptmcad.show.drawable import no_drawing, no_landscape
 
 FORMATS = ("table", "json", "png", "svg", "pdf")
 DIGITS = 10
@@ -28,6 +30,26 @@ def file_names(name: str, formats: tuple[str, ...], landscape: bool) -> tuple[st
     if landscape:
         names += [f"{name}-landscape.{suffix}" for suffix in pictures or ["png"]]
     return (*names, *([f"{name}.json"] if "json" in formats else []))
+
+
+def drawable(model: Model, names: tuple[str, ...], start: str, landscape: bool) -> tuple[str, ...]:
+    """The files, without pictures of poses of a system that has none, if its landscape is asked for.
+
+    Raises
+    ------
+    ConfigError
+        For a picture that there is not.
+    """
+    reason = no_landscape(model) if landscape else ""
+    if reason:
+        raise ConfigError(reason, key="--landscape")
+    if isinstance(model, Mechanism):
+        return names
+    kept = tuple(name for name in names if name.endswith(".json") or name.startswith(f"{start}-landscape."))
+    if kept != names and not landscape:
+        further = ", or --landscape" if not no_landscape(model) else ""
+        raise ConfigError(f"{no_drawing(model)}; ask for table or json{further}", key="--format")
+    return kept
 
 
 def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
@@ -72,7 +94,7 @@ def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
               metavar="LIST", help=f"What to make, of {', '.join(FORMATS)}; the table is printed.")  # fmt: skip
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: poses]")
-@click.option("--landscape", is_flag=True, help="Draw the energy over both angles too (NAME-landscape.png).")
+@click.option("--landscape", is_flag=True, help="Draw the energy over one or two unknowns too (NAME-landscape.png).")
 @limit_options
 def command(
     *,
@@ -86,7 +108,7 @@ def command(
     landscape: bool,
     limits: Limits,
 ) -> None:
-    """Find every equilibrium at one point of the parameters, with stability, spring forces and energy.
+    """Find every equilibrium, or solution of a system, at one point, with stability, spring forces and energy.
 
     CONFIG is a problem record (YAML) for what --at and --set leave open. Without it, parameters that are not given have
     their defaults: L1 = L2 = rho = 1, k = 100, no load. Every digit that is shown is right; a zero or another number
@@ -104,6 +126,7 @@ def command(
     names = file_names(start, formats, landscape)
     with held(limits):
         model, parameters = point_from_options(config, {} if at is None else point_of(at), sets)
+        names = drawable(model, names, start, landscape)
         if names:
             check_writable(out, names)
         from ptmcad.ask.classification import load_certified

@@ -27,14 +27,14 @@ def command(
     out: Path | None,
     limits: Limits,
 ) -> None:
-    """Compute the curves off which the number of equilibria is locally constant.
+    """Compute the curves off which the number of equilibria, or solutions, is locally constant.
 
     CONFIG is a problem record (YAML); options override it. Each curve is irreducible and has a kind: critical (an
     equilibrium is singular there), infinity (a complex solution leaves every bounded set) or boundary (the slice's
     equations lose their meaning).
 
     sympy, maple and mathematica are programs that define the list "variety". qepcad is a session that decomposes the
-    window by the curves. msolve is the system from which they follow: "msolve -e 4 -g 2 -f FILE" eliminates its four
+    window by the curves. msolve is the system from which they follow: "msolve -e 4 -g 2 -f FILE" eliminates its
     unknowns, and the critical curves are factors of what is left.
 
     \b

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import flint
 
 from ptmcad.algebra.polynomials import to_fraction
+from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import (
     Cell,
     CriticalValue,
@@ -28,7 +29,7 @@ from ptmcad.answer.regionmap import (
 from ptmcad.exact.cad.adjacency import Crossing
 from ptmcad.exact.cad.projection import Projection
 from ptmcad.exact.cad.stacks import StackData
-from ptmcad.exact.counting import Counts, Equilibria
+from ptmcad.exact.counting import Equilibria
 from ptmcad.exact.models.text import system_text
 from ptmcad.exact.plan import plan_of
 from ptmcad.exact.regions import members

@@ -34,6 +34,7 @@ from ptmcad.algebra.inertia import negative_eigenvalues
 from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate, refine
 from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
+from ptmcad.answer.counts import Counts
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, at_point, polynomial_at
 from ptmcad.exact.models.turns import in_old_angles
@@ -41,22 +42,6 @@ from ptmcad.exact.models.turns import in_old_angles
 
 class DegeneratePoint(HypothesisError):
     """Some solution at the point has a singular Jacobian, or there are infinitely many."""
-
-
-@dataclass(frozen=True, slots=True)
-class Counts:
-    """Numbers of the solutions that count.
-
-    Attributes
-    ----------
-    stable : None where nothing says what a stable solution is.
-    index : numbers of solutions by the number of negative eigenvalues of the Hessian; None without a potential. On a
-        torus their alternating sum is zero.
-    """
-
-    total: int
-    stable: int | None
-    index: tuple[int, ...] | None
 
 
 @dataclass(frozen=True, slots=True)

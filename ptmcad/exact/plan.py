@@ -11,6 +11,8 @@ from math import gcd
 
 from ptmcad.answer.plan import saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import HARMLESS, Component, PlanStep
+from ptmcad.mechanism import Model, System
+from ptmcad.question.savings import BY_NAME
 from ptmcad.question.slice import Slice
 
 LATER = ("infinity", "no-real-points", "axis-order", "even-powers")
@@ -27,8 +29,8 @@ def beforehand(slice: Slice, without: frozenset[str], areas: bool = True) -> tup
     return (
         saving_step("imports", without),
         *zero_terms(zero_parameters(slice)),
-        saving_step("sign-curve", without),
-        saving_step("hermite-matrix", without),
+        *_sign_curve(slice.model, without),
+        saving_step("hermite-matrix", without, why=_of_jacobian(slice.model, "hermite-matrix")),
         saving_step("equal-counts", without) if areas else PlanStep("areas of the regions", False, "not asked for"),
     )
 
@@ -51,7 +53,8 @@ def plan_of(
     areas : whether they are asked for.
     """
     steps = list(beforehand(slice, without, areas))
-    steps.append(saving_step("infinity", without))
+    if not slice.model.reals:  # on the line real solutions may leave every bounded set: all such curves are used
+        steps.append(saving_step("infinity", without, why=_of_jacobian(slice.model, "infinity")))
     if "no-real-points" in without:
         steps.append(saving_step("no-real-points", without))
     for c in components:
@@ -62,6 +65,24 @@ def plan_of(
     if powers:
         steps.append(saving_step("even-powers", without, why=f"computed in the power, where only such occur: {powers}"))
     return tuple(steps)
+
+
+def _has_hessian(model: Model) -> bool:
+    return not isinstance(model, System) or model.potential is not None
+
+
+def _sign_curve(model: Model, without: frozenset[str]) -> Iterator[PlanStep]:
+    """What could tell indices apart besides det H: nothing of one unknown, and equations have no index."""
+    if _has_hessian(model) and len(model.unknowns) == 2:
+        yield saving_step("sign-curve", without)
+    elif _has_hessian(model) and len(model.unknowns) > 2:
+        why = "no eigenvalue of H changes its sign off the critical curves"
+        yield saving_step("sign-curve", without, "projections of the leading minors of H", why)
+
+
+def _of_jacobian(model: Model, name: str) -> str:
+    """The saving's reason for equations, whose Jacobian is no Hessian; empty for its general words."""
+    return "" if _has_hessian(model) else BY_NAME[name].why.replace("det H", "the Jacobian's determinant")
 
 
 def _saving_of(c: Component) -> str:

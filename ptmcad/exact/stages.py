@@ -27,6 +27,7 @@ from ptmcad.algebra.polynomials import (
 from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.window import Interval
+from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
 from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
@@ -34,7 +35,7 @@ from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
-from ptmcad.exact.counting import Counts, DegeneratePoint, Equilibria, equilibria, solutions_at
+from ptmcad.exact.counting import DegeneratePoint, Equilibria, equilibria, solutions_at
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.regions import Link, members, merge
 from ptmcad.exact.variety import discriminant_variety

@@ -96,7 +96,7 @@ def discriminant_variety(
     else:
         hidden = [f for f in suspects if seen.outside(f)]
         visible = [f for f in suspects if f not in hidden]
-        harmless = _harmless(equations, rows, jacobian_norm, visible) if equations.is_compact else []
+        harmless = _harmless(equations, rows, jacobian_norm, visible) if _settles(equations) else []
         seen.adopt(poles_at_points(algebra, hidden, equations.unbounded), Kind.INFINITY, NO_POINT)
         seen.adopt(poles_at_points(algebra, harmless, equations.unbounded), Kind.INFINITY, HARMLESS)
         doubtful = [f for f in visible if f not in harmless]
@@ -214,6 +214,15 @@ def _with_poles(
         return []
     poles = [power_trace_denominators(algebra, k) for k in coordinates]
     return [f for f in suspects if any(pole.gcd(f).total_degree() > 0 for pole in poles)]
+
+
+def _settles(equations: SliceSystem) -> bool:
+    """Whether real solutions that stay regular settle everything: they stay bounded, and nothing else is asked of them.
+
+    The sign of a condition can change across a curve where its norm does not vanish, at a solution that is real there
+    while a complex one leaves every bounded set.
+    """
+    return equations.is_compact and not equations.inequalities and not equations.stability
 
 
 def _harmless(

@@ -10,6 +10,7 @@ from itertools import pairwise
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
+from ptmcad.answer.words import counted
 from ptmcad.mechanism import Mechanism, built_in
 from ptmcad.question.slice import merged
 from ptmcad.text.enclosure import Enclosure, exact_text
@@ -85,9 +86,8 @@ def _summary(poses: Poses) -> list[str]:
     tally = [
         f"{kinds.count(kind)} {several[kind] if kinds.count(kind) > 1 else kind}" for kind in several if kind in kinds
     ]
-    noun = "equilibria" if isinstance(poses.model, Mechanism) else "solutions"
     tells = f": {', '.join(tally)}" if kinds and "solution" not in kinds else ""
-    parts = [f"{len(kinds)} {noun}{tells}", poses.status.value]
+    parts = [f"{counted(poses.model, len(kinds))}{tells}", poses.status.value]
     if any(pose.admissible is not None for pose in poses.equilibria):
         tense = sum(pose.admissible is True for pose in poses.equilibria)
         parts.insert(1, f"{tense} stable with every spring longer than its free length")

@@ -7,16 +7,32 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from ptmcad.answer.regionmap import Region, RegionMap, Status
+from ptmcad.answer.words import index_words, noun
 from ptmcad.cover.rectangles import Cover
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import decimal, magnitude
 
 _NAMES = {
     Count.STABLE: "stable",
     Count.TOTAL: "in all",
-    Count.INDEX: "(minima, saddles, maxima)",
     Count.ADMISSIBLE: "stable and admissible",
 }
+
+
+def _count_name(result: RegionMap, region: Region) -> str:
+    """What is counted, as it follows the number."""
+    count, model = result.slice.count, result.slice.model
+    if count is Count.INDEX:
+        return index_heading(model)
+    if count is Count.TOTAL and not isinstance(model, Mechanism):
+        return noun(model, region.total or 0)
+    return _NAMES[count]
+
+
+def index_heading(model: Model) -> str:
+    """What the entries of an index stand for, in brackets as they are."""
+    return f"({', '.join(index_words(len(model.unknowns) + 1).split('-'))})"
 
 
 def count_text(region: Region, count: Count) -> str:
@@ -111,10 +127,8 @@ def _by_count(bounds: Sequence[_Bounds], result: RegionMap) -> list[_Bounds]:
 def table(result: RegionMap) -> str:
     """Regions, counts, areas, boundary curves with degrees (or the cover), time and error."""
     count = result.slice.count
-    tally = Counter(count_text(r, count) for r in result.regions)
-    plain_index = count is Count.INDEX and len(result.slice.model.unknowns) != 2
-    named = "by negative eigenvalues" if plain_index else _NAMES[count]
-    counts = "; ".join(f"{text} {named}: {n} region{'s' * (n > 1)}" for text, n in sorted(tally.items()))
+    tally = Counter(f"{count_text(r, count)} {_count_name(result, r)}" for r in result.regions)
+    counts = "; ".join(f"{text}: {n} region{'s' * (n > 1)}" for text, n in sorted(tally.items()))
     bounds = [(count_text(r, count), r.area) for r in result.regions]
     if result.cover is not None:
         bounds = _by_count(bounds, result)

@@ -18,7 +18,8 @@ from typing import Any, NamedTuple
 from flint import fmpq
 
 from ptmcad.mechanism import Kind, Mechanism, Model, System, ptm
-from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree
+from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree, names_of
+from ptmcad.verification.report import Violation
 
 MECHANISM = ptm()
 PARAMETERS = MECHANISM.without_free_lengths
@@ -54,12 +55,18 @@ class Formulas(NamedTuple):
     potential : whose critical points are meant; None where there are equations.
     equations : each zero at a solution; none where there is a potential.
     inequalities, stability : positive at a solution that counts, and at a stable one.
+    moments : generalised forces, to be subtracted from the potential's derivatives by the angles and the real unknowns.
     """
 
     potential: Any | None
     equations: tuple[Any, ...] = ()
     inequalities: tuple[Any, ...] = ()
     stability: tuple[Any, ...] = ()
+    moments: tuple[Any, ...] = ()
+
+    def moment(self, k: int) -> Any:
+        """The generalised force on the unknown number k, angles first."""
+        return self.moments[k] if self.moments else fmpq(0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +131,7 @@ class Configuration:
 def formulas(configuration: Configuration, model: Model) -> Formulas:
     """What solutions satisfy, in the configuration's numbers."""
     if isinstance(model, Mechanism):
-        return Formulas(potential(configuration, model))
+        return Formulas(potential(configuration, model), moments=_moments(configuration, model))
     assert isinstance(model, System)
     value = configuration.value
     return Formulas(
@@ -135,6 +142,26 @@ def formulas(configuration: Configuration, model: Model) -> Formulas:
     )
 
 
+def _moments(configuration: Configuration, mechanism: Mechanism) -> tuple[Any, ...]:
+    """The generalised forces on the unknowns; none where the description has none.
+
+    Raises
+    ------
+    Violation
+        For a moment that depends on an unknown: such maps are not checked.
+    """
+    if not mechanism.moments:
+        return ()
+    unknowns = mechanism.angles + mechanism.reals
+    total: list[Any] = [fmpq(0)] * len(unknowns)
+    for unknown, tree in mechanism.moments:
+        if set(names_of(tree)) & set(unknowns):
+            raise Violation(f"the moment on {unknown} depends on an unknown, which this checker does not know")
+        k = unknowns.index(unknown)
+        total[k] = total[k] + configuration.value(tree)
+    return tuple(total)
+
+
 def potential(configuration: Configuration, mechanism: Mechanism = MECHANISM) -> Any:
     """Half the stiffness times the squared length of each spring, without free lengths, less the work of the loads."""
     points = configuration.points(mechanism)
@@ -142,6 +169,11 @@ def potential(configuration: Configuration, mechanism: Mechanism = MECHANISM) ->
     for spring in mechanism.springs:
         across, up = (points[spring.end][i] - points[spring.start][i] for i in (0, 1))
         energy = energy + (across * across + up * up) * (configuration.value(spring.stiffness) * fmpq(1, 2))
+    for torsion in mechanism.torsion:
+        cosine, sine = configuration.circle(torsion.angle)
+        at_rest = [fmpq(value.numerator, value.denominator) for value in torsion.rest]
+        difference = cosine * at_rest[0] + sine * at_rest[1]
+        energy = energy + configuration.value(torsion.stiffness) * (fmpq(1) - difference)
     return energy
 
 

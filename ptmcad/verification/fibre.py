@@ -303,7 +303,7 @@ def equations_at(model: Model, values: Mapping[str, Fraction]) -> PointEquations
         return p
 
     if given.potential is not None:
-        equations = tuple(by(polynomial(given.potential)))
+        equations = tuple(e - given.moment(k) for k, e in enumerate(by(polynomial(given.potential))))
     else:
         equations = tuple(map(polynomial, given.equations))
     return PointEquations(

@@ -98,7 +98,11 @@ def _polynomials(model: Model) -> _Polynomials:
         return tuple(ring.context.constant(0) + value for value in values)
 
     potential = None if given.potential is None else elements([given.potential])[0]
-    equations = elements(given.equations) if potential is None else tuple(ring.by(potential, u) for u in unknowns)
+    equations = (
+        elements(given.equations)
+        if potential is None
+        else tuple(ring.by(potential, u) - given.moment(k) for k, u in enumerate(unknowns))
+    )
     jacobian = tuple(tuple(ring.by(e, u) for u in unknowns) for e in equations)
     return _Polynomials(ring, potential, equations, jacobian, elements(given.inequalities), elements(given.stability))
 

@@ -135,7 +135,7 @@ class _Functions:
         if found.potential is not None:
             energy = jet_of(found.potential)
             return _Values(
-                [energy.slopes.get(i, zero) for i in unknowns],
+                [energy.slopes.get(i, zero) - found.moment(i) for i in unknowns],
                 [[energy.bends.get((min(i, j), max(i, j)), zero) for j in unknowns] for i in unknowns],
                 *conditions,
             )

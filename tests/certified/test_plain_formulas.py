@@ -294,16 +294,16 @@ def test_equations_without_a_potential_are_counted() -> None:
 
 def test_what_a_description_says_beyond_springs_and_loads_does_not_go_unnoticed() -> None:
     @dataclass(frozen=True)
-    class Twisted(Mechanism):
-        torsion: tuple[str, ...] = ()
+    class Wound(Mechanism):
+        wires: tuple[str, ...] = ()
 
         __hash__ = Mechanism.__hash__
 
     slice = _slice(PENDULUM)
     known = {f.name: getattr(slice.model, f.name) for f in fields(slice.model)}
-    assert problem_of(replace(slice, model=Twisted(**known))).cones
-    with pytest.raises(ConfigError, match="does not take torsion"):
-        problem_of(replace(slice, model=Twisted(**known, torsion=("th",))))
+    assert problem_of(replace(slice, model=Wound(**known))).cones
+    with pytest.raises(ConfigError, match="does not take wires"):
+        problem_of(replace(slice, model=Wound(**known, wires=("th",))))
 
 
 def test_range_of_the_truss_ends_on_the_astroid() -> None:

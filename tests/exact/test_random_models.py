@@ -15,8 +15,9 @@ from support.random_models import random_mechanism, random_system
 
 import ptmcad
 from ptmcad.algebra.polynomials import from_fraction
+from ptmcad.answer.counts import Counts
 from ptmcad.errors import HypothesisError
-from ptmcad.exact.counting import Counts, count_by_isolation, count_by_signature
+from ptmcad.exact.counting import count_by_isolation, count_by_signature
 from ptmcad.exact.models import system_from
 
 POINTS = 200

@@ -16,12 +16,13 @@ from support.maps import CONFIGS
 import ptmcad
 from ptmcad.ask.ranges import Fate, PosePath, pose_paths
 from ptmcad.errors import ConfigError
-from ptmcad.exact.models import system_of
+from ptmcad.exact.models import system_from, system_of
 from ptmcad.exact.ranges.tracking import BITS, Family, Reached, at_value, bridge, enclose, follow
+from ptmcad.mechanism import ptm
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.document import document, path_data
-from ptmcad.show.ranges.table import path_table, sine_sign
+from ptmcad.show.ranges.table import path_table
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -83,7 +84,7 @@ def test_an_upright_pose_snaps_to_the_reverse_one(name: str, along: str, at: dic
     for end, wall in ((upright[0].low, operation.low), (upright[0].high, operation.high)):
         assert end.fate is Fate.SNAP and end.at.polynomial == wall.polynomial  # type: ignore[union-attr]
         assert end.meeting[:2] == (0, 1) and end.target is not None
-        assert [sine_sign(a) for a in end.target.angles] == [-1, -1]
+        assert end.target.sides == (-1, -1)
         assert end.energy is not None and end.target_energy is not None and end.energy.low > end.target_energy.high
         # a little further, because a descent takes long where the pose has just vanished
         beyond = float(end.target.value) + (0.01 if end is upright[0].high else -0.01)
@@ -127,7 +128,7 @@ def test_a_pair_that_meets_elsewhere_does_not_stop_a_path() -> None:
 
 def family() -> Family:
     line = line_of(record("fig4"), "rho", {"L2": "3/2"})
-    return Family(system_of("ptm"), line.parameters)
+    return Family(ptm(), system_of("ptm"), line.parameters)
 
 
 def test_a_tube_holds_one_branch_only() -> None:
@@ -153,7 +154,7 @@ def test_a_tube_holds_one_branch_only() -> None:
     assert done
     assert bridge(mechanism, steps[-1], Fraction(105, 100)) is None
     assert not follow(mechanism, steps[-1], Fraction(105, 100), Fraction(1, 10))[1]
-    assert enclose(mechanism, Fraction(1), Fraction(11, 10), steps[-1].angles) is None
+    assert enclose(mechanism, Fraction(1), Fraction(11, 10), steps[-1].point) is None
 
 
 @pytest.mark.parametrize(
@@ -200,3 +201,66 @@ def test_a_start_that_can_not_be_enclosed_is_refused() -> None:
     slice = ptmcad.load(CONFIGS / "fig2.yaml")
     with pytest.raises(ConfigError, match="start farther away"):
         pose_paths(slice, "rho", {"L2": Fraction(1)}, Fraction(1, 10**24), 1)
+
+
+def system(**asked: Any) -> Slice:
+    axes = {"a": [-2, 2], "b": [-2, 2]}
+    return ptmcad.slice_from_mapping({"name": "s", "system": asked, "axes": axes, "count": "total"})
+
+
+def test_solutions_of_equations_are_followed_to_their_fold() -> None:
+    """x^3 - x + b at b = 0: the middle root meets the others at b = +-2/sqrt(27), where x = +-1/sqrt(3)."""
+    cusp = system(unknowns={"x": "real"}, equations=["x^3 - a*x + b"])
+    found = pose_paths(cusp, "b", {"a": 1}, 0)
+    assert len(found.paths) == 3
+    for path in found.paths:
+        for point in path.points:
+            (x,) = map(float, point.reals)
+            assert abs(x**3 - x + float(point.value)) < 1e-12
+    middle = found.paths[1]
+    for end, sign in ((middle.low, -1), (middle.high, 1)):
+        assert end.fate is Fate.VANISH and end.at.polynomial == (-4, 0, 27)  # type: ignore[union-attr]
+        assert abs(float(end.last.reals[0]) - sign / 3**0.5) < 0.01 and end.energy is None
+    assert "a solution + a solution meet and leave nothing" in path_table(found) and "x = 1" in path_table(found)
+    jsonschema.validate(
+        json.loads(document("s", "s", {"path": path_data(found)})),
+        json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8")),
+        cls=jsonschema.Draft202012Validator,
+    )
+
+
+def test_a_path_ends_where_a_condition_fails() -> None:
+    """x = b on the line: it leaves x + 1 > 0 at -1, and is stable above 1/2 only."""
+    asked = {"unknowns": {"x": "real"}, "equations": ["x - b*(1 + 0*a)"], "positive": ["x + 1"], "stable": ["2*x - 1"]}
+    (path,) = pose_paths(system(**asked), "b", {"a": 1}, 1).paths
+    assert path.low.fate is Fate.UNSTABLE and path.low.at.exact == Fraction(1, 2)  # type: ignore[union-attr]
+    assert path.high.fate is Fate.WINDOW
+    del asked["stable"]
+    (path,) = pose_paths(system(**asked), "b", {"a": 1}, 1).paths
+    assert path.low.fate is Fate.EXCLUDED and path.low.at.exact == -1  # type: ignore[union-attr]
+
+
+def test_minima_of_a_potential_in_the_plane() -> None:
+    """Without a torus the energy may descend for ever: it is not said where a minimum that vanishes goes."""
+    slice = system(unknowns={"x": "real", "y": "real"}, potential="x^4 + y^4 - a*x^2 - b*y + x*y")
+    found = pose_paths(slice, "b", {"a": 1}, 0)
+    assert [(p.low.fate, p.high.fate) for p in found.paths] == [(Fate.WINDOW, Fate.VANISH), (Fate.VANISH, Fate.WINDOW)]
+    assert found.paths[0].high.meeting == (0, 1) and found.paths[0].high.leaving == ()
+
+
+def test_a_minimum_in_three_angles_is_followed() -> None:
+    potential = "-2*(cos(t0) + cos(t1) + cos(t2)) - a/3*(cos(t0 - t1) + cos(t1 - t2)) - (b + 3)*sin(t0)/9"
+    slice = system(unknowns=dict.fromkeys(("t0", "t1", "t2"), "angle"), potential=potential)
+    line = line_of(slice, "b", {"a": 1})
+    chain = Family(slice.model, system_from(slice.model), line.parameters)
+    start = at_value(chain, Fraction(0), (arb("0.15"), arb(0), arb(0)))
+    assert start is not None
+    steps, done = follow(chain, Reached(Fraction(0), start, start), Fraction(2), Fraction(1, 4))
+    assert done
+    t = [float(x.mid()) for x in steps[-1].point]
+    slopes = (
+        2 * sin(t[0]) + sin(t[0] - t[1]) / 3 - 5 * cos(t[0]) / 9,
+        2 * sin(t[1]) - sin(t[0] - t[1]) / 3 + sin(t[1] - t[2]) / 3,
+        2 * sin(t[2]) - sin(t[1] - t[2]) / 3,
+    )
+    assert max(map(abs, slopes)) < 1e-12

@@ -30,7 +30,7 @@ X, Y = PLANE.gens()
 
 
 def maximum(name: str, along: str) -> tuple[Maximum, ...]:
-    return largest(strips(ptmcad.load(ROOT / "configs" / f"{name}.yaml"), along))
+    return largest(strips(ptmcad.load(ROOT / "configs" / f"{name}.yaml"), along).found)
 
 
 def test_paper_4_3_the_range_is_widest_at_l2_1_confirmed() -> None:
@@ -72,7 +72,7 @@ def test_paper_4_1_the_width_is_constant_above_l2_1_confirmed() -> None:
 )
 def test_no_width_on_a_grid_is_larger(name: str, along: str) -> None:
     slice = ptmcad.load(ROOT / "configs" / f"{name}.yaml")
-    found = largest(strips(slice, along))
+    found = largest(strips(slice, along).found)
     over = next(a for a in slice.axes if a.name != along)
     most = max(m.width.high for m in found)
     grid = [over.low + (over.high - over.low) * Fraction(k, 12) for k in range(1, 12)]
@@ -166,7 +166,7 @@ def test_table_and_document() -> None:
 def test_the_windows_edge_counts() -> None:
     """Unloaded, rho < 1: the upper end is the edge as soon as L2 > 1."""
     slice = slice_from_options(None, "rho,L2", ranges=["rho=0:1", "L2=1/2:2"])
-    (only,) = largest(strips(slice, "rho"))
+    (only,) = largest(strips(slice, "rho").found)
     assert only.at.exact == 1 and only.width.exact == 1
     assert " *" in width_table(operation_widths(slice, "rho", 2))
 

@@ -18,6 +18,7 @@ from support.random_slices import drawn
 
 import ptmcad
 from ptmcad.algebra.numbers import compare, refined
+from ptmcad.answer.counts import Counts
 from ptmcad.answer.intervals import lower, upper
 from ptmcad.ask.ranges import CountIntervals, Event, intervals
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError
@@ -46,8 +47,8 @@ def published() -> Iterator[Any]:
 def ends(found: CountIntervals, count: Count) -> list[AlgebraicNumber]:
     """The critical values where this count changes."""
 
-    def key(index: tuple[int, int, int]) -> object:
-        return index[0] if count is Count.STABLE else sum(index) if count is Count.TOTAL else index
+    def key(counts: Counts) -> object:
+        return counts.stable if count is Count.STABLE else counts.total if count is Count.TOTAL else counts.index
 
     return [c.at for c in found.changes if key(c.before) != key(c.after)]
 
@@ -127,7 +128,7 @@ def test_the_ends_are_the_walls_of_the_map(name: str, along: str, value: str) ->
         low = upper(found.changes[k - 1].at) if k else slice.axes[axis].low
         high = lower(found.changes[k + 1].at) if k + 1 < len(found.changes) else slice.axes[axis].high
         gap = min(change.at.low - low, high - change.at.high) / 10**6
-        for at, index in ((change.at.low - gap, change.before), (change.at.high + gap, change.after)):
+        for at, index in ((change.at.low - gap, change.before.index), (change.at.high + gap, change.after.index)):
             assert result.locate(**{along: at, other: value}).index == index
     # and no root of the walls' polynomials elsewhere changes a count
     known = {change.at.polynomial for change in found.changes}

@@ -13,13 +13,12 @@ from flint import fmpq
 
 from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
 from ptmcad.algebra.trigonometric import TrigonometricRing
+from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Kind
-from ptmcad.errors import DimensionError
-from ptmcad.exact.counting import Counts, count_by_isolation, count_by_signature, solutions_at
+from ptmcad.exact.counting import count_by_isolation, count_by_signature, solutions_at
 from ptmcad.exact.models import ParametricSystem, system_from, system_of
 from ptmcad.exact.models.system import from_potential
 from ptmcad.exact.poses import exact_poses
-from ptmcad.exact.ranges.tracking import Family
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.mechanism import described
 
@@ -49,12 +48,6 @@ def test_indices_are_binomial_numbers(count: Callable[..., Counts], angles: int)
     found = count(chain(angles), VALUES)
     assert found.index == tuple(comb(angles, k) for k in range(angles + 1))
     assert (found.total, found.stable) == (2**angles, 1)
-
-
-@pytest.mark.parametrize("angles", [1, 3])
-def test_paths_of_other_dimensions_are_refused(angles: int) -> None:
-    with pytest.raises(DimensionError, match="paths of equilibria"):
-        Family(chain(angles), {})
 
 
 def ratios() -> dict[str, Ratio]:

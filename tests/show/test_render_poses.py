@@ -134,7 +134,7 @@ def labels_are_clear(found: Poses) -> None:
         return
     frame, arrows = frame_of(found.equilibria), arrow_lengths(found)
     for pose in found.equilibria:
-        seen = sketch(pose, frame, arrows)
+        seen = sketch(found.model, pose, frame, arrows)
         strokes = [Stroke(a, b, w / 2) for (a, b), w in zip(seen.bars, BAR_WIDTHS, strict=True)]
         strokes += [s for line in seen.springs for s in polyline(line, 0.4)]
         strokes += [Stroke(a.start, a.end, 2.0) for a in seen.arrows]
@@ -154,7 +154,7 @@ def test_a_springs_teeth_stand_across_it_at_any_length_and_slope(name: str) -> N
     found = poses(name)
     frame = frame_of(found.equilibria)
     for pose in found.equilibria:
-        seen = sketch(pose, frame, {})
+        seen = sketch(found.model, pose, frame, {})
         for spring, line in zip(pose.springs, seen.springs, strict=True):
             assert (line[0], line[-1]) == (seen.nodes[spring.start], seen.nodes[spring.end])
             teeth = len(line) - 4
@@ -173,7 +173,7 @@ def test_springs_on_bars_are_drawn_aside() -> None:
     flat = [p for p in found.equilibria if p.flat]
     assert len(flat) == 4
     for pose in flat:
-        seen = sketch(pose, frame, {})
+        seen = sketch(found.model, pose, frame, {})
         middles = [np.mean(line[1:-1], axis=0)[1] - seen.nodes["A1"][1] for line in seen.springs]
         bars = [(min(a[0], b[0]), max(a[0], b[0])) for a, b in seen.bars]
         for line, middle in zip(seen.springs, middles, strict=True):
@@ -232,7 +232,7 @@ def test_every_equilibrium_is_marked_and_numbered_once(name: str) -> None:
 def test_the_drawn_energy_is_that_of_the_poses(name: str) -> None:
     """Two ways to the same number: the potential over the torus, and the certified energy of each equilibrium."""
     found = poses(name)
-    energy = energy_of(found.parameters)
+    energy = energy_of(found.model, found.parameters)
     h = 1e-4
     for pose in found.equilibria:
         th1, th2 = (np.radians(float(d)) for d in pose.degrees)
@@ -246,7 +246,7 @@ def test_the_drawn_energy_is_that_of_the_poses(name: str) -> None:
 def test_contours_pass_through_saddles() -> None:
     found = poses("paper, fig. 4")
     figure = draw_landscape(found)
-    energy = energy_of(found.parameters)
+    energy = energy_of(found.model, found.parameters)
     saddles = sorted(energy.scaled(p.energy.center) for p in found.equilibria if p.index == 1)
     drawn = [list(c.levels) for c in figure.findobj() if hasattr(c, "levels")]
     assert any(levels == pytest.approx(saddles) for levels in drawn)

@@ -275,7 +275,7 @@ def test_poses_satisfy_the_mechanism(shipped: Shipped) -> None:
                 assert float(text) == pytest.approx(100 * length, abs=unit_of(text), rel=0)
             energy = 50 * sum(x * x for x in lengths) + 10 * (a3[1] + a4[1])
             assert float(e["energy"].replace("−", "-")) == pytest.approx(energy, abs=unit_of(e["energy"]), rel=0)
-            for text, angle in zip(e["angles"], (atan2(s1, c1), atan2(s2, c2)), strict=True):
+            for text, angle in zip(e["unknowns"], (atan2(s1, c1), atan2(s2, c2)), strict=True):
                 digits = text.replace("−", "-").rstrip("°")
                 assert float(digits) == pytest.approx(angle * 180 / pi, abs=unit_of(digits), rel=0)
             gradient = 0.0  # of the embedded potential along th1, which the landscape draws

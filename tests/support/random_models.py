@@ -51,7 +51,7 @@ def random_mechanism(seed: int) -> dict[str, Any]:
     fixed = source.randint(1, 2)
     for k in range(fixed):
         points[f"A{k}"] = [source.choice(["a", number()]), number()]
-    springs = [
+    springs: list[dict[str, Any]] = [
         {"between": [f"A{source.randrange(fixed)}", f"P{k}"], "k": f"{source.randint(1, 5)}/2"}
         for k in range(1, bars + 1)
     ]

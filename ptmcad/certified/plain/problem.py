@@ -17,15 +17,17 @@ from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.question.positivity import Need, Proved, decide
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.tree import names_of
 
 MAX_UNKNOWNS = 3
 """Angles and lengths; the time of a search multiplies with every one."""
 FIRST = 2
 """Number of the first unknown among the variables, after the two axes."""
 
-
 _IRRELEVANT = frozenset({"name", "parameters", "unknowns", "source", "bars", "supports", "symmetries"})
-_USED = frozenset({"points", "springs", "loads", "equations", "potential", "inequalities", "stability"})
+_USED = frozenset(
+    {"points", "springs", "torsion", "loads", "moments", "equations", "potential", "inequalities", "stability"}
+)
 """What a description may have: nothing else may go unnoticed into a proof."""
 
 
@@ -107,7 +109,16 @@ def problem_of(slice: Slice) -> Problem:
                 f"it is not proved that stiffness times free length of spring {cone.name} is nowhere negative in the "
                 "window: narrow the window"
             )
-    return Problem(ring.unknowns, ring.reals, _gradient(smooth, ring), cones, True)
+    gradient = list(_gradient(smooth, ring))
+    for unknown, tree in model.moments:
+        if set(names_of(tree)) & set(model.unknowns):
+            raise ConfigError(
+                f"the certified engine takes constant moments, and that on {unknown} depends on an unknown",
+                key="engine",
+            )
+        k = ring.unknowns.index(unknown)
+        gradient[k] = gradient[k] - evaluate(tree, ring)
+    return Problem(ring.unknowns, ring.reals, tuple(gradient), cones, True)
 
 
 def _gradient(energy: TrigonometricPolynomial, ring: Harmonics) -> tuple[TrigonometricPolynomial, ...]:
@@ -125,6 +136,8 @@ def _energy(mechanism: Mechanism, ring: Harmonics) -> tuple[TrigonometricPolynom
         pull = constant_of(k * free)
         if pull.numerator and (dx.terms or dy.terms):
             cones.append(Cone(spring.name, pull, (dx, dy)))
+    for torsion in mechanism.torsion:
+        smooth = smooth + evaluate(torsion.energy, ring)
     for load in mechanism.loads:
         for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
             smooth = smooth - evaluate(force, ring) * coordinate

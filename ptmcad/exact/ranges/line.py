@@ -1,13 +1,13 @@
 """The intervals of constant count along a line of a slice, with exact ends.
 
 Guarantee: exact. The window's part of the line, less the critical values, is cut into open intervals; in each the
-equilibria are nondegenerate, their number and indices are constant, and they were counted at a rational sample. Ends
+solutions are nondegenerate, their number and indices are constant, and they were counted at a rational sample. Ends
 are real algebraic numbers. Neighbours with equal counts are joined, and the critical value between them is kept among
 the changes.
 
 The line's own discriminant variety is computed, in one parameter: its components are the irreducible factors of the
-norm of det H over Q(x). So nothing depends on how a basis over the plane specialises, and that the ends are those of
-the map's walls is a test of both.
+norm of det H over Q(x), or of the Jacobian's determinant where there is no potential. So nothing depends on how a basis
+over the plane specialises, and that the ends are those of the map's walls is a test of both.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ from flint import fmpq
 from ptmcad.algebra.numbers import in_order, roots_in
 from ptmcad.algebra.polynomials import Ratio, from_expression, from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.answer.counts import Counts, operation_number
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End
-from ptmcad.answer.regionmap import Kind, MorseIndex
-from ptmcad.errors import ConfigError, DegenerateSliceError, InfiniteSolutionsError
-from ptmcad.exact.counting import Counts
+from ptmcad.answer.regionmap import Kind
+from ptmcad.answer.words import noun
+from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.stages import count_at, domain_limits
 from ptmcad.exact.variety import discriminant_variety
@@ -37,13 +38,14 @@ END_WIDTH = Fraction(1, 2**100)
 """Width of the ends' isolating intervals, against the window's."""
 
 
-def intervals(slice: Slice, along: str, at: Mapping[str, Any]) -> CountIntervals:
+def intervals(slice: Slice, along: str, at: Mapping[str, Any], working: int | None = None) -> CountIntervals:
     """The intervals of constant count on a line of a slice.
 
     Parameters
     ----------
     along : the axis that varies, over its window.
     at : the other axis with its value: text or a number, of which a float stands for its exact binary value.
+    working : the number of stable solutions in an operation range; by `operation_number` on this line when None.
 
     Raises
     ------
@@ -61,16 +63,17 @@ def intervals(slice: Slice, along: str, at: Mapping[str, Any]) -> CountIntervals
     numbers = tuple(number for number, _ in found)
     kinds = dict(found)
     samples = samples_between(line.along, numbers)
-    counts = [index_at(line, sample) for sample in samples]
+    counts = [counts_at(line, sample) for sample in samples]
     changes = tuple(Change(n, kinds[n], counts[k], counts[k + 1]) for k, n in enumerate(numbers))
     return CountIntervals(
         slice.name,
-        slice.mechanism,
+        slice.model,
         line.along,
         line.at,
         line.parameters,
         tuple(_joined(line.along, numbers, samples, counts)),
         changes,
+        operation_number(slice.model, counts) if working is None else working,
     )
 
 
@@ -101,8 +104,8 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Kind], ...]:
         )
     except DegenerateSliceError as error:
         raise DegenerateSliceError(
-            f"the line {where} lies inside the discriminant variety: at every {line.along.name} some equilibrium has a "
-            "singular Hessian; fix another value"
+            f"the line {where} lies inside the discriminant variety: at every {line.along.name} some "
+            f"{noun(line.model, 1)} has a singular {'Hessian' if system.has_index else 'Jacobian'}; fix another value"
         ) from error
     except InfiniteSolutionsError as error:
         raise InfiniteSolutionsError(
@@ -127,32 +130,19 @@ def samples_between(along: Axis, numbers: tuple[AlgebraicNumber, ...]) -> tuple[
     return tuple(to_fraction(s) for s in samples)
 
 
-def index_at(line: Line, value: Fraction) -> MorseIndex:
-    """Numbers of critical points by index at a rational value that is not critical.
-
-    Raises
-    ------
-    ConfigError
-        For a system of equations, whose solutions have no index.
-    """
+def counts_at(line: Line, value: Fraction) -> Counts:
+    """Numbers of solutions at a rational value that is not critical."""
     system, parameters = system_on(line)
-    return index_of(count_at(line.place(value), system, parameters, (from_fraction(value), fmpq(0))).counts)
-
-
-def index_of(counts: Counts) -> MorseIndex:
-    """The index of counts that have one; raises `ConfigError` for others."""
-    if counts.index is None:
-        raise ConfigError("ranges are of critical points of a potential, and this system has equations instead")
-    return counts.index
+    return count_at(line.place(value), system, parameters, (from_fraction(value), fmpq(0))).counts
 
 
 def _joined(
-    along: Axis, numbers: tuple[AlgebraicNumber, ...], samples: tuple[Fraction, ...], counts: list[MorseIndex]
+    along: Axis, numbers: tuple[AlgebraicNumber, ...], samples: tuple[Fraction, ...], counts: list[Counts]
 ) -> Iterator[CountInterval]:
     """The intervals, those with equal counts joined."""
     ends: list[End] = [along.low, *numbers, along.high]
     start = 0
-    for k, index in enumerate(counts):
-        if k + 1 == len(counts) or counts[k + 1] != index:
-            yield CountInterval(ends[start], ends[k + 1], index, samples[start])
+    for k, here in enumerate(counts):
+        if k + 1 == len(counts) or counts[k + 1] != here:
+            yield CountInterval(ends[start], ends[k + 1], here, samples[start])
             start = k + 1

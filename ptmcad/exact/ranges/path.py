@@ -3,14 +3,16 @@
 Guarantee: the pose at every step of a path is the same branch (`tracking`). A branch that is said to end at a critical
 value is not continued beyond it: all equilibria on the far side but those named were reached from other equilibria.
 
-Where a stable pose vanishes one stable pose is left, as there are never more than two (theorem 1 of docs/method.md).
-From the place where the first one was, the energy descends to the one that is left: every descent ends at an
-equilibrium, and all but those that run exactly into a saddle end at a minimum.
+Where a stable pose vanishes and one is left, as always with the paper's mechanism, which never has more than two
+(theorem 1 of docs/method.md), the energy descends to it from the place where the first one was: on a torus every
+descent ends at an equilibrium, and all but those that run exactly into a saddle end at a minimum. Where several are
+left, where unknowns are on the line, and where there is no energy, nothing is said about where a solution goes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -18,6 +20,7 @@ from flint import arb, ctx
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
@@ -26,12 +29,25 @@ from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.models.system import polynomial_at
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.ranges.line import critical_values
-from ptmcad.exact.ranges.tracking import BITS, Family, Pair, Reached, at_value, bridge, follow
+from ptmcad.exact.ranges.tracking import (
+    BITS,
+    Family,
+    Reached,
+    Vector,
+    at_value,
+    bridge,
+    coordinates_of,
+    follow,
+    value_of,
+)
+from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.parsing import number_for
+from ptmcad.text.tree import names_of
 
 DIGITS = 12
 _MIN_DISTANCE = Fraction(1, 10**5)
@@ -55,6 +71,8 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
         When the start is outside the window or critical, or there is no such stable pose.
     HypothesisError
         As for `ptmcad.ask.ranges.intervals`.
+
+    Of a system that does not say what a stable solution is, all solutions are followed.
     """
     line = line_of(slice, along, at)
     axis = line.along
@@ -66,15 +84,17 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
         raise ConfigError(f"{along} = {value} is a critical value: start beside it", key="--path")
     system = system_from(slice.model)
     poses = exact_poses(slice.model, _parameters(system, line, value), DIGITS)
-    stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable]
+    stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable or not slice.model.tells_stability]
     if number is not None and number - 1 not in stable:
+        what = "stable poses" if slice.model.tells_stability else "solutions"
         raise ConfigError(
-            f"{number} is none of the {len(stable)} stable poses at {along} = {value}, counted from 1", key="--pose"
+            f"{number} is none of the {len(stable)} {what} at {along} = {value}, counted from 1", key="--pose"
         )
-    family = Family(system, line.parameters)
+    family = Family(slice.model, system, line.parameters)
     chosen = stable if number is None else [number - 1]
     return PosePaths(
         slice.name,
+        slice.model,
         axis,
         line.at,
         value,
@@ -101,17 +121,48 @@ def _path(
     left = _one_way(family, line, [n for n in reversed(numbers) if n.compare(start) < 0], origin, -1)
     right = _one_way(family, line, [n for n in numbers if n.compare(start) > 0], origin, 1)
     reached = [*reversed(left[0]), origin, *right[0]]
-    with ctx.workprec(BITS):
-        sines = [(a.sin(), b.sin()) for a, b in (r.over.hull() for r in reached)]
-        upright = all(a > 0 and b > 0 for a, b in sines)
-        reverse = all(a < 0 and b < 0 for a, b in sines)
-    return PosePath(number, start, tuple(_point(r) for r in reached), left[1], right[1], upright, reverse)
+    sides = [_sides(family, r.over.low, r.over.high, r.over.hull()) for r in reached]
+    upright, reverse = (all(signs and set(signs) == {of} for signs in sides) for of in (1, -1))
+    points = tuple(_point(family, r) for r in reached)
+    return PosePath(number, start, points, left[1], right[1], upright, reverse)
 
 
-def _guess(pose: Pose) -> Pair:
+def _guess(pose: Pose) -> Vector:
     with ctx.workprec(BITS):
-        first, second = (arb(from_fraction(a.center)) for a in pose.angles)
-        return first, second
+        return tuple(arb(from_fraction(a.center)) for a in (*pose.angles, *pose.reals))
+
+
+def _sides(family: Family, low: Fraction, high: Fraction, unknowns: Vector) -> tuple[int, ...]:
+    """Of each moving point of a mechanism, 1 when it is proved above the x axis, -1 when below, else 0."""
+    model = family.model
+    if not isinstance(model, Mechanism):
+        return ()
+    with ctx.workprec(BITS):
+        span = arb(from_fraction(low)).union(arb(from_fraction(high)))
+        used = {name for point in model.moving for name in names_of(model.points[point][1])}
+        values = {name: value_of(family.parameters[name], span) for name in used & family.parameters.keys()}
+        within = _Balls(values, dict(zip((*model.angles, *model.reals), unknowns, strict=True)))
+        heights = [evaluate(model.points[name][1], within) for name in model.moving]
+        return tuple(1 if y > 0 else -1 if y < 0 else 0 for y in heights)
+
+
+class _Balls:
+    """The ring of balls, at balls of the parameters and the unknowns."""
+
+    def __init__(self, parameters: Mapping[str, arb], unknowns: Mapping[str, arb]):
+        self.parameters, self.unknowns = parameters, unknowns
+
+    def constant(self, value: Fraction) -> arb:
+        return arb(from_fraction(value))
+
+    def parameter(self, name: str) -> arb:
+        return self.unknowns[name] if name in self.unknowns else self.parameters[name]
+
+    def cos(self, angle: str) -> arb:
+        return self.unknowns[angle].cos()
+
+    def sin(self, angle: str) -> arb:
+        return self.unknowns[angle].sin()
 
 
 def _one_way(
@@ -133,16 +184,20 @@ def _one_way(
             reached += steps
             current = steps[-1] if steps else current
             if not done:
-                return reached, PathEnd(Fate.UNDECIDED, number, _point(current))
+                return reached, PathEnd(Fate.UNDECIDED, number, _point(family, current))
             crossed = bridge(family, current, after)
             gap = gap / 4
         if crossed is None:
             return reached, _meeting(family, line, number, current, after)
+        if (fate := _condition(family, line, crossed)) is not None:
+            return reached, PathEnd(fate, number, _point(family, current))
         reached.append(crossed)
         current = crossed
     steps, done = follow(family, current, _beside(edge, -side, window / 10**6), window / _MIN_STEPS)
     reached += steps
-    return reached, PathEnd(Fate.WINDOW if done else Fate.UNDECIDED, edge, _point(steps[-1] if steps else current))
+    return reached, PathEnd(
+        Fate.WINDOW if done else Fate.UNDECIDED, edge, _point(family, steps[-1] if steps else current)
+    )
 
 
 def _ends(number: AlgebraicNumber, side: int) -> tuple[Fraction, Fraction]:
@@ -156,79 +211,107 @@ def _beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
     return to_fraction(simplest_between(from_fraction(low), from_fraction(high)))
 
 
+def _condition(family: Family, line: Line, reached: Reached) -> Fate | None:
+    """What a solution loses at a critical value that it passes: an inequality, or stability that is given by signs."""
+    system = family.system
+    conditions = [(Fate.EXCLUDED, p) for p in system.inequalities]
+    if not system.has_index:
+        conditions += [(Fate.UNSTABLE, p) for p in system.stability]
+    for fate, p in conditions:
+        value = _value(family, line, reached, p)
+        if not value > 0:
+            return fate if value < 0 else Fate.UNDECIDED
+    return None
+
+
 def _meeting(family: Family, line: Line, number: AlgebraicNumber, current: Reached, after: Fraction) -> PathEnd:
-    """Which equilibria meet at a critical value that the path does not pass."""
-    stopped = PathEnd(Fate.UNDECIDED, number, _point(current))
+    """Which solutions meet at a critical value that the path does not pass."""
+    stopped = PathEnd(Fate.UNDECIDED, number, _point(family, current))
     before, beyond = _equilibria(family, line, current.value), _equilibria(family, line, after)
     if before is None or beyond is None:
         return stopped
     stable = [place for place, negative in beyond if negative == 0]
     meeting, own = [], False
     for place, negative in before:
-        ours = _close(place.angles, current.angles)
+        ours = _close(family, place.point, current.point)
         across = None if ours else bridge(family, place, after)
         if across is None:
             meeting.append(negative)
             own = own or ours
         else:
-            images = [k for k, (image, _) in enumerate(beyond) if _close(across.angles, image.angles)]
+            images = [k for k, (image, _) in enumerate(beyond) if _close(family, across.point, image.point)]
             if len(images) != 1:
                 return stopped
             del beyond[images[0]]
     leaving = [negative for _, negative in beyond]
-    if not own or len(stable) != 1:
+    if not own:
         return stopped
-    return PathEnd(
-        Fate.MERGE if 0 in leaving else Fate.SNAP,
-        number,
-        _point(current),
-        tuple(sorted(meeting)),
-        tuple(sorted(leaving)),
-        _energy(family, line, current),
-        _point(stable[0]),
-        _energy(family, line, stable[0]),
+    met = replace(stopped, fate=Fate.VANISH, meeting=tuple(sorted(meeting)), leaving=tuple(sorted(leaving)))
+    if not (family.system.has_index and family.system.is_on_torus and len(stable) == 1):
+        return met
+    return replace(
+        met,
+        fate=Fate.MERGE if 0 in leaving else Fate.SNAP,
+        energy=_energy(family, line, current),
+        target=_point(family, stable[0]),
+        target_energy=_energy(family, line, stable[0]),
     )
 
 
 def _equilibria(family: Family, line: Line, value: Fraction) -> list[tuple[Reached, int]] | None:
-    """All equilibria at a value that is not critical, with their Morse indices; None when one was not enclosed."""
+    """All solutions at a value that is not critical, with their Morse indices; None when one was not enclosed.
+
+    Without a potential the number is 0 for a stable solution and 1 for another.
+    """
     values = _parameters(family.system, line, value)
     found = []
     for solution in equilibria(family.system, {n: from_fraction(v) for n, v in values.items()}).solutions:
         with ctx.workprec(BITS):
-            c1, s1, c2, s2 = (arb(x) for x in solution.center)
-            guess = (arb.atan2(s1, c1), arb.atan2(s2, c2))
+            center = [arb(x) for x in solution.center]
+            turns = 2 * family.angles
+            angles = (arb.atan2(s, c) for c, s in zip(center[:turns:2], center[1:turns:2], strict=True))
+            guess = (*angles, *center[turns:])
         place = at_value(family, value, guess)
         if place is None:
             return None
-        found.append((Reached(value, place, place), solution.signs.count("-")))
+        stable = family.system.tells_stability and not solution.signs.strip("+")
+        negative = solution.signs.count("-") if family.system.has_index else int(not stable)
+        found.append((Reached(value, place, place), negative))
     return found
 
 
 def _energy(family: Family, line: Line, reached: Reached) -> Enclosure:
     """The potential at a place."""
-    values = {n: from_fraction(v) for n, v in _parameters(family.system, line, reached.value).items()}
     potential = family.system.potential
-    assert potential is not None  # `Family` has refused other systems
+    assert potential is not None  # snaps and mergers are those of a potential
+    return enclosure_of(_value(family, line, reached, potential))
+
+
+def _value(family: Family, line: Line, reached: Reached, p: TrigonometricPolynomial) -> arb:
+    """An element of the system's ring at a place."""
+    values = {n: from_fraction(v) for n, v in _parameters(family.system, line, reached.value).items()}
     with ctx.workprec(BITS):
-        unknowns = [f(a) for a in reached.angles for f in (arb.cos, arb.sin)]
+        coordinates = coordinates_of(reached.point, family.angles)
         total = arb(0)
-        for monomial, coefficient in polynomial_at(family.system, potential, values).items():
+        for monomial, coefficient in polynomial_at(family.system, p, values).items():
             term = arb(coefficient)
-            for value, e in zip(unknowns, monomial, strict=True):
+            for value, e in zip(coordinates, monomial, strict=True):
                 for _ in range(e):
                     term = term * value
             total += term
-        return enclosure_of(total)
+        return total
 
 
-def _close(first: Pair, second: Pair) -> bool:
+def _close(family: Family, first: Vector, second: Vector) -> bool:
     """Whether the boxes overlap, whole turns apart."""
     with ctx.workprec(BITS):
-        return all(((a - b) / 2).sin().contains(0) for a, b in zip(first, second, strict=True))
+        apart = [a - b for a, b in zip(first, second, strict=True)]
+        turned = [(d / 2).sin() for d in apart[: family.angles]]
+        return all(d.contains(0) for d in (*turned, *apart[family.angles :]))
 
 
-def _point(reached: Reached) -> PathPoint:
+def _point(family: Family, reached: Reached) -> PathPoint:
     with ctx.workprec(BITS):
-        first, second = map(enclosure_of, reached.angles)
-    return PathPoint(reached.value, (first, second))
+        unknowns = tuple(map(enclosure_of, reached.point))
+    sides = _sides(family, reached.value, reached.value, reached.point)
+    return PathPoint(reached.value, unknowns[: family.angles], unknowns[family.angles :], sides)

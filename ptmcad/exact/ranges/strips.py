@@ -1,23 +1,25 @@
 """Strips: where, over an open interval of the other axis, one operation range lies between two branches.
 
 Guarantee: over the strip's whole base interval the two ends are the branches (or the window's edges) that are named,
-and there are two stable equilibria between them but for points of the variety where no count changes.
+and the number of stable solutions between them is that of an operation range but for points of the variety where no
+count changes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, has_root_between, isolate, refine
 from ptmcad.algebra.window import Interval
+from ptmcad.answer.counts import operation_number
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.curves import Curve, by_component
 from ptmcad.exact.cad.stacks import BaseEnd, StackData
-from ptmcad.exact.ranges.line import index_of
 from ptmcad.exact.stages import counts_of, problem_of, projection_of, stacks_of, variety_of
 from ptmcad.question.slice import Slice, without_free_lengths
 
@@ -66,8 +68,15 @@ def refuse_free_lengths(slice: Slice) -> None:
     )
 
 
-def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
-    """The strips of a slice over the axis that is not ``along``, from the left.
+class Strips(NamedTuple):
+    """The strips from the left, and the number of stable solutions in them (`operation_number`)."""
+
+    found: tuple[Strip, ...]
+    working: int
+
+
+def strips(slice: Slice, along: str) -> Strips:
+    """The strips of a slice over the axis that is not ``along``.
 
     Raises
     ------
@@ -81,22 +90,26 @@ def strips(slice: Slice, along: str) -> tuple[Strip, ...]:
     problem = problem_of(slice)
     variety = variety_of(problem, base=base)
     stacks = stacks_of(problem, variety, projection_of(problem, variety))
-    stable = (index_of(found.counts)[0] for found in counts_of(problem, stacks).found)
+    counts = [found.counts for found in counts_of(problem, stacks).found]
+    working = operation_number(slice.model, counts)
+    inside = iter([found.working == working for found in counts])
     curves = by_component(variety.curves)
-    return tuple(
+    strips = (
         strip
         for stack in stacks.stacks
-        for strip in _over(stack, [next(stable) for _ in stack.heights], curves, problem.window[1 - base])
+        for strip in _over(stack, [next(inside) for _ in stack.heights], curves, problem.window[1 - base])
     )
+    return Strips(tuple(strips), working)
 
 
-def _over(stack: StackData, stable: Sequence[int], curves: dict[int, Curve], fibre: Interval) -> list[Strip]:
+def _over(stack: StackData, inside: Sequence[bool], curves: dict[int, Curve], fibre: Interval) -> list[Strip]:
+    """The strips of a stack, given which of its cells are in the operation range."""
     found = []
     first = None
-    for k, number in enumerate([*stable, 0]):
-        if number == 2 and first is None:
+    for k, is_inside in enumerate([*inside, False]):
+        if is_inside and first is None:
             first = k
-        elif number != 2 and first is not None:
+        elif not is_inside and first is not None:
             low = _branch(stack.walls[first - 1], curves, fibre[0]) if first else Branch(None, 0, fibre[0])
             high = _branch(stack.walls[k - 1], curves, fibre[1]) if k <= len(stack.walls) else Branch(None, 0, fibre[1])
             found.append(Strip(stack.left, stack.right, stack.sample, low, high, fibre))

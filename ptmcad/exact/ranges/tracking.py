@@ -1,7 +1,7 @@
-"""Following an equilibrium along a line of parameters, by Krawczyk's operator in balls.
+"""Following a solution along a line of parameters, by Krawczyk's operator in balls, in any number of unknowns.
 
 Guarantee: a `Tube` that `enclose` returns holds, for every value of the parameter in its range, exactly one
-equilibrium, which is nondegenerate and depends smoothly on the parameter. Two tubes are taken to hold the same branch
+solution, which is nondegenerate and depends smoothly on the parameter. Two tubes are taken to hold the same branch
 only where a third one, for a value that both cover, lies inside both. So `follow` never jumps to another branch.
 
 Reference: Krawczyk, Computing 4 (1969); Neumaier, Interval Methods for Systems of Equations, 5.1.
@@ -13,16 +13,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from flint import arb, ctx, fmpq
+from flint import arb, arb_mat, ctx, fmpq
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
-from ptmcad.errors import DimensionError
 from ptmcad.exact.models.system import ParametricSystem, Terms
+from ptmcad.mechanism import Model
 from ptmcad.text.expressions import Expression, Term
 
-Pair = tuple[arb, arb]
-Matrix = tuple[Pair, Pair]
+Vector = tuple[arb, ...]
+"""One ball for each unknown: the angles, then those on the line."""
+Matrix = tuple[Vector, ...]
 BITS = 160
 _MIN_STEP = Fraction(1, 2**60)
 """Steps shorter than this, against the distance to be gone, are not tried."""
@@ -32,30 +33,26 @@ _MAX_STEPS = 3000
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """The mechanism on a line: its parameters as expressions in one unknown, the first axis.
+    """A model on a line: its system, and its parameters as expressions in one unknown, the first axis."""
 
-    Raises
-    ------
-    DimensionError
-        When the system does not have two angles.
-    """
-
+    model: Model
     system: ParametricSystem
     parameters: Mapping[str, Expression]
 
-    def __post_init__(self) -> None:
-        if len(self.system.ring.angles) != 2 or self.system.ring.reals or not self.system.has_index:
-            unknowns = ", ".join(self.system.ring.unknowns)
-            raise DimensionError(f"paths of equilibria: known for potentials of two angles only, not for {unknowns}")
+    @property
+    def angles(self) -> int:
+        """How many of the unknowns are on the circle: the first ones."""
+        return len(self.system.ring.angles)
 
     def at(self, low: Fraction, high: Fraction) -> Instance:
         """The equations for all parameters from low to high, with their derivatives by the parameter."""
         value = arb(from_fraction(low)).union(arb(from_fraction(high)))
         numbers = [_dual(self.parameters[name], value) for name in self.system.ring.parameters]
-        gradient = [_specialised(g, numbers) for g in self.system.equation_terms]
+        equations = [_specialised(g, numbers) for g in self.system.equation_terms]
         return Instance(
-            tuple(terms for terms, _ in gradient),
-            tuple(terms for _, terms in gradient),
+            self.angles,
+            tuple(terms for terms, _ in equations),
+            tuple(terms for _, terms in equations),
             tuple(tuple(_specialised(h, numbers)[0] for h in row) for row in self.system.jacobian_terms),
         )
 
@@ -80,6 +77,11 @@ def _dual(expression: Expression, x: arb) -> Dual:
     return a / b, (da * b - a * db) / (b * b)
 
 
+def value_of(expression: Expression, x: arb) -> arb:
+    """An expression in the first axis at a ball."""
+    return _dual(expression, x)[0]
+
+
 def _specialised(terms: Terms, numbers: list[Dual]) -> tuple[Specialised, Specialised]:
     """The polynomial in the unknowns, and its derivative by the parameter."""
     values, slopes = [], []
@@ -100,31 +102,30 @@ def _specialised(terms: Terms, numbers: list[Dual]) -> tuple[Specialised, Specia
 
 @dataclass(frozen=True, slots=True)
 class Instance:
-    """Gradient and Hessian of the potential with balls for the parameters, to be evaluated at balls of angles."""
+    """Equations and Jacobian with balls for the parameters, to be evaluated at balls of the unknowns."""
 
+    angles: int
     equation_terms: tuple[Specialised, ...]
     slope_terms: tuple[Specialised, ...]
-    hessian_terms: tuple[tuple[Specialised, ...], ...]
+    jacobian_terms: tuple[tuple[Specialised, ...], ...]
 
-    def gradient(self, angles: Pair) -> Pair:
-        unknowns = _unknowns(angles)
-        first, second = (_evaluated(g, unknowns) for g in self.equation_terms)
-        return first, second
+    def equations(self, point: Vector) -> Vector:
+        coordinates = coordinates_of(point, self.angles)
+        return tuple(_evaluated(g, coordinates) for g in self.equation_terms)
 
-    def slope(self, angles: Pair) -> Pair:
-        """The derivative of the gradient by the parameter."""
-        unknowns = _unknowns(angles)
-        first, second = (_evaluated(g, unknowns) for g in self.slope_terms)
-        return first, second
+    def slope(self, point: Vector) -> Vector:
+        """The derivative of the equations by the parameter."""
+        coordinates = coordinates_of(point, self.angles)
+        return tuple(_evaluated(g, coordinates) for g in self.slope_terms)
 
-    def hessian(self, angles: Pair) -> Matrix:
-        unknowns = _unknowns(angles)
-        (a, b), (c, d) = (tuple(_evaluated(h, unknowns) for h in row) for row in self.hessian_terms)
-        return (a, b), (c, d)
+    def jacobian(self, point: Vector) -> Matrix:
+        coordinates = coordinates_of(point, self.angles)
+        return tuple(tuple(_evaluated(h, coordinates) for h in row) for row in self.jacobian_terms)
 
 
-def _unknowns(angles: Pair) -> list[arb]:
-    return [f(a) for a in angles for f in (arb.cos, arb.sin)]
+def coordinates_of(point: Vector, angles: int) -> list[arb]:
+    """Cosine and sine of each angle, then the unknowns on the line."""
+    return [*(f(a) for a in point[:angles] for f in (arb.cos, arb.sin)), *point[angles:]]
 
 
 def _evaluated(terms: Specialised, unknowns: list[arb]) -> arb:
@@ -140,30 +141,30 @@ def _evaluated(terms: Specialised, unknowns: list[arb]) -> arb:
 
 @dataclass(frozen=True, slots=True)
 class Tube:
-    """A box of angles that moves with the parameter x: center + velocity (x - middle) + (a box around 0).
+    """A box of unknowns that moves with the parameter x: center + velocity (x - middle) + (a box around 0).
 
-    For every x from low to high there is one equilibrium in the box ``unique``, and it lies in the box ``tight``.
+    For every x from low to high there is one solution in the box ``unique``, and it lies in the box ``tight``.
     """
 
     low: Fraction
     high: Fraction
-    center: Pair
-    velocity: Pair
-    unique: Pair
-    tight: Pair
+    center: Vector
+    velocity: Vector
+    unique: Vector
+    tight: Vector
 
-    def at(self, value: Fraction) -> Pair:
-        """An enclosure of the angles at one value."""
+    def at(self, value: Fraction) -> Vector:
+        """An enclosure of the unknowns at one value."""
         with ctx.workprec(BITS):
             return self._moved(arb(from_fraction(value - self._middle)), self.tight)
 
-    def hull(self) -> Pair:
-        """An enclosure of the angles at all values."""
+    def hull(self) -> Vector:
+        """An enclosure of the unknowns at all values."""
         with ctx.workprec(BITS):
             return self._moved(arb(from_fraction((self.high - self.low) / 2)) * arb(0, 1), self.tight)
 
     def holds(self, other: Tube, value: Fraction) -> bool:
-        """Whether the other tube's equilibrium at a value lies where this one's is the only one."""
+        """Whether the other tube's solution at a value lies where this one's is the only one."""
         with ctx.workprec(BITS):
             mine = self._moved(arb(from_fraction(value - self._middle)), self.unique)
             return all(a.contains(b) for a, b in zip(mine, other.at(value), strict=True))
@@ -172,12 +173,11 @@ class Tube:
     def _middle(self) -> Fraction:
         return (self.low + self.high) / 2
 
-    def _moved(self, offset: arb, box: Pair) -> Pair:
-        first, second = (c + v * offset + w for c, v, w in zip(self.center, self.velocity, box, strict=True))
-        return first, second
+    def _moved(self, offset: arb, box: Vector) -> Vector:
+        return tuple(c + v * offset + w for c, v, w in zip(self.center, self.velocity, box, strict=True))
 
 
-def enclose(family: Family, low: Fraction, high: Fraction, guess: Pair) -> Tube | None:
+def enclose(family: Family, low: Fraction, high: Fraction, guess: Vector) -> Tube | None:
     """A tube around the branch near a guess for the middle of the range; None when not proved.
 
     Notes
@@ -188,70 +188,76 @@ def enclose(family: Family, low: Fraction, high: Fraction, guess: Pair) -> Tube 
     with ctx.workprec(BITS):
         middle = family.at((low + high) / 2, (low + high) / 2)
         center = polish(middle, guess)
-        inverse = _inverse(middle.hessian(center))
+        inverse = _inverse(middle.jacobian(center))
         if inverse is None:
             return None
-        fall = _times(inverse, middle.slope(center))
-        velocity = ((-fall[0]).mid(), (-fall[1]).mid())
+        velocity = tuple((-fall).mid() for fall in _times(inverse, middle.slope(center)))
         unit, radius = arb(0, 1), arb(from_fraction((high - low) / 2))
         along = family.at(low, high)
-        swept = (center[0] + velocity[0] * radius * unit, center[1] + velocity[1] * radius * unit)
-        start = _times(inverse, middle.gradient(center))
-        drift = _sum(_times(inverse, along.slope(swept)), _times(_product(inverse, along.hessian(swept)), velocity))
+        swept = tuple(c + v * radius * unit for c, v in zip(center, velocity, strict=True))
+        start = _times(inverse, middle.equations(center))
+        drift = _sum(_times(inverse, along.slope(swept)), _times(_product(inverse, along.jacobian(swept)), velocity))
         move = tuple(s + d * radius * unit for s, d in zip(start, drift, strict=True))
-        least = arb(fmpq(1, 2 ** (BITS - 20)))
-        reach = [2 * abs(m).upper() + least for m in move]
+        least = _least(center, family.angles)
+        reach = [2 * abs(m).upper() + e for m, e in zip(move, least, strict=True)]
         for _ in range(8):
-            (a, b), (c, d) = _product(inverse, along.hessian((swept[0] + reach[0] * unit, swept[1] + reach[1] * unit)))
-            spread = (reach[0] * unit, reach[1] * unit)
-            image = (
-                -move[0] + (1 - a) * spread[0] - b * spread[1],
-                -move[1] - c * spread[0] + (1 - d) * spread[1],
-            )
+            spread = tuple(r * unit for r in reach)
+            slopes = _product(inverse, along.jacobian(_sum(swept, spread)))
+            image = _sum(tuple(-m for m in move), _times(_from_identity(slopes), spread))
             if all(abs(k) < r for k, r in zip(image, reach, strict=True)):
                 return Tube(low, high, center, velocity, spread, image)
-            reach = [(abs(k).upper() * 3 / 2 + least).upper() for k in image]
-            if not all(r < 2 for r in reach):
+            reach = [(abs(k).upper() * 3 / 2 + e).upper() for k, e in zip(image, least, strict=True)]
+            if not all(r < 2 for r in reach[: family.angles]) or not all(r.is_finite() for r in reach):
                 return None
         return None
 
 
+def _least(center: Vector, angles: int) -> list[arb]:
+    """The least reach of a tube in each unknown, a little more than what rounding does to it."""
+    least = arb(fmpq(1, 2 ** (BITS - 20)))
+    return [least if k < angles else (least * (1 + abs(c))).upper() for k, c in enumerate(center)]
+
+
 def _inverse(matrix: Matrix) -> Matrix | None:
     """An approximate inverse with exact entries."""
-    (a, b), (c, d) = ((x.mid(), y.mid()) for x, y in matrix)
-    determinant = (a * d - b * c).mid()
-    if determinant == 0:
+    size = len(matrix)
+    try:
+        found = arb_mat(size, size, [x.mid() for row in matrix for x in row]).inv()
+    except ZeroDivisionError:
         return None
-    scale = (1 / determinant).mid()
-    return ((d * scale).mid(), (-b * scale).mid()), ((-c * scale).mid(), (a * scale).mid())
+    inverse = tuple(tuple(found[i, j].mid() for j in range(size)) for i in range(size))
+    return inverse if all(x.is_finite() for row in inverse for x in row) else None
 
 
-def _times(matrix: Matrix, vector: Pair) -> Pair:
-    (a, b), (c, d) = matrix
-    return a * vector[0] + b * vector[1], c * vector[0] + d * vector[1]
+def _times(matrix: Matrix, vector: Vector) -> Vector:
+    return tuple(sum((a * b for a, b in zip(row, vector, strict=True)), arb(0)) for row in matrix)
 
 
 def _product(first: Matrix, second: Matrix) -> Matrix:
-    (a, b), (c, d) = second
-    (p, q), (r, s) = _times(first, (a, c)), _times(first, (b, d))
-    return (p, r), (q, s)
+    columns = [_times(first, column) for column in zip(*second, strict=True)]
+    return tuple(zip(*columns, strict=True))
 
 
-def _sum(first: Pair, second: Pair) -> Pair:
-    return first[0] + second[0], first[1] + second[1]
+def _from_identity(matrix: Matrix) -> Matrix:
+    """The identity minus a matrix."""
+    return tuple(tuple(int(i == j) - x for j, x in enumerate(row)) for i, row in enumerate(matrix))
 
 
-def polish(at: Instance, guess: Pair) -> Pair:
+def _sum(first: Vector, second: Vector) -> Vector:
+    return tuple(a + b for a, b in zip(first, second, strict=True))
+
+
+def polish(at: Instance, guess: Vector) -> Vector:
     """A few steps of Newton's method, without guarantee."""
-    point = (guess[0].mid(), guess[1].mid())
+    point = tuple(x.mid() for x in guess)
     for _ in range(5):
-        inverse = _inverse(at.hessian(point))
+        inverse = _inverse(at.jacobian(point))
         if inverse is None:
             break
-        move = _times(inverse, at.gradient(point))
-        if not all(abs(m) < 1 for m in move):
+        move = _times(inverse, at.equations(point))
+        if not all(abs(m) < 1 for m in move[: at.angles]):
             break
-        point = ((point[0] - move[0]).mid(), (point[1] - move[1]).mid())
+        point = tuple((x - m).mid() for x, m in zip(point, move, strict=True))
     return point
 
 
@@ -264,12 +270,13 @@ class Reached:
     over: Tube
 
     @property
-    def angles(self) -> Pair:
+    def point(self) -> Vector:
+        """The unknowns."""
         return self.place.at(self.value)
 
 
-def at_value(family: Family, value: Fraction, guess: Pair) -> Tube | None:
-    """The place of the equilibrium near a guess, at one value of the parameter."""
+def at_value(family: Family, value: Fraction, guess: Vector) -> Tube | None:
+    """The place of the solution near a guess, at one value of the parameter."""
     return enclose(family, value, value, guess)
 
 
@@ -309,8 +316,8 @@ def bridge(family: Family, start: Reached, value: Fraction) -> Reached | None:
     ahead = start.place.velocity
     with ctx.workprec(BITS):
         half = arb(from_fraction((value - start.value) / 2))
-        guess = tuple(a + v * half for a, v in zip(start.angles, ahead, strict=True))
-    over = enclose(family, min(start.value, value), max(start.value, value), (guess[0], guess[1]))
+        guess = tuple(a + v * half for a, v in zip(start.point, ahead, strict=True))
+    over = enclose(family, min(start.value, value), max(start.value, value), guess)
     if over is None or not over.holds(start.place, start.value):
         return None
     place = at_value(family, value, over.at(value))

@@ -18,7 +18,7 @@ A piece that becomes too small remains, with the bounds that it has: then the pl
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heappop, heappush
@@ -72,17 +72,20 @@ def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWid
     """
     names = slice.axis_names
     over = slice.axes[1 - names.index(along)]
-    found = strips(slice, along)
+    found, working = strips(slice, along)
     table = []
     for k in range(1, rows + 1):
         value = over.low + (over.high - over.low) * Fraction(k, rows + 1)
-        table.append(_row(slice, along, over.name, value))
-    return OperationWidths(slice.name, slice.axes[names.index(along)], over, tuple(table), largest(found))
+        table.append(_row(slice, along, {over.name: value}, working))
+    return OperationWidths(
+        slice.name, slice.axes[names.index(along)], over, tuple(table), largest(found), slice.model, working
+    )
 
 
-def _row(slice: Slice, along: str, over: str, value: Fraction) -> WidthRow:
+def _row(slice: Slice, along: str, at: Mapping[str, Fraction], working: int) -> WidthRow:
+    (value,) = at.values()
     try:
-        return WidthRow(value, intervals(slice, along, {over: value}).operation)
+        return WidthRow(value, intervals(slice, along, at, working).operation)
     except HypothesisError as error:
         return WidthRow(value, (), str(error))
 

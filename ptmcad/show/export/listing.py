@@ -60,9 +60,10 @@ def listing(variety: SliceVariety) -> str:
     names = variety.slice.axis_names
     number = len(variety.components)
     lines = [
-        f"slice     {variety.slice.name}: {fixed_parameters(variety)}",
+        f"slice     {': '.join(filter(None, (variety.slice.name, fixed_parameters(variety))))}",
         f"window    {window(variety)}",
-        f"variety   {number} component{'s' * (number != 1)}; {variety.complex_solutions} complex solutions off them",
+        f"variety   {number} component{'s' * (number != 1)}; {variety.complex_solutions} complex "
+        f"solution{'s' * (variety.complex_solutions != 1)} off them",
     ]
     for k, component in enumerate(variety.components, start=1):
         lines += ["", f"{k:<10}{describe(component, names)}"]
@@ -74,8 +75,9 @@ def latex(variety: SliceVariety) -> str:
     """The variety as displayed equations; they need the package amsmath."""
     names = variety.slice.axis_names
     x, y = symbols(names, Style.LATEX)
+    fixed = fixed_parameters(variety)
     lines = [
-        f"% Discriminant variety of the slice {variety.slice.name} ({fixed_parameters(variety)})",
+        f"% Discriminant variety of the slice {variety.slice.name}" + (f" ({fixed})" if fixed else ""),
         f"% over {window(variety)}: the union of the curves on which a V_k vanishes.",
         r"% Needs \usepackage{amsmath}; put \allowdisplaybreaks before it where a polynomial is longer than a page.",
     ]

@@ -10,11 +10,12 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
+from ptmcad.answer.counts import Counts
 from ptmcad.answer.intervals import CertifiedIntervals, CountInterval, CountIntervals, CriticalFreeLength
 from ptmcad.answer.paths import PathEnd, PathPoint, PosePaths
 from ptmcad.answer.widths import OperationWidths
 from ptmcad.question.slice import Axis
-from ptmcad.show.ranges.numbers import enclosure_data, end_data, number_data, settled, width_text
+from ptmcad.show.ranges.numbers import enclosure_data, end_data, known, number_data, settled, width_text
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import text_of
 from ptmcad.version import __version__
@@ -33,14 +34,14 @@ def line_data(found: CountIntervals, digits: int) -> dict[str, Any]:
             {
                 "at": end_data(c.at, digits),
                 "kind": c.kind.value,
-                "before": list(c.before),
-                "after": list(c.after),
+                "before": _counts(c.before),
+                "after": _counts(c.after),
                 "event": c.event.name.lower(),
                 "text": c.text,
             }
             for c in found.changes
         ],
-        "operation": [n for n, i in enumerate(found.intervals) if i.stable == 2],
+        "operation": [n for n, i in enumerate(found.intervals) if i in found.operation],
     }
 
 
@@ -85,10 +86,17 @@ def _interval(interval: CountInterval, digits: int) -> dict[str, Any]:
         "high": end_data(interval.high, digits),
         "total": interval.total,
         "stable": interval.stable,
-        "index": list(interval.index),
+        "index": None if interval.index is None else list(interval.index),
         "sample": text_of(interval.sample),
         "width": width_text(interval, digits),
     }
+
+
+def _counts(counts: Counts) -> list[int] | dict[str, int | None]:
+    """Numbers by index, or without an index in all and of stable ones."""
+    if counts.index is not None:
+        return list(counts.index)
+    return {"total": counts.total, "stable": counts.stable}
 
 
 def over_data(found: OperationWidths, digits: int) -> dict[str, Any]:
@@ -156,7 +164,13 @@ DIGITS = 12
 
 
 def _point(point: PathPoint) -> dict[str, Any]:
-    return {"value": text_of(point.value), "angles": [settled(a, DIGITS) or "0" for a in point.angles]}
+    return {"value": text_of(point.value), "angles": _numbers(point.angles)} | (
+        {"reals": [known(x, DIGITS) for x in point.reals]} if point.reals else {}
+    )
+
+
+def _numbers(unknowns: Sequence[Enclosure]) -> list[str]:
+    return [settled(a, DIGITS) or "0" for a in unknowns]
 
 
 def document(name: str, mechanism: str, parts: dict[str, Any]) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 from ptmcad.algebra.numbers import refined
 from ptmcad.answer.intervals import CountInterval, End
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.numerals import integer_text, text_of
+from ptmcad.text.numerals import integer_text, magnitude, text_of
 
 MAX_DIGITS = 1000
 """That may be asked for."""
@@ -35,6 +35,17 @@ def settled(enclosure: Enclosure, digits: int) -> str | None:
         if enclosure.settles(fewer):
             return enclosure.text(fewer)
     return None
+
+
+def known(enclosure: Enclosure, digits: int) -> str:
+    """The text of a narrow enclosure; where it holds a decimal of so many digits, which it cannot settle, that one."""
+    text = settled(enclosure, digits)
+    if text is not None:
+        return text
+    size = max(abs(enclosure.low), abs(enclosure.high))
+    unit = Fraction(10) ** (magnitude(size) + 1 - digits) if size else Fraction(1)
+    value = round(enclosure.center / unit) * unit if enclosure.low > 0 or enclosure.high < 0 else Fraction(0)
+    return Enclosure(value, value).text(digits)
 
 
 def width_text(interval: CountInterval, digits: int) -> str:
@@ -76,4 +87,4 @@ def enclosure_data(enclosure: Enclosure) -> list[str]:
 def finer(interval: CountInterval, width: Fraction) -> CountInterval:
     """The same interval with its ends isolated within ``width`` > 0."""
     low, high = (e if isinstance(e, Fraction) else refined(e, width) for e in (interval.low, interval.high))
-    return CountInterval(low, high, interval.index, interval.sample)
+    return CountInterval(low, high, interval.counts, interval.sample)

@@ -12,9 +12,11 @@ from flint import arb, ctx
 
 from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.intervals import CountInterval, CountIntervals, CriticalFreeLength, End
-from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePaths
+from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.widths import Maximum, OperationWidths
-from ptmcad.show.ranges.numbers import end_text, settled, width_text
+from ptmcad.answer.words import kind_name, noun
+from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.show.ranges.numbers import end_text, known, settled, width_text
 from ptmcad.text.balls import enclosed
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
@@ -29,11 +31,15 @@ def table(found: CountIntervals, digits: int = 10) -> str:
     """One row for each interval, then what happens at their ends, then the operation range."""
     name = found.along.name
     fixed = ", ".join(f"{n} = {shortest_text(v)}" for n, v in found.at.items())
-    rows = [["from", "to", "total", "stable", "min-saddle-max", "sample"]]
+    first = found.intervals[0]
+    stable = ["stable"] * (first.stable is not None)
+    index = [] if first.index is None else [_INDEX_HEADS.get(len(first.index), "index")]
+    rows = [["from", "to", "total", *stable, *index, "sample"]]
     for i in found.intervals:
-        index = "-".join(map(str, i.index))
-        ends = [end_text(i.low, digits), end_text(i.high, digits)]
-        rows.append([*ends, str(i.total), str(i.stable), index, shortest_text(i.sample)])
+        counts = [str(i.total)]
+        counts += [str(i.stable)] if stable else []
+        counts += ["-".join(map(str, i.index))] if i.index is not None else []
+        rows.append([end_text(i.low, digits), end_text(i.high, digits), *counts, shortest_text(i.sample)])
     lines = [f"{name} in ({shortest_text(found.along.low)}, {shortest_text(found.along.high)}) at {fixed}", ""]
     lines += aligned(rows)
     if found.changes:
@@ -43,9 +49,27 @@ def table(found: CountIntervals, digits: int = 10) -> str:
         lines += aligned(changes)
     lines.append("")
     if not found.operation:
-        lines.append("operation range: none, there are nowhere two stable equilibria")
+        lines.append(f"operation range: none, {nowhere(found.model, found.working)}")
+    if found.operation and not isinstance(found.model, Mechanism):
+        verb = "is" if found.working == 1 else "are"
+        lines.append(f"operation range: where there {verb} {working_text(found.model, found.working)}")
     lines += [f"operation range: {_range_text(i, digits)}" for i in found.operation]
     return "\n".join(lines)
+
+
+_INDEX_HEADS = {2: "min-max", 3: "min-saddle-max"}
+_WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+
+
+def working_text(model: Model, number: int) -> str:
+    """What there is in an operation range, such as two stable equilibria."""
+    many = _WORDS[number] if number < len(_WORDS) else str(number)
+    return f"{many} {'stable ' * model.tells_stability}{noun(model, number)}"
+
+
+def nowhere(model: Model, number: int) -> str:
+    """Why there is no operation range."""
+    return f"there {'is' if number == 1 else 'are'} nowhere {working_text(model, number)}"
 
 
 def _range_text(interval: CountInterval, digits: int) -> str:
@@ -87,7 +111,7 @@ def width_table(found: OperationWidths, digits: int = 10) -> str:
         lines.append(f"* the edge of the window of {found.along.name}")
     lines.append("")
     if not found.maxima:
-        lines.append("widest operation range: none, there are nowhere two stable equilibria")
+        lines.append(f"widest operation range: none, {nowhere(found.model, found.working)}")
     for m in found.maxima:
         lines.append(f"widest operation range: {maximum_text(m, found.over.name, digits)}")
     return "\n".join(lines)
@@ -109,53 +133,78 @@ def maximum_text(found: Maximum, over: str, digits: int) -> str:
 
 def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
     """What becomes of each pose in both directions."""
-    name = found.along.name
+    name, model = found.along.name, found.model
+    what = "pose" if isinstance(model, Mechanism) else "solution"
     lines = []
     for path in found.paths:
-        side = "y3 > 0 and y4 > 0" if path.upright else "y3 < 0 and y4 < 0" if path.reverse else "y3, y4 of mixed sign"
         place = next(p for p in path.points if p.value == path.start)
-        lines.append(
-            f"pose {path.number} at {name} = {shortest_text(path.start)}: {_angles(place, digits)}; {side} on the path"
-        )
-        lines += [f"  {direction}: {_end(e, name, digits)}" for direction, e in (("down", path.low), ("up", path.high))]
-    return "\n".join(lines) if lines else f"no stable pose at {name} = {shortest_text(found.start)}"
+        side = f"; {_side(path, model)} on the path" if isinstance(model, Mechanism) and model.moving else ""
+        at = f"{name} = {shortest_text(path.start)}"
+        lines.append(f"{what} {path.number} at {at}: {_unknowns(place, model, digits)}{side}")
+        ends = (("down", path.low), ("up", path.high))
+        lines += [f"  {direction}: {_end(e, found, digits)}" for direction, e in ends]
+    stable = "stable " * model.tells_stability
+    return "\n".join(lines) if lines else f"no {stable}{what} at {name} = {shortest_text(found.start)}"
 
 
-def _end(end: PathEnd, name: str, digits: int) -> str:
+def _heights(model: Mechanism) -> list[str]:
+    """What the heights of the moving points are called, such as y3 of A3."""
+    return [f"y{name[1:]}" if name[1:].isdigit() else f"y of {name}" for name in model.moving]
+
+
+def _side(path: PosePath, model: Mechanism) -> str:
+    heights = _heights(model)
+    if path.upright or path.reverse:
+        return " and ".join(f"{y} {'>' if path.upright else '<'} 0" for y in heights)
+    return f"{', '.join(heights)} of mixed sign" if len(heights) > 1 else f"{heights[0]} of either sign"
+
+
+def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
+    name, model = found.along.name, found.model
     at = f"{name} = {end_text(end.at, 10)}"
     if end.fate is Fate.WINDOW:
-        return f"stable up to the window's edge {at}"
-    if end.fate is Fate.UNDECIDED or end.target is None or end.energy is None or end.target_energy is None:
+        return f"{'stable' if model.tells_stability else 'goes on'} up to the window's edge {at}"
+    if end.fate in (Fate.UNSTABLE, Fate.EXCLUDED):
+        return f"{at}: {end.fate.value}"
+    if end.fate is Fate.UNDECIDED:
         return f"could not be followed beyond {name} = {shortest_text(end.last.value)}, before {at}"
-    words = ("a minimum", "a saddle", "a maximum")
-    met = " + ".join(words[k] for k in end.meeting)
-    left = " + ".join(words[k] for k in end.leaving) or "nothing"
+    met, left = (" + ".join(_kind(k, model) for k in indices) or "nothing" for indices in (end.meeting, end.leaving))
     what = f"{at}: {met} meet and leave {left}"
-    target = _angles(end.target, digits)
+    if len(end.meeting) == 1:
+        what = f"{at}: {met} vanishes alone" if not end.leaving else f"{at}: {met} goes on as {left}"
+    if end.target is None:
+        return f"{what}; where it goes from there is not decided" if model.tells_stability else what
+    target = _unknowns(end.target, model, digits)
     if end.fate is Fate.MERGE:
         return f"{what}; the pose goes on, without a snap, as {target}"
-    drop = settled(Enclosure(end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low), 5)
-    kind = posture(end.target)
-    return f"{what}; snaps to {target} ({kind}), where the energy is lower by {drop or 'an undecided amount'}"
+    drop = None
+    if end.energy is not None and end.target_energy is not None:
+        drop = settled(Enclosure(end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low), 5)
+    kind = f" ({posture(end.target, model)})" if isinstance(model, Mechanism) and model.moving else ""
+    return f"{what}; snaps to {target}{kind}, where the energy is lower by {drop or 'an undecided amount'}"
 
 
-def posture(point: PathPoint) -> str:
-    """The signs of y3 and y4."""
-    signs = [sine_sign(a) for a in point.angles]
-    if signs == [1, 1]:
-        return "y3 > 0, y4 > 0"
-    return "reverse: y3 < 0, y4 < 0" if signs == [-1, -1] else "y3, y4 of mixed sign or zero"
+def _kind(negative: int, model: Model) -> str:
+    """A solution by its Morse index; without a potential by whether it is stable."""
+    if isinstance(model, System) and model.potential is None:
+        return f"{('a stable' if negative == 0 else 'an unstable') if model.tells_stability else 'a'} solution"
+    return f"a {kind_name(negative, len(model.unknowns))}"
 
 
-def sine_sign(angle: Enclosure) -> int:
-    """The sign of an angle's sine; 0 when it is not known not to be zero."""
-    with ctx.workprec(160):
-        sine = arb(from_fraction(angle.low)).union(arb(from_fraction(angle.high))).sin()
-        return 1 if sine > 0 else -1 if sine < 0 else 0
+def posture(point: PathPoint, model: Mechanism) -> str:
+    """The signs of the moving points' heights, such as y3 and y4."""
+    heights = _heights(model)
+    if set(point.sides) == {1}:
+        return ", ".join(f"{y} > 0" for y in heights)
+    if set(point.sides) == {-1}:
+        return "reverse: " + ", ".join(f"{y} < 0" for y in heights)
+    return f"{', '.join(heights)} of mixed sign or zero" if len(heights) > 1 else f"{heights[0]} near zero"
 
 
-def _angles(point: PathPoint, digits: int) -> str:
-    return ", ".join(f"th{k} = {degrees(a, digits)}°" for k, a in enumerate(point.angles, 1))
+def _unknowns(point: PathPoint, model: Model, digits: int) -> str:
+    angles = [f"{name} = {degrees(a, digits)}°" for name, a in zip(model.angles, point.angles, strict=True)]
+    reals = [f"{name} = {known(x, digits)}" for name, x in zip(model.reals, point.reals, strict=True)]
+    return ", ".join([*angles, *reals])
 
 
 def degrees(angle: Enclosure, digits: int) -> str:

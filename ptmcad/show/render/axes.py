@@ -16,7 +16,17 @@ from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import magnitude
 
 _UNITS = {Kind.LENGTH: "length", Kind.BASE: "length", Kind.STIFFNESS: "force/length", Kind.FORCE: "force"}
-_GREEK = {"rho": "ρ", "alpha": "α", "beta": "β", "theta": "θ", "lambda": "λ", "mu": "μ", "phi": "φ", "kappa": "κ"}
+_GREEK = {
+    "rho": "ρ",
+    "alpha": "α",
+    "beta": "β",
+    "theta": "θ",
+    "th": "θ",
+    "lambda": "λ",
+    "mu": "μ",
+    "phi": "φ",
+    "kappa": "κ",
+}
 _SUBSCRIPT = str.maketrans("0123456789x", "₀₁₂₃₄₅₆₇₈₉ₓ")
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ptmcad.answer.regionmap import MorseIndex, Region
+from ptmcad.answer.counts import Counts, MorseIndex
+from ptmcad.answer.regionmap import Region
 from ptmcad.question.slice import Count
 
 ONE_MAXIMUM = ("#f7f6f2", "#c7e4f6", "#eda43f", "#ca8d7a", "#45917d", "#8a5e8b", "#385880")
@@ -45,19 +46,33 @@ def fill_of(region: Region, count: Count) -> Fill:
     if count is Count.ADMISSIBLE:
         return UNKNOWN if region.admissible is None else _of(ONE_MAXIMUM, region.admissible, 0)
     if count is Count.TOTAL:
-        if region.total is None:
-            return UNKNOWN
-        half, odd = divmod(region.total, 2)
-        return NONE if region.total == 0 else _of(TWO_MAXIMA if odd else ONE_MAXIMUM, half if odd else half - 1, 0)
+        return UNKNOWN if region.total is None else _of_total(region.total)
     return UNKNOWN if region.index is None else fill_of_index(region.index)
 
 
+def fill_of_counts(counts: Counts) -> Fill:
+    """The fill for all that is known of the solutions: by index, else by the stable ones, else by all."""
+    if counts.index is not None:
+        return fill_of_index(counts.index)
+    return _of_total(counts.total) if counts.stable is None else _of(ONE_MAXIMUM, counts.stable, 0)
+
+
+def _of_total(total: int) -> Fill:
+    half, odd = divmod(total, 2)
+    return NONE if total == 0 else _of(TWO_MAXIMA if odd else ONE_MAXIMUM, half if odd else half - 1, 0)
+
+
 def fill_of_index(index: MorseIndex) -> Fill:
-    """The fill for numbers of minima, saddles and maxima; of other than two unknowns for minima and all others."""
-    if len(index) != 3:
-        return _of(ONE_MAXIMUM, index[0], sum(index[1:]))
-    minima, _, maxima = index
-    return _of(ONE_MAXIMUM if maxima <= 1 else TWO_MAXIMA, minima, (1, 0, 0)[maxima] if maxima < 3 else maxima - 2)
+    """The fill for numbers of critical points by index.
+
+    Of one unknown as of two; of more the fewest saddles that a torus allows (strong Morse inequality) are without a
+    hatch, and further saddles and maxima change it.
+    """
+    minima, maxima = index[0], index[-1]
+    turns = (1, 0, 0)[maxima] if maxima < 3 else maxima - 2
+    if len(index) > 3:
+        turns += max(0, index[1] - minima - len(index) + 2)
+    return _of(ONE_MAXIMUM if maxima <= 1 else TWO_MAXIMA, minima, turns)
 
 
 def _of(row: tuple[str, ...], step: int, turns: int) -> Fill:

@@ -16,11 +16,23 @@ from matplotlib.lines import Line2D
 
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Slice
 from ptmcad.show.render import regionmap
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import spring_mark, symbol_mark
-from ptmcad.show.render.poses import BELOW, HEAD, assigned, describe, in_order, panel, scale_bar, value_text
+from ptmcad.show.render.poses import (
+    BELOW,
+    HEAD,
+    assigned,
+    below_panel,
+    describe,
+    in_order,
+    panel,
+    scale_bar,
+    support_legend,
+    value_text,
+)
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import arrow_lengths, frame_of
 from ptmcad.show.render.view import View
@@ -36,7 +48,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
 
     Parameters
     ----------
-    result : a map of the mechanism ``ptm``.
+    result : a map of a mechanism.
     poses : at a point of the map's plane.
 
     Raises
@@ -47,14 +59,18 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     x, y = point_of(result.slice, poses)
     shown = [pose for pose in in_order(poses) if pose.stable]
     arrows = arrow_lengths(poses)
-    entries = (*_PARTS, *_LOADS) if arrows else _PARTS
+    mechanism = poses.model
+    assert isinstance(mechanism, Mechanism)  # `arrow_lengths` has refused others
+    parts = (Entry(("spring; bars are thick",), spring_mark()), *support_legend(mechanism))
+    entries = (*parts, *_LOADS) if arrows else parts
+    below = below_panel(shown[0], mechanism) if shown else BELOW
     values = [assigned(a.name, v) for a, v in zip(result.slice.axes, (x, y), strict=True)]
     head = textwrap.wrap(f"{'Stable poses' if shown else 'No stable pose'} at " + ", ".join(values), 34)
     frame = frame_of(shown, most_height=_MAX_HEIGHT) if shown else None
     wide = 200.0 / 72
     panels = _LINE * len(head) + 0.1
     if frame is not None:
-        panels += len(shown) * (HEAD + frame.height / 72 + BELOW + 0.06)
+        panels += len(shown) * (HEAD + frame.height / 72 + below + 0.06)
     key = height(entries) + 0.35
     with settings():
         # what the parts mean stands below the map's legend, unless that is long or insets are there
@@ -77,8 +93,8 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
         if frame is not None:
             for number, pose in enumerate(shown, 1):
                 top -= HEAD + frame.height / 72
-                panel(figure, pose, number, frame, arrows, (left, top))
-                top -= BELOW + 0.06
+                panel(figure, mechanism, pose, number, frame, arrows, (left, top))
+                top -= below + 0.06
             scale_bar(figure, frame, place[0], place[1] - height(entries) - 0.16)
         draw_legend(figure, entries, *place)
     return figure
@@ -90,11 +106,6 @@ _POINT: dict[str, Any] = {
 }  # fmt: skip
 
 
-_PARTS = (
-    Entry(("spring; bars are thick",), spring_mark()),
-    Entry(("fixed support, at A₁",), symbol_mark("support")),
-    Entry(("slider on the base, at A₂",), symbol_mark("slider")),
-)
 _LOADS = (Entry(("load",), symbol_mark("load")),)
 
 

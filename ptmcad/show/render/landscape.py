@@ -1,4 +1,6 @@
-"""The picture of the energy over the torus of the two angles, as contours, with all equilibria marked by their kind.
+"""The picture of the energy over one unknown as a curve, or over two as contours, with all equilibria marked by kind.
+
+An angle goes round once; an unknown on the line goes through a range that holds all equilibria.
 
 Guarantee: every equilibrium is marked, at both edges where an angle is 180 degrees, with its number in the picture of
 `ptmcad.show.render.poses.draw_poses`. Contours pass through saddles and degenerate equilibria, also where the energy is
@@ -25,11 +27,14 @@ from numpy.typing import NDArray
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.answer.poses import Pose, Poses
+from ptmcad.answer.words import noun
+from ptmcad.errors import ConfigError
 from ptmcad.exact.models.potential import squared_lengths, system_from
 from ptmcad.exact.models.system import polynomial_at
-from ptmcad.mechanism import ptm
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
-from ptmcad.show.render.axes import Scale, scale_of
+from ptmcad.show.drawable import no_landscape
+from ptmcad.show.render.axes import Scale, scale_of, symbol
 from ptmcad.show.render.clearance import Box, Label, Stroke, place
 from ptmcad.show.render.legend import INK, SWATCH, Entry, Mark, draw_legend
 from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, in_order, kind, titled
@@ -72,18 +77,21 @@ def _sum(terms: Terms, bases: Sequence[Floats], shape: tuple[int, ...]) -> Float
 
 @dataclass(frozen=True, slots=True)
 class Energy:
-    """The energy as (U - offset) / unit: coefficients of cosines and sines, exponents of c1, s1, c2, s2; and for each
-    spring with a free length -k l0 with the terms of its length squared, whose root it multiplies."""
+    """The energy as (U - offset) / unit: terms with exponents of the coordinates, cosine and sine of each angle, then
+    the unknowns on the line; and for each spring with a free length -k l0 with the terms of its length squared, whose
+    root it multiplies."""
 
+    angles: int
     offset: Fraction
     unit: Fraction
     terms: Terms
     roots: tuple[tuple[float, Terms], ...] = ()
 
-    def __call__(self, *angles: Floats) -> Floats:
-        """Over arrays of angles in radians."""
-        bases = [function(angle) for angle in angles for function in (np.cos, np.sin)]
-        shape = np.broadcast(*angles).shape
+    def __call__(self, *unknowns: Floats) -> Floats:
+        """Over arrays of angles in radians, and of unknowns on the line."""
+        bases = [function(angle) for angle in unknowns[: self.angles] for function in (np.cos, np.sin)]
+        bases += unknowns[self.angles :]
+        shape = np.broadcast(*unknowns).shape
         total = _sum(self.terms, bases, shape)
         for factor, square in self.roots:
             total += factor * np.sqrt(np.maximum(_sum(square, bases, shape), 0.0))
@@ -94,67 +102,168 @@ class Energy:
         return float((value - self.offset) / self.unit)
 
 
-def energy_of(parameters: Mapping[str, Fraction]) -> Energy:
+def energy_of(model: Model, parameters: Mapping[str, Fraction]) -> Energy:
     """The energy at these parameters, its constant part taken out and its size made about 1."""
-    mechanism = ptm()
-    system = system_from(mechanism)
+    system = system_from(model)
     values = {name: from_fraction(parameters[name]) for name in system.ring.parameters}
     assert system.potential is not None
     exact = {m: to_fraction(c) for m, c in polynomial_at(system, system.potential, values).items()}
-    offset = exact.pop((0,) * 2 * system.dimension, Fraction(0))
+    offset = exact.pop((0,) * system.ring.width, Fraction(0))
     unit = Fraction(10) ** magnitude(max(map(abs, exact.values()), default=Fraction(1)))
     roots = []
-    for spring, square in zip(mechanism.springs, squared_lengths(mechanism), strict=True):
-        free = value_at(spring.free, dict.fromkeys(mechanism.free_lengths, Fraction(0)) | dict(parameters))
+    springs = zip(model.springs, squared_lengths(model), strict=True) if isinstance(model, Mechanism) else ()
+    for spring, square in springs:
+        free = value_at(spring.free, dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters))
         pull = value_at(spring.stiffness, parameters) * free
         if pull:
             offset += pull * free / 2
             terms = polynomial_at(system, square, values)
             roots.append((float(-pull / unit), tuple((m, float(to_fraction(c))) for m, c in terms.items())))
-    return Energy(offset, unit, tuple((m, float(c / unit)) for m, c in sorted(exact.items())), tuple(roots))
+    return Energy(
+        len(model.angles), offset, unit, tuple((m, float(c / unit)) for m, c in sorted(exact.items())), tuple(roots)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """An axis of the picture: an unknown from ``low`` to ``high``, an angle in degrees."""
+
+    name: str
+    low: float
+    high: float
+    is_angle: bool
+
+    def sampled(self, number: int) -> tuple[Floats, Floats]:
+        """So many values as they are shown, and as the energy takes them."""
+        shown = np.linspace(self.low, self.high, number)
+        return shown, np.radians(shown) if self.is_angle else shown
+
+    @property
+    def label(self) -> str:
+        return f"{symbol(self.name)} (degrees)" if self.is_angle else symbol(self.name)
+
+    def share(self, value: float) -> float:
+        """Where a value lies, from 0 to 1."""
+        return (value - self.low) / (self.high - self.low)
+
+    def copies(self, value: float) -> tuple[float, ...]:
+        return copies(value) if self.is_angle else (value,)
+
+
+def sides_of(model: Model, shown: Sequence[Pose]) -> tuple[Side, ...]:
+    """The axes: angles all round, and for each unknown on the line a range that holds all equilibria."""
+    found = [Side(name, -180.0, 180.0, True) for name in model.angles]
+    for k, name in enumerate(model.reals):
+        low, high = (end(float(pose.reals[k]) for pose in shown) for end in (min, max))
+        room = max((high - low) / 2, max(abs(low), abs(high)) / 4) or 1.0
+        found.append(Side(name, low - room, high + room, False))
+    return tuple(found)
+
+
+def place_of(pose: Pose) -> tuple[float, ...]:
+    """The unknowns, angles in degrees."""
+    return tuple(map(float, (*pose.degrees, *pose.reals)))
 
 
 def draw_landscape(poses: Poses) -> Figure:
-    """The energy over the torus as contours, with the equilibria; takes and returns what `draw_poses` does."""
+    """The energy with the equilibria; returns what `draw_poses` does.
+
+    Raises
+    ------
+    ConfigError
+        For a system without a potential, and for more than two unknowns.
+    """
+    if reason := no_landscape(poses.model):
+        raise ConfigError(reason)
     shown = in_order(poses)
     if not shown:
         return empty(poses)
-    energy = energy_of(poses.parameters)
-    degrees, heights = _sampled(energy, _GRID)
+    return (_draw_curve if len(poses.model.unknowns) == 1 else _draw_contours)(poses, shown)
+
+
+def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
+    """The energy over one unknown."""
+    energy = energy_of(poses.model, poses.parameters)
+    (side,) = sides_of(poses.model, shown)
+    values, inputs = side.sampled(_FINE)
+    heights = energy(inputs)
+    title = heading(poses, 90)
+    size = (LEFT + SIDE + KEY + 2 * MARGIN, BOTTOM + SIDE + TITLE_LINE * len(title) + 3 * MARGIN)
+    with settings():
+        figure = titled(title, size, LEFT)
+        figure.set_label(f"{' '.join(title)}\nEnergy over {side.name} as a curve. {describe(poses)}")
+        axes = figure.add_axes((LEFT / size[0], BOTTOM / size[1], SIDE / size[0], SIDE / size[1]))
+        axes.set_gid("landscape")
+        axes.plot(values, heights, color=_COLOURS[0], linewidth=1.6, zorder=3)
+        room = 0.08 * float(np.ptp(heights)) or 1.0
+        low, high = float(heights.min()) - room, float(heights.max()) + room
+        axes.set(xlim=(side.low, side.high), ylim=(low, high), xlabel=side.label)
+        if side.is_angle:
+            axes.set_xticks(range(-180, 181, 60))
+        scale = _energy_scale(energy, (low, high))
+        _energy_ticks(axes, scale, energy, poses.model)
+        for number, pose in enumerate(shown, 1):
+            marker, size_of, face = _MARKERS[_kind(pose)]
+            (value,), level = place_of(pose), energy.scaled(pose.known_energy.center)
+            for k, x in enumerate(side.copies(value)):
+                axes.add_artist(
+                    Line2D(
+                        (x,), (level,), marker=marker, markersize=size_of, markerfacecolor=face, markeredgecolor=INK,
+                        linestyle="none", clip_on=False, zorder=6, gid=f"equilibrium-{number}" if k == 0 else None,
+                    )
+                )  # fmt: skip
+            x = side.copies(value)[0]
+            inward = -1 if side.share(x) > 0.9 else 1
+            axes.annotate(
+                str(number), (x, level), xytext=(9 * inward, -11 if pose.stable else 11), textcoords="offset points",
+                fontsize=9, fontweight="bold", color=INK, ha="center", va="center", zorder=7, gid=f"number-{number}",
+            )  # fmt: skip
+        draw_legend(figure, tuple(_legend(poses.model, shown)), LEFT + SIDE + 2 * MARGIN, BOTTOM + SIDE)
+    return figure
+
+
+def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
+    """The energy over two unknowns."""
+    energy, sides = energy_of(poses.model, poses.parameters), sides_of(poses.model, shown)
+    (across, up), heights = _sampled(energy, sides, _GRID)
     critical = sorted({energy.scaled(pose.known_energy.center) for pose in shown})
     levels = contour_levels(critical, float(heights.min()), float(heights.max()))
     title = heading(poses, 90)
     size = (LEFT + SIDE + BAR + KEY + MARGIN, BOTTOM + SIDE + TITLE_LINE * len(title) + 3 * MARGIN)
     with settings():
         figure = titled(title, size, LEFT)
-        figure.set_label(f"{' '.join(title)}\nEnergy over the two angles as contours. {describe(poses)}")
+        figure.set_label(f"{' '.join(title)}\nEnergy over {_what(sides)} as contours. {describe(poses)}")
         axes = figure.add_axes((LEFT / size[0], BOTTOM / size[1], SIDE / size[0], SIDE / size[1]))
         axes.set_gid("landscape")
         colours = LinearSegmentedColormap.from_list("energy", _COLOURS, N=256)
         norm = BoundaryNorm(levels, colours.N)
         clipped = np.clip(heights, levels[0], levels[-1])
-        filled = axes.contourf(degrees, degrees, clipped, levels=levels, cmap=colours, norm=norm)
-        axes.contour(
-            degrees, degrees, heights, levels=levels[1:-1], colors="white", linewidths=0.35, linestyles="solid"
-        )
+        filled = axes.contourf(across, up, clipped, levels=levels, cmap=colours, norm=norm)
+        axes.contour(across, up, heights, levels=levels[1:-1], colors="white", linewidths=0.35, linestyles="solid")
         through = sorted({energy.scaled(p.known_energy.center) for p in shown if p.index in (1, None)})
-        finer, fine_heights = _sampled(energy, _FINE)
-        axes.contour(finer, finer, fine_heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
-        _decorate(axes)
-        _mark(axes, shown)
+        finer, fine_heights = _sampled(energy, sides, _FINE)
+        axes.contour(*finer, fine_heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
+        _decorate(axes, sides)
+        _mark(axes, sides, shown)
         scale = _energy_scale(energy, levels)
         bar = figure.add_axes(((LEFT + SIDE + 0.2) / size[0], BOTTOM / size[1], 0.16 / size[0], SIDE / size[1]))
-        _colour_bar(bar, filled, scale, energy, levels, through)
+        figure.colorbar(filled, cax=bar, spacing="proportional", drawedges=False, ticks=[])
+        _energy_ticks(bar, scale, energy, poses.model)
+        for value in through:
+            bar.axhline(value, color=INK, linewidth=1.2)
         left = LEFT + SIDE + BAR + 0.1
-        draw_legend(figure, tuple(_legend(shown)), left, BOTTOM + SIDE)
+        draw_legend(figure, tuple(_legend(poses.model, shown)), left, BOTTOM + SIDE)
     return figure
 
 
-def _sampled(energy: Energy, number: int) -> tuple[Floats, Floats]:
-    """Angles in degrees along a side, and the energy over the square, shape (number, number), th1 along rows."""
-    degrees = np.linspace(-180.0, 180.0, number)
-    radians = np.radians(degrees)
-    return degrees, energy(radians[None, :], radians[:, None])
+def _sampled(energy: Energy, sides: Sequence[Side], number: int) -> tuple[tuple[Floats, Floats], Floats]:
+    """What is shown along the sides, and the energy, shape (number, number), the first unknown along rows."""
+    (across, first), (up, second) = (side.sampled(number) for side in sides)
+    return (across, up), energy(first[None, :], second[:, None])
+
+
+def _what(sides: Sequence[Side]) -> str:
+    return "the two angles" if all(side.is_angle for side in sides) else " and ".join(side.name for side in sides)
 
 
 def contour_levels(critical: Sequence[float], low: float, high: float) -> list[float]:
@@ -171,29 +280,44 @@ def contour_levels(critical: Sequence[float], low: float, high: float) -> list[f
     return levels
 
 
-def _decorate(axes: Any) -> None:
-    axes.set(xlim=(-180, 180), ylim=(-180, 180), aspect="equal")
-    ticks = range(-180, 181, 60)
-    axes.set_xticks(ticks)
-    axes.set_yticks(ticks)
+def _decorate(axes: Any, sides: Sequence[Side]) -> None:
+    for side, set_limits, set_ticks in (
+        (sides[0], axes.set_xlim, axes.set_xticks),
+        (sides[1], axes.set_ylim, axes.set_yticks),
+    ):
+        set_limits(side.low, side.high)
+        if side.is_angle:
+            set_ticks(range(-180, 181, 60))
     axes.tick_params(labelsize=9, direction="out", length=3.5)
-    axes.set_xlabel("θ₁ (degrees)", fontsize=11)
-    axes.set_ylabel("θ₂ (degrees)", fontsize=11)
+    axes.set_xlabel(sides[0].label, fontsize=11)
+    axes.set_ylabel(sides[1].label, fontsize=11)
 
 
-def _mark(axes: Any, shown: Sequence[Pose]) -> None:
-    """A marker for each equilibrium, again at the opposite edge, and its number once."""
-    points = SIDE * 72 / 360
+def _mark(axes: Any, sides: Sequence[Side], shown: Sequence[Pose]) -> None:
+    """A marker for each equilibrium, again at the opposite edge of an angle, and its number once."""
+    length = SIDE * 72
+
+    def on_paper(place: Sequence[float]) -> tuple[float, float]:
+        x, y = (side.share(value) * length for side, value in zip(sides, place, strict=True))
+        return x, y
+
+    def back(place: Sequence[float]) -> tuple[float, float]:
+        x, y = (s.low + v / length * (s.high - s.low) for s, v in zip(sides, place, strict=True))
+        return x, y
+
+    near = length / 72
+    places = [on_paper(first_copy(sides, pose)) for pose in shown]
     boxes: list[Box] = []
     for number, pose in enumerate(shown, 1):
         marker, size, face = _MARKERS[_kind(pose)]
-        own = first_copy(pose)
+        own = first_copy(sides, pose)
         # what is drawn later on the same place would hide it: it stands out around that
         size += _RING * sum(
-            hypot(*(a - b for a, b in zip(own, first_copy(p), strict=True))) < 5 for p in shown[number:]
+            hypot(*(a - b for a, b in zip(places[number - 1], p, strict=True))) < near for p in places[number:]
         )
-        for x in copies(float(pose.degrees[0])):
-            for y in copies(float(pose.degrees[1])):
+        first, second = place_of(pose)
+        for x in sides[0].copies(first):
+            for y in sides[1].copies(second):
                 axes.add_artist(
                     Line2D(
                         (x,), (y,), marker=marker, markersize=size, markerfacecolor=face, markeredgecolor=INK,
@@ -201,20 +325,17 @@ def _mark(axes: Any, shown: Sequence[Pose]) -> None:
                         gid=f"equilibrium-{number}" if (x, y) == own else None,
                     )
                 )  # fmt: skip
-                u, v, half = (x + 180) * points, (y + 180) * points, size / 2 + 1
+                (u, v), half = on_paper((x, y)), size / 2 + 1
                 boxes.append((u - half, v - half, u + half, v + half))
-    side = SIDE * 72
     labels = []
-    for number, pose in enumerate(shown, 1):
-        at = tuple((c + 180) * points for c in first_copy(pose))
-        towards = (side / 2 - at[0] or 1.0, side / 2 - at[1] or 1.0)
-        labels.append(Label(str(number), (at[0], at[1]), (3.4 * len(str(number)) + 2, 6.2), towards))
+    for number, at in enumerate(places, 1):
+        towards = (length / 2 - at[0] or 1.0, length / 2 - at[1] or 1.0)
+        labels.append(Label(str(number), at, (3.4 * len(str(number)) + 2, 6.2), towards))
     none: Iterable[Stroke] = ()
-    for placed in place(labels, none, boxes, (3.0, 3.0, side - 3, side - 3)):
-        x, y = (c / points - 180 for c in placed.center)
+    for placed in place(labels, none, boxes, (3.0, 3.0, length - 3, length - 3)):
+        x, y = back(placed.center)
         if placed.leader is not None:
-            ends = [placed.label.at, placed.leader]
-            line = [(u / points - 180, v / points - 180) for u, v in ends]
+            line = [back(end) for end in (placed.label.at, placed.leader)]
             axes.add_collection(LineCollection([line], colors=INK, linewidths=0.6, zorder=5), autolim=False)
         axes.text(
             x, y, placed.label.text, fontsize=9, fontweight="bold", color=INK, ha="center", va="center", zorder=7,
@@ -228,9 +349,10 @@ def copies(angle: float) -> tuple[float, ...]:
     return (180.0, -180.0) if abs(angle) > 179.75 else (angle,)
 
 
-def first_copy(pose: Pose) -> tuple[float, float]:
+def first_copy(sides: Sequence[Side], pose: Pose) -> tuple[float, float]:
     """Where an equilibrium's number belongs."""
-    return copies(float(pose.degrees[0]))[0], copies(float(pose.degrees[1]))[0]
+    x, y = (side.copies(value)[0] for side, value in zip(sides, place_of(pose), strict=True))
+    return x, y
 
 
 def _kind(pose: Pose) -> str:
@@ -242,12 +364,8 @@ def _energy_scale(energy: Energy, levels: Sequence[float]) -> Scale:
     return scale_of(low, high)
 
 
-def _colour_bar(
-    bar: Any, filled: Any, scale: Scale, energy: Energy, levels: Sequence[float], through: Sequence[float]
-) -> None:
-    """The colours with energies; lines at the energies of contours through saddles."""
-    figure = bar.figure
-    figure.colorbar(filled, cax=bar, spacing="proportional", drawedges=False, ticks=[])
+def _energy_ticks(axes: Any, scale: Scale, energy: Energy, model: Model) -> None:
+    """Energies along a vertical axis."""
     power = Fraction(10) ** scale.exponent
 
     def position(shown: float) -> float:
@@ -259,16 +377,15 @@ def _colour_bar(
         t for t in MaxNLocator(nbins=7, steps=[1, 2, 2.5, 5, 10]).tick_values(scale.low, scale.high)
         if scale.low <= t <= scale.high
     ]  # fmt: skip
-    bar.yaxis.set_ticks([position(t) for t in ticks], [f"{t:.6g}".replace("-", "−") for t in ticks])
-    bar.minorticks_off()
-    bar.tick_params(labelsize=9, direction="out", length=3.5)
-    bar.set_ylabel(f"{scale.name('U')} (force · length)", fontsize=10)
-    for value in through:
-        bar.axhline(value, color=INK, linewidth=1.2)
+    axes.yaxis.set_ticks([position(t) for t in ticks], [f"{t:.6g}".replace("-", "−") for t in ticks])
+    axes.minorticks_off()
+    axes.tick_params(labelsize=9, direction="out", length=3.5)
+    unit = " (force · length)" if isinstance(model, Mechanism) else ""
+    axes.set_ylabel(f"{scale.name('U')}{unit}", fontsize=10)
 
 
-def _legend(shown: Sequence[Pose]) -> Iterator[Entry]:
-    yield Entry(("Equilibria",), strong=True)
+def _legend(model: Model, shown: Sequence[Pose]) -> Iterator[Entry]:
+    yield Entry((noun(model).capitalize(),), strong=True)
     kinds = [_kind(pose) for pose in shown]
     for name, (marker, size, face) in _MARKERS.items():
         if name in kinds:
@@ -281,8 +398,10 @@ def _legend(shown: Sequence[Pose]) -> Iterator[Entry]:
             if name == "degenerate":
                 lines += [f"multiplicity {p.multiplicity}" for p in shown if p.index is None]
             yield Entry(tuple(lines), _marker_mark(marker, size, face))
-    if any(c == (180.0, -180.0) for p in shown for c in map(copies, (float(p.degrees[0]), float(p.degrees[1])))):
+    if any(len(copies(float(angle))) == 2 for p in shown for angle in p.degrees):
         yield Entry(("at 180° marked at both edges,", "which are the same"))
+    if len(model.unknowns) == 1:
+        return
     yield Entry(())
     yield Entry(("Energy",), strong=True)
     if any(p.index in (1, None) for p in shown):

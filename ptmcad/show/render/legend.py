@@ -12,9 +12,10 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.answer.regionmap import Region, RegionMap
-from ptmcad.question.slice import Count
+from ptmcad.answer.words import counted, noun
+from ptmcad.question.slice import Count, Slice
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
-from ptmcad.show.table import certified_digits, count_text
+from ptmcad.show.table import certified_digits, count_text, index_heading
 from ptmcad.text.numerals import decimal
 
 STRONG, THIN, INK = 1.3, 0.5, "#111111"
@@ -25,13 +26,6 @@ RIM, RIM_INK = 0.35, "#404040"
 LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
 """Inches between lines, width of a swatch, characters in a line."""
 _MAX_AREAS = 16
-_HEADS = {
-    Count.STABLE: "Stable equilibria",
-    Count.TOTAL: "Equilibria",
-    Count.INDEX: "(minima, saddles, maxima)",
-    Count.ADMISSIBLE: "Stable, all springs taut",
-}
-
 
 Mark = Callable[[Any, float, float], None]
 """Draws into a figure, from a place in inches (left, middle) to the right, no wider than a swatch."""
@@ -44,6 +38,17 @@ class Entry:
     lines: tuple[str, ...]
     mark: Fill | float | str | Mark | None = None
     strong: bool = False
+
+
+def _head(slice: Slice) -> tuple[str, ...]:
+    """What is counted."""
+    many = noun(slice.model)
+    return {
+        Count.STABLE: (f"Stable {many}",),
+        Count.TOTAL: (many.capitalize(),),
+        Count.INDEX: tuple(textwrap.wrap(index_heading(slice.model), COLUMNS)),
+        Count.ADMISSIBLE: ("Stable, all springs taut",),
+    }[slice.count]
 
 
 def entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> tuple[Entry, ...]:
@@ -62,9 +67,10 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> Itera
     groups: dict[str, list[Region]] = {}
     for region in sorted(result.regions, key=lambda r: (_key(r, count), -r.area[0])):
         groups.setdefault(count_text(region, count), []).append(region)
-    yield Entry((_HEADS[count],), strong=True)
+    model = result.slice.model
+    yield Entry(_head(result.slice), strong=True)
     for text, regions in groups.items():
-        yield Entry((_with_total(text, regions, count), *_areas(regions)), fill_of(regions[0], count))
+        yield Entry((_with_total(text, regions, result.slice), *_areas(regions)), fill_of(regions[0], count))
     yield Entry(())
     if result.cover is not None and result.undetermined:
         note = ("the count may change within it",) if len(result.regions) > 1 else ()
@@ -72,7 +78,7 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> Itera
     elif len(result.regions) > 1:
         yield Entry(("the count changes",), STRONG)
     if thin:
-        yield Entry(("equilibria merge or vanish,", "the count does not change"), THIN)
+        yield Entry((f"{noun(model)} merge or vanish,", "the count does not change"), THIN)
     if samples:
         yield Entry(("sample point of a cell",), "dot")
     if hidden:
@@ -94,12 +100,12 @@ def percent(share: Fraction) -> str:
     return f"{decimal(100 * share, up=True, digits=2)} %"
 
 
-def _with_total(text: str, regions: list[Region], count: Count) -> str:
+def _with_total(text: str, regions: list[Region], slice: Slice) -> str:
     totals = {r.total for r in regions}
     total = totals.pop() if len(totals) == 1 else None
-    if count is Count.TOTAL or total is None:
+    if slice.count is Count.TOTAL or total is None:
         return text
-    return f"{text}   {total} equilibria" if count is Count.INDEX else f"{text}   of {total} equilibria"
+    return f"{text}   {'' if slice.count is Count.INDEX else 'of '}{counted(slice.model, total)}"
 
 
 def _areas(regions: list[Region]) -> list[str]:

@@ -1,7 +1,7 @@
-"""The drawing of a mechanism's sketch: thick bars, zigzag springs, a fixed support, a slider, arrows for loads.
+"""The drawing of a mechanism's sketch: thick bars, zigzag springs, supports, sliders, arrows for loads.
 
 Guarantee: stable poses are strong and others pale, which grey prints and colour-blind eyes see as well: each colour's
-pale version is lighter by at least 25 units of CIE L*, and the two bars differ in width and lightness.
+pale version is lighter by at least 25 units of CIE L*, and two bars differ in width and lightness.
 """
 
 from __future__ import annotations
@@ -13,25 +13,26 @@ from typing import Any
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch, Polygon, Rectangle
 
+from ptmcad.mechanism import Support
 from ptmcad.show.render.clearance import Position
 from ptmcad.show.render.legend import INK, SWATCH, Mark
 from ptmcad.show.render.sketch import (
     AMPLITUDE,
     BAR_WIDTHS,
-    BASE,
     GROUND,
     LABEL_SIZE,
-    MECHANISM,
+    MANY_BARS,
     PIN,
     SLIDER,
     SUPPORT,
     Sketch,
+    bar_width,
 )
 
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """Colours of the two bars, springs, loads, base and text."""
+    """Colours of two bars (more have the first one), springs, loads, supports and text."""
 
     bars: tuple[str, str]
     spring: str
@@ -46,10 +47,12 @@ PALE = Style(("#a9bacb", "#f3d9ba"), "#8f8f8f", "#d9a3b2", "#a3a3a3", "#666666")
 
 def draw_sketch(axes: Any, seen: Sketch, style: Style, prefix: str) -> None:
     """Draw a sketch into axes of which a unit is a point."""
-    _base(axes, seen.nodes[BASE[0]], seen.nodes[BASE[1]], style, prefix)
-    drawn = zip(seen.bars, MECHANISM.bars, BAR_WIDTHS, style.bars, (2, 3), strict=True)
-    for (start, end), names, width, colour, z in drawn:
-        _line(axes, (start, end), colour, width, f"{prefix}bar-{''.join(names)}", z)
+    _supports(axes, seen, style, prefix)
+    few = len(seen.bars) <= len(BAR_WIDTHS)
+    for number, ((start, end), names) in enumerate(zip(seen.bars, seen.mechanism.bars, strict=True)):
+        kind = number if few else 0
+        width = bar_width(seen.mechanism, number)
+        _line(axes, (start, end), style.bars[kind], width, f"{prefix}bar-{''.join(names)}", 2 + kind)
     for number, points in enumerate(seen.springs):
         _line(axes, points, "white", 2.4, "", 4)
         _line(axes, points, style.spring, 0.95, f"{prefix}spring-{number + 1}", 5)
@@ -87,12 +90,16 @@ def _arrow(start: Position, end: Position, colour: str, gid: str | None = None) 
     )  # fmt: skip
 
 
-def _base(axes: Any, fixed: Position, sliding: Position, style: Style, prefix: str) -> None:
-    """The telescopic base, the support under its fixed end and the slider around the other."""
-    _line(axes, (fixed, sliding), style.base, 1.8, f"{prefix}base", 1)
-    _line(axes, (fixed, sliding), "white", 0.7, "", 1.1)
-    for artist in (*_support(*fixed, style.base), _slider(*sliding, style.base)):
-        axes.add_artist(artist)
+def _supports(axes: Any, seen: Sketch, style: Style, prefix: str) -> None:
+    """Rails or the telescopic base, a support under each fixed point and a slider around each sliding one."""
+    for number, ends in enumerate(seen.rails, 1):
+        _line(axes, ends, style.base, 1.8, f"{prefix}base" + (f"-{number}" if number > 1 else ""), 1)
+        _line(axes, ends, "white", 0.7, "", 1.1)
+    for name, kind in seen.mechanism.supports.items():
+        x, y = seen.nodes[name]
+        fixed = kind is Support.PIN
+        for artist in _support(x, y, style.base) if fixed else [_slider(x, y, style.base, kind is Support.SLIDER_Y)]:
+            axes.add_artist(artist)
 
 
 def _support(x: float, y: float, colour: str) -> list[Any]:
@@ -113,17 +120,17 @@ def _support(x: float, y: float, colour: str) -> list[Any]:
     return [triangle, *ground]
 
 
-def _slider(x: float, y: float, colour: str) -> Any:
-    width, height = SLIDER
+def _slider(x: float, y: float, colour: str, upright: bool = False) -> Any:
+    width, height = SLIDER[::-1] if upright else SLIDER
     return Rectangle(
         (x - width, y - height), 2 * width, 2 * height, facecolor="white", edgecolor=colour, linewidth=0.9,
         zorder=1.6, clip_on=False,
     )  # fmt: skip
 
 
-def bar_mark(number: int, style: Style = STRONG) -> Mark:
-    """A bar in a legend."""
-    return _line_mark([(0.0, 0.0), (SWATCH, 0.0)], style.bars[number], BAR_WIDTHS[number])
+def bar_mark(number: int, style: Style = STRONG, many: bool = False) -> Mark:
+    """A bar in a legend: of two a number, or one of many."""
+    return _line_mark([(0.0, 0.0), (SWATCH, 0.0)], style.bars[number], MANY_BARS if many else BAR_WIDTHS[number])
 
 
 def spring_mark() -> Mark:

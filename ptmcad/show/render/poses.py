@@ -17,13 +17,16 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.mechanism import known_of
+from ptmcad.answer.words import counted, kind_name, noun
+from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Mechanism, Model, Support
 from ptmcad.question.slice import merged
+from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Frame, arrow_lengths, frame_of, sketch
+from ptmcad.show.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Frame, arrow_lengths, frame_of, load_values, sketch
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import magnitude, shortest_text
 
@@ -40,12 +43,19 @@ def draw_poses(poses: Poses) -> Figure:
 
     Parameters
     ----------
-    poses : of the mechanism ``ptm``; when it has none (infinitely many equilibria), its remark is the picture.
+    poses : of a mechanism; when it has none (infinitely many equilibria), its remark is the picture.
 
     Returns
     -------
     A figure without a canvas of pyplot, to be written by `ptmcad.show.render.printing.save`.
+
+    Raises
+    ------
+    ConfigError
+        For a system that is no mechanism: it has no points to be drawn.
     """
+    if not isinstance(poses.model, Mechanism):
+        raise ConfigError(no_drawing(poses.model))
     shown = in_order(poses)
     if not shown:
         return empty(poses)
@@ -53,7 +63,7 @@ def draw_poses(poses: Poses) -> Figure:
     columns = 3 if len(shown) in (3, 5) or len(shown) > 5 else min(2, len(shown))
     rows = -(-len(shown) // columns)
     wide, tall = frame.width / 72, frame.height / 72
-    row = HEAD + tall + BELOW
+    row = HEAD + tall + below_panel(shown[0], poses.model)
     entries = tuple(legend(poses, arrows))
     below = max(rows * row + (rows - 1) * GAP, height(entries) + _SCALE_ROOM)
     width = 2 * MARGIN + columns * (wide + GAP) + KEY
@@ -65,7 +75,7 @@ def draw_poses(poses: Poses) -> Figure:
         for number, pose in enumerate(shown):
             down, across = divmod(number, columns)
             corner = (MARGIN + across * (wide + GAP), top - down * (row + GAP) - HEAD - tall)
-            panel(figure, pose, number + 1, frame, arrows, corner)
+            panel(figure, poses.model, pose, number + 1, frame, arrows, corner)
         left = MARGIN + columns * (wide + GAP) + 0.1
         draw_legend(figure, entries, left, top)
         scale_bar(figure, frame, left, top - height(entries) - 0.12)
@@ -81,11 +91,37 @@ def kind(pose: Pose) -> str:
     """What an equilibrium is, in words."""
     if pose.index is None:
         return f"degenerate, multiplicity {pose.multiplicity}"
-    return ("stable (minimum)", "saddle", "maximum")[pose.index]
+    return "stable (minimum)" if pose.index == 0 else kind_name(pose.index, len(pose.eigenvalues))
+
+
+def unknown_texts(model: Model, pose: Pose) -> list[str]:
+    """The unknowns with their values: angles in degrees."""
+    angles = [f"{symbol(name)} = {number_text(a)}°" for name, a in zip(model.angles, pose.degrees, strict=True)]
+    return angles + [f"{symbol(name)} = {number_text(x)}" for name, x in zip(model.reals, pose.reals, strict=True)]
+
+
+def _lines_below(model: Model, pose: Pose) -> list[str]:
+    """Energy, and unknowns: as many of them on a line as there is room for."""
+    unknowns = unknown_texts(model, pose)
+    return [
+        f"U = {number_text(pose.known_energy)}",
+        *(", ".join(unknowns[k : k + 2]) for k in range(0, len(unknowns), 2)),
+    ]
+
+
+def below_panel(pose: Pose, model: Model) -> float:
+    """Inches for the lines below a panel."""
+    return BELOW + 0.16 * (len(_lines_below(model, pose)) - 2)
 
 
 def panel(
-    figure: Figure, pose: Pose, number: int, frame: Frame, arrows: Mapping[str, float], corner: tuple[float, float]
+    figure: Figure,
+    mechanism: Mechanism,
+    pose: Pose,
+    number: int,
+    frame: Frame,
+    arrows: Mapping[str, float],
+    corner: tuple[float, float],
 ) -> Any:
     """One pose in axes at a place in inches, with its kind above and energy and angles below."""
     width, tall = figure.get_size_inches()
@@ -96,7 +132,7 @@ def panel(
     axes.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
     for spine in axes.spines.values():
         spine.set(color=INK if strong else "#b5b5b5", linewidth=1.0 if strong else 0.6)
-    draw_sketch(axes, sketch(pose, frame, arrows), style, f"pose-{number}-")
+    draw_sketch(axes, sketch(mechanism, pose, frame, arrows), style, f"pose-{number}-")
     inches = figure.dpi_scale_trans
     colour = INK if strong else "#555555"
     flat = ", flat" if pose.flat else ""
@@ -104,8 +140,7 @@ def panel(
         corner[0], corner[1] + frame.height / 72 + 0.12, f"{number}  {kind(pose)}{flat}", transform=inches, fontsize=9,
         fontweight="bold" if strong else "normal", color=colour, va="center",
     )  # fmt: skip
-    angles = ", ".join(f"θ{k} = {number_text(a)}°" for k, a in zip("₁₂", pose.degrees, strict=True))
-    for k, line in enumerate((f"U = {number_text(pose.known_energy)}", angles)):
+    for k, line in enumerate(_lines_below(mechanism, pose)):
         figure.text(
             corner[0], corner[1] - 0.11 - 0.16 * k, line, transform=inches, fontsize=8, color=colour, va="center"
         )
@@ -144,35 +179,51 @@ def assigned(name: str, value: Fraction) -> str:
 
 def values(poses: Poses) -> list[str]:
     """The parameters with their values; equal stiffnesses or free lengths as one; loads only where there are any."""
-    mechanism = known_of(poses.mechanism)
-    shown = merged(poses.parameters, mechanism)
-    loads = {name: value for name, value in shown.items() if name in mechanism.forces}
+    model = poses.model
+    shown = merged(poses.parameters, model)
+    loads = {name: value for name, value in shown.items() if name in model.forces}
     rest = {name: value for name, value in shown.items() if name not in loads}
     texts = [assigned(name, value) for name, value in rest.items()]
     texts += [assigned(name, value) for name, value in loads.items() if value]
-    return texts if any(loads.values()) else [*texts, "no load"]
+    unloaded = isinstance(model, Mechanism) and bool(model.loads) and not any(load_values(poses).values())
+    return [*texts, "no load"] if unloaded else texts
 
 
 def heading(poses: Poses, columns: int) -> list[str]:
     """The title's lines: where the equilibria are."""
-    return textwrap.wrap(f"{_count(poses)} at " + ",  ".join(values(poses)), max(columns, 30))
+    at = ",  ".join(values(poses))
+    return textwrap.wrap(f"{_count(poses)} at {at}" if at else _count(poses).rstrip(","), max(columns, 30))
 
 
 def _count(poses: Poses) -> str:
     if not poses.equilibria:
-        return "Equilibria"
-    number = len(poses.equilibria)
-    return f"{number} equilibri{'um' if number == 1 else 'a'}, {poses.stable} stable,"
+        return noun(poses.model).capitalize()
+    return f"{counted(poses.model, len(poses.equilibria))}, {poses.stable} stable,"
 
 
 def describe(poses: Poses) -> str:
     """What the picture shows, in words."""
     parts = [
         f"{n}: {kind(p)}{', flat' if p.flat else ''}, U {number_text(p.known_energy)}, "
-        f"theta1 {number_text(p.degrees[0])}, theta2 {number_text(p.degrees[1])} degrees"
+        + _unknowns_in_words(poses.model, p)
         for n, p in enumerate(in_order(poses), 1)
     ]
-    return f"Equilibria of the mechanism, {', '.join(values(poses))}. " + "; ".join(parts) + poses.remark
+    what = "mechanism" if isinstance(poses.model, Mechanism) else "system"
+    return (
+        f"{noun(poses.model).capitalize()} of the {what}, {', '.join(values(poses))}. "
+        + "; ".join(parts)
+        + poses.remark
+    )
+
+
+def _unknowns_in_words(model: Model, pose: Pose) -> str:
+    """Without signs that a screen reader does not know."""
+    angles = [
+        f"{'theta' + name[2:] if name[:2] == 'th' and name[2:].isdigit() else name} {number_text(a)}"
+        for name, a in zip(model.angles, pose.degrees, strict=True)
+    ]
+    reals = [f"{name} {number_text(x)}" for name, x in zip(model.reals, pose.reals, strict=True)]
+    return ", ".join(([", ".join(angles) + " degrees"] if angles else []) + reals)
 
 
 def titled(lines: Sequence[str], size: tuple[float, float], left: float) -> Figure:
@@ -201,20 +252,53 @@ def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
     yield Entry(("U: energy, in force · length",))
     yield Entry(())
     yield Entry(("Parts",), strong=True)
-    yield Entry(("bar A₁A₃ (wide)",), bar_mark(0))
-    yield Entry(("bar A₂A₄ (narrow)",), bar_mark(1))
-    yield Entry(("springs A₁A₄, A₂A₃, A₃A₄;", "drawn aside where one lies on", "a bar or is very short"), spring_mark())
-    yield Entry(("fixed support, at A₁",), symbol_mark("support"))
-    yield Entry(("slider on the base, at A₂",), symbol_mark("slider"))
+    assert isinstance(poses.model, Mechanism)
+    yield from parts_legend(poses.model)
     if arrows:
-        loads = [assigned(name, poses.parameters[name]) for name in arrows]
+        known = load_values(poses)
+        loads = [_load_text(name, known[name]) for name in arrows]
         shortened = any(abs(length) == SHORTEST_ARROW < LONGEST_ARROW for length in arrows.values())
         lines = ["load; length by force" + (", except" if shortened else "")]
         lines += ["that short ones are lengthened"] if shortened else []
-        yield Entry((*lines, *textwrap.wrap(",  ".join(loads), 33)), symbol_mark("load"))
+        yield Entry((*lines, *textwrap.wrap(",  ".join(loads), _KEY_COLUMNS)), symbol_mark("load"))
     yield Entry(())
 
 
+def parts_legend(mechanism: Mechanism) -> Iterator[Entry]:
+    """Bars, springs and supports, and where they are."""
+    bars = ["".join(map(symbol, ends)) for ends in mechanism.bars]
+    if len(bars) <= 2:
+        width = (" (wide)", " (narrow)") if len(bars) == 2 else ("",)
+        for number, name in enumerate(bars):
+            yield Entry((f"bar {name}{width[number]}",), bar_mark(number))
+    else:
+        yield Entry(tuple(textwrap.wrap(f"bars {', '.join(bars)}", _KEY_COLUMNS)), bar_mark(0, many=True))
+    springs = ["".join(map(symbol, (spring.start, spring.end))) for spring in mechanism.springs]
+    if springs:
+        names = textwrap.wrap(f"spring{'s' * (len(springs) > 1)} {', '.join(springs)};", _KEY_COLUMNS)
+        yield Entry((*names, "drawn aside where one lies on", "a bar or is very short"), spring_mark())
+    yield from support_legend(mechanism)
+
+
+def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
+    """Where the mechanism is held."""
+    at = {kind: [symbol(name) for name, of in mechanism.supports.items() if of is kind] for kind in Support}
+    if pins := at[Support.PIN]:
+        yield Entry((f"fixed support{'s' * (len(pins) > 1)}, at {', '.join(pins)}",), symbol_mark("support"))
+    if sliding := at[Support.SLIDER_X]:
+        on = "slider on the base" if pins and len(sliding) == 1 else "slider" + "s" * (len(sliding) > 1)
+        yield Entry((f"{on}, at {', '.join(sliding)}",), symbol_mark("slider"))
+    if rising := at[Support.SLIDER_Y]:
+        yield Entry((f"vertical slider{'s' * (len(rising) > 1)}, at {', '.join(rising)}",), symbol_mark("slider"))
+
+
+def _load_text(name: str, value: Fraction) -> str:
+    """A load's component: by its name, or by its value alone where that is how it was given."""
+    return assigned(name, value) if name[0].isalpha() else value_text(value).lstrip("=≈\N{NO-BREAK SPACE}")
+
+
+_KEY_COLUMNS = 33
+"""Characters of a line of the legend."""
 _SCALE_ROOM = 0.3
 
 

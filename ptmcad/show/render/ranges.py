@@ -18,15 +18,17 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
+from ptmcad.answer.counts import Counts, MorseIndex
 from ptmcad.answer.intervals import CountIntervals, End
 from ptmcad.answer.paths import Fate, PathPoint, PosePaths
-from ptmcad.answer.regionmap import MorseIndex
 from ptmcad.answer.widths import OperationWidths
+from ptmcad.answer.words import counted, noun
+from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.ranges.numbers import end_text, width_text
-from ptmcad.show.ranges.table import maximum_text
+from ptmcad.show.ranges.table import maximum_text, working_text
 from ptmcad.show.render.axes import scale_of, symbol, unit
-from ptmcad.show.render.colours import fill_of_index
+from ptmcad.show.render.colours import fill_of_counts, fill_of_index
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.printing import settings
 from ptmcad.text.numerals import shortest_text
@@ -39,6 +41,7 @@ _DIGITS = 7
 _COLOURS = ("#0b5394", "#b45f06", "#38761d", "#741b47")
 _DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (2, 2)), (0, (6, 2, 1, 2)))
 _COLUMNS = 100
+_LOST = (Fate.VANISH, Fate.UNSTABLE, Fate.EXCLUDED)
 
 
 def draw_range(slice: Slice, found: CountIntervals) -> Figure:
@@ -57,13 +60,13 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
         scale = scale_of(found.along.low, found.along.high)
         for i in found.intervals:
             low, high = _place(i.low, found.along), _place(i.high, found.along)
-            fill = fill_of_index(i.index)
+            fill = fill_of_counts(i.counts)
             axes.add_patch(Rectangle((low, 0), high - low, 1, facecolor=fill.face, hatch=fill.hatch or None,
                                      edgecolor=INK, linewidth=0.6))  # fmt: skip
             if (high - low) * WIDE * 72 > 4 * SIZE:
-                axes.text((low + high) / 2, 0.5, str(i.stable), ha="center", va="center", fontsize=SIZE + 3,
+                axes.text((low + high) / 2, 0.5, str(i.counts.working), ha="center", va="center", fontsize=SIZE + 3,
                           bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5, "alpha": 0.85})  # fmt: skip
-            if i.stable == 2:
+            if i in found.operation:
                 axes.plot([low, high], [1.2, 1.2], color=INK, linewidth=1.6, clip_on=False, marker="|", markersize=6)
         axes.set_xlim(0, 1)
         axes.set_ylim(0, 1)
@@ -82,19 +85,28 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
 
 
 def _bar_legend(found: CountIntervals) -> list[Entry]:
-    entries = [Entry(("stable equilibria",), strong=True)]
-    seen: list[MorseIndex] = []
+    model = found.model
+    entries = [Entry((f"{'stable ' * model.tells_stability}{noun(model)}",), strong=True)]
+    seen: list[Counts] = []
     for i in found.intervals:
-        if i.index not in seen:
-            seen.append(i.index)
-            minima, saddles, maxima = i.index
-            rest = f"{saddles} saddles, {maxima} maxim{'um' if maxima == 1 else 'a'}"
-            entries.append(Entry((f"{minima}   of {i.total} equilibria", rest), fill_of_index(i.index)))
+        if i.counts not in seen:
+            seen.append(i.counts)
+            head = str(i.total) if i.stable is None else f"{i.stable}   of {counted(model, i.total)}"
+            entries.append(Entry((head, *_unstable(i.index)), fill_of_counts(i.counts)))
     for i in found.operation:
         entries.append(Entry(("operation range (bracket)", f"width {width_text(i, _DIGITS)}")))
     if any(c.before == c.after for c in found.changes):
-        entries.append(Entry(("a label within one colour:", "equilibria touch, counts unchanged")))
+        entries.append(Entry(("a label within one colour:", f"{noun(model)} touch, counts unchanged")))
     return entries
+
+
+def _unstable(index: MorseIndex | None) -> tuple[str, ...]:
+    """The numbers of saddles and maxima in words, as far as there can be any."""
+    if index is None:
+        return ()
+    saddles, maxima = sum(index[1:-1]), index[-1]
+    between = [f"{saddles} saddles"] if len(index) > 2 else []
+    return (", ".join([*between, f"{maxima} maxim{'um' if maxima == 1 else 'a'}"]),)
 
 
 def _labels(
@@ -131,7 +143,7 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
     """The operation ranges at the tabulated values, and their width with its largest value."""
     title = textwrap.wrap(slice.heading, _COLUMNS)[:3]
     lines = [maximum_text(m, found.over.name, _DIGITS) for m in found.maxima] or ["there is no operation range"]
-    texts = ["above: where two equilibria are stable; below: how wide that is; diamond: the widest"]
+    texts = [f"above: {_where(found)}; below: how wide that is; diamond: the widest"]
     texts += [part for line in lines for part in textwrap.wrap(f"widest: {line}", _COLUMNS)]
     foot = 0.55 + 0.2 * len(texts)
     tall = 2.3 + 1.9 + 0.35 + foot + 0.1
@@ -172,45 +184,65 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
     return figure
 
 
+def _where(found: OperationWidths) -> str:
+    """What the operation range is."""
+    if found.working == 2 and isinstance(found.model, Mechanism):
+        return "where two equilibria are stable"
+    return f"where there {'is' if found.working == 1 else 'are'} {working_text(found.model, found.working)}"
+
+
 def draw_paths(slice: Slice, found: PosePaths) -> Figure:
-    """Both angles of each followed pose along the axis; an arrow shows each snap."""
+    """The unknowns of each followed pose along the axis, a panel for each; an arrow shows each snap."""
     fixed = ", ".join(f"{symbol(n)} = {_short(v)}" for n, v in found.at.items())
     title = textwrap.wrap(f"{slice.heading}; {fixed}", _COLUMNS)[:3]
-    entries = [Entry(("stable poses",), strong=True)]
+    model = found.model
+    what = "pose" if isinstance(model, Mechanism) else "solution"
+    stable = "stable " * model.tells_stability
+    entries = [Entry((f"{stable}{what}s",), strong=True)]
     for k, path in enumerate(found.paths):
-        entries.append(Entry((f"pose {path.number} at {symbol(found.along.name)} = {_short(found.start)}",), _line(k)))
+        entries.append(
+            Entry((f"{what} {path.number} at {symbol(found.along.name)} = {_short(found.start)}",), _line(k))
+        )
     if any(e.fate is Fate.SNAP for p in found.paths for e in (p.low, p.high)):
         entries.append(Entry(("a pose vanishes (ring), and the", "mechanism snaps (arrow)"), _snap_mark))
     if any(e.fate is Fate.MERGE for p in found.paths for e in (p.low, p.high)):
         entries.append(Entry(("poses merge into one (square),", "without a snap"), _merge_mark))
+    if any(e.fate in _LOST for p in found.paths for e in (p.low, p.high)):
+        entries.append(Entry((f"a {what} ends (cross)",), _loss_mark))
     panel, foot = 2.0, 0.55
-    tall = 2 * panel + 0.25 + foot
-    words = f"Angles of {len(found.paths)} stable poses along {found.along.name}."
+    names = (*model.angles, *model.reals)
+    last = len(names) - 1
+    tall = len(names) * panel + 0.25 * last + foot
+    spare = max(0.0, height(tuple(entries)) + 0.2 - tall)
+    tall += spare
+    kind = "Unknowns" if model.reals else "Angles"
+    words = f"{kind} of {len(found.paths)} {stable}{what}s along {found.along.name}."
     with settings():
         figure = _figure(title, (LEFT + WIDE + RIGHT + KEY, tall), words)
         scale = scale_of(found.along.low, found.along.high)
-        for number in (0, 1):
-            axes = _axes(figure, (LEFT, foot + (1 - number) * (panel + 0.25), WIDE, panel))
+        for number, name in enumerate(names):
+            axes = _axes(figure, (LEFT, foot + spare + (last - number) * (panel + 0.25), WIDE, panel))
             for k, path in enumerate(found.paths):
                 colour, dash = _COLOURS[k % len(_COLOURS)], _DASHES[k % len(_DASHES)]
                 xs = [_scaled(p.value, found.along) for p in path.points]
                 axes.plot(xs, [_angle(p, number) for p in path.points], color=colour, linestyle=dash, linewidth=1.6)
                 for end in (path.low, path.high):
-                    if end.fate is Fate.WINDOW or end.target is None:
+                    if end.fate in (Fate.WINDOW, Fate.UNDECIDED):
                         continue
                     x, y = _scaled(end.last.value, found.along), _angle(end.last, number)
-                    marker = "o" if end.fate is Fate.SNAP else "s"
+                    marker = {Fate.SNAP: "o", Fate.MERGE: "s"}.get(end.fate, "x")
                     axes.plot([x], [y], marker, color=colour, fillstyle="none", markersize=6)
-                    if end.fate is Fate.SNAP:
+                    if end.fate is Fate.SNAP and end.target is not None:
                         tip = (_scaled(end.target.value, found.along), _angle(end.target, number))
                         axes.annotate("", tip, (x, y), arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.0,
                                                                    "shrinkA": 4, "shrinkB": 1})  # fmt: skip
             axes.axhline(0, color=INK, linewidth=0.4)
             axes.set_xlim(scale.low, scale.high)
             axes.margins(y=0.08)
-            axes.tick_params(labelsize=SIZE, labelbottom=number == 1)
-            axes.set_ylabel(f"θ{'₁₂'[number]} (degrees)", fontsize=SIZE + 2)
-            if number == 1:
+            axes.tick_params(labelsize=SIZE, labelbottom=number == last)
+            degrees_note = " (degrees)" if number < len(model.angles) else ""
+            axes.set_ylabel(f"{symbol(name)}{degrees_note}", fontsize=SIZE + 2)
+            if number == last:
                 axes.set_xlabel(_axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=2)
         draw_legend(figure, tuple(entries), LEFT + WIDE + RIGHT, tall - 0.05)
     return figure
@@ -231,6 +263,10 @@ def _snap_mark(figure: Any, left: float, middle: float) -> None:
 
 def _merge_mark(figure: Any, left: float, middle: float) -> None:
     _marker(figure, left, middle, "s")
+
+
+def _loss_mark(figure: Any, left: float, middle: float) -> None:
+    _marker(figure, left, middle, "x")
 
 
 def _marker(figure: Any, left: float, middle: float, marker: str) -> None:
@@ -269,7 +305,9 @@ def _scaled_end(end: End, axis: Axis) -> float:
 
 
 def _angle(point: PathPoint, number: int) -> float:
-    return degrees(float(point.angles[number]))
+    if number < len(point.angles):
+        return degrees(float(point.angles[number]))
+    return float(point.reals[number - len(point.angles)])
 
 
 def _axis_name(slice: Slice, axis: Axis) -> str:
@@ -285,7 +323,8 @@ def _short(value: Fraction) -> str:
 
 def _words(found: CountIntervals) -> str:
     parts = [
-        f"{end_text(i.low, _DIGITS)} to {end_text(i.high, _DIGITS)}: {i.stable} stable of {i.total}"
+        f"{end_text(i.low, _DIGITS)} to {end_text(i.high, _DIGITS)}: "
+        + (f"{i.total} in all" if i.stable is None else f"{i.stable} stable of {i.total}")
         for i in found.intervals
     ]
     return f"Intervals of {found.along.name}: {'; '.join(parts)}."

@@ -18,6 +18,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.words import noun
 from ptmcad.show.render.axes import dress
 from ptmcad.show.render.colours import UNDETERMINED, fill_of
 from ptmcad.show.render.labels import Placement, place
@@ -220,4 +221,6 @@ def description(result: RegionMap) -> str:
     count = result.slice.count
     window = " and ".join(f"{a.name} from {a.low} to {a.high}" for a in result.slice.axes)
     regions = "; ".join(f"{count_text(r, count)} ({certified_digits(r.area, 7)})" for r in result.regions)
-    return f"Regions of equal count ({count.value} equilibria; area in brackets) over {window}: {regions}."
+    return (
+        f"Regions of equal count ({count.value} {noun(result.slice.model)}; area in brackets) over {window}: {regions}."
+    )

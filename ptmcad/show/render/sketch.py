@@ -13,18 +13,19 @@ from fractions import Fraction
 from math import hypot
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.mechanism import Support, ptm
+from ptmcad.mechanism import Mechanism, Support
+from ptmcad.mechanism.description import Load
+from ptmcad.mechanism.evaluate import value_at
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.clearance import Box, Label, Placed, Position, Stroke, distance, place, polyline
 
-MECHANISM = ptm()
-BASE = (MECHANISM.held(Support.PIN), MECHANISM.held(Support.SLIDER_X))
-"""The points at the ends of the telescopic base."""
 BAR_WIDTHS = (5.5, 3.2)
+"""Of two bars, which are told apart; more are alike."""
+MANY_BARS = 4.2
 WIDTH, MAX_HEIGHT, LEAST_HEIGHT, MARGIN = 200.0, 210.0, 112.0, 36.0
 PIN = 2.4
 SUPPORT, GROUND = (7.0, 10.0), 4.0
-SLIDER = (7.5, 4.2)
+SLIDER, RAIL = (7.5, 4.2), 17.0
 """Half its width and height."""
 MIN_TURNS, TURN = 6, 6.0
 """A spring has so many turns, or one for each such length: else the teeth of a long one lie so flat that it looks like
@@ -73,11 +74,14 @@ class Sketch:
 
     Attributes
     ----------
+    rails : what sliders slide on: a telescopic base from a fixed support at their height, else a short one.
     bars : in the order of the mechanism's.
     springs : polylines in the order of the pose's springs.
     """
 
+    mechanism: Mechanism
     nodes: Mapping[str, Position]
+    rails: tuple[tuple[Position, Position], ...]
     bars: tuple[tuple[Position, Position], ...]
     springs: tuple[tuple[Position, ...], ...]
     arrows: tuple[Arrow, ...]
@@ -89,7 +93,7 @@ def frame_of(shown: Sequence[Pose], width: float = WIDTH, most_height: float = M
     sides = [[high - low for low, high in _sides(_centers(pose).values())] for pose in shown]
     wide, tall = (max(side[k] for side in sides) for k in (0, 1))
     room = (Fraction(width - 2 * MARGIN), Fraction(most_height - 2 * MARGIN))
-    scale = min(r / side for r, side in zip(room, (wide, tall), strict=True) if side)
+    scale = min((r / side for r, side in zip(room, (wide, tall), strict=True) if side), default=Fraction(1))
     return Frame(scale, max(LEAST_HEIGHT, float(tall * scale) + 2 * MARGIN), width)
 
 
@@ -105,8 +109,8 @@ def _sides(points: Iterable[tuple[Fraction, Fraction]]) -> tuple[tuple[Fraction,
 
 def arrow_lengths(poses: Poses) -> dict[str, float]:
     """The loads that are not zero, and the lengths of their arrows: by force, but none shorter than is seen."""
-    loads = {name: poses.parameters.get(name, Fraction(0)) for load in MECHANISM.loads for name in load.names}
-    largest = max(map(abs, loads.values()))
+    loads = load_values(poses)
+    largest = max(map(abs, loads.values()), default=Fraction(0))
     return {
         name: (1 if load > 0 else -1) * max(SHORTEST_ARROW, LONGEST_ARROW * float(abs(load) / largest))
         for name, load in loads.items()
@@ -114,31 +118,61 @@ def arrow_lengths(poses: Poses) -> dict[str, float]:
     }
 
 
-def sketch(pose: Pose, frame: Frame, arrows: Mapping[str, float]) -> Sketch:
+def load_values(poses: Poses) -> dict[str, Fraction]:
+    """The components of all loads by their names; constants and expressions are named by their text."""
+    mechanism = poses.model
+    assert isinstance(mechanism, Mechanism)
+    values = dict.fromkeys(mechanism.variables, Fraction(0)) | dict(poses.parameters)
+    components = (pair for load in mechanism.loads for pair in zip(load.names, (load.x, load.y), strict=True))
+    return {name: value_at(tree, values) for name, tree in components}
+
+
+def bar_width(mechanism: Mechanism, number: int) -> float:
+    """In points."""
+    return BAR_WIDTHS[number] if len(mechanism.bars) <= len(BAR_WIDTHS) else MANY_BARS
+
+
+def sketch(mechanism: Mechanism, pose: Pose, frame: Frame, arrows: Mapping[str, float]) -> Sketch:
     """A pose in a frame, with arrows of these lengths."""
     nodes = frame.nodes(pose)
-    bars = tuple((nodes[a], nodes[b]) for a, b in MECHANISM.bars)
-    drawn = [Stroke(a, b, width / 2) for (a, b), width in zip(bars, BAR_WIDTHS, strict=True)]
+    bars = tuple((nodes[a], nodes[b]) for a, b in mechanism.bars)
+    drawn = [Stroke(a, b, bar_width(mechanism, number) / 2) for number, (a, b) in enumerate(bars)]
     springs = []
     for spring in pose.springs:
         line = _spring(nodes[spring.start], nodes[spring.end], drawn)
         springs.append(line)
         drawn += polyline(line, 0.5)
-    placed_arrows = tuple(_arrows(nodes, arrows))
-    strokes = [*drawn, Stroke(nodes[BASE[0]], nodes[BASE[1]], 1.0)]
+    placed_arrows = tuple(_arrows(mechanism.loads, nodes, arrows))
+    rails = tuple(_rails(mechanism, nodes))
+    strokes = [*drawn, *(Stroke(a, b, 1.0) for a, b in rails)]
     strokes += [Stroke(arrow.start, arrow.end, 3.0) for arrow in placed_arrows]
-    labels = place(_labels(nodes), strokes, _symbols(nodes), (2.0, 2.0, frame.width - 2.0, frame.height - 2.0))
-    return Sketch(nodes, bars, tuple(springs), placed_arrows, tuple(labels))
+    labels = place(
+        _labels(nodes), strokes, _symbols(mechanism, nodes), (2.0, 2.0, frame.width - 2.0, frame.height - 2.0)
+    )
+    return Sketch(mechanism, nodes, rails, bars, tuple(springs), placed_arrows, tuple(labels))
 
 
-def _symbols(nodes: Mapping[str, Position]) -> Iterator[Box]:
-    """What pins, the support and the slider cover."""
+def _rails(mechanism: Mechanism, nodes: Mapping[str, Position]) -> Iterator[tuple[Position, Position]]:
+    fixed = next((nodes[name] for name, kind in mechanism.supports.items() if kind is Support.PIN), None)
+    for name, kind in mechanism.supports.items():
+        x, y = nodes[name]
+        if kind is Support.SLIDER_Y:
+            yield (x, y - RAIL), (x, y + RAIL)
+        elif kind is Support.SLIDER_X:
+            yield (fixed, (x, y)) if fixed is not None and abs(fixed[1] - y) < 1e-6 else ((x - RAIL, y), (x + RAIL, y))
+
+
+def _symbols(mechanism: Mechanism, nodes: Mapping[str, Position]) -> Iterator[Box]:
+    """What pins, supports and sliders cover."""
     for x, y in nodes.values():
         yield x - PIN, y - PIN, x + PIN, y + PIN
-    (x, y) = nodes[BASE[0]]
-    yield x - SUPPORT[0] - 2, y - SUPPORT[1] - GROUND - 1, x + SUPPORT[0] + 2, y
-    (x, y) = nodes[BASE[1]]
-    yield x - SLIDER[0], y - SLIDER[1], x + SLIDER[0], y + SLIDER[1]
+    for name, kind in mechanism.supports.items():
+        x, y = nodes[name]
+        if kind is Support.PIN:
+            yield x - SUPPORT[0] - 2, y - SUPPORT[1] - GROUND - 1, x + SUPPORT[0] + 2, y
+        else:
+            wide, tall = SLIDER if kind is Support.SLIDER_X else SLIDER[::-1]
+            yield x - wide, y - tall, x + wide, y + tall
 
 
 def _spring(start: Position, end: Position, drawn: Sequence[Stroke]) -> tuple[Position, ...]:
@@ -177,12 +211,13 @@ def _covered(line: Sequence[Position], drawn: Sequence[Stroke]) -> bool:
     return sum(any(distance(p, s) < AMPLITUDE + s.half for s in drawn) for p in points) > 7
 
 
-def _arrows(nodes: Mapping[str, Position], lengths: Mapping[str, float]) -> Iterator[Arrow]:
-    """The loads' arrows; where two would lie on each other, they stand side by side."""
-    first, second = (nodes[load.point] for load in MECHANISM.loads)
-    shift = 2.6 if hypot(*(a - b for a, b in zip(first, second, strict=True))) < 5 else 0.0
-    for load, side in zip(MECHANISM.loads, (-shift, shift), strict=True):
+def _arrows(loads: Sequence[Load], nodes: Mapping[str, Position], lengths: Mapping[str, float]) -> Iterator[Arrow]:
+    """The loads' arrows; where some would lie on each other, they stand side by side."""
+    for number, load in enumerate(loads):
         x, y = nodes[load.point]
+        at = [nodes[other.point] for other in loads]
+        near = [k for k, (u, v) in enumerate(at) if hypot(u - x, v - y) < 5]
+        side = 5.2 * (near.index(number) - (len(near) - 1) / 2)
         horizontal, vertical = load.names
         if horizontal in lengths:
             sign = 1 if lengths[horizontal] > 0 else -1
@@ -207,4 +242,5 @@ def _labels(nodes: Mapping[str, Position]) -> Iterator[Label]:
         text = ", ".join(symbol(name) for name in group)
         away = (at[0] - middle[0], at[1] - middle[1])
         towards = away if hypot(*away) > 1 else (0.0, 1.0)
-        yield Label(text, at, (6.9 * len(group) + 2.9 * (len(group) - 1), LABEL_HALF_HEIGHT), towards)
+        wide = sum(max(6.9, 3.45 * len(symbol(name))) for name in group)
+        yield Label(text, at, (wide + 2.9 * (len(group) - 1), LABEL_HALF_HEIGHT), towards)

@@ -32,7 +32,7 @@ function show(number) {
     sampleDot.setAttribute("visibility", "hidden");
     return;
   }
-  const index = cell.index ? ` (minima-saddles-maxima ${cell.index.join("-")})` : "";
+  const index = cell.index ? ` (${DATA.index} ${cell.index.join("-")})` : "";
   line(readout, `Cell ${number}, region ${cell.region}:`, `${cell.counts}${index}`);
   line(readout, "Sample:", cell.sample.map(([name, text]) => `${name} = ${text}`).join(", "));
   const region = DATA.regions[cell.region];
@@ -83,7 +83,7 @@ function choose(number, bringIntoView) {
   moveTo(number, false);
   show(number);
   fillPanel(number, cell);
-  say(`Cell ${number}: ${cell.counts}. Its poses are drawn.`);
+  say(`Cell ${number}: ${cell.counts}. ${DATA.drawable ? "Its poses are drawn." : "Its solutions are listed."}`);
   const top = panel.getBoundingClientRect().top;
   if (bringIntoView && (top < 0 || top > window.innerHeight - 120)) panel.scrollIntoView({ block: "start" });
 }
@@ -104,8 +104,19 @@ function fillPanel(number, cell) {
   if (!cell.equilibria.length) {
     const noPoses = cell.stack === null ? "Poses of springs with free lengths are not drawn here: ptmcad solve draws them."
       : "The result stores no poses for this cell.";
-    const why = DATA.drawable ? noPoses : "The poses of this mechanism cannot be drawn.";
+    const why = DATA.drawable ? noPoses : cell.counts.startsWith("0 ") ? "There is no solution here."
+      : "The result stores no solutions for this cell.";
     panel.append(html("p", "", why));
+    return;
+  }
+  if (!DATA.drawable) {
+    panel.append(html("p", "hint", "A system has no points, bars or springs to draw: its solutions in numbers, every digit "
+      + "certified to one unit of the last place."), springTable(cell));
+    if (DATA.landscape) {
+      const energy = drawLandscape(cell, () => {});
+      cells.redraw = energy.redraw;
+      panel.append(html("h3", "", "Energy over both angles"), energy.box, landscapeLegend());
+    }
     return;
   }
   const frame = frameOf(cell);
@@ -113,12 +124,12 @@ function fillPanel(number, cell) {
   const grid = html("div", "grid-of-poses");
   const pointed = (k, on) => {
     figures[k].classList.toggle("seen", on);
-    for (const mark of landscape.marks[k]) mark.classList.toggle("seen", on);
+    for (const mark of landscape ? landscape.marks[k] : []) mark.classList.toggle("seen", on);
   };
   for (const pose of cell.equilibria) {
     const figure = html("figure", `pose ${pose.kind}`);
     const caption = html("figcaption");
-    caption.append(html("b", "", pose.kind), html("br"), ...pose.angles.flatMap((text, n) => [`${MECHANISM.angles[n]} = ${text}`, html("br")]),
+    caption.append(html("b", "", pose.kind), html("br"), ...pose.unknowns.flatMap((text, n) => [`${MECHANISM.unknowns[n]} = ${text}`, html("br")]),
       `U = ${pose.energy}`);
     figure.append(drawPose(cell, pose, frame), caption);
     const k = figures.length;
@@ -127,15 +138,30 @@ function fillPanel(number, cell) {
     figures.push(figure);
     grid.append(figure);
   }
-  panel.append(grid, html("p", "hint", `Thick lines: the rods ${MECHANISM.rods.map(nameOf).join(" and ")}; zigzag: springs; `
-    + `arrows: the loads at ${MECHANISM.loaded.map((point) => MECHANISM.points[point]).join(" and ")}. `
-    + `${MECHANISM.points[MECHANISM.pinned]} is pinned, ${MECHANISM.points[MECHANISM.sliding]} sits on the slider. `
-    + "All poses are drawn to one scale; a strong frame means stable."));
-  const landscape = drawLandscape(cell, pointed);
-  cells.redraw = landscape.redraw;
+  panel.append(grid, html("p", "hint", legendOfParts()));
+  const landscape = DATA.landscape ? drawLandscape(cell, pointed) : null;
+  cells.redraw = landscape && landscape.redraw;
   const numbers = html("details");
   numbers.append(html("summary", "", "Poses in numbers (every digit certified to one unit of the last place)"), springTable(cell));
-  panel.append(html("h3", "", "Energy over both angles"), landscape.box, landscapeLegend(), numbers);
+  if (landscape) panel.append(html("h3", "", "Energy over both angles"), landscape.box, landscapeLegend());
+  else panel.append(html("p", "hint", "The energy is drawn here over two angles only; ptmcad solve --landscape draws it over any one or two unknowns."));
+  panel.append(numbers);
+}
+
+function legendOfParts() {
+  const points = (numbers) => numbers.map((point) => MECHANISM.points[point]).join(" and ");
+  const { rods, springs, loaded, pinned, sliding, rising } = MECHANISM;
+  const parts = [];
+  if (rods.length) parts.push(`thick lines: the rods ${rods.map(nameOf).join(" and ")}`);
+  if (springs.length) parts.push("zigzag: springs");
+  if (loaded.length) parts.push(`arrows: the loads at ${points(loaded)}`);
+  const held = [];
+  if (pinned.length) held.push(`${points(pinned)} ${pinned.length > 1 ? "are" : "is"} pinned`);
+  const slides = [...sliding, ...rising];
+  if (slides.length) held.push(`${points(slides)} ${slides.length > 1 ? "sit on sliders" : "sits on the slider"}`);
+  const text = parts.join("; ");
+  return `${text.charAt(0).toUpperCase()}${text.slice(1)}. ${held.length ? `${held.join(", ")}. ` : ""}`
+    + "All poses are drawn to one scale; a strong frame means stable.";
 }
 theme.changed.push(() => { if (cells.redraw) cells.redraw(); });
 

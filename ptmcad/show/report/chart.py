@@ -17,6 +17,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import Cell, Region, RegionMap
+from ptmcad.answer.words import counted
+from ptmcad.mechanism import Model
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.slivers import thin_regions, zooms
 from ptmcad.show.render.view import Shapes
@@ -184,22 +186,21 @@ def cell_text(result: RegionMap, number: int) -> str:
     """What a cell is, in words: its region, its counts, its sample."""
     cell = result.cells[number]
     at = ", ".join(f"{name} = {_shortened(cell.sample[name])}" for name in cell.sample.names)
-    return f"Cell {number} of region {cell.region}: {counts_text(cell)}; sample {at}"
+    return f"Cell {number} of region {cell.region}: {counts_text(cell, result.slice.model)}; sample {at}"
 
 
-def counts_text(part: Cell | Region) -> str:
+def counts_text(part: Cell | Region, model: Model) -> str:
     """The counts in words, as far as they are known."""
     stable, total = part.stable, part.total
     if part.admissible is not None:
         known = replace(part, admissible=None)
-        more = f", {counts_text(known)}" if (stable, total) != (None, None) else ""
+        more = f", {counts_text(known, model)}" if (stable, total) != (None, None) else ""
         return f"{part.admissible} admissible{more}"
     if stable is None and total is None:
         return "counts not known"
     if total is None:
         return f"{stable} stable"
-    noun = "equilibrium" if total == 1 else "equilibria"
-    return f"{total} {noun}" if stable is None else f"{stable} stable of {total} {noun}"
+    return counted(model, total) if stable is None else f"{stable} stable of {counted(model, total)}"
 
 
 def _region_labels(seen: Shapes) -> list[Label]:

@@ -6,14 +6,15 @@ equilibrium, as `ptmcad.verify` checks. Numbers that are not texts are for drawi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeVar
 
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution
+from ptmcad.answer.words import kind_name
 from ptmcad.errors import ConfigError, PoleError
-from ptmcad.mechanism import Kind, ptm
+from ptmcad.mechanism import Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.question.slice import merged
 from ptmcad.show.report.bounds import (
@@ -30,14 +31,6 @@ from ptmcad.show.report.bounds import (
 from ptmcad.show.report.potential import Potential, energy, potential_at
 from ptmcad.text.numerals import shortest_text, text_of
 
-KINDS = {"++": "stable", "+-": "saddle", "--": "maximum"}
-"""What the signs of the Hessian's eigenvalues say."""
-
-MECHANISM = ptm()
-UNKNOWNS = tuple(f"{function}_{angle}" for angle in MECHANISM.angles for function in ("cos", "sin"))
-NEEDED = MECHANISM.without_free_lengths
-"""Unknowns and parameters of the paper's mechanism, without which there is no drawing of it."""
-
 MAX_DRAWN = 10**100
 """Of parameters and coefficients that can be drawn: their products stay far within the range of floating point."""
 
@@ -50,7 +43,7 @@ Value = TypeVar("Value")
 def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     """All that the page shows and draws for a cell's sample: parameters, loads, potential and equilibria, as JSON data.
 
-    In a certified map, whose unknowns are angles, poses and potential are left out.
+    In a certified map, whose unknowns are angles, solutions and potential are left out.
 
     Raises
     ------
@@ -61,27 +54,42 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
         values = {n: e.evaluate(cell.sample[0], cell.sample[1]) for n, e in result.slice.parameters.items()}
     except PoleError as error:
         raise ConfigError(f"a parameter has no value at a sample: {error}") from error
-    polynomial = result.system.unknowns == UNKNOWNS  # springs with free lengths have square roots in their potential
-    potential = potential_at(result.system, values) if polynomial else {}
+    model = result.slice.model
+    # springs with free lengths have square roots in their potential
+    polynomial = result.system.unknowns == coordinates(model)
+    potential = potential_at(result.system, values) if polynomial and result.system.potential else None
     drawn = (
         polynomial
-        and all(name in values for name in NEEDED)
-        and all(abs(v) < MAX_DRAWN for v in (*values.values(), *potential.values()))
+        and all(name in values for name in model.without_free_lengths)
+        and all(abs(v) < MAX_DRAWN for v in (*values.values(), *(potential or {}).values()))
     )
+    loads = model.loads if drawn and isinstance(model, Mechanism) else ()
     return {
-        "parameters": [[n, both(v)] for n, v in distinct_parameters(values).items()],
-        "loads": [[float(value_at(load.x, values)), float(value_at(load.y, values))] for load in MECHANISM.loads]
-        if drawn
-        else [],
-        "base": float(values[MECHANISM.first(Kind.BASE)]) if drawn else 0.0,
-        "potential": [[*exponents, float(c)] for exponents, c in potential.items()] if drawn else [],
-        "equilibria": _equilibria(cell, values, potential) if drawn else [],
+        "parameters": [[n, both(v)] for n, v in distinct_parameters(values, model).items()],
+        "loads": [[float(value_at(load.x, values)), float(value_at(load.y, values))] for load in loads],
+        "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()] if drawn else [],
+        "equilibria": _solutions(model, cell, values, potential) if drawn else [],
     }
 
 
-def distinct_parameters(values: Mapping[str, Value]) -> dict[str, Value]:
+def coordinates(model: Model) -> tuple[str, ...]:
+    """The unknowns of a result's equations: cosine and sine of each angle, then those on the line."""
+    return (*(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin")), *model.reals)
+
+
+def kind_of(solution: Solution, model: Model) -> str:
+    """What the signs of the Hessian's eigenvalues say, or those of the conditions for stability."""
+    if isinstance(model, System) and model.potential is None:
+        return "solution" if not model.tells_stability else "unstable" if solution.signs.strip("+") else "stable"
+    if set(solution.signs) - set("+-") or len(solution.signs) != len(model.unknowns):
+        return "degenerate"
+    negative = solution.signs.count("-")
+    return "stable" if negative == 0 else kind_name(negative, len(model.unknowns))
+
+
+def distinct_parameters(values: Mapping[str, Value], model: Model) -> dict[str, Value]:
     """The parameters worth telling: one k when all springs have it."""
-    return merged({name: value for name, value in values.items() if name not in MECHANISM.shorthands}, MECHANISM)
+    return merged({name: value for name, value in values.items() if name not in model.shorthands}, model)
 
 
 def _plain(value: Fraction) -> str:
@@ -100,40 +108,65 @@ def both(value: Fraction) -> str:
     return f"{text_of(value)} {_plain(value)}".rstrip()
 
 
-def _equilibria(cell: Cell, values: Mapping[str, Fraction], potential: Potential) -> list[dict[str, Any]]:
-    boxes = [_box(s) for s in cell.solutions]
-    energies = [energy(potential, box) for box in boxes]
-    nodes = [_nodes(box, values) for box in boxes]
-    springs = MECHANISM.springs
+def _solutions(
+    model: Model, cell: Cell, values: Mapping[str, Fraction], potential: Potential | None
+) -> list[dict[str, Any]]:
+    """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last place."""
+    boxes = [_box(s, model) for s in cell.solutions]
+    energies = [None if potential is None else energy(potential, box) for box in boxes]
+    known = [bounds for bounds in energies if bounds is not None]
+    energy_place = last_place(known, _DIGITS)
+    turns = 2 * len(model.angles)
+    reals = [box[turns:] for box in boxes]
+    real_place = last_place([x for row in reals for x in row], _DIGITS)
+    parts = _parts(model, boxes, values) if isinstance(model, Mechanism) else [{} for _ in boxes]
+    kinds = [kind_of(solution, model) for solution in cell.solutions]
+    order = {"stable": 0, "degenerate": len(model.unknowns) + 1}
+
+    def rank(k: int) -> tuple[int, Fraction]:
+        low, high = energies[k] or (Fraction(0), Fraction(0))
+        return order.get(kinds[k], cell.solutions[k].signs.count("-")), low + high
+
+    found = []
+    for k in sorted(range(len(boxes)), key=rank):
+        box, at = boxes[k], energies[k]
+        angles = [degrees(box[n], box[n + 1]) for n in range(0, turns, 2)]
+        unknowns = ["not determined" if a is None else _angle_text(a) for a in angles]
+        entry = {
+            "kind": kinds[k],
+            "unknowns": unknowns + [decimal_text(x, real_place) for x in reals[k]],
+            "at": [float(sum(c) / 2) for c in box],
+            "energy": "" if at is None else decimal_text(at, energy_place),
+            "level": 0.0 if at is None else float(sum(at) / 2),
+        }
+        found.append(entry | parts[k])
+    return found
+
+
+def _parts(
+    mechanism: Mechanism, boxes: Sequence[tuple[Bounds, ...]], values: Mapping[str, Fraction]
+) -> list[dict[str, Any]]:
+    """Of each equilibrium the points, and the springs' lengths and forces."""
+    nodes = [_nodes(mechanism, box, values) for box in boxes]
+    springs = mechanism.springs
     lengths = [[square_root(_squared_distance(where[s.start], where[s.end])) for s in springs] for where in nodes]
     stiffnesses = [exactly(value_at(spring.stiffness, values)) for spring in springs]
     forces = [[times(k, length) for k, length in zip(stiffnesses, row, strict=True)] for row in lengths]
-    energy_place = last_place(energies, _DIGITS)
-    coordinates = [x for where in nodes for place in where.values() for x in place]
-    length_place = last_place([length for row in lengths for length in row] + coordinates, _DIGITS)
+    of_points = [x for where in nodes for place in where.values() for x in place]
+    length_place = last_place([length for row in lengths for length in row] + of_points, _DIGITS)
     force_place = last_place([f for row in forces for f in row], _DIGITS)
-    order = {"++": 0, "+-": 1, "--": 2}
-    found = []
-    for k in sorted(range(len(boxes)), key=lambda k: (order.get(cell.solutions[k].signs, 3), sum(energies[k]))):
-        solution, box = cell.solutions[k], boxes[k]
-        angles = [degrees(box[0], box[1]), degrees(box[2], box[3])]
-        found.append(
-            {
-                "kind": KINDS.get(solution.signs, "degenerate"),
-                "angles": ["not determined" if a is None else _angle_text(a) for a in angles],
-                "at": [float(sum(c) / 2) for c in box],
-                "energy": decimal_text(energies[k], energy_place),
-                "level": float(sum(energies[k]) / 2),
-                "nodes": [[float(sum(x) / 2) for x in where] for where in nodes[k].values()],
-                "places": [
-                    f"({decimal_text(nodes[k][n][0], length_place)}, {decimal_text(nodes[k][n][1], length_place)})"
-                    for n in MECHANISM.moving
-                ],
-                "lengths": [decimal_text(length, length_place) for length in lengths[k]],
-                "forces": [decimal_text(force, force_place) for force in forces[k]],
-            }
-        )
-    return found
+    return [
+        {
+            "nodes": [[float(sum(x) / 2) for x in place] for place in where.values()],
+            "places": [
+                f"({decimal_text(where[n][0], length_place)}, {decimal_text(where[n][1], length_place)})"
+                for n in mechanism.moving
+            ],
+            "lengths": [decimal_text(length, length_place) for length in long],
+            "forces": [decimal_text(force, force_place) for force in strong],
+        }
+        for where, long, strong in zip(nodes, lengths, forces, strict=True)
+    ]
 
 
 def _angle_text(angle: Bounds) -> str:
@@ -141,16 +174,24 @@ def _angle_text(angle: Bounds) -> str:
     return f"{text.lstrip('−') if text in ('−180.0000', '−0.0000') else text}°"
 
 
-def _box(solution: Solution) -> tuple[Bounds, ...]:
-    if len(solution.center) != len(UNKNOWNS) or not 0 <= solution.radius < 1 or max(map(abs, solution.center)) > 2:
-        raise ConfigError("a stored equilibrium is no box around cosines and sines; check it with ptmcad verify")
+def _box(solution: Solution, model: Model) -> tuple[Bounds, ...]:
+    turns = 2 * len(model.angles)
+    size = turns + len(model.reals)
+    if (
+        len(solution.center) != size
+        or not 0 <= solution.radius < (1 if turns else MAX_DRAWN)
+        or any(abs(x) > (2 if n < turns else MAX_DRAWN) for n, x in enumerate(solution.center))
+    ):
+        raise ConfigError(
+            "a stored solution is no box around cosines, sines and unknowns on the line; check it with ptmcad verify"
+        )
     return tuple((c - solution.radius, c + solution.radius) for c in solution.center)
 
 
-def _nodes(box: tuple[Bounds, ...], values: Mapping[str, Fraction]) -> dict[str, Point]:
+def _nodes(mechanism: Mechanism, box: tuple[Bounds, ...], values: Mapping[str, Fraction]) -> dict[str, Point]:
     """Bounds of the coordinates of all points."""
-    within = _InBounds(box, values)
-    return {name: (evaluate(x, within).bounds, evaluate(y, within).bounds) for name, (x, y) in MECHANISM.points.items()}
+    within = _InBounds(mechanism, box, values)
+    return {name: (evaluate(x, within).bounds, evaluate(y, within).bounds) for name, (x, y) in mechanism.points.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,20 +213,20 @@ class _Bounded:
 class _InBounds:
     """Values within bounds, at a box of cosines and sines."""
 
-    def __init__(self, box: tuple[Bounds, ...], values: Mapping[str, Fraction]):
-        self.box, self.values = box, values
+    def __init__(self, mechanism: Mechanism, box: tuple[Bounds, ...], values: Mapping[str, Fraction]):
+        self.box, self.values = dict(zip(coordinates(mechanism), box, strict=True)), values
 
     def constant(self, value: Fraction) -> _Bounded:
         return _Bounded(exactly(value))
 
     def parameter(self, name: str) -> _Bounded:
-        return _Bounded(exactly(self.values[name]))
+        return _Bounded(self.box[name] if name in self.box else exactly(self.values[name]))
 
     def cos(self, angle: str) -> _Bounded:
-        return _Bounded(self.box[2 * MECHANISM.angles.index(angle)])
+        return _Bounded(self.box[f"cos_{angle}"])
 
     def sin(self, angle: str) -> _Bounded:
-        return _Bounded(self.box[2 * MECHANISM.angles.index(angle) + 1])
+        return _Bounded(self.box[f"sin_{angle}"])
 
 
 def _squared_distance(p: Point, q: Point) -> Bounds:

@@ -103,8 +103,8 @@ function drawLandscape(cell, pointed) {
     plot.append(svg("text", { class: "number x", x: at, y: side + 12, dy: ".8em" }, text));
     plot.append(svg("text", { class: "number y", x: -10, y: side - at, dy: ".36em" }, text));
   }
-  plot.append(svg("text", { class: "name", x: side / 2, y: side + bottom - 8 }, "θ₁"));
-  plot.append(svg("text", { class: "name", x: 20 - left, y: side / 2 }, "θ₂"));
+  plot.append(svg("text", { class: "name", x: side / 2, y: side + bottom - 8 }, MECHANISM.unknowns[0]));
+  plot.append(svg("text", { class: "name", x: 20 - left, y: side / 2 }, MECHANISM.unknowns[1]));
   plot.append(svg("rect", { class: "frame", width: side, height: side }));
   // an equilibrium at the picture's edge is also at the opposite edge: the angles go round
   const marks = cell.equilibria.map((pose, number) => {

@@ -1,6 +1,6 @@
 // A pose as a drawing: supports, slider, rods, springs, loads. Lengths are in the mechanism's unit, y upwards.
 
-// What is drawn, by the numbers of points: { points, rods, springs, loaded, moving, angles, pinned, sliding }.
+// What is drawn, by the numbers of points: { unknowns, points, rods, springs, loaded, moving, pinned, sliding, rising }.
 const MECHANISM = DATA.mechanism;
 const nameOf = (ends) => ends.map((point) => MECHANISM.points[point]).join("");
 
@@ -11,7 +11,7 @@ function loadVectors(cell, size) {
 
 // One scale and one horizontal range for all poses of a cell, so that they can be compared: [left, width, size].
 function frameOf(cell) {
-  let [left, right, low, high] = [0, 0, 0, 0];
+  let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
   for (const pose of cell.equilibria) {
     for (const [x, y] of pose.nodes) {
       [left, right] = [Math.min(left, x), Math.max(right, x)];
@@ -32,7 +32,8 @@ function frameOf(cell) {
 // The vertical range of one pose, with its supports and loads: [bottom, height].
 function verticalRange(cell, pose, size) {
   const loads = loadVectors(cell, size);
-  const heights = [-0.1 * size, ...pose.nodes.map((node) => node[1]), ...loads.map((f, k) => pose.nodes[MECHANISM.loaded[k]][1] + f[1])];
+  const feet = [...MECHANISM.pinned, ...MECHANISM.sliding].map((point) => pose.nodes[point][1] - 0.1 * size);
+  const heights = [...feet, ...pose.nodes.map((node) => node[1]), ...loads.map((f, k) => pose.nodes[MECHANISM.loaded[k]][1] + f[1])];
   const [low, high] = [Math.min(...heights), Math.max(...heights)];
   const pad = 0.06 * size;
   return [low - pad, high - low + 2 * pad];
@@ -60,23 +61,37 @@ function drawPose(cell, pose, frame) {
   const path = (points) => "M" + points.map((p) => at(p).map((c) => c.toFixed(2)).join(" ")).join("L");
   const picture = svg("svg", {
     viewBox: `0 0 ${(width * unit).toFixed(1)} ${(height * unit).toFixed(1)}`, role: "img",
-    "aria-label": `${pose.kind} pose, angles ${pose.angles.join(" and ")}`,
+    "aria-label": `${pose.kind} pose, ${pose.unknowns.map((text, n) => `${MECHANISM.unknowns[n]} = ${text}`).join(", ")}`,
   });
   const nodes = pose.nodes;
-  const slider = nodes[MECHANISM.sliding];
   const right = left + width;
   const s = 0.045 * size;
   const line = (points, className) => picture.append(svg("path", { class: className, d: path(points) }));
-  line([[left + 0.02 * size, slider[1] - 1.5 * s], [right - 0.02 * size, slider[1] - 1.5 * s]], "rail");
-  line([[0, 0], [-s, -1.5 * s], [s, -1.5 * s], [0, 0]], "ground");
-  for (let k = -1; k <= 1; k += 1) line([[k * s, -1.5 * s], [(k - 0.7) * s, -2.2 * s]], "ground");
-  const [bx, by] = at([slider[0] - 1.4 * s, slider[1] + 0.8 * s]);
-  picture.append(svg("rect", {
-    class: "slider", x: bx.toFixed(2), y: by.toFixed(2), width: (2.8 * s * unit).toFixed(2), height: (1.6 * s * unit).toFixed(2),
-  }));
-  for (const k of [-0.8, 0.8]) {
-    const [cx, cy] = at([slider[0] + k * s, slider[1] - 1.15 * s]);
+  for (const y of new Set(MECHANISM.sliding.map((point) => nodes[point][1] - 1.5 * s))) {
+    line([[left + 0.02 * size, y], [right - 0.02 * size, y]], "rail");
+  }
+  for (const [x, y] of MECHANISM.pinned.map((point) => nodes[point])) {
+    line([[x, y], [x - s, y - 1.5 * s], [x + s, y - 1.5 * s], [x, y]], "ground");
+    for (let k = -1; k <= 1; k += 1) line([[x + k * s, y - 1.5 * s], [x + (k - 0.7) * s, y - 2.2 * s]], "ground");
+  }
+  const block = (x, y, wide, tall) => {
+    const [bx, by] = at([x - wide * s / 2, y + tall * s / 2]);
+    picture.append(svg("rect", {
+      class: "slider", x: bx.toFixed(2), y: by.toFixed(2), width: (wide * s * unit).toFixed(2), height: (tall * s * unit).toFixed(2),
+    }));
+  };
+  const wheel = (x, y) => {
+    const [cx, cy] = at([x, y]);
     picture.append(svg("circle", { class: "slider", cx: cx.toFixed(2), cy: cy.toFixed(2), r: (0.35 * s * unit).toFixed(2) }));
+  };
+  for (const [x, y] of MECHANISM.sliding.map((point) => nodes[point])) {
+    block(x, y, 2.8, 1.6);
+    for (const k of [-0.8, 0.8]) wheel(x + k * s, y - 1.15 * s);
+  }
+  for (const [x, y] of MECHANISM.rising.map((point) => nodes[point])) {
+    line([[x - 1.5 * s, y - 2.4 * s], [x - 1.5 * s, y + 2.4 * s]], "rail");
+    block(x, y, 1.6, 2.8);
+    for (const k of [-0.8, 0.8]) wheel(x - 1.15 * s, y + k * s);
   }
   for (const [a, b] of MECHANISM.springs) line(zigzag(nodes[a], nodes[b], 0.03 * size), "spring");
   for (const [a, b] of MECHANISM.rods) line([nodes[a], nodes[b]], "bar");
@@ -103,10 +118,11 @@ function springTable(cell) {
   const box = html("div", "scroll");
   box.tabIndex = 0;
   box.setAttribute("role", "region");
-  box.setAttribute("aria-label", "Poses in numbers");
+  box.setAttribute("aria-label", DATA.drawable ? "Poses in numbers" : "Solutions in numbers");
   const table = html("table", "stacked");
   const head = table.createTHead().insertRow();
-  const columns = ["pose", ...MECHANISM.angles, "energy", ...MECHANISM.moving.map((point) => MECHANISM.points[point])];
+  const energy = cell.equilibria.some((pose) => pose.energy) ? ["energy"] : [];
+  const columns = [DATA.drawable ? "pose" : "solution", ...MECHANISM.unknowns, ...energy, ...MECHANISM.moving.map((point) => MECHANISM.points[point])];
   for (const name of MECHANISM.springs.map(nameOf)) columns.push(`length ${name}`, `force ${name}`);
   for (const text of columns) {
     const th = html("th", "", text);
@@ -116,8 +132,8 @@ function springTable(cell) {
   const body = table.createTBody();
   for (const pose of cell.equilibria) {
     const row = body.insertRow();
-    const entries = [pose.kind, ...pose.angles, pose.energy, ...pose.places];
-    pose.lengths.forEach((length, k) => entries.push(length, pose.forces[k]));
+    const entries = [pose.kind, ...pose.unknowns, ...(energy.length ? [pose.energy] : []), ...(pose.places || [])];
+    (pose.lengths || []).forEach((length, k) => entries.push(length, pose.forces[k]));
     entries.forEach((text, k) => {
       const entry = row.insertCell();
       entry.dataset.label = columns[k];

@@ -15,8 +15,9 @@ from string import Template
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.words import index_words
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Support
+from ptmcad.mechanism import Mechanism, Model, Support
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.shapes import shapes
@@ -24,7 +25,7 @@ from ptmcad.show.render.view import Shapes
 from ptmcad.show.report import sections
 from ptmcad.show.report.chart import Chart, chart, counts_text, pattern_defs
 from ptmcad.show.report.consistency import check_numbers
-from ptmcad.show.report.equilibria import MECHANISM, at_sample, both
+from ptmcad.show.report.equilibria import at_sample, both
 from ptmcad.show.report.error_curve import ErrorCurve, error_section
 from ptmcad.show.report.formulas import curves
 from ptmcad.show.report.frame import SIDE
@@ -57,6 +58,7 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
         policy=escape(_policy(style, script)),
         title=escape(result.slice.heading),
         name=escape(result.slice.name),
+        what="its poses and its energy" if isinstance(result.slice.model, Mechanism) else "its solutions",
         banner=sections.banner(result),
         question=sections.question(result),
         patterns=pattern_defs([fill_of(r, result.slice.count) for r in result.regions]),
@@ -124,31 +126,41 @@ def harmless(data: object) -> str:
     return text
 
 
-def _drawing() -> dict[str, Any]:
-    """What the script draws of the mechanism, by the numbers of its points."""
-    number = {name: n for n, name in enumerate(MECHANISM.points)}
-    return {
-        "points": [symbol(name) for name in MECHANISM.points],
-        "rods": [[number[a], number[b]] for a, b in MECHANISM.bars],
-        "springs": [[number[spring.start], number[spring.end]] for spring in MECHANISM.springs],
-        "loaded": [number[load.point] for load in MECHANISM.loads],
-        "moving": [number[name] for name in MECHANISM.moving],
-        "angles": [symbol(name) for name in MECHANISM.angles],
-        "pinned": number[MECHANISM.held(Support.PIN)],
-        "sliding": number[MECHANISM.held(Support.SLIDER_X)],
+def _drawing(model: Model) -> dict[str, Any]:
+    """What the script draws of a mechanism, by the numbers of its points; of a system only the unknowns' names."""
+    unknowns = {"unknowns": [symbol(name) for name in (*model.angles, *model.reals)]}
+    if not isinstance(model, Mechanism):
+        empty = ("points", "rods", "springs", "loaded", "moving", "pinned", "sliding", "rising")
+        return unknowns | {name: [] for name in empty}
+    number = {name: n for n, name in enumerate(model.points)}
+
+    def held(support: Support) -> list[int]:
+        return [number[name] for name, kind in model.supports.items() if kind is support]
+
+    return unknowns | {
+        "points": [symbol(name) for name in model.points],
+        "rods": [[number[a], number[b]] for a, b in model.bars],
+        "springs": [[number[spring.start], number[spring.end]] for spring in model.springs],
+        "loaded": [number[load.point] for load in model.loads],
+        "moving": [number[name] for name in model.moving],
+        "pinned": held(Support.PIN),
+        "sliding": held(Support.SLIDER_X),
+        "rising": held(Support.SLIDER_Y),
     }
 
 
 def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
     """What the script shows and draws."""
-    names = result.slice.axis_names
+    names, model = result.slice.axis_names, result.slice.model
     return {
         "side": SIDE,
         "base": result.base,
         "axes": [symbol(name) for name in names],
-        "drawable": result.slice.mechanism == MECHANISM.name,
-        "mechanism": _drawing(),
-        "regions": [{"area": certified_digits(r.area), "counts": counts_text(r)} for r in result.regions],
+        "drawable": isinstance(model, Mechanism),
+        "landscape": len(model.angles) == len(model.unknowns) == 2 and bool(result.system.potential),
+        "index": index_words(len(model.unknowns) + 1),
+        "mechanism": _drawing(model),
+        "regions": [{"area": certified_digits(r.area), "counts": counts_text(r, model)} for r in result.regions],
         "stacks": [list(s.cells) for s in result.stacks],
         "cells": [
             {
@@ -156,7 +168,7 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
                 "stack": cell.stack,
                 "level": cell.level,
                 "region": cell.region,
-                "counts": counts_text(cell),
+                "counts": counts_text(cell, model),
                 "index": list(cell.index) if cell.index else None,
                 "sample": [[name, both(cell.sample[name]), text_of(cell.sample[name])] for name in names],
                 **at_sample(result, cell),

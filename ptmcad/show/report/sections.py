@@ -9,6 +9,8 @@ from collections.abc import Iterable, Iterator
 from html import escape
 
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.words import index_words, noun
+from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Count
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.legend import entries, percent
@@ -20,11 +22,10 @@ from ptmcad.show.table import certified_digits
 from ptmcad.text.numerals import decimal, text_of
 
 _COUNTED = {
-    Count.STABLE: "regions are distinguished by the number of stable equilibria",
-    Count.TOTAL: "regions are distinguished by the number of equilibria",
-    Count.INDEX: "regions are distinguished by the numbers of minima, saddles and maxima",
-    Count.ADMISSIBLE: "regions are distinguished by the number of stable equilibria with every spring longer than its "
-    "free length",
+    Count.STABLE: "the number of stable {noun}",
+    Count.TOTAL: "the number of {noun}",
+    Count.INDEX: "the numbers of {index}",
+    Count.ADMISSIBLE: "the number of stable equilibria with every spring longer than its free length",
 }
 _STATUS = {
     Status.EXACT: "Exact: every point of the window off the boundary curves is in a region, and the counts are proved.",
@@ -89,15 +90,19 @@ def question(result: RegionMap) -> str:
     slice = result.slice
     axes = "; ".join(f"{a.name} from {both(a.low)} to {both(a.high)}" for a in slice.axes)
     names = slice.axis_names
-    values = [(n, e.to_text(names)) for n, e in distinct_parameters(slice.parameters).items() if n not in names]
+    values = [
+        (n, e.to_text(names)) for n, e in distinct_parameters(slice.parameters, slice.model).items() if n not in names
+    ]
     shown = ", ".join(f"{n} = {v}" for n, v in values if v != "0")
     zero = ", ".join(n for n, v in values if v == "0")
     mechanism = "the planar tensegrity mechanism of Wenger and Chablat" if slice.mechanism == "ptm" else slice.mechanism
+    index = ", ".join(index_words(len(slice.model.unknowns) + 1).split("-"))
+    counted_by = _COUNTED[slice.count].format(noun=noun(slice.model), index=" and ".join(index.rsplit(", ", 1)))
     items = [
-        ("Mechanism", mechanism),
+        ("Mechanism" if isinstance(slice.model, Mechanism) else "System", mechanism),
         ("Axes", axes),
-        ("Parameters", shown + (f"{'; ' if shown else ''}zero: {zero}" if zero else "")),
-        ("Count", _COUNTED[slice.count]),
+        ("Parameters", shown + (f"{'; ' if shown else ''}zero: {zero}" if zero else "") or "none"),
+        ("Count", f"regions are distinguished by {counted_by}"),
         ("Answer", answer(result)),
     ]
     return "<dl>" + "".join(f"<dt>{escape(a)}</dt><dd>{escape(b)}</dd>" for a, b in items) + "</dl>"
@@ -160,7 +165,7 @@ def regions(result: RegionMap) -> str:
         rows.append(
             (
                 f"{swatch(fill_of(region, result.slice.count))} {number}",
-                escape(counts_text(region)) + (f" ({escape(index)})" if index else ""),
+                escape(counts_text(region, result.slice.model)) + (f" ({escape(index)})" if index else ""),
                 f"{middle}<br><small>{bounds}</small>",
                 sample,
                 f'<span class="chips">{buttons}</span>',
@@ -168,7 +173,8 @@ def regions(result: RegionMap) -> str:
         )
     if not rows:
         return "<p>No regions are known yet.</p>"
-    note = "" if all(r.index is None for r in result.regions) else "<p>In brackets: minima-saddles-maxima.</p>"
+    words = index_words(len(result.slice.model.unknowns) + 1)
+    note = "" if all(r.index is None for r in result.regions) else f"<p>In brackets: {words}.</p>"
     return table(("region", "count", "area", "sample", "cells"), rows, "Regions", stacked=True) + note
 
 

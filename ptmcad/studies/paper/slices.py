@@ -21,7 +21,8 @@ from ptmcad.algebra.polynomials import (
     univariate,
 )
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, refine, simplest_between, squarefree_part
-from ptmcad.answer.regionmap import Component, MorseIndex, RegionMap, Solution
+from ptmcad.answer.counts import MorseIndex
+from ptmcad.answer.regionmap import Component, RegionMap, Solution
 from ptmcad.ask.classification import classify
 from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models import system_of

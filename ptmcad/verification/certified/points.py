@@ -13,7 +13,8 @@ from fractions import Fraction
 
 from flint import arb, ctx
 
-from ptmcad.answer.regionmap import Cell, MorseIndex, Solution
+from ptmcad.answer.counts import MorseIndex
+from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.mechanism import Kind
 from ptmcad.question.slice import Count
 from ptmcad.text.numerals import text_of

@@ -1,0 +1,42 @@
+"""How many solutions there are, in all and by their kinds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from ptmcad.mechanism import Mechanism, Model
+
+MorseIndex = tuple[int, ...]
+"""Numbers of critical points by their number of negative eigenvalues: of two unknowns minima, saddles and maxima."""
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """Numbers of the solutions that count.
+
+    Attributes
+    ----------
+    stable : None where nothing says what a stable solution is.
+    index : numbers of solutions by the number of negative eigenvalues of the Hessian; None without a potential. On a
+        torus their alternating sum is zero.
+    """
+
+    total: int
+    stable: int | None
+    index: MorseIndex | None
+
+    @property
+    def working(self) -> int:
+        """The number by which an operation range is found: of stable solutions, or of all where none is told stable."""
+        return self.total if self.stable is None else self.stable
+
+
+def operation_number(model: Model, found: Iterable[Counts]) -> int:
+    """The number of stable solutions that there are in an operation range: the greatest one that occurs.
+
+    A mechanism needs two of them at least: one that works in one stable pose everywhere has no range to be in. Those of
+    the paper's mechanism are never more, so that its ranges are where two are stable.
+    """
+    least = 2 if isinstance(model, Mechanism) else 1
+    return max((least, *(counts.working for counts in found)))

@@ -1,0 +1,37 @@
+"""What solutions are called: equilibria of a mechanism and solutions of a system, minima, saddles and maxima."""
+
+from __future__ import annotations
+
+from ptmcad.mechanism import Mechanism, Model
+
+
+def noun(model: Model, number: int = 2) -> str:
+    """Equilibrium or equilibria of a mechanism, solution or solutions of another system.
+
+    >>> from ptmcad.mechanism import ptm
+    >>> noun(ptm()), noun(ptm(), 1)
+    ('equilibria', 'equilibrium')
+    """
+    if isinstance(model, Mechanism):
+        return "equilibrium" if number == 1 else "equilibria"
+    return "solution" if number == 1 else "solutions"
+
+
+def counted(model: Model, number: int) -> str:
+    """A number with the noun."""
+    return f"{number} {noun(model, number)}"
+
+
+def kind_name(negative: int, unknowns: int) -> str:
+    """A critical point by the number of negative eigenvalues of its Hessian."""
+    return "minimum" if negative == 0 else "maximum" if negative == unknowns else "saddle"
+
+
+def index_words(entries: int) -> str:
+    """What the entries of an index stand for.
+
+    >>> index_words(3), index_words(4)
+    ('minima-saddles-maxima', 'minima-saddles of index 1-saddles of index 2-maxima')
+    """
+    saddles = ["saddles"] if entries == 3 else [f"saddles of index {k}" for k in range(1, entries - 1)]
+    return "-".join(["minima", *saddles, "maxima"])

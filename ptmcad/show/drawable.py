@@ -1,0 +1,25 @@
+"""What of a model's solutions can be drawn, and why other things cannot."""
+
+from __future__ import annotations
+
+from ptmcad.mechanism import Model, System
+
+
+def no_drawing(model: Model) -> str:
+    """Why there is no picture of the solutions of a system that is no mechanism."""
+    return f"solutions of a {_named(model)} cannot be drawn, as it has no points, bars or springs"
+
+
+def no_landscape(model: Model) -> str:
+    """Why there is no picture of the energy; empty where there is one."""
+    if isinstance(model, System) and model.potential is None:
+        return f"the {_named(model)} has equations and no potential: there is no energy to be drawn"
+    if len(model.unknowns) > 2:
+        return f"an energy can be drawn over one unknown or two, and the {_named(model)} has {len(model.unknowns)}"
+    return ""
+
+
+def _named(model: Model) -> str:
+    """A system or mechanism, with its name if it has one of its own."""
+    kind = "system" if isinstance(model, System) else "mechanism"
+    return kind if model.name == kind else f"{kind} {model.name}"

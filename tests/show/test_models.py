@@ -1,0 +1,133 @@
+"""Pictures, pages and words of mechanisms that are not built in, and of systems."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import ptmcad
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.ask.solving import poses_at
+from ptmcad.cli.solve import command as solve_command
+from ptmcad.errors import ConfigError
+from ptmcad.question.config import point_from_mapping
+from ptmcad.show.render.landscape import draw_landscape, energy_of
+from ptmcad.show.render.poses import draw_poses
+from ptmcad.show.report import page
+from ptmcad.show.table import table
+
+PENDULUM: dict[str, Any] = {
+    "name": "pendulum",
+    "mechanism": {
+        "name": "pendulum",
+        "parameters": {
+            "L": {"kind": "length", "default": 1},
+            "a": {"kind": "base", "default": 1},
+            "k": {"kind": "stiffness", "default": 1},
+            "W": {"kind": "force", "default": 0},
+        },
+        "unknowns": {"th": "angle", "s": "length"},
+        "points": {"O": [0, 0], "A": [0, "a"], "B": ["s", 0], "P": ["L*sin(th)", "L*cos(th)"]},
+        "bars": [["O", "P"]],
+        "supports": {"O": "pin", "B": "slider x", "A": "slider y"},
+        "springs": [
+            {"between": ["A", "P"], "k": "k"},
+            {"between": ["B", "P"], "k": "k"},
+            {"between": ["B", "O"], "k": 2},
+        ],
+        "loads": {"P": ["1/10", "W"]},
+    },
+    "axes": {"a": [0, 3], "W": [-4, 4]},
+}
+
+
+def system(count: str = "total", **asked: Any) -> dict[str, Any]:
+    return {"name": "s", "system": asked, "axes": {"a": [-2, 2], "b": [-2, 2]}, "count": count}
+
+
+CUSP = system(unknowns={"x": "real"}, equations=["x^3 - a*x + b"])
+VALLEYS = system("index", unknowns={"x": "real"}, potential="x^4/4 - a*x^2/2 + b*x")
+
+
+def solved(record: dict[str, Any], **at: str) -> Any:
+    model = ptmcad.slice_from_mapping(record).model
+    return poses_at(model, point_from_mapping(at, model), 10)
+
+
+def test_a_mechanism_is_drawn_with_its_own_parts() -> None:
+    figure = draw_poses(solved(PENDULUM, a="1", W="1/2"))
+    gids = {artist.get_gid() for artist in figure.findobj() if artist.get_gid()}
+    assert {"pose-1-bar-OP", "pose-1-node-B", "pose-1-base-2", "pose-1-spring-3", "pose-1-load-1/10"} <= gids
+    texts = [text.get_text() for text in figure.findobj(match=lambda artist: hasattr(artist, "get_text"))]
+    assert any(re.fullmatch(r"θ = .*°, s = .*", text) for text in texts)
+    assert "vertical slider, at A" in texts and "springs AP, BP, BO;" in texts
+
+
+def test_an_energy_over_an_angle_and_a_length() -> None:
+    found = solved(PENDULUM, a="1", W="1/2")
+    energy = energy_of(found.model, found.parameters)
+    for pose in found.equilibria:
+        value = float(energy(*(np.array(float(x)) for x in (*pose.angles, *pose.reals))))
+        assert value == pytest.approx(energy.scaled(pose.energy.center), abs=1e-9)
+    axes = draw_landscape(found).axes[0]
+    assert axes.get_xlabel() == "θ (degrees)" and axes.get_ylabel() == "s"
+    low, high = axes.get_ylim()
+    assert all(low < float(pose.reals[0]) < high for pose in found.equilibria)
+
+
+def test_an_energy_over_one_unknown_is_a_curve() -> None:
+    figure = draw_landscape(solved(VALLEYS, a="1", b="1/9"))
+    gids = {artist.get_gid() for artist in figure.findobj() if artist.get_gid()}
+    assert {"landscape", "equilibrium-1", "equilibrium-2", "equilibrium-3"} <= gids
+    assert figure.axes[0].get_xlabel() == "x"
+
+
+def test_what_cannot_be_drawn_is_refused(tmp_path: Path) -> None:
+    found = solved(CUSP, a="1", b="0")
+    with pytest.raises(ConfigError, match="no points, bars or springs"):
+        draw_poses(found)
+    with pytest.raises(ConfigError, match="no energy"):
+        draw_landscape(found)
+    (tmp_path / "cusp.json").write_text(json.dumps(CUSP), encoding="utf-8")
+    asked = [str(tmp_path / "cusp.json"), "--at", "a=1,b=0", "--out", str(tmp_path), "--format"]
+    with pytest.raises(ConfigError, match=r"--format: .* ask for table or json"):
+        CliRunner().invoke(solve_command, [*asked, "png"], catch_exceptions=False)
+    assert not list(tmp_path.glob("*.png"))
+    assert CliRunner().invoke(solve_command, [*asked, "table,json"], catch_exceptions=False).exit_code == 0
+
+
+def data_of(result: RegionMap) -> dict[str, Any]:
+    match = re.search(r'id="data">(.*?)</script>', page(result, timings=False))
+    assert match is not None
+    found: dict[str, Any] = json.loads(match[1])
+    return found
+
+
+def test_maps_and_pages_of_systems_speak_of_solutions() -> None:
+    result = ptmcad.classify(ptmcad.slice_from_mapping(CUSP))
+    assert "1 solution: 1 region; 3 solutions: 1 region" in table(result)
+    data = data_of(result)
+    assert not data["drawable"] and not data["landscape"] and data["mechanism"]["unknowns"] == ["x"]
+    for cell in data["cells"]:
+        a, b = (eval(text.replace("/", "*1.0/")) for *_, text in cell["sample"])
+        for solution in cell["equilibria"]:
+            (x,) = solution["at"]
+            assert solution["kind"] == "solution" and solution["energy"] == "" and abs(x**3 - a * x + b) < 1e-6
+    assert "(minima, maxima)" in table(ptmcad.classify(ptmcad.slice_from_mapping(VALLEYS)))
+
+
+def test_the_page_draws_any_mechanism() -> None:
+    data = data_of(ptmcad.classify(ptmcad.slice_from_mapping(PENDULUM)))
+    assert data["drawable"] and not data["landscape"]
+    drawn = data["mechanism"]
+    assert (drawn["pinned"], drawn["sliding"], drawn["rising"]) == ([0], [2], [1])
+    for cell in data["cells"]:
+        for pose in cell["equilibria"]:
+            cosine, sine, s = pose["at"]
+            assert pose["nodes"][2] == pytest.approx([s, 0]) and pose["nodes"][3] == pytest.approx([sine, cosine])
