@@ -56,10 +56,10 @@ def test_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest
     assert values == 3
 
 
-def test_other_mechanisms_are_not_solved_for_poses(
+def test_the_seat_is_solved_for_its_poses(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("seat.yaml").write_text(blocks("yaml")[0], encoding="utf-8")
-    assert run(["solve", "seat.yaml", "--at", "L=1,W=1"]) == 2
-    assert "poses are solved of the mechanism ptm only" in capsys.readouterr().err
+    assert run(["solve", "seat.yaml", "--at", "L=1,W=1"]) == 0
+    assert "4 equilibria: 1 stable, 2 saddles, 1 maximum, exact" in capsys.readouterr().out

@@ -90,7 +90,7 @@ def test_what_is_wrong_is_said() -> None:
     with pytest.raises(ConfigError, match="expected a mapping"):
         ptmcad.System("x^3")  # type: ignore[arg-type]
     with pytest.raises(ConfigError, match="not exact plain data"):
-        ptmcad.Mechanism({**PENDULUM, "points": {"O": [0.5, 0]}})
+        ptmcad.Mechanism({**PENDULUM, "points": {**PENDULUM["points"], "O": [object(), 0]}})
     with pytest.raises(ConfigError, match="unknown parameter 'K'"):
         ptmcad.counts_at(ptmcad.Mechanism(PENDULUM), K=1)
     with pytest.raises(ConfigError, match=r"use ptmcad\.solve"):

@@ -95,9 +95,9 @@ def test_hostile_descriptions(
     Path("other.yaml").write_text(file("record.yaml"), encoding="utf-8")
     text, part = CASES[case]
     Path("record.yaml").write_text(text, encoding="utf-8")
-    start = time.perf_counter()
+    start = time.process_time()  # of this process: a busy machine makes no refusal late
     assert run([command, "record.yaml"]) == 2
-    assert time.perf_counter() - start < 1
+    assert time.process_time() - start < 1
     out, err = capsys.readouterr()
     assert out == ""
     first, *others = err.splitlines()

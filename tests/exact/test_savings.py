@@ -374,7 +374,7 @@ def test_certified_maps_without_a_saving_do_not_contradict(without: str) -> None
 def test_ablation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One round on the smallest slice, without whole processes."""
     monkeypatch.setattr(ablation, "PAPER", ())
-    found = [ablation.ablation([ROOT / "configs" / "fig2.yaml"], rounds=1, seed=2) for _ in range(2)]
+    found = [ablation.ablation([ROOT / "configs" / "fig2.yaml"], number=1, seed=2) for _ in range(2)]
     first, second = (without_times(f) for f in found)
     assert first == second
     row, exchanged = found[0]["exact"]

@@ -51,7 +51,22 @@ def read_poses(text: str) -> Poses:
     digits = MAX_DIGITS if place is None else place.natural()  # where it is missing, the record says so
     if place is not None and not 1 <= digits <= MAX_DIGITS:
         raise place.fault(f"is not between 1 and {MAX_DIGITS}")
-    return _poses(digits).read(document)
+    found = _poses(digits).read(document)
+    _check_lengths(found, document)
+    return found
+
+
+def _check_lengths(found: Poses, document: Node) -> None:
+    """Refuse poses that have not as many unknowns as their model."""
+    angles, reals = len(found.model.angles), len(found.model.reals)
+    wanted = {"angles": angles, "degrees": angles, "cosines_sines": 2 * angles, "reals": reals}
+    for place in document.mapping()["equilibria"].each(lambda node: node):
+        entries = place.mapping()
+        for key, length in wanted.items():
+            if key in entries:
+                entries[key].each(lambda node: node, length)
+            elif length:
+                raise place.fault(f"lacks the key '{key}'")
 
 
 def _poses(digits: int) -> Codec[Poses]:
