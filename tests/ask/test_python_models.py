@@ -89,7 +89,7 @@ def test_what_is_wrong_is_said() -> None:
         ptmcad.Mechanism(unknowns={"x": "real"}, equations=["x"])
     with pytest.raises(ConfigError, match="expected a mapping"):
         ptmcad.System("x^3")  # type: ignore[arg-type]
-    with pytest.raises(ConfigError, match="not exact plain data"):
+    with pytest.raises(ConfigError, match="is not an exact number"):
         ptmcad.Mechanism({**PENDULUM, "points": {**PENDULUM["points"], "O": [object(), 0]}})
     with pytest.raises(ConfigError, match="unknown parameter 'K'"):
         ptmcad.counts_at(ptmcad.Mechanism(PENDULUM), K=1)
