@@ -16,7 +16,8 @@ from ptmcad.question.slice import Slice, merged
 
 MAX_UNKNOWNS = 4
 """Beyond, even one point takes too long for a question that should be answered at once."""
-NOWHERE = "no engine makes this map yet: the certified engine knows the paper's mechanism only, the exact one no free "
+MAX_CERTIFIED = 3
+"""Unknowns that the certified engine takes."""
 _CLASSES = (
     (6, "a second or less"),
     (10, "seconds"),
@@ -50,8 +51,12 @@ def check(slice: Slice) -> Check:
     sample = tuple(a.low + (a.high - a.low) * share for a, share in zip(slice.axes, (_ACROSS, _UP), strict=True))
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
-        known = slice.model == ptm()
-        cost = "seconds for half a percent, and longer for less" if known else f"{NOWHERE}lengths"
+        if len(slice.model.unknowns) > MAX_CERTIFIED:
+            cost = f"no engine makes this map yet: with free lengths there may be {MAX_CERTIFIED} unknowns"
+        elif slice.model == ptm() or len(slice.model.unknowns) == 1:
+            cost = "seconds for half a percent, and longer for less"
+        else:
+            cost = "seconds to minutes for a percent, more where springs get short"
         return Check(slice, at, None, "certified", cost)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return Check(slice, at, None, "exact", _BEYOND)
