@@ -53,7 +53,8 @@ def plan_of(
     areas : whether they are asked for.
     """
     steps = list(beforehand(slice, without, areas))
-    if not slice.model.reals:  # on the line real solutions may leave every bounded set: all such curves are used
+    # on the line real solutions may leave every bounded set, and conditions change signs: all such curves are used
+    if not slice.model.reals and not _has_conditions(slice.model):
         steps.append(saving_step("infinity", without, why=_of_jacobian(slice.model, "infinity")))
     if "no-real-points" in without:
         steps.append(saving_step("no-real-points", without))
@@ -65,6 +66,10 @@ def plan_of(
     if powers:
         steps.append(saving_step("even-powers", without, why=f"computed in the power, where only such occur: {powers}"))
     return tuple(steps)
+
+
+def _has_conditions(model: Model) -> bool:
+    return isinstance(model, System) and bool(model.inequalities or model.stability)
 
 
 def _has_hessian(model: Model) -> bool:

@@ -180,6 +180,10 @@ def _nondegenerate(equations: SliceSystem) -> _Nondegenerate:
 
 def _with_jacobian(equations: SliceSystem) -> _Nondegenerate:
     algebra = _algebra(equations)
+    if not algebra.dimension:
+        raise DegenerateSliceError(
+            "off a curve of the slice the equations have no solution, real or complex: there is nothing to count"
+        )
     rows = multiples(algebra, equations.jacobian)
     jacobian_norm = determinant([[ratio(c, denominator) for c in row] for row, denominator in rows])
     if jacobian_norm[0].is_zero():

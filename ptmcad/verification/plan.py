@@ -18,6 +18,7 @@ from fractions import Fraction
 from math import gcd
 
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, PlanStep, RegionMap
+from ptmcad.mechanism import Model, System
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.report import Violation
 from ptmcad.verification.window import plainly_outside
@@ -40,6 +41,7 @@ _GENERAL = (
 """Names, subjects and reasons of the savings that are made on every slice, and of what needs no saving."""
 
 
+_NO_SIGN_CHANGE = "no eigenvalue of H changes its sign off the critical curves"
 _NO_AREAS = PlanStep("areas of the regions", False, "not asked for")
 
 
@@ -75,7 +77,7 @@ def _expected(result: RegionMap, without: frozenset[str]) -> Iterator[PlanStep]:
     """The plan; the reason is empty where predicted costs decided."""
     names = result.slice.axis_names
     zero = ", ".join(n for n, e in result.slice.parameters.items() if not e.numerator)
-    for saving, what, why in _GENERAL:
+    for saving, what, why in _general(result.slice.model):
         if saving == "equal-counts" and _NO_AREAS in result.plan:
             yield _NO_AREAS
         elif zero or saving:
@@ -94,6 +96,21 @@ def _expected(result: RegionMap, without: frozenset[str]) -> Iterator[PlanStep]:
     if powers:
         why = f"computed in the power, where only such occur: {powers}"
         yield _step("even-powers", "discriminants and resultants of full degree", why, without)
+
+
+def _general(model: Model) -> Iterator[tuple[str, str, str]]:
+    """What a plan says of every slice of a model: names, subjects and reasons."""
+    equations = isinstance(model, System) and model.potential is None
+    kept = bool(model.reals) or (isinstance(model, System) and bool(model.inequalities or model.stability))
+    for saving, what, why in _GENERAL:
+        if saving == "sign-curve" and (equations or len(model.unknowns) < 2):
+            continue
+        if saving == "infinity" and kept:
+            continue
+        if saving == "sign-curve" and len(model.unknowns) > 2:
+            yield saving, "projections of the leading minors of H", _NO_SIGN_CHANGE
+        else:
+            yield saving, what, why.replace("det H", "the Jacobian's determinant") if equations else why
 
 
 def _step(saving: str, what: str, why: str, without: frozenset[str]) -> PlanStep:
