@@ -17,10 +17,13 @@ Rows = Sequence[Sequence[Any]]
 
 
 def bases(size: int) -> Iterator[list[list[int]]]:
-    """Bases without end: unipotent upper triangular matrices, whose columns are the vectors."""
-    for k in range(1, 10**9):
+    """Bases without end, the given one first: unipotent lower triangular matrices, whose columns are the vectors.
+
+    Upper triangular ones would have the same leading principal minors.
+    """
+    for k in range(10**9):
         yield [
-            [int(i == j) if i >= j else 1 + (k - 1) * (3 * i + 5 * j + i * j * k) for j in range(size)]
+            [int(i == j) if i <= j else k and 1 + (k - 1) * (3 * i + 5 * j + i * j * k) for j in range(size)]
             for i in range(size)
         ]
 
@@ -38,8 +41,8 @@ def _value(form: Rows, basis: Sequence[Sequence[int]], i: int, j: int) -> Any:
     """The form's value at the i-th and the j-th vector."""
     return total(
         form[k][m] * (basis[k][i] * basis[m][j])
-        for k in range(i + 1)
-        for m in range(j + 1)
+        for k in range(i, len(basis))
+        for m in range(j, len(basis))
         if basis[k][i] and basis[m][j]
     )
 
