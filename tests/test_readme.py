@@ -41,7 +41,7 @@ def test_the_parts_are_there() -> None:
     assert MAKE_LINES == ["make demo", "make test"]
     commands = " ".join(shlex.split(line)[1] for line in PROGRAM_LINES)
     assert commands == "classify classify verify locate report range solve solve variety classify verify solve"
-    assert len(blocks("yaml")) == 1
+    assert len(blocks("yaml")) == 2
     assert len(blocks("python")) == 1
 
 
@@ -129,17 +129,17 @@ def test_python_block(monkeypatch: pytest.MonkeyPatch) -> None:
     assert checked
 
 
-def test_yaml_block(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("number", "path"), [(0, "fig4.yaml"), (1, "systems/duffing.yaml")])
+def test_yaml_block(tmp_path: Path, number: int, path: str) -> None:
     """The record is read, and is the shipped one with its reference left out."""
     from ptmcad.question import config
 
-    (block,) = blocks("yaml")
     record = tmp_path / "record.yaml"
-    record.write_text(block, encoding="utf-8")
-    shown, shipped = config.load(record), config.load(ROOT / "configs" / "fig4.yaml")
-    assert (shown.name, shown.mechanism, shown.axes, shown.count) == (
+    record.write_text(blocks("yaml")[number], encoding="utf-8")
+    shown, shipped = config.load(record), config.load(ROOT / "configs" / path)
+    assert (shown.name, shown.model.unknowns, shown.axes, shown.count) == (
         shipped.name,
-        shipped.mechanism,
+        shipped.model.unknowns,
         shipped.axes,
         shipped.count,
     )

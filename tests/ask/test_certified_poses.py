@@ -42,7 +42,7 @@ def test_poses_agree_with_the_energy_written_out_again(point: dict[str, Any]) ->
     seen = dense_search(values, 60)
     assert (seen["total"], seen["stable"]) == (len(poses.equilibria), poses.stable)
     assert seen["admissible"] == sum(pose.admissible is True for pose in poses.equilibria)
-    energy = energy_of(poses.parameters)
+    energy = energy_of(poses.model, poses.parameters)
     for pose in poses.equilibria:
         a, b = (np.array([float(x.center)]) for x in pose.angles)
         g1, g2, h11, h12, h22, lengths = derivatives(values, a, b)
@@ -161,4 +161,4 @@ def test_range_on_the_command_line() -> None:
 
 def test_energy_has_no_free_length_unless_asked_for() -> None:
     plain = solve(rho=Q(1), L2=Q(3, 2))
-    assert energy_of(plain.parameters).roots == ()
+    assert energy_of(plain.model, plain.parameters).roots == ()
