@@ -27,14 +27,14 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from flint import fmpq, fmpz_poly
+from flint import fmpq
 
 from ptmcad.answer.regionmap import Adjacency, Cell, CriticalValue, NonAdjacency, Reason, Segment
 from ptmcad.verification.claims import Claims, is_root, short, side
 from ptmcad.verification.derivation import rational
+from ptmcad.verification.heights import Heights
 from ptmcad.verification.report import Violation
-from ptmcad.verification.structure import inside_stack, points_over
-from ptmcad.verification.sturm import roots_between, separated_points
+from ptmcad.verification.structure import inside_stack
 
 
 def check_adjacencies(claims: Claims) -> str:
@@ -187,9 +187,9 @@ def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
     else:
         bottom = claims.height[0] if a.below is None else rational(a.below[2])
         top_height = claims.height[1] if a.above is None else rational(a.above[2])
-        points = _points(claims, result.critical_values[a.critical_value])
+        heights = Heights(claims, result.critical_values[a.critical_value])
         # at the window's edge the branches may only run into its corner over the critical value
-        holds = len(at_edges) < 2 and roots_between(points, bottom, top_height) <= 1 - len(at_edges)
+        holds = len(at_edges) < 2 and heights.between(bottom, top_height) <= 1 - len(at_edges)
     if not holds:
         raise Violation(f"{what}: {branches} half-branches between cells {a.left} and {a.right} are not closed because "
                         f"of {a.reason.value!r}")  # fmt: skip
@@ -199,7 +199,7 @@ def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[in
     """Try a free segment in each interval between the points of the curves over a critical value."""
     value = claims.result.critical_values[s]
     left, right = claims.result.stacks[s], claims.result.stacks[s + 1]
-    for v in separated_points(_points(claims, value), bottom, top):
+    for v in Heights(claims, value).separated(bottom, top):
         low, high = rational(left.sample), rational(right.sample)
         while claims.free(low, high, v) is not None:
             low, high = _closer(low, high, value)
@@ -208,14 +208,6 @@ def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[in
             first, second = left.cells[pair[0]], right.cells[pair[1]]
             raise Violation(f"the adjacency of cells {first} and {second} is missing; the segment from {low} to {high} "
                             f"at height {v} joins them")  # fmt: skip
-
-
-def _points(claims: Claims, value: CriticalValue) -> fmpz_poly:
-    """A polynomial in v among whose roots are all points of the curves over a critical value."""
-    product = fmpz_poly([1])
-    for c in claims.curves:
-        product = product * points_over(c, value)
-    return product
 
 
 def _closer(low: fmpq, high: fmpq, value: CriticalValue) -> tuple[fmpq, fmpq]:

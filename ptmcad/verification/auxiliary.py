@@ -20,8 +20,9 @@ from math import gcd, isqrt, prod
 from flint import fmpq
 
 from ptmcad.answer.regionmap import Kind
+from ptmcad.verification.algebra import Monomial
 from ptmcad.verification.claims import Claims, fraction
-from ptmcad.verification.fibre import Fibre, Monomial, standard_monomials
+from ptmcad.verification.fibre import Fibre, standard_monomials
 from ptmcad.verification.plan import switched_off
 from ptmcad.verification.report import Unchecked, Violation
 

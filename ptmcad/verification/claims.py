@@ -17,8 +17,9 @@ from ptmcad.errors import PoleError
 from ptmcad.mechanism import Model, System
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.verification.algebra import NotFinite
 from ptmcad.verification.derivation import rational
-from ptmcad.verification.fibre import Fibre, NotFinite, fibre
+from ptmcad.verification.fibre import Fibre, fibre
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import roots_between, roots_within
 

@@ -1,7 +1,6 @@
 """The solutions over one rational point, by a route of its own: geometry, Groebner basis at the point, trace forms.
 
-Guarantee: exact. The equations are formed from the description, in rational numbers, by `derivation`, and are
-differentiated here; nothing is taken from `ptmcad.exact.models`, so a mistake there or here shows as a contradiction.
+Guarantee: exact.
 
 The order is graded reverse lexicographic with the last unknown first, FLINT's own Buchberger algorithm runs at the
 point itself, and counts come from signatures of trace forms: another elimination than the one over Q(x, y) in
@@ -20,20 +19,13 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise, product
 from math import prod
-from typing import Any
 
-from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly_ctx, fmpz_mpoly_vec
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import Model
-from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, parameters_of, rational
+from ptmcad.verification.algebra import Monomial, NotFinite, algebra
+from ptmcad.verification.equations import PointEquations, equations_at
 from ptmcad.verification.inertia import bases, determinant, leading_minors, negative_eigenvalues
-
-Monomial = tuple[int, ...]
-"""Exponents of the ring's variables: the coordinates of the unknowns, last to first."""
-
-
-class NotFinite(ArithmeticError):
-    """The equations have infinitely many complex solutions at the point."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,30 +41,6 @@ class Counts:
     total: int
     stable: int | None
     index: tuple[int, ...] | None
-
-
-@dataclass(frozen=True)
-class PointEquations:
-    """The model's polynomials at one point.
-
-    Attributes
-    ----------
-    names : of the ring's variables.
-    equations : of a potential its gradient, by the unknowns in their order.
-    jacobian : their derivatives by the unknowns.
-    """
-
-    names: tuple[str, ...]
-    circles: tuple[fmpq_mpoly, ...]
-    equations: tuple[fmpq_mpoly, ...]
-    jacobian: tuple[tuple[fmpq_mpoly, ...], ...]
-    inequalities: tuple[fmpq_mpoly, ...]
-    stability: tuple[fmpq_mpoly, ...]
-    has_potential: bool
-
-    def generators(self) -> list[fmpq_mpoly]:
-        """Of the ideal of all solutions."""
-        return [*(e for e in self.equations if not e.is_zero()), *self.circles]
 
 
 @dataclass(frozen=True)
@@ -273,48 +241,14 @@ def fibre(model: Model, values: Mapping[str, Fraction]) -> Fibre:
     """
     point = equations_at(model, values)
     if not point.inequalities:
-        return Fibre(*_algebra(point.generators(), point.names), point)
+        return Fibre(*algebra(point.generators(), point.names), point)
     try:
-        found = Fibre(*_algebra(point.generators(), point.names), point)
+        found = Fibre(*algebra(point.generators(), point.names), point)
         if found.norm() != 0 and all(found.matrix(p).det() != 0 for p in point.inequalities):
             return found
     except NotFinite:
         pass
-    return Fibre(*_algebra(*_saturated(point)), point, saturated=True)
-
-
-def equations_at(model: Model, values: Mapping[str, Fraction]) -> PointEquations:
-    """The model's polynomials at rational values of the parameters."""
-    names = tuple(reversed(coordinates_of(model)))
-    ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(names, Ordering.degrevlex)
-    variables = {name: ring.gen(k) for k, name in enumerate(names)}
-    numbers = {name: rational(values[name]) for name in parameters_of(model)}
-    circles = {a: (variables[f"cos_{a}"], variables[f"sin_{a}"]) for a in model.angles}
-    reals = {name: variables[name] for name in model.reals}
-    given = formulas(Configuration(numbers | reals, circles), model)
-
-    def by(p: fmpq_mpoly) -> list[fmpq_mpoly]:
-        """The derivatives by the unknowns."""
-        turns = [c * p.derivative(f"sin_{a}") - s * p.derivative(f"cos_{a}") for a, (c, s) in circles.items()]
-        return turns + [p.derivative(name) for name in reals]
-
-    def polynomial(value: Any) -> fmpq_mpoly:
-        p: fmpq_mpoly = ring.constant(0) + value
-        return p
-
-    if given.potential is not None:
-        equations = tuple(e - given.moment(k) for k, e in enumerate(by(polynomial(given.potential))))
-    else:
-        equations = tuple(map(polynomial, given.equations))
-    return PointEquations(
-        names,
-        tuple(c * c + s * s - 1 for c, s in circles.values()),
-        equations,
-        tuple(tuple(by(e)) for e in equations),
-        tuple(map(polynomial, given.inequalities)),
-        tuple(map(polynomial, given.stability)),
-        given.potential is not None,
-    )
+    return Fibre(*algebra(*_saturated(point)), point, saturated=True)
 
 
 def _saturated(point: PointEquations) -> tuple[list[fmpq_mpoly], tuple[str, ...]]:
@@ -348,74 +282,8 @@ def standard_monomials(model: Model, values: Mapping[str, Fraction]) -> tuple[Mo
     point = equations_at(model, values)
     ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(point.names, Ordering.degrevlex)
     turned = [ring.from_dict({tuple(reversed(m)): fmpq(c) for m, c in p.to_dict().items()}) for p in point.generators()]
-    basis, _ = _algebra(turned, point.names)
+    basis, _ = algebra(turned, point.names)
     return tuple(tuple(reversed(m)) for m in basis)
-
-
-def _algebra(equations: list[fmpq_mpoly], names: tuple[str, ...]) -> tuple[tuple[Monomial, ...], tuple[fmpq_mat, ...]]:
-    """The standard monomials, and the matrix of multiplication by each variable."""
-    rules = _reduced_basis(equations, names)
-    width = range(len(names))
-    if not all(any(sum(lead) == lead[k] for lead in rules) for k in width):
-        raise NotFinite
-    bounds = [next(lead[k] for lead in rules if sum(lead) == lead[k]) if (0,) * len(names) not in rules else 0
-              for k in width]  # fmt: skip
-    basis = tuple(
-        sorted(
-            (m for m in product(*map(range, bounds)) if not any(_divides(lead, m) for lead in rules)),
-            key=lambda m: (sum(m), m),
-        )
-    )
-    place = {m: i for i, m in enumerate(basis)}
-    known: dict[Monomial, list[fmpq]] = {}
-
-    def normal(m: Monomial) -> list[fmpq]:
-        """Coordinates of a monomial, by the rules, recursively."""
-        if m in known:
-            return known[m]
-        row = [fmpq(0)] * len(basis)
-        if m in place:
-            row[place[m]] = fmpq(1)
-        else:
-            lead = next(r for r in rules if _divides(r, m))
-            for t, c in rules[lead].items():
-                for i, x in enumerate(normal(_times(t, m, lead))):
-                    if x != 0:
-                        row[i] += c * x
-        known[m] = row
-        return row
-
-    tables = []
-    for k in width:
-        columns = [normal(tuple(e + (i == k) for i, e in enumerate(m))) for m in basis]
-        tables.append(fmpq_mat(len(basis), len(basis), [column[i] for i in range(len(basis)) for column in columns]))
-    return basis, tuple(tables)
-
-
-def _reduced_basis(equations: list[fmpq_mpoly], names: tuple[str, ...]) -> dict[Monomial, dict[Monomial, fmpq]]:
-    """A Groebner basis as rules: leading monomial -> what it is modulo the ideal."""
-    ring: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(names, Ordering.degrevlex)
-    integral = []
-    for e in equations:
-        scale = 1
-        for c in e.coeffs():
-            scale = scale * int(c.q)
-        integral.append(ring.from_dict({m: int((c * scale).p) for m, c in e.to_dict().items()}))
-    vector = fmpz_mpoly_vec([p.primitive()[1] for p in integral], ring)
-    rules: dict[Monomial, dict[Monomial, fmpq]] = {}
-    for p in vector.buchberger_naive().autoreduction():
-        terms = [(tuple(int(e) for e in m), fmpq(c)) for m, c in p.terms()]
-        (lead, c), tail = terms[0], terms[1:]
-        rules[lead] = {m: -d / c for m, d in tail}
-    return rules
-
-
-def _divides(a: Monomial, b: Monomial) -> bool:
-    return all(x <= y for x, y in zip(a, b, strict=True))
-
-
-def _times(tail: Monomial, m: Monomial, lead: Monomial) -> Monomial:
-    return tuple(t + x - y for t, x, y in zip(tail, m, lead, strict=True))
 
 
 def _identity(n: int) -> fmpq_mat:

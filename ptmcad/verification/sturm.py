@@ -6,6 +6,7 @@ Guarantee: exact, multiple roots counted once. (The decomposition itself isolate
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from itertools import pairwise
 
@@ -58,17 +59,30 @@ def roots_within(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
 
 def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq, fmpq]]:
     """Disjoint open intervals, strictly inside, with one root each; no end is a root."""
+    return isolated(lambda a, b: roots_between(p, a, b), lambda v: p(v) == 0, low, high)
+
+
+def isolated(
+    count: Callable[[fmpq, fmpq], int], is_root: Callable[[fmpq], bool], low: fmpq, high: fmpq
+) -> list[tuple[fmpq, fmpq]]:
+    """Disjoint open intervals, strictly inside (low, high), with one root each of what a function counts.
+
+    Parameters
+    ----------
+    count : the number of roots in an open interval.
+    is_root : whether a number is one of them; no end of an interval is.
+    """
     waiting, found = [(low, high)], []
     while waiting:
         a, b = waiting.pop()
-        n = roots_between(p, a, b)
+        n = count(a, b)
         if n == 0:
             continue
         if n == 1 and a > low and b < high:
             found.append((a, b))
             continue
         k = 2
-        while p(middle := a + (b - a) * fmpq(k // 2, k)) == 0:
+        while is_root(middle := a + (b - a) * fmpq(k // 2, k)):
             k += 1
         waiting += [(a, middle), (middle, b)]
     return sorted(found, key=lambda interval: fmpq(interval[0]))
@@ -76,7 +90,11 @@ def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq,
 
 def separated_points(p: fmpz_poly, low: fmpq, high: fmpq) -> list[fmpq]:
     """A rational point in each open interval that the roots of p leave of (low, high)."""
-    roots = isolating_intervals(p, low, high)
+    return parting(isolating_intervals(p, low, high), low, high)
+
+
+def parting(roots: Sequence[tuple[fmpq, fmpq]], low: fmpq, high: fmpq) -> list[fmpq]:
+    """A rational point in each open interval that is left of (low, high), given the roots' isolating intervals."""
     if not roots:
         return [(low + high) / 2]
     return [roots[0][0], *(b for _, b in roots)]

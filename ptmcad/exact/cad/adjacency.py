@@ -11,9 +11,8 @@ most one point of the line u = a that branches run into, because then separators
 * A gap with at most two branches does: through every point of a real algebraic curve (no vertical line among
   them) runs an even number of half-branches, so two branches in a gap end at the same point. Only the point on the
   window's edge, if a curve passes there, may take an odd number: so a gap at the edge with one branch does.
-* A gap with more branches is split, if it can be, by bracketing a more closely; if that fails, all real roots of
-  res_u(q, p) in the gap are isolated, q being a's polynomial: they include every point of the curves over a, so
-  heights between them are separators once the bracket is narrow enough.
+* A gap with more branches is split, if it can be, by bracketing a more closely; if that fails, the points of the curves
+  over a are enclosed (`points`): heights between them are separators once the bracket is narrow enough.
 """
 
 from __future__ import annotations
@@ -25,22 +24,18 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import (
     RealRoot,
-    disjoint,
     has_root_between,
-    inside,
-    isolate,
     refine,
     sign_at,
     simplest_between,
-    squarefree_part,
 )
-from ptmcad.algebra.resultants import Check, nothing, resultant
+from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.regionmap import Reason
 from ptmcad.exact.cad.curves import Curve, max_height_bits
+from ptmcad.exact.cad.points import PointsOver
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, roots_over
 
 ROUNDS = 4
@@ -94,7 +89,7 @@ def cross(
     reach, extent = min(end.value - left.sample, right.sample - end.value), fibre[1] - fibre[0]
     width, resolution, step = reach, extent, 8
     extra: tuple[fmpq, ...] = ()
-    points: UnivariatePolynomial | None = None  # costly, computed once if the rounds do not suffice
+    points: PointsOver | None = None  # costly, looked for if the rounds do not suffice
     attempt = 0
     rounds = max(ROUNDS, (max_height_bits(curves) // _LONG_COEFFICIENT_BITS).bit_length())
     while True:
@@ -114,9 +109,9 @@ def cross(
         step = 2 * step
         if attempt >= rounds:
             if points is None:
-                points = _points_polynomial(curves, end)
+                points = PointsOver(tuple(curves), end.root, check)
                 width, resolution, step = reach, extent, 8  # with the heights now known, wide brackets may do
-            separating = (h for gap in unresolved for h in _between_points(points, gap))
+            separating = (h for gap in unresolved for h in _between_points(points, gap, curves, end))
             extra = tuple(sorted({*extra, *separating}))
 
 
@@ -195,10 +190,10 @@ def _open_gaps(found: Sequence[Separator], count_left: int, count_right: int, fi
     return [_OpenGap(a[0], b[0], a[3], b[3], (a[1], b[1]), (a[2], b[2])) for a, b in pairwise(ends)]
 
 
-def _reason(gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Reason | None:
+def _reason(gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd, points: PointsOver | None) -> Reason | None:
     """Why branches run into at most one point of the gap; None when that is not known.
 
-    ``points`` is the polynomial of `_points_polynomial`, or None while it is not known. A gap without branches may
+    ``points`` is None while the points on the line are not looked for. A gap without branches may
     be closed in any way.
     """
     branches, edges = gap.branches, gap.edges
@@ -208,12 +203,12 @@ def _reason(gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd, points: Univar
         return None
     if branches <= 2 - len(edges):
         return Reason.EDGE if edges else Reason.PAIR
-    if points is None or len(isolate(points, gap.bottom, gap.top)) > 1 - len(edges):
+    if points is None or len(points.between(gap.bottom, gap.top, edges)) > 1 - len(edges):
         return None
     return Reason.POINT
 
 
-def _gap(gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd, points: UnivariatePolynomial | None) -> Gap:
+def _gap(gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd, points: PointsOver | None) -> Gap:
     reason = _reason(gap, curves, end, points)
     assert reason is not None
     return Gap(gap.left, gap.right, gap.below, gap.above, reason)
@@ -233,23 +228,9 @@ def _meets(curves: Sequence[Curve], end: BaseEnd, edge: fmpq) -> bool:
     return False
 
 
-def _points_polynomial(curves: Sequence[Curve], end: BaseEnd) -> UnivariatePolynomial:
-    """A squarefree polynomial in v among whose roots are all points of the curves over the critical abscissa."""
-    assert end.root is not None
-    q = end.root.polynomial
-    if end.root.is_rational:
-        value = end.root.low
-        q = UnivariatePolynomial([-int(value.p), int(value.q)])
-    constant = [UnivariatePolynomial([c]) for c in q.coeffs()]
-    product = UnivariatePolynomial([1])
-    for c in curves:
-        points = squarefree_part(resultant(c.in_u, constant))
-        product = product * (points // points.gcd(product))
-    return product
-
-
-def _between_points(points: UnivariatePolynomial, gap: _OpenGap) -> list[fmpq]:
+def _between_points(points: PointsOver, gap: _OpenGap, curves: Sequence[Curve], end: BaseEnd) -> list[fmpq]:
     """Heights between all possible points in the gap."""
-    roots = inside(disjoint(isolate(points, gap.bottom, gap.top)), (gap.bottom, gap.top))
-    levels = [gap.bottom, *(x for r in roots for x in (r.low, r.high)), gap.top]
-    return [simplest_between(levels[2 * k], levels[2 * k + 1]) for k in range(len(roots) + 1)]
+    met = [edge for edge in gap.edges if _meets(curves, end, edge)]
+    inner = points.between(gap.bottom, gap.top, met)
+    levels = [gap.bottom, *(x for interval in inner for x in interval), gap.top]
+    return [simplest_between(levels[2 * k], levels[2 * k + 1]) for k in range(len(inner) + 1)]

@@ -1,0 +1,127 @@
+"""The points of the curves over a critical abscissa, each in a rational interval of its own.
+
+Guarantee: the intervals are disjoint, each contains one point at most, and all points in the window lie in them.
+
+Two ways lead there. The short one encloses all complex roots of every p(a, v) in discs, a being known to many digits. A
+disc with two roots, or discs of two curves that meet, need not hold one point only. But where a is a root of the
+curve's discriminant, two of the roots are one; where it is a root of the resultant of two curves, these have one in
+common. If there is no other disc in which that can be, it is so in this one.
+
+The other one needs nothing but time: all real roots of res_u(q, p), q being a's polynomial, are isolated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+from flint import arb, ctx, fmpq
+
+from ptmcad.algebra.clusters import Cluster, clusters_over
+from ptmcad.algebra.polynomials import UnivariatePolynomial
+from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, is_root_of, isolate, refine, squarefree_part
+from ptmcad.algebra.resultants import Check, discriminant, nothing, resultant
+from ptmcad.algebra.window import Interval
+from ptmcad.exact.cad.curves import Curve
+
+_BITS = (128, 512)
+"""Of the critical abscissa, until all discs are told apart; with more of them the other way is the shorter one."""
+
+
+@dataclass(frozen=True)
+class PointsOver:
+    """The points of curves on the line over a root."""
+
+    curves: tuple[Curve, ...]
+    root: RealRoot
+    check: Check = nothing
+
+    def between(self, bottom: fmpq, top: fmpq, edges: Sequence[fmpq]) -> list[Interval]:
+        """Intervals that hold the points in the open interval (bottom, top), from below.
+
+        Parameters
+        ----------
+        bottom, top : no points, but for those that are among the edges.
+        edges : which are points.
+        """
+        for bits in _BITS:
+            self.check()
+            if bits not in self._known:
+                self._known[bits] = self._enclosed(bits)
+            found = self._known[bits]
+            if found is None:
+                continue
+            ends = [e for e in (bottom, top) if e not in edges]
+            at_edges = [sum(low <= e <= high for low, high in found) for e in (bottom, top) if e in edges]
+            if any(low <= e <= high for e in ends for low, high in found) or any(n != 1 for n in at_edges):
+                continue
+            return [i for i in found if bottom < i[0] and i[1] < top]
+        roots = inside(disjoint(isolate(self._polynomial, bottom, top)), (bottom, top))
+        return [(r.low, r.high) for r in roots]
+
+    def _enclosed(self, bits: int) -> list[Interval] | None:
+        """Disjoint intervals with one point of the curves each, that hold all of them; None where that is not known."""
+        with ctx.workprec(2 * bits + 64):
+            root = refine(self.root, fmpq(1, 1 << bits))
+            abscissa = arb(root.low).union(arb(root.high))
+            groups = []
+            for k, c in enumerate(self.curves):
+                group = clusters_over(c.in_v, abscissa)
+                if group is None or not self._are_points(k, group):
+                    return None
+                groups.append(group)
+            for (k, one), (m, other) in combinations(enumerate(groups), 2):
+                meeting = [(c, d) for c in one for d in other if c.meets(d)]
+                # where they have a root in common, it is in the only place where it can be
+                if len(meeting) > 1 or (meeting and not self._meet(k, m)):
+                    return None
+            return _merged([c.extent for group in groups for c in group if c.is_real])
+
+    def _are_points(self, k: int, group: Sequence[Cluster]) -> bool:
+        """Whether each disc of a curve is known to hold one root only, as often as it counts."""
+        multiple = [c.number for c in group if c.number > 1]
+        return not multiple or (multiple == [2] and _vanishes(self._discriminants[k], self.root))
+
+    def _meet(self, k: int, m: int) -> bool:
+        """Whether two curves have a complex point over the root in common."""
+        common = resultant(self.curves[k].in_v, self.curves[m].in_v, self.check)
+        return _vanishes(common, self.root)
+
+    @cached_property
+    def _known(self) -> dict[int, list[Interval] | None]:
+        return {}
+
+    @cached_property
+    def _discriminants(self) -> list[UnivariatePolynomial]:
+        return [discriminant(c.in_v, self.check) for c in self.curves]
+
+    @cached_property
+    def _polynomial(self) -> UnivariatePolynomial:
+        """A squarefree polynomial in v among whose roots are all points."""
+        q = self.root.polynomial
+        if self.root.is_rational:
+            value = self.root.low
+            q = UnivariatePolynomial([-int(value.p), int(value.q)])
+        constant = [UnivariatePolynomial([c]) for c in q.coeffs()]
+        product = UnivariatePolynomial([1])
+        for c in self.curves:
+            points = squarefree_part(resultant(c.in_u, constant, self.check))
+            product = product * (points // points.gcd(product))
+        return product
+
+
+def _vanishes(p: UnivariatePolynomial, root: RealRoot) -> bool:
+    return not p or is_root_of(p.gcd(root.polynomial), root)
+
+
+def _merged(intervals: Sequence[Interval]) -> list[Interval]:
+    """Intervals that meet hold the same point: those of one curve are disjoint."""
+    merged: list[Interval] = []
+    for low, high in sorted(intervals):
+        if merged and low <= merged[-1][1]:
+            merged[-1] = (merged[-1][0], max(high, merged[-1][1]))
+        else:
+            merged.append((low, high))
+    return merged

@@ -1,0 +1,140 @@
+"""The heights of the curves' points over a critical value: counted, and parted by rational heights.
+
+Guarantee: counts are exact, every point counted once.
+
+Let P(u, v) be the product of the curves' polynomials and a the critical value. Where deg_v P is the same at a, the
+Sturm sequence of P(a, v) is computed with balls for the coefficients: remainder by remainder, each of the degree before
+less one, until a linear one is left whose leading coefficient is certainly not zero. The next remainder would be a
+constant. It is zero exactly when P(a, v) has a multiple root, which is when a is a root of a curve's discriminant or of
+the resultant of two: that is decided in integers. Either way the sequence is known to its end, and its changes of sign
+count the different real roots (Sturm; for the multiple root all terms are divided by their last one).
+
+Otherwise, where several roots are multiple, roots are counted of the polynomials in v among whose roots all points are
+(`structure.points_over`), which takes long for critical values of high degree.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from itertools import combinations, pairwise
+from math import prod
+
+from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
+
+from ptmcad.answer.regionmap import CriticalValue
+from ptmcad.verification.claims import Claims, ball, is_root
+from ptmcad.verification.elimination import discriminant, resultant
+from ptmcad.verification.structure import points_over
+from ptmcad.verification.sturm import isolated, parting, roots_between
+
+_BITS = (256, 1024, 4096)
+
+
+class _Undecided(ArithmeticError):
+    """Balls are too large, or several roots are multiple."""
+
+
+@dataclass(frozen=True)
+class Heights:
+    """The points over one critical value."""
+
+    claims: Claims
+    value: CriticalValue
+
+    def between(self, low: fmpq, high: fmpq) -> int:
+        """The number of points, or of what may be points, with heights in the open interval (low, high)."""
+        if low >= high or not self.claims.curves:
+            return 0
+        for bits in _BITS:
+            try:
+                with ctx.workprec(bits):
+                    return self._changes(low, bits) - self._changes(high, bits) - self._is_point(high)
+            except _Undecided:
+                continue
+        return roots_between(self._polynomial, low, high)
+
+    def separated(self, low: fmpq, high: fmpq) -> list[fmpq]:
+        """A rational height in each open interval that the points leave of (low, high)."""
+        return parting(isolated(self.between, self._is_point, low, high), low, high)
+
+    def _is_point(self, v: fmpq) -> bool:
+        return any(is_root(c.along(v), self.value) for c in self.claims.curves)
+
+    def _changes(self, v: fmpq, bits: int) -> int:
+        """Changes of sign in the Sturm sequence at a height.
+
+        Raises
+        ------
+        _Undecided
+        """
+        values = [q(arb(v)) for q in self._sequence(bits)]
+        if self._is_point(v):
+            # at a simple root the first term alone is zero; at a multiple one all are
+            values = values[1:]
+        if any(x.contains(0) for x in values):
+            raise _Undecided
+        return sum((x > 0) != (y > 0) for x, y in pairwise(values))
+
+    @cached_property
+    def _sequences(self) -> dict[int, list[arb_poly] | None]:
+        return {}
+
+    def _sequence(self, bits: int) -> list[arb_poly]:
+        if bits not in self._sequences:
+            try:
+                self._sequences[bits] = self._made(bits)
+            except _Undecided:
+                self._sequences[bits] = None
+        found = self._sequences[bits]
+        if found is None:
+            raise _Undecided
+        return found
+
+    def _made(self, bits: int) -> list[arb_poly]:
+        """The Sturm sequence, without its last term where that is zero.
+
+        Raises
+        ------
+        _Undecided
+        """
+        value = ball(self.value, fmpq(1, 1 << bits))
+        product = prod((arb_poly([c(value) for c in curve.in_v]) for curve in self.claims.curves), start=arb_poly([1]))
+        degree = sum(curve.degrees[1] for curve in self.claims.curves)
+        sequence = [_exact_degree(product, degree), _exact_degree(product.derivative(), degree - 1)]
+        while sequence[-1].degree() > 1:
+            sequence.append(_exact_degree(-(sequence[-2] % sequence[-1]), sequence[-1].degree() - 1))
+        if degree > 1 and not self._has_multiple_root:
+            sequence.append(_exact_degree(-(sequence[-2] % sequence[-1]), 0))
+        return sequence
+
+    @cached_property
+    def _has_multiple_root(self) -> bool:
+        """Whether one of the curves has a multiple root over the value, or two have one in common."""
+        curves = self.claims.curves
+        return any(is_root(_discriminant(c.terms), self.value) for c in curves) or any(
+            is_root(_resultant(c.terms, d.terms), self.value) for c, d in combinations(curves, 2)
+        )
+
+    @cached_property
+    def _polynomial(self) -> fmpz_poly:
+        """A polynomial in v among whose roots are all points."""
+        return prod((points_over(c, self.value) for c in self.claims.curves), start=fmpz_poly([1]))
+
+
+# every critical value asks for them
+_discriminant, _resultant = lru_cache(maxsize=256)(discriminant), lru_cache(maxsize=256)(resultant)
+
+
+def _exact_degree(p: arb_poly, degree: int) -> arb_poly:
+    """The polynomial, of which a degree is expected.
+
+    Raises
+    ------
+    _Undecided
+        When the leading coefficient may be zero.
+    """
+    coefficients = p.coeffs()[: degree + 1]
+    if len(coefficients) <= degree or coefficients[-1].contains(0):
+        raise _Undecided
+    return arb_poly(coefficients)

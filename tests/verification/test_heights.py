@@ -1,0 +1,97 @@
+"""Points of curves over a critical value: the engine's discs and the checker's Sturm sequences find the known ones."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from flint import fmpq, fmpz_poly
+from hypothesis import given
+from hypothesis import strategies as st
+from support.curves_with_known_points import KnownCurves, known_curves
+
+from ptmcad.algebra.real_roots import RealRoot
+from ptmcad.answer.regionmap import CriticalValue
+from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.points import PointsOver
+from ptmcad.text.plane import PlanePolynomial
+from ptmcad.verification.claims import PlaneCurve
+from ptmcad.verification.heights import Heights
+
+SQRT2 = fmpz_poly([-2, 0, 1])
+LOW, HIGH = fmpq(-7, 2), fmpq(10, 3)
+"""No point is so low, none so high; 10/3 is no multiple of 1/9 in a way that matters."""
+
+
+def engine(known: KnownCurves) -> PointsOver:
+    """The engine's view of the curves."""
+
+    def coefficients(terms: tuple[tuple[int, int, int], ...], kept: int) -> tuple[fmpz_poly, ...]:
+        rows: list[list[int]] = [
+            [0] * (1 + max(t[1 - kept] for t in terms)) for _ in range(1 + max(t[kept] for t in terms))
+        ]
+        for t in terms:
+            rows[t[kept]][t[1 - kept]] = t[2]
+        return tuple(map(fmpz_poly, rows))
+
+    curves = tuple(Curve(n, coefficients(t, 1), coefficients(t, 0)) for n, t in enumerate(known.terms))
+    return PointsOver(curves, RealRoot(SQRT2, fmpq(1), fmpq(2)))
+
+
+def checker(known: KnownCurves) -> Heights:
+    """The checker's view of the curves."""
+    curves = [PlaneCurve.of(n, PlanePolynomial.of(t), 0) for n, t in enumerate(known.terms)]
+    claims: Any = SimpleNamespace(curves=curves)
+    return Heights(claims, CriticalValue(polynomial=(-2, 0, 1), low=Fraction(1), high=Fraction(2), origin=""))
+
+
+@given(known_curves())
+def test_engine_encloses_each_point_once(known: KnownCurves) -> None:
+    found = engine(known).between(LOW, HIGH, [])
+    assert len(found) == len(known.heights)
+    assert all(fmpq(h.numerator, h.denominator) >= a and fmpq(h.numerator, h.denominator) <= b
+               for h, (a, b) in zip(known.heights, found, strict=True))  # fmt: skip
+    assert all(one[1] < other[0] for one, other in pairwise(found))
+
+
+@given(known_curves(), st.lists(st.fractions(-3, 3, max_denominator=9), min_size=2, max_size=2, unique=True))
+def test_checker_counts_points_in_open_intervals(known: KnownCurves, ends: list[Fraction]) -> None:
+    low, high = sorted(ends)
+    number = checker(known).between(fmpq(low.numerator, low.denominator), fmpq(high.numerator, high.denominator))
+    assert number == sum(low < h < high for h in known.heights)
+
+
+@given(known_curves())
+def test_checker_parts_the_points(known: KnownCurves) -> None:
+    heights = [Fraction(int(v.p), int(v.q)) for v in checker(known).separated(LOW, HIGH)]
+    assert [sum(a < h < b for h in known.heights) for a, b in pairwise(heights)] == [1] * len(known.heights)
+
+
+def test_a_double_point_is_one_point_without_a_polynomial_in_v(monkeypatch: pytest.MonkeyPatch) -> None:
+    # (3 v - 1)^2 (v + 1) (v^2 + 1) + (u^2 - 2) (u v + 5 u)
+    known = KnownCurves(
+        (((0, 5, 9), (0, 4, 3), (0, 3, 4), (0, 2, 4), (0, 1, -5), (0, 0, 1),
+          (3, 1, 1), (1, 1, -2), (3, 0, 5), (1, 0, -10)),),
+        (Fraction(-1), Fraction(1, 3)),
+    )  # fmt: skip
+
+    def fail(*_: object) -> None:
+        raise AssertionError("the long way")
+
+    monkeypatch.setattr("ptmcad.verification.heights.points_over", fail)
+    monkeypatch.setattr("ptmcad.exact.cad.points.squarefree_part", fail)
+    assert checker(known).between(LOW, HIGH) == 2
+    assert len(engine(known).between(LOW, HIGH, [])) == 2
+
+
+@pytest.mark.parametrize("digits", [20, 60, 200, 700])
+def test_points_that_are_very_near_to_each_other_are_two(digits: int) -> None:
+    # v (10^digits v - 1) + (u^2 - 2) u
+    known = KnownCurves(
+        (((0, 2, 10**digits), (0, 1, -1), (3, 0, 1), (1, 0, -2)),), (Fraction(0), Fraction(1, 10**digits))
+    )
+    assert checker(known).between(LOW, HIGH) == 2
+    assert len(engine(known).between(LOW, HIGH, [])) == 2
