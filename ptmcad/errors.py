@@ -6,6 +6,7 @@
     * PoleError            -- a denominator vanishes at the point where a value was asked for
   * HypothesisError        -- the input is well formed but a hypothesis of the method fails
     * DegenerateSliceError -- the whole slice lies inside the discriminant variety: exit status 2
+      * NothingToCountError -- off some curves there is no solution, or none that counts: exit status 2
     * InfiniteSolutionsError -- infinitely many equilibria at every point of the slice: exit status 2
     * DimensionError       -- a formula for two angles was asked about a system that has more, or one
     * GeometryError        -- a length or a stiffness is not positive somewhere in the window: exit status 2
@@ -179,6 +180,10 @@ class HypothesisError(PtmcadError):
 
 class DegenerateSliceError(HypothesisError):
     """Every point of the slice lies on the discriminant variety."""
+
+
+class NothingToCountError(DegenerateSliceError):
+    """Off some curves of the slice there is no solution, real or complex, or inequalities exclude all."""
 
 
 class InfiniteSolutionsError(HypothesisError):

@@ -1,7 +1,9 @@
 """What a record asks and what that will cost, before anything is computed.
 
-Guarantee: the number of complex solutions is exact at the point that is named, and so at all points but those of some
-curves; the cost is a rough class, from that number.
+Guarantee: what an engine would refuse without computing is refused here, in the same words. The number of complex
+solutions is exact at the point that is named, and so at all points but those of some curves; the cost is a rough class,
+from that number. Where the degrees of the equations allow so many that counting them would itself take long, they are
+not counted.
 """
 
 from __future__ import annotations
@@ -12,15 +14,16 @@ from fractions import Fraction
 
 from ptmcad.ask.engines import is_certified
 from ptmcad.mechanism import Mechanism, ptm
+from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
 
 MAX_UNKNOWNS = 4
 """Beyond, even one point takes too long for a question that should be answered at once."""
-MAX_CERTIFIED = 3
-"""Unknowns that the certified engine takes."""
+MAX_DEGREE, MAX_BOUND = 12, 400
+"""Of an equation, and of the number of solutions by Bezout's theorem: beyond, too."""
 _CLASSES = (
-    (6, "a second or less"),
-    (10, "seconds"),
+    (4, "a second or less"),
+    (8, "seconds, on most slices"),
     (16, "from seconds to minutes"),
     (20, "minutes to hours: try --timeout, and counts along lines by ptmcad range"),
 )
@@ -34,6 +37,7 @@ class Check:
     Attributes
     ----------
     complex_solutions : at ``sample``; None where they were not counted, or where there are infinitely many there.
+    bound : of their number by Bezout's theorem, where they were not counted because of it.
     engine : the one that ``--engine auto`` takes.
     cost : in words.
     """
@@ -43,41 +47,56 @@ class Check:
     complex_solutions: int | None
     engine: str
     cost: str
+    bound: int | None = None
 
 
 def check(slice: Slice) -> Check:
-    """What a slice asks and what that will cost."""
+    """What a slice asks and what that will cost.
+
+    Raises
+    ------
+    ConfigError
+        When no engine takes the model.
+    GeometryError
+        When a parameter is not in the whole window what it needs to be, or that is not proved.
+    """
+    prove_slice(slice)
     # thirds and sevenths of the window: rarely on a curve that a person has in mind
     sample = tuple(a.low + (a.high - a.low) * share for a, share in zip(slice.axes, (_ACROSS, _UP), strict=True))
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
-        if len(slice.model.unknowns) > MAX_CERTIFIED:
-            cost = f"no engine makes this map yet: with free lengths there may be {MAX_CERTIFIED} unknowns"
-        elif slice.model == ptm() or len(slice.model.unknowns) == 1:
-            cost = "seconds for half a percent, and longer for less"
-        else:
-            cost = "seconds to minutes for a percent, more where springs get short"
-        return Check(slice, at, None, "certified", cost)
+        if slice.model != ptm():
+            from ptmcad.certified.plain.problem import problem_of
+
+            problem_of(slice)
+        return Check(slice, at, None, "certified", _CERTIFIED)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return Check(slice, at, None, "exact", _BEYOND)
-    found = _complex_solutions(slice, at)
-    if found is None:
-        return Check(slice, at, None, "exact", "none: there are infinitely many solutions, or none, at the sample")
-    return Check(slice, at, found, "exact", next((cost for most, cost in _CLASSES if found <= most), _BEYOND))
+    return _counted(slice, at)
 
 
 _ACROSS, _UP = Fraction(10, 21), Fraction(19, 35)
+_CERTIFIED = (
+    "grows as the tolerance falls, and where springs get short: begin with --tolerance 1/20 --timeout 60, and go on "
+    "with --resume"
+)
 
 
-def _complex_solutions(slice: Slice, at: tuple[Fraction, Fraction]) -> int | None:
+def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:
+    """The check of a slice that the exact engine takes."""
     from ptmcad.algebra.polynomials import from_fraction
-    from ptmcad.exact.counting import solutions_at
+    from ptmcad.exact.point_system import degree_bound, solutions_at
     from ptmcad.exact.stages import point_values, problem_of
 
     problem = problem_of(slice)
-    return solutions_at(problem.system, point_values(problem.parameters, (from_fraction(at[0]), from_fraction(at[1]))))[
-        0
-    ]
+    values = point_values(problem.parameters, (from_fraction(sample[0]), from_fraction(sample[1])))
+    degree, bound = degree_bound(problem.system, values)
+    if degree > MAX_DEGREE or bound > MAX_BOUND:
+        return Check(slice, sample, None, "exact", "not known: try single points first, by ptmcad solve", bound)
+    found, _ = solutions_at(problem.system, values)
+    if not found:
+        return Check(slice, sample, None, "exact", "none: there are infinitely many solutions, or none, at the sample")
+    return Check(slice, sample, found, "exact", next((cost for most, cost in _CLASSES if found <= most), _BEYOND))
 
 
 def check_text(found: Check) -> Iterator[str]:
@@ -98,7 +117,9 @@ def check_text(found: Check) -> Iterator[str]:
     yield f"{'axes':<12}{', '.join(f'{a.name} from {a.low} to {a.high}' for a in slice.axes)}"
     yield f"{'count':<12}{slice.count.value}"
     at = ", ".join(f"{a.name} = {value}" for a, value in zip(slice.axes, found.sample, strict=True))
-    number = "not counted" if found.complex_solutions is None else str(found.complex_solutions)
-    yield f"{'solutions':<12}{number}{'' if found.complex_solutions is None else f' complex ones at {at}'}"
+    number = "not counted" if found.complex_solutions is None else f"{found.complex_solutions} complex ones at {at}"
+    if found.bound is not None:
+        number = f"at most {found.bound} complex ones, by the equations' degrees"
+    yield f"{'solutions':<12}{number}"
     yield f"{'engine':<12}{found.engine}"
     yield f"{'cost':<12}{found.cost}"

@@ -16,20 +16,17 @@ from flint import ctx, fmpq
 
 from ptmcad.algebra.fibre import Fibre
 from ptmcad.algebra.number_field import Element
-from ptmcad.algebra.points import RealPoint, points, real_values
+from ptmcad.algebra.points import Points, RealPoint, points, real_values
 from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.exact.counting import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.models.potential import geometry_of, system_from
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, polynomial_at
+from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.statics import PointModel, State, is_positive, pose_of, state_at
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
-
-INFINITELY_MANY = "infinitely many equilibria"
-COMPLEX_DOUBLE = "two solutions that are not real coincide"
 
 
 def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int) -> Poses:
@@ -48,11 +45,10 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int) -
     system = system_from(given)
     values = {name: from_fraction(v) for name, v in parameters.items()}
     try:
-        point = point_system(system, values)
+        point, found = _solutions(system, values)
     except DegeneratePoint:
-        return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, INFINITELY_MANY)
-    is_compact = not system.ring.reals
-    found = points(point.algebra, 1 if is_compact else None)
+        what = "equilibria" if system.has_index or isinstance(given, Mechanism) else "solutions"
+        return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, f"infinitely many {what}")
     # where equations are simpler in other angles there are more coordinates than those of the unknowns
     real = [replace(p, unknowns=p.unknowns[: system.ring.width]) for p in found.real]
     model = _at_point(given, system, point, values, parameters)
@@ -62,7 +58,7 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int) -
     degenerate = any(pose.multiplicity > 1 for pose in poses)
     if not degenerate and system.has_index and system.is_on_torus:
         _check_euler_sum(poses)
-    energies = _energy_ranks(poses, states, point.algebra, model, is_compact)
+    energies = _energy_ranks(poses, states, point.algebra, model, point.is_bounded)
     # of equal energies the larger value of the separating form comes first, in which ``found.real`` increases
     order = sorted(range(len(poses)), key=lambda k: (poses[k].stable is not True, energies[k], -k))
     return Poses(
@@ -72,8 +68,39 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int) -
         Status.ON_VARIETY if degenerate else Status.EXACT,
         digits,
         max((bits for _, bits in results), default=0),
-        COMPLEX_DOUBLE if not degenerate and found.distinct < found.total else "",
+        "" if degenerate else _remark(found),
     )
+
+
+def _remark(found: Points) -> str:
+    """What coincides where no solution that counts is degenerate."""
+    if found.distinct == found.total:
+        return ""
+    if found.total - found.distinct > sum(p.multiplicity - 1 for p in found.real):
+        return "two solutions that are not real coincide"
+    return "two solutions that an inequality excludes coincide"
+
+
+def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[PointSystem, Points]:
+    """All solutions, or those at which no inequality's polynomial is zero, where others are in the way.
+
+    Raises
+    ------
+    DegeneratePoint
+        When there are infinitely many.
+    """
+    try:
+        point = point_system(system, values)
+        found = points(point.algebra, 1 if point.is_bounded else None)
+        if not system.inequalities or found.distinct == found.total:
+            return point, found
+    except DegeneratePoint:
+        if not system.inequalities:
+            raise
+    point = point_system(system, values, saturated=True)
+    if not point.algebra.dimension:
+        return point, Points((), (), 0, 0)
+    return point, points(point.algebra, None)
 
 
 def _at_point(

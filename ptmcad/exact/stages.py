@@ -29,14 +29,15 @@ from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
-from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
+from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError, NothingToCountError
 from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
 from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
 from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
-from ptmcad.exact.counting import DegeneratePoint, Equilibria, equilibria, solutions_at
+from ptmcad.exact.counting import Equilibria, equilibria
 from ptmcad.exact.models import ParametricSystem, system_from
+from ptmcad.exact.point_system import DegeneratePoint, solutions_at
 from ptmcad.exact.regions import Link, members, merge
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.question.slice import Count, Slice
@@ -168,8 +169,10 @@ def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset(), base: 
     system, parameters, window = problem.system, problem.parameters, problem.window
     try:
         found = discriminant_variety(system, parameters, window, domain_limits(system, parameters), keep)
+    except NothingToCountError:
+        raise
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
-        raise type(error)(f"{error}; {_witness(problem)}") from error
+        raise type(error)("; ".join(filter(None, (str(error), _witness(problem))))) from error
     views = [curves_of(found.components, base) for base in (0, 1)]
     costs = (predicted_cost(views[0]), predicted_cost(views[1]))
     if base is None:
@@ -357,7 +360,7 @@ def point_values(parameters: dict[str, Ratio], at: Sample) -> dict[str, fmpq]:
 
 
 def _witness(problem: SliceProblem) -> str:
-    """What is wrong at one point of a slice that is degenerate everywhere."""
+    """What is wrong at one point of a slice that is degenerate everywhere; empty where that does not show."""
     at = (simplest_between(*problem.window[0]), simplest_between(*problem.window[1]))
     where = problem.place(at)
     if any(evaluate(below, *at) == 0 for _, below in problem.parameters.values()):
@@ -365,6 +368,8 @@ def _witness(problem: SliceProblem) -> str:
     different, multiplicity = solutions_at(problem.system, point_values(problem.parameters, at))
     if different is None:
         return f"for example at {where} there are infinitely many solutions"
+    if different == multiplicity:
+        return ""
     return f"for example at {where} only {different} of {multiplicity} solutions are different"
 
 

@@ -47,7 +47,7 @@ from ptmcad.algebra.quotient import (
 )
 from ptmcad.algebra.window import Interval, nowhere_zero
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind
-from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError
+from ptmcad.errors import DegenerateSliceError, InfiniteSolutionsError, NothingToCountError
 from ptmcad.exact.models.system import ParametricSystem, SliceSystem, leading_minors, on_slice, saturated
 from ptmcad.text.plane import PlanePolynomial
 
@@ -175,21 +175,27 @@ def _nondegenerate(equations: SliceSystem) -> _Nondegenerate:
             raise
     for condition in equations.inequalities:
         equations = saturated(equations, _lifted(condition, equations))
+        if not _algebra(equations).dimension:
+            raise NothingToCountError(
+                "at every point of the slice each solution, real or complex, makes the left side of an inequality "
+                "zero: there is nothing to count"
+            )
     return _with_jacobian(equations)
 
 
 def _with_jacobian(equations: SliceSystem) -> _Nondegenerate:
     algebra = _algebra(equations)
     if not algebra.dimension:
-        raise DegenerateSliceError(
+        raise NothingToCountError(
             "off a curve of the slice the equations have no solution, real or complex: there is nothing to count"
         )
     rows = multiples(algebra, equations.jacobian)
     jacobian_norm = determinant([[ratio(c, denominator) for c in row] for row, denominator in rows])
     if jacobian_norm[0].is_zero():
+        what = "equilibrium has a singular Hessian" if equations.has_index else "solution has a singular Jacobian"
         raise DegenerateSliceError(
-            "the slice lies inside the discriminant variety: at every point of it some equilibrium has a singular "
-            "Hessian, so no count is stable under a small change; fix or free another parameter"
+            f"the slice lies inside the discriminant variety: at every point of it some {what}, so no count is stable "
+            "under a small change; fix or free another parameter"
         )
     return _Nondegenerate(equations, algebra, rows, jacobian_norm)
 
@@ -206,7 +212,10 @@ def _sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[
     for p in equations.stability:
         product = norm(algebra, p)[0]
         if product.is_zero():  # there solutions with p = 0 are not stable, whatever the others are
-            product = norm(_algebra(saturated(equations, p)), {(*m, 0): c for m, c in p.items()})[0]
+            others = _algebra(saturated(equations, p))
+            if not others.dimension:
+                continue  # at all solutions p = 0: none is stable anywhere
+            product = norm(others, {(*m, 0): c for m, c in p.items()})[0]
         yield product
 
 
@@ -254,9 +263,10 @@ Where the first order's basis degenerates, these have not, so far."""
 
 
 def _algebra(equations: SliceSystem) -> QuotientAlgebra:
+    why = "nothing holds some motion; " if equations.has_index else ""
     infinitely_many = InfiniteSolutionsError(
-        "at every point of the slice the equations have infinitely many solutions (complex ones included): the loads "
-        "and springs leave a motion free; fix or free another parameter"
+        "at every point of the slice the equations have infinitely many solutions (complex ones included): "
+        f"{why}fix or free another parameter"
     )
     if any(not equation for equation in equations.equations):
         raise infinitely_many

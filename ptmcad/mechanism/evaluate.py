@@ -165,6 +165,17 @@ class _Evaluation(Generic[E]):
         return total[0 if call.function == "cos" else 1]
 
 
+def multiples(tree: Tree) -> dict[str, Fraction]:
+    """A sum of multiples of names, as the multiples; what stands alone is under the empty name.
+
+    Raises
+    ------
+    ExpressionError
+        When the tree is none.
+    """
+    return interpret(tree, _Angles())
+
+
 class _Angles:
     """The interpretation as a sum of multiples of angles: names to multiples, the empty name to the constant."""
 

@@ -1,20 +1,22 @@
-"""What a description of a mechanism has to satisfy and no single entry shows: rigid bars, and no loose unknown.
+"""What a description of a mechanism has to satisfy and no single entry shows: rigid bars, no loose unknown, symmetries.
 
 Guarantee: exact; decided in Q[parameters, lengths][cos, sin], reduced by cos^2 + sin^2 = 1. A bar is accepted only when
-its length was proved constant, an unknown refused only when its equation was proved to vanish identically.
+its length was proved constant, a symmetry only when it was proved to be one; an unknown is refused only when its
+equation was proved to vanish identically.
 
 The ring is a small one of its own: readers and checkers load no algebra.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.description import Mechanism, UnknownKind
-from ptmcad.mechanism.evaluate import evaluate
-from ptmcad.text.tree import Number, Tree
+from ptmcad.mechanism.evaluate import evaluate, multiples
+from ptmcad.text.tree import Call, Name, Number, Tree
 
 MAX_WORK = 12_000
 """Products of terms for one question, a fraction of a second; two bars and a spring take some hundred."""
@@ -178,23 +180,99 @@ def _held(mechanism: Mechanism) -> set[str]:
             held.update(u for u in mechanism.unknowns if squared.derivative(u).terms)
         if len(held) == len(mechanism.unknowns):
             return held
-    for load in mechanism.loads:
-        work = sum(
-            (points.value(force) * place for force, place in zip((load.x, load.y), points.at(load.point), strict=True)),
-            start=ring.constant(Fraction(0)),
-        )
-        energy -= work + work  # twice the energy throughout
+    energy -= points.work_of_loads()  # twice the energy throughout
     for torsion in mechanism.torsion:
         energy += points.value(torsion.energy) * ring.constant(Fraction(2))
     return held | {u for u in mechanism.unknowns if energy.derivative(u).terms}
 
 
+def check_symmetries(mechanism: Mechanism, faults: Faults) -> None:
+    """Note each substitution that is not proved to leave the equilibria as they are."""
+    for n, images in enumerate(mechanism.symmetries, 1):
+        key = f"symmetries.{n}"
+        with faults:
+            try:
+                holds = _are_the_same(mechanism, _Image(Ring(), {}), _Image(Ring(), images))
+            except ExpressionError as error:
+                raise ConfigError(
+                    f"it is not proved to be a symmetry: {error.message}", key=f"symmetries.{n}"
+                ) from None
+            if not holds:
+                raise ConfigError(
+                    "this is no symmetry: with these substitutions the energy changes by something that varies with an "
+                    "unknown, or the moments do other work; leave it out, or mend it",
+                    key=key,
+                )
+
+
+class _Image:
+    """A ring in which names have the values of their images, in another ring."""
+
+    def __init__(self, ring: Ring, images: Mapping[str, Tree]):
+        self.ring, self.images = ring, images
+
+    def constant(self, value: Fraction) -> Polynomial:
+        return self.ring.constant(value)
+
+    def parameter(self, name: str) -> Polynomial:
+        return evaluate(self.images[name], self.ring) if name in self.images else self.ring.variable(name)
+
+    def cos(self, angle: str) -> Polynomial:
+        return evaluate(Call("cos", self.images.get(angle, Name(angle))), self.ring)
+
+    def sin(self, angle: str) -> Polynomial:
+        return evaluate(Call("sin", self.images.get(angle, Name(angle))), self.ring)
+
+
+def _are_the_same(mechanism: Mechanism, one: _Image, other: _Image) -> bool:
+    """Whether the equilibria are those of the same energy and the same work of moments, but for numbers.
+
+    Springs with a free length have roots in their energies: they are the same when stiffness, free length and squared
+    length are.
+    """
+    (energy, springs, work), (energy2, springs2, work2) = (_feels(mechanism, image) for image in (one, other))
+    change = energy - energy2
+    if springs != springs2 or any(change.derivative(u).terms for u in mechanism.unknowns):
+        return False
+    return work == work2
+
+
+_Terms = frozenset[tuple[Monomial, Fraction]]
+_Spring = tuple[_Terms, _Terms, _Terms]
+
+
+def _feels(mechanism: Mechanism, ring: _Image) -> tuple[Polynomial, Counter[_Spring], dict[str, _Terms]]:
+    """Twice the energy without springs of free length, these springs, and the moments' work along each unknown."""
+    points = _Points(mechanism, ring)
+    energy = ring.constant(Fraction(0))
+    springs: list[_Spring] = []
+    for spring in mechanism.springs:
+        squared, k = points.squared(spring.start, spring.end), points.value(spring.stiffness)
+        if isinstance(spring.free, Number) and not spring.free.value:
+            energy += k * squared
+        else:
+            springs.append((_terms(k), _terms(points.value(spring.free)), _terms(squared)))
+    energy -= points.work_of_loads()
+    for torsion in mechanism.torsion:
+        energy += points.value(torsion.energy) * ring.constant(Fraction(2))
+    work = {u: ring.constant(Fraction(0)) for u in mechanism.unknowns}
+    for moment in mechanism.moments:
+        for unknown, c in multiples(ring.images.get(moment.unknown, Name(moment.unknown))).items():
+            if unknown in work:
+                work[unknown] += points.value(moment.value) * ring.constant(c)
+    return energy, Counter(springs), {u: _terms(w) for u, w in work.items()}
+
+
+def _terms(p: Polynomial) -> _Terms:
+    return frozenset(p.terms.items())
+
+
 class _Points:
     """The coordinates of a mechanism's points, each computed once."""
 
-    def __init__(self, mechanism: Mechanism):
-        self.trees: Mapping[str, tuple[Tree, Tree]] = mechanism.points
-        self.ring = Ring()
+    def __init__(self, mechanism: Mechanism, ring: Ring | _Image | None = None):
+        self.mechanism = mechanism
+        self.ring = ring or Ring()
         self.known: dict[str, tuple[Polynomial, Polynomial]] = {}
 
     def value(self, tree: Tree) -> Polynomial:
@@ -202,7 +280,7 @@ class _Points:
 
     def at(self, name: str) -> tuple[Polynomial, Polynomial]:
         if name not in self.known:
-            x, y = self.trees[name]
+            x, y = self.mechanism.points[name]
             self.known[name] = self.value(x), self.value(y)
         return self.known[name]
 
@@ -211,4 +289,13 @@ class _Points:
         total = self.ring.constant(Fraction(0))
         for a, b in zip(self.at(start), self.at(end), strict=True):
             total += (b - a) * (b - a)
+        return total
+
+    def work_of_loads(self) -> Polynomial:
+        """Twice the work of the dead forces."""
+        total = self.ring.constant(Fraction(0))
+        for load in self.mechanism.loads:
+            for force, place in zip((load.x, load.y), self.at(load.point), strict=True):
+                work = self.value(force) * place
+                total += work + work
         return total

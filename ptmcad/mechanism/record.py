@@ -14,7 +14,7 @@ from ptmcad.errors import ConfigError, Faults
 from ptmcad.mechanism.bodies import add_bodies
 from ptmcad.mechanism.description import Load, Mechanism, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.proofs import check_bars, check_unknowns
+from ptmcad.mechanism.proofs import check_bars, check_symmetries, check_unknowns
 from ptmcad.mechanism.reading import (
     MAX_BODIES,
     Reader,
@@ -108,6 +108,7 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
     if not proved:
         check_bars(found, faults)
         check_unknowns(found, faults)
+        check_symmetries(found, faults)
     check_use(found, faults)
     faults.check()
     return found

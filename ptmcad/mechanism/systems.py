@@ -12,6 +12,7 @@ from ptmcad.errors import ConfigError, Faults
 from ptmcad.mechanism.description import Kind, Parameter, System, UnknownKind
 from ptmcad.mechanism.reading import (
     MAX_ENTRIES,
+    PI,
     Reader,
     check_keys,
     listed,
@@ -59,10 +60,13 @@ def described_system(record: Mapping[str, Any]) -> System:
     trees = {key: tree for key, text in texts.items() if (tree := _tree(text, key, faults)) is not None}
     faults.check()
     listed_ones = tuple(parameters)
-    for found in dict.fromkeys(name for tree in trees.values() for name in names_of(tree)):
-        if found not in parameters and found not in unknowns:
-            with faults:
-                parameters[new_name(found, found, {})] = Parameter(found, Kind.NUMBER, "", None)
+    for key, tree in trees.items():
+        for found in names_of(tree):
+            if found not in parameters and found not in unknowns:
+                with faults:
+                    if found == PI:
+                        raise ConfigError("pi is no rational number: name a parameter in its place", key=key)
+                    parameters[new_name(found, key, {})] = Parameter(found, Kind.NUMBER, "", None)
     with faults:
         if len(parameters) > MAX_ENTRIES:
             raise ConfigError(f"{len(parameters)} names of parameters, more than {MAX_ENTRIES}", key="equations")

@@ -13,7 +13,7 @@ import sympy
 
 import ptmcad
 from ptmcad.errors import ConfigError
-from ptmcad.exact.counting import DegeneratePoint
+from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.mechanism import described
 
 PENDULUM: dict[str, Any] = {

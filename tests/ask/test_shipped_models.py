@@ -18,8 +18,11 @@ import yaml
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from ptmcad import RegionMap, Slice, classify, load
+from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Merge
-from ptmcad.exact.counting import Counts, count_by_isolation, count_by_signature, solutions_at
+from ptmcad.exact.counting import count_by_isolation
+from ptmcad.exact.point_system import solutions_at
+from ptmcad.exact.signatures import count_by_signature
 from ptmcad.exact.stages import point_values, problem_of, variety_of
 from ptmcad.question.slice import Count
 

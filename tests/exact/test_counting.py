@@ -14,8 +14,10 @@ from support.maps import CONFIGS, shipped
 from support.shipped_records import EXACT
 
 from ptmcad import load
-from ptmcad.exact.counting import DegeneratePoint, count_by_isolation, count_by_signature
+from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_of
+from ptmcad.exact.point_system import DegeneratePoint
+from ptmcad.exact.signatures import count_by_signature
 
 SYSTEM = system_of("ptm")
 SHIPPED = [path.stem for path in EXACT]

@@ -17,8 +17,8 @@ from ptmcad.algebra.fibre import Fibre, coordinates_at, univariate_representatio
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
 from ptmcad.algebra.resultants import balanced, discriminant, resultant
 from ptmcad.exact.cad import area
-from ptmcad.exact.counting import point_system
 from ptmcad.exact.models import system_of
+from ptmcad.exact.point_system import point_system
 from ptmcad.studies.stress.measure import work_of
 from ptmcad.studies.stress.slices import FIG4, LOADED, MapQuestion, ten
 from ptmcad.verification.sturm import roots_between

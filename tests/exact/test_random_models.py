@@ -17,8 +17,9 @@ import ptmcad
 from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.counts import Counts
 from ptmcad.errors import HypothesisError
-from ptmcad.exact.counting import count_by_isolation, count_by_signature
+from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import system_from
+from ptmcad.exact.signatures import count_by_signature
 
 POINTS = 200
 STARTS = 400

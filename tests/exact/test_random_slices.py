@@ -23,8 +23,9 @@ from ptmcad.algebra.real_roots import isolate, refine, squarefree_part
 from ptmcad.answer.regionmap import Status
 from ptmcad.errors import ConfigError, HypothesisError
 from ptmcad.exact.cad.curves import curve
-from ptmcad.exact.counting import DegeneratePoint, count_by_signature
 from ptmcad.exact.models import system_of
+from ptmcad.exact.point_system import DegeneratePoint
+from ptmcad.exact.signatures import count_by_signature
 
 POINTS = 100
 TINY = Fraction(1, 10**40)

@@ -15,10 +15,12 @@ from ptmcad.algebra.polynomials import ONE, PLANE, Ratio
 from ptmcad.algebra.trigonometric import TrigonometricRing
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import Kind
-from ptmcad.exact.counting import count_by_isolation, count_by_signature, solutions_at
+from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models import ParametricSystem, system_from, system_of
 from ptmcad.exact.models.system import from_potential
+from ptmcad.exact.point_system import solutions_at
 from ptmcad.exact.poses import exact_poses
+from ptmcad.exact.signatures import count_by_signature
 from ptmcad.exact.variety import discriminant_variety
 from ptmcad.mechanism import described
 

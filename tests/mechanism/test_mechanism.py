@@ -301,7 +301,7 @@ def test_what_is_wrong_is_named_with_its_key(altered: Change, key: str, part: st
 
 
 def test_a_description_is_known_by_its_contents() -> None:
-    other = deepcopy(RECORD)
+    other = {key: entry for key, entry in deepcopy(RECORD).items() if key != "symmetries"}
     other["springs"][0]["k"] = "2*k1"  # type: ignore[index]
     changed: Mechanism = described(other)
     assert changed != ptm()

@@ -13,8 +13,9 @@ from flint import fmpq
 
 from ptmcad import RegionMap, classify, slice_from_mapping
 from ptmcad.errors import MAX_FAULTS, ConfigError, Faults
-from ptmcad.exact.counting import count_by_isolation, count_by_signature
+from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models.potential import potential, system_from
+from ptmcad.exact.signatures import count_by_signature
 from ptmcad.mechanism import Mechanism, described, described_system, ptm, recognised
 from ptmcad.mechanism.proofs import check_bars, check_unknowns
 from ptmcad.mechanism.ptm import RECORD
@@ -136,6 +137,8 @@ def change(record: dict[str, Any], *path: Any) -> dict[str, Any]:
 LOOSE = change(PLATFORM, "unknowns", {**PLATFORM["unknowns"], "psi": "angle"})
 WRONG = [
     ("a bar that stretches", change(PLATFORM, "bars", 1, ["A", "Q"]), "bars.2", "varies with th and phi and x"),
+    ("a false symmetry", {**PENDULUM, "symmetries": [{"W": "-W"}]}, "symmetries.1", "this is no symmetry"),
+    ("a symmetry but for moments", {**PENDULUM, "symmetries": [{"W": "-W", "th": "-th"}]}, "symmetries.1", "moments"),
     ("nothing holds", LOOSE, "unknowns.psi", "no equation holds"),
     ("torsion of parameters", change(PLATFORM, "torsion", 0, "angle", "L"), "torsion.1.angle", "not an unknown angle"),
     ("rest off the circle", change(PLATFORM, "torsion", 0, "rest", "cos", "1/2"), "torsion.1.rest", "not 1"),

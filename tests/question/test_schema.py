@@ -87,7 +87,7 @@ def test_whatever_a_description_may_say_validates_and_is_read() -> None:
     record["mechanism"] |= {
         "torsion": [{"angle": "phi - th", "k": 1, "rest": {"cos": "3/5", "sin": "4/5"}}, {"angle": "th", "k": "k"}],
         "moments": {"th": "W/2"},
-        "symmetries": [{"W": "-W"}],
+        "symmetries": [{"W": "W", "th": "th"}],
     }
     record["mechanism"]["springs"][0]["free"] = "1/2"
     jsonschema.validate(record, SCHEMA, cls=jsonschema.Draft202012Validator)

@@ -155,6 +155,7 @@ class SliceSystem:
     unknowns : the number of coordinates.
     unbounded : those whose poles are all there are.
     is_compact : whether the real solutions stay bounded.
+    has_index : whether solutions are critical points, for messages.
     """
 
     equations: tuple[UnknownPolynomial, ...]
@@ -165,6 +166,7 @@ class SliceSystem:
     unknowns: int
     unbounded: tuple[int, ...]
     is_compact: bool
+    has_index: bool
 
 
 def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> SliceSystem:
@@ -200,6 +202,7 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
         ring.width,
         ring.unbounded,
         not ring.reals,
+        system.has_index,
     )
 
 

@@ -67,7 +67,6 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> Itera
     groups: dict[str, list[Region]] = {}
     for region in sorted(result.regions, key=lambda r: (_key(r, count), -r.area[0])):
         groups.setdefault(count_text(region, count), []).append(region)
-    model = result.slice.model
     yield Entry(_head(result.slice), strong=True)
     for text, regions in groups.items():
         yield Entry((_with_total(text, regions, result.slice), *_areas(regions)), fill_of(regions[0], count))
@@ -78,7 +77,8 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> Itera
     elif len(result.regions) > 1:
         yield Entry(("the count changes",), STRONG)
     if thin:
-        yield Entry((f"{noun(model)} merge or vanish,", "the count does not change"), THIN)
+        # also where complex solutions alone meet, or leave every bounded set
+        yield Entry(("another curve of the variety,", "the count does not change"), THIN)
     if samples:
         yield Entry(("sample point of a cell",), "dot")
     if hidden:

@@ -1,0 +1,149 @@
+"""A system at one rational point of a slice: its polynomials there and the quotient algebra of its solutions.
+
+Guarantee: exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import prod
+
+from flint import fmpq
+
+from ptmcad.algebra.fibre import (
+    Fibre,
+    UnivariateRepresentation,
+    evaluate,
+    fibre,
+    hermite_matrix,
+    signature,
+    univariate_representation,
+)
+from ptmcad.errors import HypothesisError
+from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, at_point, polynomial_at
+from ptmcad.exact.models.turns import in_old_angles
+
+
+class DegeneratePoint(HypothesisError):
+    """Some solution at the point has a singular Jacobian, or there are infinitely many."""
+
+
+@dataclass(frozen=True, slots=True)
+class PointSystem:
+    """The system and its quotient algebra at one rational point.
+
+    Attributes
+    ----------
+    algebra : of all solutions, or of those at which no inequality's polynomial vanishes (`saturated`); then it has one
+        coordinate more, and where equations are simpler in other angles it has those of these angles too.
+    """
+
+    jacobian: tuple[tuple[RationalPolynomial, ...], ...]
+    inequalities: tuple[RationalPolynomial, ...]
+    stability: tuple[RationalPolynomial, ...]
+    algebra: Fibre
+    is_bounded: bool
+
+    @property
+    def conditions(self) -> tuple[RationalPolynomial, ...]:
+        return (*self.inequalities, *self.stability)
+
+
+def point_system(system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False) -> PointSystem:
+    """The system at rational values of all parameters.
+
+    Parameters
+    ----------
+    saturated : whether solutions at which an inequality's polynomial vanishes are left out.
+
+    Raises
+    ------
+    DegeneratePoint
+        When there are infinitely many solutions.
+    """
+    equations, jacobian = at_point(system, values)
+    inequalities, stability = (
+        tuple(polynomial_at(system, p, values) for p in conditions)
+        for conditions in (system.inequalities, system.stability)
+    )
+    ring = system.ring
+    turns = None if saturated else system.turns
+    if turns is not None:
+        equations, _ = at_point(turns.system, values)
+    generators = [e for e in equations if e] + [{m: fmpq(c) for m, c in circle.items()} for circle in ring.circles]
+    width = ring.width
+    if saturated:
+        generators = [{(*m, 0): c for m, c in g.items()} for g in generators]
+        inverse = {(*m, 1): c for m, c in _product(inequalities).items()}
+        generators.append({**inverse, (0,) * (width + 1): fmpq(-1)})
+        width += 1
+    algebra = fibre(generators, width)
+    if algebra is None:
+        raise DegeneratePoint(f"infinitely many solutions at {text_of_point(values)}")
+    if turns is not None:
+        algebra = in_old_angles(system, algebra, turns)
+    return PointSystem(jacobian, inequalities, stability, algebra, not (ring.reals or saturated))
+
+
+def _product(factors: Sequence[RationalPolynomial]) -> RationalPolynomial:
+    first, *others = factors
+    for other in others:
+        total: RationalPolynomial = {}
+        for m, a in first.items():
+            for n, b in other.items():
+                key = tuple(i + j for i, j in zip(m, n, strict=True))
+                total[key] = total.get(key, fmpq(0)) + a * b
+        first = {m: c for m, c in total.items() if c}
+    return first
+
+
+def text_of_point(values: Mapping[str, fmpq]) -> str:
+    """The point in words, for messages."""
+    return ", ".join(f"{name}={value}" for name, value in values.items())
+
+
+def simple_solutions(
+    system: ParametricSystem, values: Mapping[str, fmpq]
+) -> tuple[PointSystem, UnivariateRepresentation | None]:
+    """The point's system when its solutions are simple, and their representation; None when there are none.
+
+    Solutions at which an inequality's polynomial vanishes, which do not count, are left out where they are not simple.
+
+    Raises
+    ------
+    DegeneratePoint
+        When some solution is singular, or there are infinitely many.
+    """
+    for saturated in (False, True) if system.inequalities else (False,):
+        try:
+            point = point_system(system, values, saturated)
+        except DegeneratePoint:
+            if saturated or not system.inequalities:
+                raise
+            continue
+        if not point.algebra.dimension:
+            return point, None
+        representation = univariate_representation(point.algebra)
+        if representation is not None:
+            return point, representation
+    what = "an equilibrium has a singular Hessian" if system.has_index else "a solution has a singular Jacobian"
+    raise DegeneratePoint(f"{what} at {text_of_point(values)}")
+
+
+def degree_bound(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int, int]:
+    """The greatest degree of an equation, and Bezout's bound for the number of complex solutions, were it finite."""
+    simplest = system if system.turns is None else system.turns.system
+    equations, _ = at_point(simplest, values)
+    degrees = [max(map(sum, e), default=0) for e in equations]
+    return max(degrees), prod(degrees) * 2 ** len(simplest.ring.angles)
+
+
+def solutions_at(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int | None, int]:
+    """Number of different complex solutions, and their number with multiplicity; (None, 0) for infinitely many."""
+    try:
+        algebra = point_system(system, values).algebra
+    except DegeneratePoint:
+        return None, 0
+    one = evaluate(algebra, {(0,) * len(algebra.multiplication): fmpq(1)})
+    return sum(signature(hermite_matrix(algebra, one))), algebra.dimension

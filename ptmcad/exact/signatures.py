@@ -1,0 +1,96 @@
+"""Solutions of a system at a rational point, counted by signatures of Hermite forms.
+
+Guarantee: `count_by_signature` is exact for any number of unknowns, and shares nothing with `ptmcad.exact.counting` but
+the multiplication matrices of `ptmcad.exact.point_system`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations, product
+from math import comb
+
+from flint import fmpq, fmpq_mat
+
+from ptmcad.algebra.fibre import block_hermite_matrix, evaluate, signature
+from ptmcad.answer.counts import Counts
+from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
+from ptmcad.exact.point_system import DegeneratePoint, simple_solutions, text_of_point
+
+
+def count_by_signature(system: ParametricSystem, values: Mapping[str, fmpq]) -> Counts:
+    """Counts at rational values of all parameters, by signatures of Hermite matrices.
+
+    The signature of the form (u, v) -> trace(u^T W v) on vectors of elements of the quotient algebra, W a symmetric
+    matrix of such elements, is the sum of the signatures of W over the real solutions. Of a regular symmetric matrix
+    of size n with i negative eigenvalues the k-th compound matrix has the signature K_k(i; n), a Krawtchouk
+    polynomial, the sum of the products of k of its n eigenvalues' signs; k = 0 ... n tell how many solutions have
+    which i. Where a condition g must be positive, W is multiplied by (g + g^2)/2 in the place of its sign.
+
+    Raises
+    ------
+    DegeneratePoint
+        When some solution has a singular Jacobian, or there are infinitely many.
+    """
+    point, _ = simple_solutions(system, values)
+    width = len(point.algebra.multiplication)
+
+    def matrix(p: RationalPolynomial) -> fmpq_mat:
+        return evaluate(point.algebra, _lifted(p, width))
+
+    def query(conditions: Sequence[fmpq_mat], weights: Sequence[Sequence[fmpq_mat]]) -> int:
+        """The sum of the weights' signatures over the real solutions at which all conditions are positive."""
+        total = 0
+        for exponents in product((1, 2), repeat=len(conditions)):
+            factor = one
+            for condition, e in zip(conditions, exponents, strict=True):
+                for _ in range(e):
+                    factor = factor * condition
+            weighted = [[factor * w for w in row] for row in weights]
+            positive, negative = signature(block_hermite_matrix(point.algebra, weighted))
+            total += positive - negative
+        return total >> len(conditions)
+
+    if not point.algebra.dimension:
+        stable, index = (0 if system.tells_stability else None), (0,) * (system.dimension + 1)
+        return Counts(0, stable, index if system.has_index else None)
+    one = matrix({(0,) * width: fmpq(1)})
+    inequalities, stability = (tuple(map(matrix, conditions)) for conditions in (point.inequalities, point.stability))
+    total = query(inequalities, [[one]])
+    if not system.has_index:
+        return Counts(total, query((*inequalities, *stability), [[one]]) if stability else None, None)
+    hessian = [[matrix(h) for h in row] for row in point.jacobian]
+    n = len(hessian)
+    if _minor(hessian, range(n), range(n)).det() == 0:
+        raise DegeneratePoint(f"an equilibrium has a singular Hessian at {text_of_point(values)}")
+    sums = [total]
+    for k in range(1, n + 1):
+        chosen = list(combinations(range(n), k))
+        sums.append(query(inequalities, [[_minor(hessian, a, b) for b in chosen] for a in chosen]))
+    krawtchouk = fmpq_mat(n + 1, n + 1, [_krawtchouk(k, i, n) for k in range(n + 1) for i in range(n + 1)])
+    numbers = krawtchouk.solve(fmpq_mat(n + 1, 1, sums))
+    index = tuple(int(numbers[i, 0].p) for i in range(n + 1))
+    return Counts(total, index[0], index)
+
+
+def _krawtchouk(k: int, i: int, n: int) -> int:
+    """The sum of the products of k of n signs, of which i are negative."""
+    return sum((-1 if j % 2 else 1) * comb(i, j) * comb(n - i, k - j) for j in range(k + 1))
+
+
+def _minor(matrix: Sequence[Sequence[fmpq_mat]], rows: Sequence[int], columns: Sequence[int]) -> fmpq_mat:
+    """The determinant of some rows and columns of a matrix of commuting matrices."""
+    if len(rows) == 1:
+        return matrix[rows[0]][columns[0]]
+    total = None
+    for k, column in enumerate(columns):
+        rest = [c for c in columns if c != column]
+        term = matrix[rows[0]][column] * _minor(matrix, rows[1:], rest) * fmpq((-1) ** k)
+        total = term if total is None else total + term
+    assert total is not None
+    return total
+
+
+def _lifted(p: RationalPolynomial, width: int) -> RationalPolynomial:
+    """The polynomial in more coordinates."""
+    return {(*m, *(0,) * (width - len(m))): c for m, c in p.items()}

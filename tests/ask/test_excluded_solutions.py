@@ -1,0 +1,102 @@
+"""Solutions that an inequality excludes, and conditions that vanish at every solution: map, points and checker agree."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+import ptmcad
+from ptmcad.answer.regionmap import Status
+from ptmcad.ask.checking import check
+from ptmcad.errors import ConfigError, NothingToCountError
+from ptmcad.question.config import slice_from
+from ptmcad.verification import verify
+
+LINE = {"unknowns": {"x": "real", "y": "real"}}
+WINDOW = {"a": [-3, 3], "b": [-2, 2]}
+# on x = 0 there are infinitely many solutions
+CONTINUUM = {"system": {**LINE, "equations": ["x*(x + y - a)", "x*(x*y - b)"], "positive": ["x"]}, "axes": WINDOW}
+# x = 0 is a double root everywhere
+DOUBLE = {"system": {**LINE, "equations": ["x^2*(x^2 - a*x + b)", "y^2 - x - 1"], "positive": ["x"]}, "axes": WINDOW}
+
+
+def roots(a: Fraction, b: Fraction) -> int:
+    """The number of positive roots of x^2 - a x + b."""
+    if a * a < 4 * b:
+        return 0
+    return 1 if b < 0 else 2 if a > 0 else 0
+
+
+POINTS = [(Fraction(1392, 625), Fraction(1003, 1250)), (Fraction(459, 2500), Fraction(-632, 625)),
+          (Fraction(2), Fraction(1, 3)), (Fraction(-2), Fraction(1, 3)), (Fraction(1), Fraction(1))]  # fmt: skip
+
+
+@pytest.mark.parametrize(("record", "each"), [(CONTINUUM, 1), (DOUBLE, 2)], ids=["a continuum", "a double root"])
+@pytest.mark.parametrize(("a", "b"), POINTS, ids=str)
+def test_solve_counts_what_the_map_counts(record: dict[str, Any], each: int, a: Fraction, b: Fraction) -> None:
+    found = ptmcad.solve(record, {"a": a, "b": b})
+    assert found.status is Status.EXACT
+    assert len(found.poses) == each * roots(a, b)
+    assert not found.remark
+    assert ptmcad.counts_at(record, {"a": a, "b": b}).total == each * roots(a, b)
+
+
+def test_solve_says_that_excluded_solutions_coincide() -> None:
+    record = {"system": {"unknowns": {"x": "real"}, "equations": ["(x + 1)^2*(x - a)*(x - b)"], "positive": ["x"]},
+              "axes": {"a": [1, 2], "b": [3, 4]}}  # fmt: skip
+    found = ptmcad.solve(record, {"a": Fraction(3, 2), "b": Fraction(7, 2)})
+    assert (len(found.poses), found.status) == (2, Status.EXACT)
+    assert found.remark == "two solutions that an inequality excludes coincide"
+
+
+STABLE_NOWHERE = [
+    {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"], "stable": ["x^3 - a*x + b"]},
+    {**LINE, "equations": ["x*(1 - x)", "y - a*x + b"], "stable": ["x - x^2"]},
+    {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"], "stable": ["x^3 - a*x + b", "x"]},
+]
+
+
+@pytest.mark.parametrize("system", STABLE_NOWHERE, ids=["the equation", "a multiple of it", "and another one"])
+def test_a_condition_that_is_zero_at_every_solution_makes_none_stable(system: dict[str, Any]) -> None:
+    found = ptmcad.classify({"system": system, "axes": {"a": [-1, 1], "b": [-1, 1]}, "count": "stable"})
+    assert {region.stable for region in found.regions} == {0}
+    assert verify(found).ok
+
+
+def test_an_inequality_that_is_zero_at_every_solution_leaves_nothing_to_count() -> None:
+    system = {"unknowns": {"x": "real"}, "equations": ["x^2 - a + b"], "positive": ["x^2 - a + b"]}
+    with pytest.raises(NothingToCountError, match="left side of an inequality zero: there is nothing to count$"):
+        ptmcad.classify({"system": system, "axes": {"a": [0, 1], "b": [0, 1]}})
+
+
+def test_check_refuses_what_the_certified_engine_refuses() -> None:
+    mechanism = {
+        "parameters": {"M": {}, "F": {"kind": "force"}},
+        "unknowns": {"th": "angle"},
+        "points": {"A": [2, 0], "P": ["cos(th)", "sin(th)"]},
+        "springs": [{"between": ["A", "P"], "k": 1, "free": "1/2"}],
+        "moments": {"th": "M*cos(th)"},
+        "loads": {"P": [0, "F"]},
+    }
+    slice = slice_from({"mechanism": mechanism, "axes": {"M": [-3, 3], "F": [-3, 3]}})
+    with pytest.raises(ConfigError, match="takes constant moments") as checked:
+        check(slice)
+    with pytest.raises(ConfigError) as classified:
+        ptmcad.classify(slice)
+    assert str(checked.value) == str(classified.value)
+
+
+MANY = {"unknowns": {"x": "real", "y": "real", "z": "real"},
+        "equations": ["(x + y + z + a)^12 - 1", "(x - 2*y + z*b)^11 - 1", "(x + y*z)^9 - x"]}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("system", "bound"),
+    [(MANY, 12 * 11 * 18), ({"unknowns": {"x": "angle"}, "equations": ["cos(40*x) - b*a*sin(x)"]}, 80)],
+    ids=["three polynomials", "a high harmonic"],
+)
+def test_check_does_not_count_more_than_it_can_at_once(system: dict[str, Any], bound: int) -> None:
+    found = check(slice_from({"system": system, "axes": {"a": [0, 1], "b": [0, 1]}}))
+    assert (found.complex_solutions, found.bound) == (None, bound)
