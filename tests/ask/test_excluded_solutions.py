@@ -1,4 +1,4 @@
-"""Solutions that an inequality excludes, and conditions that vanish at every solution: map, points and checker agree."""
+"""Solutions that an inequality excludes, and conditions that are zero at every solution: map, points, checker."""
 
 from __future__ import annotations
 
@@ -36,18 +36,18 @@ POINTS = [(Fraction(1392, 625), Fraction(1003, 1250)), (Fraction(459, 2500), Fra
 @pytest.mark.parametrize(("record", "each"), [(CONTINUUM, 1), (DOUBLE, 2)], ids=["a continuum", "a double root"])
 @pytest.mark.parametrize(("a", "b"), POINTS, ids=str)
 def test_solve_counts_what_the_map_counts(record: dict[str, Any], each: int, a: Fraction, b: Fraction) -> None:
-    found = ptmcad.solve(record, {"a": a, "b": b})
+    found = ptmcad.solve(model=slice_from(record).model, a=a, b=b)
     assert found.status is Status.EXACT
-    assert len(found.poses) == each * roots(a, b)
+    assert len(found.equilibria) == each * roots(a, b)
     assert not found.remark
-    assert ptmcad.counts_at(record, {"a": a, "b": b}).total == each * roots(a, b)
+    assert ptmcad.counts_at(slice_from(record).model, a=a, b=b).total == each * roots(a, b)
 
 
 def test_solve_says_that_excluded_solutions_coincide() -> None:
     record = {"system": {"unknowns": {"x": "real"}, "equations": ["(x + 1)^2*(x - a)*(x - b)"], "positive": ["x"]},
               "axes": {"a": [1, 2], "b": [3, 4]}}  # fmt: skip
-    found = ptmcad.solve(record, {"a": Fraction(3, 2), "b": Fraction(7, 2)})
-    assert (len(found.poses), found.status) == (2, Status.EXACT)
+    found = ptmcad.solve(model=slice_from(record).model, a="3/2", b="7/2")
+    assert (len(found.equilibria), found.status) == (2, Status.EXACT)
     assert found.remark == "two solutions that an inequality excludes coincide"
 
 
@@ -67,7 +67,7 @@ def test_a_condition_that_is_zero_at_every_solution_makes_none_stable(system: di
 
 def test_an_inequality_that_is_zero_at_every_solution_leaves_nothing_to_count() -> None:
     system = {"unknowns": {"x": "real"}, "equations": ["x^2 - a + b"], "positive": ["x^2 - a + b"]}
-    with pytest.raises(NothingToCountError, match="left side of an inequality zero: there is nothing to count$"):
+    with pytest.raises(NothingToCountError, match=r"left side of an inequality zero: there is nothing to count$"):
         ptmcad.classify({"system": system, "axes": {"a": [0, 1], "b": [0, 1]}})
 
 
