@@ -8,7 +8,8 @@ the product of J over them, and let P collect the poles of the characteristic po
 with P != 0 the solutions at nearby generic points stay bounded, and with N != 0 none of them has J -> 0, so they are
 smooth functions there: real ones stay real and apart, and a condition changes its sign only where its norm vanishes.
 The components are tagged CRITICAL (factors of N), INFINITY (factors of P, where a complex solution leaves every bounded
-set) and BOUNDARY (there the slice's equations lose their meaning, or a condition's norm vanishes).
+set; those of them that divide N too are critical on a torus, and at infinity where there are real unknowns) and
+BOUNDARY (there the slice's equations lose their meaning, or a condition's norm vanishes).
 
 Solutions at which an inequality's polynomial vanishes all over the slice never count. They are left out, by one more
 unknown, that polynomial's inverse; where the inverse has a pole the norm vanishes.
@@ -87,7 +88,10 @@ def discriminant_variety(
     seen = _Components(window, without)
     for polynomial in (*equations.boundary, *limits):
         seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
-    seen.adopt(irreducible_factors(jacobian_norm[0]), Kind.CRITICAL)
+    singular = irreducible_factors(jacobian_norm[0])
+    escaping = [] if equations.is_compact else _with_poles(algebra, singular, equations.unbounded)
+    seen.adopt([f for f in singular if f not in escaping], Kind.CRITICAL)
+    seen.adopt(escaping, Kind.INFINITY)
     for polynomial in _sign_changes(equations, algebra):
         seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
     suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in seen.found]
