@@ -1,4 +1,5 @@
-"""Real roots of integer polynomials, counted by Sturm sequences.
+"""Real roots of integer polynomials, counted by Sturm sequences; of long polynomials, whose sequences are longer, by
+FLINT's isolation of all complex roots, in disjoint balls of which the real ones are known to be real.
 
 Guarantee: exact, multiple roots counted once. (The decomposition itself isolates by Descartes' rule; see
 `ptmcad.algebra.real_roots`, which is not used here.)
@@ -9,8 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from itertools import pairwise
+from typing import Any
 
-from flint import fmpq, fmpq_poly, fmpz_poly
+from flint import arb, ctx, fmpq, fmpq_poly, fmpz_poly
 
 
 def squarefree(p: fmpz_poly) -> fmpz_poly:
@@ -38,6 +40,10 @@ def _variations(chain: tuple[fmpz_poly, ...], at: fmpq) -> int:
     return sum(a != b for a, b in pairwise(signs))
 
 
+LONG_DEGREE = 64
+"""From which on Sturm sequences take longer than complex roots do."""
+
+
 def roots_between(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
     """The number of different roots in the open interval (low, high)."""
     if p.degree() < 1 or low >= high:
@@ -46,8 +52,36 @@ def roots_between(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
         deflated, power = p.deflation()
         if power > 1:
             return roots_between(deflated, low**power, high**power)
-    chain = _chain(tuple(int(c) for c in p.coeffs()))
+    coefficients = tuple(int(c) for c in p.coeffs())
+    if p.degree() >= LONG_DEGREE:
+        return _balls_between(coefficients, low, high, [end for end in (low, high) if p(end) == 0])
+    chain = _chain(coefficients)
     return _variations(chain, low) - _variations(chain, high) - (1 if p(high) == 0 else 0)
+
+
+def _balls_between(coefficients: tuple[int, ...], low: fmpq, high: fmpq, ends: Sequence[fmpq]) -> int:
+    """The number of roots in (low, high), of whose ends some are roots."""
+    bits = 64
+    while True:
+        inside = 0
+        for ball in _real_roots(coefficients, bits):
+            if any(ball.contains(end) for end in ends):
+                continue  # there is one root in the ball, so it is this end
+            if ball > low and ball < high:
+                inside += 1
+            elif not (ball < low or ball > high):
+                break
+        else:
+            return inside
+        bits *= 2
+
+
+@lru_cache(maxsize=256)
+def _real_roots(coefficients: tuple[int, ...], bits: int) -> tuple[arb, ...]:
+    """Disjoint balls with one real root each, of so many bits."""
+    with ctx.workprec(bits):
+        pairs: Any = squarefree(fmpz_poly(list(coefficients))).complex_roots()  # FLINT's stub says otherwise
+        return tuple(root.real for root, _ in pairs if root.imag == 0)
 
 
 def roots_within(p: fmpz_poly, low: fmpq, high: fmpq) -> int:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from flint import fmpq, fmpz_poly
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.curves_with_known_points import KnownCurves, known_curves
 
@@ -20,6 +20,7 @@ from ptmcad.exact.cad.points import PointsOver
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.claims import PlaneCurve
 from ptmcad.verification.heights import Heights
+from ptmcad.verification.sturm import LONG_DEGREE, roots_between
 
 SQRT2 = fmpz_poly([-2, 0, 1])
 LOW, HIGH = fmpq(-7, 2), fmpq(10, 3)
@@ -95,3 +96,26 @@ def test_points_that_are_very_near_to_each_other_are_two(digits: int) -> None:
     )
     assert checker(known).between(LOW, HIGH) == 2
     assert len(engine(known).between(LOW, HIGH, [])) == 2
+
+
+# ------------------------------------------------------------------------------------ real roots of long polynomials
+
+
+@settings(max_examples=20)
+@given(
+    st.lists(st.fractions(-2, 2, max_denominator=12), min_size=1, max_size=5, unique=True),
+    st.lists(st.fractions(-2, 2, max_denominator=12), min_size=2, max_size=2, unique=True),
+    st.integers(1, 3),
+)
+def test_roots_of_long_polynomials_are_counted(roots: list[Fraction], ends: list[Fraction], power: int) -> None:
+    """Which may be multiple, or the interval's ends, or very near to each other."""
+    x = fmpz_poly([0, 1])
+    p = (x**62 + 1) * (10**12 * x - 3 * 10**12 - 1) * (x - 3) ** 2
+    for root in roots:
+        p *= (root.denominator * x - root.numerator) ** power
+    assert p.degree() >= LONG_DEGREE
+    low, high = sorted(ends)
+    inside = roots_between(p, fmpq(low.numerator, low.denominator), fmpq(high.numerator, high.denominator))
+    assert inside == sum(low < r < high for r in roots)
+    assert roots_between(p, fmpq(5, 2), fmpq(4)) == 2
+    assert roots_between(p, fmpq(3), fmpq(4)) == 1
