@@ -19,6 +19,7 @@ def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fr
     Parameters
     ----------
     model : one that has a potential: no moment depends on an unknown.
+    parameters : all of the model's; free lengths are zero where they are not among them.
 
     Raises
     ------
@@ -27,5 +28,6 @@ def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fr
     """
     if not isinstance(model, Mechanism):
         return {}
-    found = {unknown: value_at(tree, parameters) for unknown, tree in model.moments}
+    known = dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
+    found = {unknown: value_at(tree, known) for unknown, tree in model.moments}
     return {unknown: value for unknown, value in found.items() if value}

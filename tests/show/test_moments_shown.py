@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+from fractions import Fraction
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -24,6 +26,7 @@ from ptmcad.errors import ConfigError, PictureError
 from ptmcad.question.config import point_from_mapping
 from ptmcad.show.render.landscape import draw_landscape, energy_of
 from ptmcad.show.render.poses import draw_poses
+from ptmcad.show.report import page
 
 
 def bar(moments: dict[str, object], loads: object = (0, "F"), **further: Any) -> dict[str, Any]:
@@ -179,3 +182,24 @@ def test_a_load_is_told_by_its_name_or_as_a_force() -> None:
     assert plain[plain.index("load") + 1] == "force\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}−1"
     several = words(draw_poses(solved(bar({"th": "M"}, (1, "F")), M="1/2", F="1/90")))
     assert "loads; arrows in proportion to them\nexcept that short ones are lengthened" in several
+
+
+def data_of(record: dict[str, Any]) -> dict[str, Any]:
+    result = ptmcad.classify(ptmcad.slice_from_mapping({"name": "s", **record}), area_tolerance="1/10")
+    match = re.search(r'id="data">(.*?)</script>', page(result, timings=False))
+    assert match is not None
+    found: dict[str, Any] = json.loads(match[1])
+    return found
+
+
+def test_the_page_has_the_moments_and_calls_nothing_degenerate_without_a_potential() -> None:
+    data = data_of(ANGLE)
+    assert data["told"]
+    for cell in data["cells"]:
+        ((_, exact, *_), *_) = cell["sample"]
+        assert cell["moments"] == ([float(Fraction(exact.split()[0]))] if exact != "0" else [])
+    data = data_of(UNTOLD)
+    assert not data["told"] and not data["landscape"]
+    poses = [pose for cell in data["cells"] for pose in cell["equilibria"]]
+    assert poses and {pose["kind"] for pose in poses} == {"solution"} and {pose["energy"] for pose in poses} == {""}
+    assert all(cell["moments"] == [] == cell["potential"] for cell in data["cells"])
