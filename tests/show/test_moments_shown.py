@@ -9,6 +9,7 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 import yaml
@@ -203,3 +204,25 @@ def test_the_page_has_the_moments_and_calls_nothing_degenerate_without_a_potenti
     poses = [pose for cell in data["cells"] for pose in cell["equilibria"]]
     assert poses and {pose["kind"] for pose in poses} == {"solution"} and {pose["energy"] for pose in poses} == {""}
     assert all(cell["moments"] == [] == cell["potential"] for cell in data["cells"])
+
+
+CUSP = {
+    "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
+    "axes": {"a": [-2, 2], "b": [-2, 2]},
+}
+
+
+@pytest.mark.parametrize(
+    ("record", "at"),
+    [
+        *((record, {"M": "1/2", "F": "1/3"}) for record in (ANGLE, TWO, MIXED, FREE, UNTOLD)),
+        (CUSP, {"a": "1", "b": "0"}),
+    ],
+)
+def test_poses_of_any_model_are_what_the_schema_says(record: dict[str, Any], at: dict[str, str]) -> None:
+    """Of one unknown and two, with an energy and without; and they are read back."""
+    found = solved(record, **at)
+    data = json.loads(found.to_json())
+    schema = json.loads((Path(__file__).parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8"))
+    jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
+    assert data["equilibria"] and Poses.from_json(found.to_json()) == found
