@@ -46,7 +46,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
 
     Moments are those on the unknowns, angles first, whose work is not in the potential; none where all are zero.
 
-    In a certified map, whose unknowns are angles, solutions and potential are left out.
+    In a certified map, with a cover, solutions and potential are left out.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
         raise ConfigError(f"a parameter has no value at a sample: {error}") from error
     model = result.slice.model
     # springs with free lengths have square roots in their potential
-    polynomial = result.system.unknowns == coordinates(model)
+    polynomial = result.cover is None and result.system.unknowns == coordinates(model)
     potential = potential_at(result.system, values) if polynomial and result.system.potential else None
     drawn = (
         polynomial
