@@ -118,6 +118,17 @@ RECORDS: dict[str, dict[str, Any]] = {
         },
         "axes": {"M": [-2, 2], "a": [-2, 2]},
     },
+    "moments of three unknowns": {
+        "mechanism": {
+            "name": "moments_3",
+            "parameters": {"M": {}, "F": {}},
+            "unknowns": {"a": "angle", "x": "length", "y": "length"},
+            "points": {"O": [0, 0], "P": ["x", "y"], "Q": ["x + cos(a)", "y + sin(a)"], "A": [2, 1]},
+            "springs": [{"between": ["O", "P"], "k": 2}, {"between": ["A", "Q"], "k": 1}],
+            "moments": {"a": "M*x + F", "x": "M*y/2", "y": "F*cos(a)"},
+        },
+        "axes": {"M": [-1, 1], "F": [-1, 1]},
+    },
     **{f"system {seed}": random_system(seed) for seed in (0, 1, 2, 4, 7, 8)},
     **{f"mechanism {seed}": random_mechanism(seed) for seed in (0, 3, 6, 9)},
 }
