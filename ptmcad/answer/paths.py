@@ -49,7 +49,8 @@ class PathEnd:
         meet there, the path's own included; without a potential 0 for a stable one, and 1 for another.
     leaving : the same for those into which they go on beyond.
     energy : of the pose at ``last``; None where there is none.
-    target : the stable pose beyond, to which the mechanism goes, close to ``at``; None at the window's edge.
+    target : the stable pose beyond, to which the mechanism goes, close to ``at``; None at the window's edge, and where
+        the energy, of one value for each pose, does not tell it: under a moment it may turn for ever.
     target_energy : its energy, if it has one.
     """
 
@@ -87,7 +88,12 @@ class PosePath:
 
 @dataclass(frozen=True, slots=True)
 class PosePaths:
-    """The paths of stable poses on a line; of all solutions where nothing says what a stable one is."""
+    """The paths of stable poses on a line; of all solutions where nothing says what a stable one is.
+
+    Attributes
+    ----------
+    has_moments : whether a moment works somewhere on the line, so that no energy tells where a pose goes that vanishes.
+    """
 
     name: str
     model: Model
@@ -95,3 +101,4 @@ class PosePaths:
     at: Mapping[str, Fraction]
     start: Fraction
     paths: tuple[PosePath, ...]
+    has_moments: bool = False

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from fractions import Fraction
+
 from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism.moments import moments_at
+
+UNTOLD = "nothing says which are stable, as a moment depends on an unknown"
 
 
 def noun(model: Model, number: int = 2) -> str:
@@ -35,3 +41,15 @@ def index_words(entries: int) -> str:
     """
     saddles = ["saddles"] if entries == 3 else [f"saddles of index {k}" for k in range(1, entries - 1)]
     return "-".join(["minima", *saddles, "maxima"])
+
+
+def of_what(model: Model, parameters: Mapping[str, Fraction]) -> str:
+    """What an energy at a point leaves out; empty where no moment works.
+
+    Parameters
+    ----------
+    model : one that has a potential.
+    """
+    moments = moments_at(model, parameters)
+    whose = "moments'" if len(moments) > 1 else "moment's"
+    return f"of springs and loads, without the {whose} work" if moments else ""

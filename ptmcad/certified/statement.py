@@ -19,7 +19,8 @@ from ptmcad.text.tree import Chain, Negative, Number, Step, Tree, to_text
 def system_text(model: Model) -> System:
     """The potential, of a mechanism with square roots; gradient and Hessian are its derivatives by the unknowns.
 
-    Of a system without a potential the equations.
+    The work of constant moments is in it, so that it has another value after each turn. Of a system without a
+    potential the equations.
     """
     if isinstance(model, ParametricSystem):
         potential = "" if model.potential is None else to_text(model.potential)
@@ -34,12 +35,14 @@ def _energy(mechanism: Mechanism) -> str:
         (x0, y0), (x1, y1) = mechanism.points[spring.start], mechanism.points[spring.end]
         length = f"sqrt(({_difference(x1, x0)})^2 + ({_difference(y1, y0)})^2)"
         energy.append(f"1/2*{_factor(spring.stiffness)}*({length} - {_factor(spring.free)})^2")
+    energy += [to_text(torsion.energy) for torsion in mechanism.torsion]
     work = [
         f" - {_factor(force)}*{_factor(coordinate)}"
         for load in mechanism.loads
         for force, coordinate in zip((load.x, load.y), mechanism.points[load.point], strict=True)
     ]
-    return " + ".join(energy) + "".join(work)
+    work += [f" - {_factor(moment.value)}*{moment.unknown}" for moment in mechanism.moments]
+    return (" + ".join(energy) + "".join(work)).removeprefix(" ")
 
 
 def _difference(tree: Tree, less: Tree) -> str:

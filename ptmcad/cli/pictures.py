@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from ptmcad.errors import PictureError
+from ptmcad.errors import PictureError, PtmcadError
 from ptmcad.process.output import Writer, save_stopped, where_saved, write_files
 
 
@@ -25,10 +25,17 @@ def picture(name: str, draw: Callable[[Path], None]) -> Writer:
         except MemoryError:
             raise
         except Exception as error:  # a library's, of any kind: settings, fonts, caches, the disk
-            reason = (error.strerror if isinstance(error, OSError) else None) or f"{type(error).__name__}: {error}"
-            raise PictureError(f"{name} cannot be drawn: {reason}") from error
+            raise PictureError(f"{name} cannot be drawn: {_reason(error)}") from error
 
     return write
+
+
+def _reason(error: Exception) -> str:
+    """In words for somebody who does not read the program: names of exceptions are none."""
+    if isinstance(error, PtmcadError):
+        return str(error)
+    said = (error.strerror if isinstance(error, OSError) else None) or str(error)
+    return said if isinstance(error, OSError) else f"drawing failed unexpectedly{f': {said}' if said else ''}"
 
 
 def write_result(folder: Path, writers: Mapping[str, Writer], name: str, text: str) -> tuple[Path, ...]:

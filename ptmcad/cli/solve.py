@@ -33,23 +33,21 @@ def file_names(name: str, formats: tuple[str, ...], landscape: bool) -> tuple[st
 
 
 def drawable(model: Model, names: tuple[str, ...], start: str, landscape: bool) -> tuple[str, ...]:
-    """The files, without pictures of poses of a system that has none, if its landscape is asked for.
+    """The files that can be written; the landscape may be asked for beside what there is, and is refused at the end.
 
     Raises
     ------
     ConfigError
-        For a picture that there is not.
+        For pictures of a system's poses, where no landscape is asked for.
     """
-    reason = no_landscape(model) if landscape else ""
-    if reason:
-        raise ConfigError(reason, key="--landscape")
-    if isinstance(model, Mechanism):
-        return names
-    kept = tuple(name for name in names if name.endswith(".json") or name.startswith(f"{start}-landscape."))
-    if kept != names and not landscape:
-        further = ", or --landscape" if not no_landscape(model) else ""
-        raise ConfigError(f"{no_drawing(model)}; ask for table or json{further}", key="--format")
-    return kept
+    landscapes = tuple(name for name in names if name.startswith(f"{start}-landscape."))
+    if not isinstance(model, Mechanism):
+        kept = tuple(name for name in names if name.endswith(".json") or name in landscapes)
+        if kept != names and not landscape:
+            further = ", or --landscape" if not no_landscape(model) else ""
+            raise ConfigError(f"{no_drawing(model)}; ask for table or json{further}", key="--format")
+        names = kept
+    return tuple(name for name in names if name not in landscapes) if no_landscape(model) else names
 
 
 def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
@@ -140,3 +138,6 @@ def command(
             save(poses, out, start, names)
     if "table" in formats:
         click.echo(poses.table())
+    if landscape and (reason := no_landscape(model)):
+        written = f"; {', '.join(names)} {'are' if len(names) > 1 else 'is'} written" if names else ""
+        raise ConfigError(f"{reason}{written}", key="--landscape")

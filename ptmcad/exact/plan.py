@@ -72,22 +72,18 @@ def _has_conditions(model: Model) -> bool:
     return isinstance(model, System) and bool(model.inequalities or model.stability)
 
 
-def _has_hessian(model: Model) -> bool:
-    return not isinstance(model, System) or model.potential is not None
-
-
 def _sign_curve(model: Model, without: frozenset[str]) -> Iterator[PlanStep]:
     """What could tell indices apart besides det H: nothing of one unknown, and equations have no index."""
-    if _has_hessian(model) and len(model.unknowns) == 2:
+    if model.has_potential and len(model.unknowns) == 2:
         yield saving_step("sign-curve", without)
-    elif _has_hessian(model) and len(model.unknowns) > 2:
+    elif model.has_potential and len(model.unknowns) > 2:
         why = "no eigenvalue of H changes its sign off the critical curves"
         yield saving_step("sign-curve", without, "projections of the leading minors of H", why)
 
 
 def _of_jacobian(model: Model, name: str) -> str:
     """The saving's reason for equations, whose Jacobian is no Hessian; empty for its general words."""
-    return "" if _has_hessian(model) else BY_NAME[name].why.replace("det H", "the Jacobian's determinant")
+    return "" if model.has_potential else BY_NAME[name].why.replace("det H", "the Jacobian's determinant")
 
 
 def _saving_of(c: Component) -> str:

@@ -134,6 +134,15 @@ def have_free_lengths(model: Model, parameters: Mapping[str, Expression]) -> boo
     return any(bool(evaluate(spring.free, known).numerator) for spring in model.springs)
 
 
+def have_moments(model: Model, parameters: Mapping[str, Expression]) -> bool:
+    """Whether some moment, or force on an unknown length, is not zero everywhere: its work is in no stored energy."""
+    if not isinstance(model, Mechanism):
+        return False
+    known = _Expressions(parameters)
+    # a moment that depends on an unknown is none of the axes alone
+    return not model.has_potential or any(bool(evaluate(m.value, known).numerator) for m in model.moments)
+
+
 class _Expressions:
     """The rational functions of the axes as a ring with parameters."""
 

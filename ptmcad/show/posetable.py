@@ -10,8 +10,8 @@ from itertools import pairwise
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.answer.words import counted
-from ptmcad.mechanism import Mechanism, built_in
+from ptmcad.answer.words import UNTOLD, counted, noun, of_what
+from ptmcad.mechanism import Mechanism, Model, built_in
 from ptmcad.question.slice import merged
 from ptmcad.text.enclosure import Enclosure, exact_text
 
@@ -48,22 +48,34 @@ def table(poses: Poses, digits: int | None = None) -> str:
     if poses.equilibria:
         lines += [
             "",
-            *(_wrapped("units", _units(poses.model)) if isinstance(poses.model, Mechanism) else []),
+            *(_wrapped("units", units) if (units := _units(poses.model)) else []),
+            *(_wrapped("energy", [note]) if (note := _energy_note(poses)) else []),
             *(_wrapped("tense", [_TENSE]) if poses.equilibria[0].admissible is not None else []),
         ]
     return "\n".join(lines)
 
 
-def _units(mechanism: Mechanism) -> list[str]:
+def _units(mechanism: Model) -> list[str]:
+    """In what numbers are measured; nothing of a system, whose numbers have no units."""
+    if not isinstance(mechanism, Mechanism):
+        return []
     length, force = mechanism.units
     pivots = " and ".join(f"{angle} at {at}" for angle, at in mechanism.pivots.items())
     return [
         *([f"lengths and coordinates in that of {length}"] if length else []),
         *([f"forces in that of {force}"] if force else []),
-        "energies and the Hessian's eigenvalues in their product",
+        *(["energies and the Hessian's eigenvalues in their product"] if mechanism.has_potential else []),
         # only of what is built in it is known where an angle is measured from
         *([f"angles between rod and base, {pivots}"] if pivots and mechanism.name in built_in() else []),
     ]
+
+
+def _energy_note(poses: Poses) -> str:
+    """What the column of energies leaves out, or why there is none."""
+    model = poses.model
+    if model.has_potential:
+        return of_what(model, poses.parameters)
+    return f"none, and {UNTOLD}" if isinstance(model, Mechanism) else ""
 
 
 _TENSE = "stable, and every spring longer than its free length; a negative force pushes"
@@ -118,7 +130,8 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
         return header, unit, [x.text(digits) for x in numbers]
 
     first = found[0]
-    states: list[Column] = [("state", "", [kind_of(p) for p in found])]
+    called = {"solution": noun(model, 1)}
+    states: list[Column] = [("state", "", [called.get(kind, kind) for kind in map(kind_of, found)])]
     if isinstance(model, Mechanism):
         states.append(("flat", "", ["yes" if p.flat else "no" for p in found]))
     if first.admissible is not None:

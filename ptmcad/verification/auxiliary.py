@@ -96,7 +96,7 @@ def _values(claims: Claims, seed: str, savings: Sequence[str]) -> tuple[list[Val
 def _functions(savings: Sequence[str], fibre: Fibre, monomials: Sequence[Monomial]) -> dict[str, fmpq]:
     """The values of the functions whose factors the savings leave out."""
     found = {}
-    if "sign-curve" in savings and fibre.point.has_potential:
+    if "sign-curve" in savings and fibre.point.has_index:
         for order in range(1, len(fibre.point.jacobian)):
             found["the norm of H11" if order == 1 else f"the norm of the leading minor of order {order}"] = (
                 fibre.minor_norm(order)

@@ -14,11 +14,11 @@ from flint import Ordering, arb, fmpq, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.errors import PoleError
-from ptmcad.mechanism import Model, System
+from ptmcad.mechanism import Model
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.algebra import NotFinite
-from ptmcad.verification.derivation import rational
+from ptmcad.verification.derivation import has_index, rational
 from ptmcad.verification.fibre import Fibre, fibre
 from ptmcad.verification.report import Violation
 from ptmcad.verification.sturm import roots_between, roots_within
@@ -102,8 +102,8 @@ class Claims:
 
     @property
     def describes_equilibria(self) -> bool:
-        """Whether solutions are critical points of a potential."""
-        return not isinstance(self.model, System) or self.model.potential is not None
+        """Whether solutions are critical points, which have an index."""
+        return has_index(self.model)
 
     @cached_property
     def base(self) -> tuple[fmpq, fmpq]:

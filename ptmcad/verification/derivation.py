@@ -19,7 +19,6 @@ from flint import fmpq
 
 from ptmcad.mechanism import Kind, Mechanism, Model, System, ptm
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree, names_of
-from ptmcad.verification.report import Violation
 
 MECHANISM = ptm()
 PARAMETERS = MECHANISM.without_free_lengths
@@ -52,13 +51,14 @@ class Formulas(NamedTuple):
 
     Attributes
     ----------
-    potential : whose critical points are meant; None where there are equations.
-    equations : each zero at a solution; none where there is a potential.
+    energy : whose derivatives by the angles and the real unknowns, less the moments, are zero at a solution; None where
+        there are equations.
+    equations : each zero at a solution; none where there is an energy.
     inequalities, stability : positive at a solution that counts, and at a stable one.
-    moments : generalised forces, to be subtracted from the potential's derivatives by the angles and the real unknowns.
+    moments : generalised forces on the angles and the real unknowns; they may depend on these (`has_index`).
     """
 
-    potential: Any | None
+    energy: Any | None
     equations: tuple[Any, ...] = ()
     inequalities: tuple[Any, ...] = ()
     stability: tuple[Any, ...] = ()
@@ -67,6 +67,24 @@ class Formulas(NamedTuple):
     def moment(self, k: int) -> Any:
         """The generalised force on the unknown number k, angles first."""
         return self.moments[k] if self.moments else fmpq(0)
+
+
+def has_index(model: Model) -> bool:
+    """Whether solutions are critical points, near each of a function, so that the matrix of derivatives is a Hessian.
+
+    A moment that no unknown is in is the slope of such a function; with one that depends on an unknown, even on its own
+    alone, nothing may be stored of indices and of what is stable.
+    """
+    if isinstance(model, System):
+        return model.potential is not None
+    assert isinstance(model, Mechanism)
+    unknowns = {*model.angles, *model.reals}
+    return not any(unknowns.intersection(names_of(tree)) for _, tree in model.moments)
+
+
+def tells_stability(model: Model) -> bool:
+    """Whether it is known what a stable solution is."""
+    return has_index(model) or (isinstance(model, System) and bool(model.stability))
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,20 +161,12 @@ def formulas(configuration: Configuration, model: Model) -> Formulas:
 
 
 def _moments(configuration: Configuration, mechanism: Mechanism) -> tuple[Any, ...]:
-    """The generalised forces on the unknowns; none where the description has none.
-
-    Raises
-    ------
-    Violation
-        For a moment that depends on an unknown: such maps are not checked.
-    """
+    """The generalised forces on the unknowns; none where the description has none."""
     if not mechanism.moments:
         return ()
     unknowns = mechanism.angles + mechanism.reals
     total: list[Any] = [fmpq(0)] * len(unknowns)
     for unknown, tree in mechanism.moments:
-        if set(names_of(tree)) & set(unknowns):
-            raise Violation(f"the moment on {unknown} depends on an unknown, which this checker does not know")
         k = unknowns.index(unknown)
         total[k] = total[k] + configuration.value(tree)
     return tuple(total)

@@ -14,7 +14,7 @@ from typing import Any
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import Model
-from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, parameters_of, rational
+from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, has_index, parameters_of, rational
 
 
 @dataclass(frozen=True)
@@ -24,8 +24,9 @@ class PointEquations:
     Attributes
     ----------
     names : of the ring's variables.
-    equations : of a potential its gradient, by the unknowns in their order.
-    jacobian : their derivatives by the unknowns.
+    equations : of an energy its gradient less the moments, by the unknowns in their order.
+    jacobian : their derivatives by the unknowns; where solutions are critical points a Hessian.
+    has_index : whether they are.
     """
 
     names: tuple[str, ...]
@@ -34,7 +35,7 @@ class PointEquations:
     jacobian: tuple[tuple[fmpq_mpoly, ...], ...]
     inequalities: tuple[fmpq_mpoly, ...]
     stability: tuple[fmpq_mpoly, ...]
-    has_potential: bool
+    has_index: bool
 
     def generators(self) -> list[fmpq_mpoly]:
         """Of the ideal of all solutions."""
@@ -60,8 +61,8 @@ def equations_at(model: Model, values: Mapping[str, Fraction]) -> PointEquations
         p: fmpq_mpoly = ring.constant(0) + value
         return p
 
-    if given.potential is not None:
-        equations = tuple(e - given.moment(k) for k, e in enumerate(by(polynomial(given.potential))))
+    if given.energy is not None:
+        equations = tuple(e - given.moment(k) for k, e in enumerate(by(polynomial(given.energy))))
     else:
         equations = tuple(map(polynomial, given.equations))
     return PointEquations(
@@ -71,5 +72,5 @@ def equations_at(model: Model, values: Mapping[str, Fraction]) -> PointEquations
         tuple(tuple(by(e)) for e in equations),
         tuple(map(polynomial, given.inequalities)),
         tuple(map(polynomial, given.stability)),
-        given.potential is not None,
+        has_index(model),
     )

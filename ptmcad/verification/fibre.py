@@ -84,9 +84,9 @@ class Fibre:
 
     @cached_property
     def jacobian_entries(self) -> list[list[fmpq_mat]]:
-        """The Jacobian, whose entries act on the algebra; of a potential it is symmetric."""
+        """The Jacobian, whose entries act on the algebra; a Hessian is symmetric."""
         n = range(len(self.point.jacobian))
-        if not self.point.has_potential:
+        if not self.point.has_index:
             return [[self.matrix(self.point.jacobian[i][j]) for j in n] for i in n]
         upper = {(i, j): self.matrix(self.point.jacobian[i][j]) for i in n for j in n if i <= j}
         return [[upper[min(i, j), max(i, j)] for j in n] for i in n]
@@ -149,7 +149,7 @@ class Fibre:
         if self.norm() == 0:
             return None
         required = [self.matrix(p) for p in self.point.inequalities]
-        if self.point.has_potential:
+        if self.point.has_index:
             index = self._index(required)
             return Counts(sum(index), index[0], index)
         total = self._sum_of_signs(required, _identity(self.dimension))

@@ -19,7 +19,7 @@ from ptmcad.answer.regionmap import System
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.text.numerals import fraction_of
 from ptmcad.verification.claims import PLANE, Claims
-from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, parameters_of
+from ptmcad.verification.derivation import Configuration, coordinates_of, formulas, has_index, parameters_of
 from ptmcad.verification.report import Violation
 
 _FACTOR = r"(?:[0-9]{1,40}(?:/[1-9][0-9]{0,39})?|[A-Za-z][A-Za-z_0-9]{0,44}(?:\^[0-9]{1,2})?)"
@@ -76,7 +76,8 @@ class _Polynomials:
 
     Attributes
     ----------
-    equations : of a potential its gradient.
+    potential : the energy, where solutions are critical points; None elsewhere, and no text may be stored.
+    equations : of an energy its gradient less the moments.
     jacobian : their derivatives by the unknowns, the angles first.
     """
 
@@ -97,12 +98,13 @@ def _polynomials(model: Model) -> _Polynomials:
     def elements(values: Sequence[Any]) -> tuple[fmpq_mpoly, ...]:
         return tuple(ring.context.constant(0) + value for value in values)
 
-    potential = None if given.potential is None else elements([given.potential])[0]
+    energy = None if given.energy is None else elements([given.energy])[0]
     equations = (
         elements(given.equations)
-        if potential is None
-        else tuple(ring.by(potential, u) - given.moment(k) for k, u in enumerate(unknowns))
+        if energy is None
+        else tuple(ring.by(energy, u) - given.moment(k) for k, u in enumerate(unknowns))
     )
+    potential = energy if has_index(model) else None
     jacobian = tuple(tuple(ring.by(e, u) for u in unknowns) for e in equations)
     return _Polynomials(ring, potential, equations, jacobian, elements(given.inequalities), elements(given.stability))
 
@@ -166,7 +168,7 @@ def _check_sizes(system: System, true: _Polynomials) -> None:
         if len(stored) != len(expected):
             raise Violation(f"there are {len(expected)} {what}, not {len(stored)}")
     if true.potential is None and system.potential:
-        raise Violation("equations are given, so there is no potential")
+        raise Violation("equations are given, or a moment depends on an unknown, so there is no potential")
 
 
 def _pairs(system: System, true: _Polynomials) -> Iterator[tuple[str, str, fmpq_mpoly]]:

@@ -20,6 +20,7 @@ from math import gcd
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, PlanStep, RegionMap
 from ptmcad.mechanism import Model, System
 from ptmcad.verification.claims import Claims, PlaneCurve
+from ptmcad.verification.derivation import has_index
 from ptmcad.verification.report import Violation
 from ptmcad.verification.window import plainly_outside
 
@@ -100,7 +101,7 @@ def _expected(result: RegionMap, without: frozenset[str]) -> Iterator[PlanStep]:
 
 def _general(model: Model) -> Iterator[tuple[str, str, str]]:
     """What a plan says of every slice of a model: names, subjects and reasons."""
-    equations = isinstance(model, System) and model.potential is None
+    equations = not has_index(model)
     kept = bool(model.reals) or (isinstance(model, System) and bool(model.inequalities or model.stability))
     for saving, what, why in _GENERAL:
         if saving == "sign-curve" and (equations or len(model.unknowns) < 2):

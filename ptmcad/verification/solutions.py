@@ -21,9 +21,9 @@ from typing import NamedTuple
 from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.regionmap import Cell, Solution
-from ptmcad.mechanism import Model, System
+from ptmcad.mechanism import Model
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import Configuration, formulas, parameters_of, rational
+from ptmcad.verification.derivation import Configuration, formulas, has_index, parameters_of, rational
 from ptmcad.verification.inertia import bases, leading_minors, negative_eigenvalues
 from ptmcad.verification.jets import circle, jet_of, line
 from ptmcad.verification.report import Violation
@@ -107,8 +107,8 @@ class _Values(NamedTuple):
 
     Attributes
     ----------
-    equations : of a potential its gradient.
-    jacobian : of a potential its Hessian.
+    equations : of an energy its gradient less the moments.
+    jacobian : their derivatives; where solutions are critical points a Hessian.
     """
 
     equations: list[arb]
@@ -132,11 +132,14 @@ class _Functions:
         unknowns = range(len(angles) + len(reals))
         zero = arb(0)
         conditions = ([jet_of(p).value for p in some] for some in (found.inequalities, found.stability))
-        if found.potential is not None:
-            energy = jet_of(found.potential)
+        if found.energy is not None:
+            energy, moments = jet_of(found.energy), [jet_of(found.moment(i)) for i in unknowns]
             return _Values(
-                [energy.slopes.get(i, zero) - found.moment(i) for i in unknowns],
-                [[energy.bends.get((min(i, j), max(i, j)), zero) for j in unknowns] for i in unknowns],
+                [energy.slopes.get(i, zero) - moments[i].value for i in unknowns],
+                [
+                    [energy.bends.get((min(i, j), max(i, j)), zero) - moments[i].slopes.get(j, zero) for j in unknowns]
+                    for i in unknowns
+                ],
                 *conditions,
             )
         equations = [jet_of(e) for e in found.equations]
@@ -153,7 +156,7 @@ def _signs(model: Model, values: Mapping[str, Fraction], solution: Solution) -> 
     Those of the Hessian's eigenvalues, or of the conditions for stability; where one of these is said to be zero it is
     left to `_check_zeros`.
     """
-    system = isinstance(model, System) and model.potential is None
+    is_hessian = has_index(model)
     for attempt, bits in enumerate(BITS):
         with ctx.workprec(bits):
             functions = _Functions(model, values)
@@ -164,7 +167,9 @@ def _signs(model: Model, values: Mapping[str, Fraction], solution: Solution) -> 
                 return None
             if not all(p > 0 for p in found.inequalities):
                 continue
-            signs = _of_conditions(found.stability, solution.signs) if system else _of_hessian(found.jacobian, attempt)
+            signs = (
+                _of_hessian(found.jacobian, attempt) if is_hessian else _of_conditions(found.stability, solution.signs)
+            )
             if signs is not None:
                 return signs
     return None

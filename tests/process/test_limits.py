@@ -400,7 +400,7 @@ def test_a_picture_that_fails_leaves_the_result(
     errors = capfd.readouterr().err
     assert errors.startswith("error: fig2.svg cannot be drawn: ")
     assert errors.endswith(f"the result, without pictures, is in {tmp_path / 'fig2.json'}\n")
-    assert errors.count("\n") == 1
+    assert errors.count("\n") == 1 and type(error).__name__ not in errors
     assert json.loads((tmp_path / "fig2.json").read_text())["status"] == "exact"
     assert os.listdir(tmp_path) == ["fig2.json"]
     # beside older pictures it would lie
@@ -415,7 +415,7 @@ def test_lack_of_memory_is_no_failed_picture(tmp_path: Path) -> None:
 
     with pytest.raises(MemoryError):
         write_result(tmp_path, {"a.png": picture("a.png", fail), "a.json": text_writer("{}")}, "a.json", "{}")
-    with pytest.raises(PictureError, match=r"a\.png cannot be drawn: ZeroDivisionError: .*a\.json"):
+    with pytest.raises(PictureError, match=r"a\.png cannot be drawn: drawing failed unexpectedly: integer .*a\.json"):
         write_result(
             tmp_path, {"a.png": picture("a.png", lambda _: 1 // 0), "a.json": text_writer("{}")}, "a.json", "{}"
         )  # type: ignore[arg-type,return-value]

@@ -398,3 +398,13 @@ def test_nothing_large_is_loaded_and_a_time_limit_ends_it(tmp_path: Path) -> Non
     assert stopped.returncode == 3
     assert stopped.stderr.startswith("stopped: ") and len(stopped.stderr.splitlines()) == 1
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("format", [name for name in FORMATS if name != "json"])
+def test_no_colon_is_left_where_nothing_is_fixed(format: str) -> None:
+    """A slice whose parameters are the axes is named without a list of others."""
+    cusp = {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}
+    record = {"name": "e64", "system": cusp, "axes": {"a": [-1, 1], "b": [-1, 1]}}
+    found = ptmcad.slice_variety(ptmcad.slice_from_mapping(record))
+    text = FORMATS[format](found)
+    assert not re.search(r"e64: *(;|\*\)|$)", text, re.MULTILINE)

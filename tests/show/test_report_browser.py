@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -136,7 +137,7 @@ def test_lowest_energy_is_where_the_picture_is_darkest(view: Callable[..., Brows
         b.run(f"choose({number}, false)")
         least, at, pose, level = b.run(
             f"""(() => {{
-              const cell = DATA.cells[{number}], table = energyTable(cell.potential, 360);
+              const cell = DATA.cells[{number}], table = energyTable(cell, 360);
               let least = Infinity, at = [0, 0];
               for (const [j, row] of table.entries()) for (const [i, value] of row.entries()) {{
                 if (value < least) {{ least = value; at = [i - 180, j - 180]; }}
@@ -403,3 +404,40 @@ def test_every_cell_of_every_slice_can_be_chosen(view: Callable[..., Any]) -> No
             shown = b.run(FEW)
             assert (shown["poses"], shown["stable"]) == (cell.total, cell.stable)
         quiet(b, name, count)
+
+
+def test_a_landscape_under_a_moment_is_level_at_the_equilibria(one: Browser, tmp_path: Path) -> None:
+    """The browser's table of what is drawn, by differences around each equilibrium, against the moment left out."""
+    record = {
+        "name": "turned",
+        "mechanism": {
+            "parameters": {"M": {}, "F": {"kind": "force"}},
+            "unknowns": {"th": "angle", "ph": "angle"},
+            "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"], "Q": ["cos(th) + cos(ph)/2", "sin(th) + sin(ph)/2"]},
+            "torsion": [{"angle": "th", "k": 2}, {"angle": "ph - th", "k": 1}],
+            "moments": {"th": "M", "ph": "1/5"},
+            "loads": {"Q": ["F", 0]},
+        },
+        "axes": {"M": [1, 2], "F": [0, 1]},
+    }
+    result = ptmcad.classify(ptmcad.slice_from_mapping(record), area_tolerance="1/10")
+    path = tmp_path / "turned.html"
+    path.write_text(page(result), encoding="utf-8")
+    one.size(1200, 900)
+    one.open(path)
+    number = next(n for n, cell in enumerate(result.cells) if cell.total)
+    one.run(f"choose({number}, false)")
+    found = one.run(
+        f"(() => {{ const cell = DATA.cells[{number}]; const steps = 1440; const table = energyTable(cell, steps);"
+        " const at = (c, s) => Math.round((Math.atan2(s, c) + Math.PI) / (2 * Math.PI) * steps);"
+        " return { title: landscapeTitle(cell), rises: cell.equilibria.map((pose) => {"
+        " const [i, j] = [at(pose.at[0], pose.at[1]), at(pose.at[2], pose.at[3])];"
+        " return [table[j][i + 1] - table[j][i - 1], table[j + 1][i] - table[j - 1][i],"
+        " table[j][i] - levelOf(cell, pose)]; }) }; })()"
+    )
+    assert "not periodic" in found["title"] and len(found["rises"]) == result.cells[number].total
+    step = 2 * pi / 1440
+    for rises in found["rises"]:
+        # a grid's point is at most half a step away, and second derivatives are below 5; the moments are 1 / 5 and more
+        assert all(abs(rise) / (2 * step) < 5 * step for rise in rises[:2]) and abs(rises[2]) < 1e-3
+    assert one.complaints() == []

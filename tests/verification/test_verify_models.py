@@ -16,11 +16,29 @@ from support.mutations import FIRST
 from support.random_models import random_mechanism, random_system
 
 import ptmcad
-from ptmcad.answer.regionmap import HARMLESS, Component, Kind, RegionMap
+from ptmcad.answer.regionmap import HARMLESS, Cell, Component, Kind, RegionMap
 from ptmcad.mechanism import described
+from ptmcad.question.slice import Count
 from ptmcad.text.plane import PlanePolynomial
 
 AB = {"a": [-2, 2], "b": [-2, 2]}
+
+
+def turned(moment: str) -> dict[str, Any]:
+    """A bar on a spring under a moment."""
+    return {
+        "mechanism": {
+            "name": "turned",
+            "parameters": {"M": {}, "c": {}},
+            "unknowns": {"th": "angle"},
+            "points": {"O": [0, 0], "A": [1, "1/2"], "P": ["cos(th)", "sin(th)"]},
+            "bars": [["O", "P"]],
+            "springs": [{"between": ["A", "P"], "k": 1}],
+            "moments": {"th": moment},
+        },
+        "axes": {"M": [-3, 3], "c": [-3, 3]},
+    }
+
 
 RECORDS: dict[str, dict[str, Any]] = {
     "cusp": {"system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]}, "axes": AB},
@@ -85,10 +103,45 @@ RECORDS: dict[str, dict[str, Any]] = {
         "axes": {"a": [-2, -1], "b": [1, 2]},
         "count": "index",
     },
+    # a moment that depends on its own angle: nothing is said of what is stable
+    "moment": turned("M*sin(2*th) + c"),
+    "constant moment": turned("M + c/2"),
+    # two moments, each of which depends on the other's unknown: the matrix of derivatives is not symmetric
+    "moments": {
+        "mechanism": {
+            "name": "moments",
+            "parameters": {"M": {}, "a": {}},
+            "unknowns": {"th": "angle", "s": "length"},
+            "points": {"A": [0, "a"], "P": ["s + cos(th)", "sin(th)"], "G": ["s", 0], "O": [0, 0]},
+            "springs": [{"between": ["A", "P"], "k": 1}, {"between": ["O", "G"], "k": 2}],
+            "moments": {"th": "M*s", "s": "M/3*cos(th) + 1/2"},
+        },
+        "axes": {"M": [-2, 2], "a": [-2, 2]},
+    },
+    "moments of three unknowns": {
+        "mechanism": {
+            "name": "moments_3",
+            "parameters": {"M": {}, "F": {}},
+            "unknowns": {"a": "angle", "x": "length", "y": "length"},
+            "points": {"O": [0, 0], "P": ["x", "y"], "Q": ["x + cos(a)", "y + sin(a)"], "A": [2, 1]},
+            "springs": [{"between": ["O", "P"], "k": 2}, {"between": ["A", "Q"], "k": 1}],
+            "moments": {"a": "M*x + F", "x": "M*y/2", "y": "F*cos(a)"},
+        },
+        "axes": {"M": [-1, 1], "F": [-1, 1]},
+    },
     **{f"system {seed}": random_system(seed) for seed in (0, 1, 2, 4, 7, 8)},
     **{f"mechanism {seed}": random_mechanism(seed) for seed in (0, 3, 6, 9)},
 }
-SMALL = ("cusp", "duffing", "stable where", "potential with an inequality", "system 0", "mechanism 0")
+SMALL = (
+    "cusp",
+    "duffing",
+    "stable where",
+    "potential with an inequality",
+    "system 0",
+    "mechanism 0",
+    "moment",
+    "constant moment",
+)
 
 
 @cache
@@ -136,6 +189,43 @@ def test_every_alteration_is_tried_on_some_map() -> None:
 
 
 # ------------------------------------------------------------------------------------------ what is false about a model
+
+
+@pytest.mark.parametrize("name", ["moment", "moments"])
+def test_what_a_moment_alters_is_rejected(name: str) -> None:
+    """Its part in the equations and their derivatives, a potential, what is stable and an index, which it has not."""
+    true = map_of(name)
+    assert not true.system.potential and {c.stable for c in true.cells} == {None} == {c.index for c in true.cells}
+    k = next(k for k, c in enumerate(true.cells) if c.solutions)
+    cell, system = true.cells[k], true.system
+    signs = replace(cell, solutions=(replace(cell.solutions[0], signs="+"), *cell.solutions[1:]))
+    index = (cell.total or 0, *(0 for _ in true.slice.model.unknowns))
+    weaker = system.gradient[0].replace("M*", "")
+    for false, check in (
+        (replace(true, system=replace(system, potential="0")), "equations"),
+        (replace(true, system=replace(system, gradient=(weaker, *system.gradient[1:]))), "equations"),
+        (with_cell(true, k, replace(cell, stable=cell.total)), "counts"),
+        (with_cell(true, k, replace(cell, total=(cell.total or 0) + 2)), "counts"),
+        (with_cell(true, k, replace(cell, index=index)), "counts"),
+        (with_cell(true, k, signs), "solutions"),
+        (replace(true, slice=replace(true.slice, count=Count.STABLE)), "shape"),
+        (replace(true, slice=replace(true.slice, count=Count.INDEX)), "shape"),
+    ):
+        found = violation(false, check)
+        assert found is not None and found[0] == check
+
+
+def test_derivatives_under_moments_are_no_symmetric_matrix() -> None:
+    true = map_of("moments")
+    (a, b), (c, d) = true.system.hessian
+    assert b != c
+    for hessian in (((a, c), (b, d)), ((a, b), (b, d)), ((a, c), (c, d))):
+        found = violation(replace(true, system=replace(true.system, hessian=hessian)), "equations")
+        assert found is not None and found[0] == "equations"
+
+
+def with_cell(true: RegionMap, k: int, cell: Cell) -> RegionMap:
+    return replace(true, cells=(*true.cells[:k], cell, *true.cells[k + 1 :]))
 
 
 def test_real_solutions_may_leave_over_a_harmless_curve() -> None:

@@ -7,7 +7,7 @@ equation is typed in. Springs are of free length zero: their energy is a polynom
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
@@ -125,13 +125,15 @@ def _equations_of(model: System) -> ParametricSystem:
 def _equilibria_of(mechanism: Mechanism) -> ParametricSystem:
     kept = set(mechanism.without_free_lengths)
     ring = geometry_of(mechanism).ring
-    return from_potential(
+    system = from_potential(
         ring,
         potential(mechanism),
         positive=tuple(name for name in mechanism.positive if name in kept),
         nonnegative=tuple(name for name in mechanism.nonnegative if name in kept),
         moments={m.unknown: ring.reduce(evaluate(m.value, _Evaluation(ring))) for m in mechanism.moments},
     )
+    # an unknown that cancels out of a moment counts as the description says, to which the question was put
+    return system if mechanism.has_potential else replace(system, potential=None)
 
 
 def _squared(geometry: Geometry, start: str, end: str) -> TrigonometricPolynomial:

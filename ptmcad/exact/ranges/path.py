@@ -5,8 +5,10 @@ value is not continued beyond it: all equilibria on the far side but those named
 
 Where a stable pose vanishes and one is left, as always with the paper's mechanism, which never has more than two
 (theorem 1 of docs/method.md), the energy descends to it from the place where the first one was: on a torus every
-descent ends at an equilibrium, and all but those that run exactly into a saddle end at a minimum. Where several are
-left, where unknowns are on the line, and where there is no energy, nothing is said about where a solution goes.
+descent of a function ends at an equilibrium, and all but those that run exactly into a saddle end at a minimum. Where
+several are left, where unknowns are on the line, where there is no energy, and where a moment works, nothing is said
+about where a solution goes: a moment turns a bar for ever where nothing stops it, as the energy less its work is lower
+by each turn.
 """
 
 from __future__ import annotations
@@ -43,7 +45,7 @@ from ptmcad.exact.ranges.tracking import (
 from ptmcad.mechanism import Mechanism
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.question.line import Line, line_of
-from ptmcad.question.slice import Slice
+from ptmcad.question.slice import Slice, have_moments
 from ptmcad.text.balls import enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.parsing import number_for
@@ -99,6 +101,7 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
         line.at,
         value,
         tuple(_path(family, line, numbers, poses.equilibria[k], k + 1, value) for k in chosen),
+        have_moments(slice.model, line.parameters),
     )
 
 
@@ -247,7 +250,7 @@ def _meeting(family: Family, line: Line, number: AlgebraicNumber, current: Reach
     if not own:
         return stopped
     met = replace(stopped, fate=Fate.VANISH, meeting=tuple(sorted(meeting)), leaving=tuple(sorted(leaving)))
-    if not (family.system.has_index and family.system.is_on_torus and len(stable) == 1):
+    if not (_descends(family, line) and len(stable) == 1):
         return met
     return replace(
         met,
@@ -256,6 +259,12 @@ def _meeting(family: Family, line: Line, number: AlgebraicNumber, current: Reach
         target=_point(family, stable[0]),
         target_energy=_energy(family, line, stable[0]),
     )
+
+
+def _descends(family: Family, line: Line) -> bool:
+    """Whether every descent ends at an equilibrium: solutions are all critical points of one function on a torus."""
+    system = family.system
+    return system.has_index and system.is_on_torus and not have_moments(family.model, line.parameters)
 
 
 def _equilibria(family: Family, line: Line, value: Fraction) -> list[tuple[Reached, int]] | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ptmcad.answer.slicevariety import SliceVariety
-from ptmcad.show.export.listing import describe, fixed_parameters, window
+from ptmcad.show.export.listing import describe, slice_text, window
 from ptmcad.show.polynomial_text import Style, polynomial_lines, symbols
 
 _WIDTH = 100
@@ -35,7 +35,7 @@ def mathematica(variety: SliceVariety) -> str:
 def _code(variety: SliceVariety, style: Style, comment: Callable[[str], str], start: str, end: str) -> str:
     names = variety.slice.axis_names
     lines = [
-        comment(f"Discriminant variety of the slice {variety.slice.name}: {fixed_parameters(variety)}"),
+        comment(f"Discriminant variety of the slice {slice_text(variety)}"),
         comment(f"over {window(variety)}"),
         start,
     ]

@@ -8,7 +8,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ptmcad.answer.slicevariety import SliceVariety
-from ptmcad.show.export.listing import fixed_parameters, window
+from ptmcad.show.export.listing import slice_text, window
 from ptmcad.show.polynomial_text import Style, polynomial_lines, symbols
 from ptmcad.text.plane import PlanePolynomial
 
@@ -30,7 +30,7 @@ def qepcad(variety: SliceVariety) -> str:
         for k, axis in enumerate(variety.slice.axes)
         for end, relation in ((axis.low, "> 0"), (axis.high, "< 0"))
     ]
-    about = f"ptmcad variety, slice {variety.slice.name}: {fixed_parameters(variety)}; {window(variety)}"
+    about = f"ptmcad variety, slice {slice_text(variety)}; {window(variety)}"
     commands = ("measure-zero-error", "go", "go", "go", "d-proj-factors", "d-all-cells-in-subtree ()", "quit")
     return "\n".join(
         (

@@ -55,12 +55,17 @@ def describe(component: Component, names: tuple[str, str]) -> str:
     return f"{text}; {component.left_out}" if component.left_out else text
 
 
+def slice_text(variety: SliceVariety) -> str:
+    """The slice's name and, where any are, the parameters that are fixed on it."""
+    return ": ".join(filter(None, (variety.slice.name, fixed_parameters(variety))))
+
+
 def listing(variety: SliceVariety) -> str:
     """The variety as text."""
     names = variety.slice.axis_names
     number = len(variety.components)
     lines = [
-        f"slice     {': '.join(filter(None, (variety.slice.name, fixed_parameters(variety))))}",
+        f"slice     {slice_text(variety)}",
         f"window    {window(variety)}",
         f"variety   {number} component{'s' * (number != 1)}; {variety.complex_solutions} complex "
         f"solution{'s' * (variety.complex_solutions != 1)} off them",

@@ -15,7 +15,7 @@ from ptmcad.answer.intervals import CountInterval, CountIntervals, CriticalFreeL
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.widths import Maximum, OperationWidths
 from ptmcad.answer.words import kind_name, noun
-from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.show.ranges.numbers import end_text, known, settled, width_text
 from ptmcad.text.balls import enclosed
 from ptmcad.text.enclosure import Enclosure
@@ -173,7 +173,8 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
     if len(end.meeting) == 1:
         what = f"{at}: {met} vanishes alone" if not end.leaving else f"{at}: {met} goes on as {left}"
     if end.target is None:
-        return f"{what}; where it goes from there is not decided" if model.tells_stability else what
+        rests = "under the moment it may never come to rest: " if found.has_moments else ""
+        return f"{what}; {rests}where it goes from there is not decided" if model.tells_stability else what
     target = _unknowns(end.target, model, digits)
     if end.fate is Fate.MERGE:
         return f"{what}; the pose goes on, without a snap, as {target}"
@@ -186,8 +187,9 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
 
 def _kind(negative: int, model: Model) -> str:
     """A solution by its Morse index; without a potential by whether it is stable."""
-    if isinstance(model, System) and model.potential is None:
-        return f"{('a stable' if negative == 0 else 'an unstable') if model.tells_stability else 'a'} solution"
+    if not model.has_potential:
+        told = ("a stable " if negative == 0 else "an unstable ") if model.tells_stability else ""
+        return f"{told or ('an ' if isinstance(model, Mechanism) else 'a ')}{noun(model, 1)}"
     return f"a {kind_name(negative, len(model.unknowns))}"
 
 

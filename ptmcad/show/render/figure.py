@@ -57,7 +57,8 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
         When the poses are those of no point of the map's window.
     """
     x, y = point_of(result.slice, poses)
-    shown = [pose for pose in in_order(poses) if pose.stable]
+    told = poses.model.tells_stability
+    shown = [pose for pose in in_order(poses) if pose.stable or not told]
     arrows = arrow_lengths(poses)
     mechanism = poses.model
     assert isinstance(mechanism, Mechanism)  # `arrow_lengths` has refused others
@@ -65,7 +66,11 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
     entries = (*parts, *_LOADS) if arrows else parts
     below = below_panel(shown[0], mechanism) if shown else BELOW
     values = [assigned(a.name, v) for a, v in zip(result.slice.axes, (x, y), strict=True)]
-    head = textwrap.wrap(f"{'Stable poses' if shown else 'No stable pose'} at " + ", ".join(values), 34)
+    head = textwrap.wrap(
+        f"{('Stable poses' if told else 'Poses') if shown else 'No stable pose' if told else 'No pose'} at "
+        + ", ".join(values),
+        34,
+    )
     frame = frame_of(shown, most_height=_MAX_HEIGHT) if shown else None
     wide = 200.0 / 72
     panels = _LINE * len(head) + 0.1

@@ -1,6 +1,8 @@
 """The picture of the energy over one unknown as a curve, or over two as contours, with all equilibria marked by kind.
 
-An angle goes round once; an unknown on the line goes through a range that holds all equilibria.
+An angle goes round once; an unknown on the line goes through a range that holds all equilibria. Where moments work, the
+energy less their work is drawn, in which the equilibria are level. Over an angle it is not periodic: it is cut at 180
+degrees, and a title says so.
 
 Guarantee: every equilibrium is marked, at both edges where an angle is 180 degrees, with its number in the picture of
 `ptmcad.show.render.poses.draw_poses`. Contours pass through saddles and degenerate equilibria, also where the energy is
@@ -11,10 +13,11 @@ Not guaranteed: anything that only the picture shows. It is drawn in floating po
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import textwrap
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
+from itertools import pairwise, product
 from math import hypot
 from typing import Any
 
@@ -23,23 +26,19 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import noun
 from ptmcad.errors import ConfigError
-from ptmcad.exact.models.potential import squared_lengths, system_from
-from ptmcad.exact.models.system import polynomial_at
 from ptmcad.mechanism import Mechanism, Model
-from ptmcad.mechanism.evaluate import value_at
+from ptmcad.mechanism.moments import moments_at
 from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import Scale, scale_of, symbol
 from ptmcad.show.render.clearance import Box, Label, Stroke, place
+from ptmcad.show.render.energy import Energy, Floats, drawn, energy_of, is_cut
 from ptmcad.show.render.legend import INK, SWATCH, Entry, Mark, draw_legend
-from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, in_order, kind, titled
+from ptmcad.show.render.poses import TITLE_LINE, describe, empty, heading, in_order, kind, titled, value_text
 from ptmcad.show.render.printing import settings
-from ptmcad.text.numerals import magnitude
 
 SIDE, LEFT, BOTTOM, BAR, KEY, MARGIN = 4.6, 0.85, 0.65, 1.25, 2.2, 0.15
 """In inches: the square's side, the space at its left and below, the colour bar, the legend, the rim."""
@@ -56,72 +55,11 @@ _MARKERS = {
     "degenerate": ("*", 13.0, "#e9a7c4"),
 }
 
+_COLUMNS = 90
+"""Characters of a line of the title."""
+_SPACE = "\N{NO-BREAK SPACE}"
 _RING = 5.0
 """Points by which a marker is larger for each other one on its place."""
-
-Floats = NDArray[np.float64]
-
-
-Terms = tuple[tuple[tuple[int, ...], float], ...]
-
-
-def _sum(terms: Terms, bases: Sequence[Floats], shape: tuple[int, ...]) -> Floats:
-    total = np.zeros(shape)
-    for powers, coefficient in terms:
-        term = np.full_like(total, coefficient)
-        for base, power in zip(bases, powers, strict=True):
-            term = term * base**power
-        total += term
-    return total
-
-
-@dataclass(frozen=True, slots=True)
-class Energy:
-    """The energy as (U - offset) / unit: terms with exponents of the coordinates, cosine and sine of each angle, then
-    the unknowns on the line; and for each spring with a free length -k l0 with the terms of its length squared, whose
-    root it multiplies."""
-
-    angles: int
-    offset: Fraction
-    unit: Fraction
-    terms: Terms
-    roots: tuple[tuple[float, Terms], ...] = ()
-
-    def __call__(self, *unknowns: Floats) -> Floats:
-        """Over arrays of angles in radians, and of unknowns on the line."""
-        bases = [function(angle) for angle in unknowns[: self.angles] for function in (np.cos, np.sin)]
-        bases += unknowns[self.angles :]
-        shape = np.broadcast(*unknowns).shape
-        total = _sum(self.terms, bases, shape)
-        for factor, square in self.roots:
-            total += factor * np.sqrt(np.maximum(_sum(square, bases, shape), 0.0))
-        return total
-
-    def scaled(self, value: Fraction) -> float:
-        """An energy in the picture's unit."""
-        return float((value - self.offset) / self.unit)
-
-
-def energy_of(model: Model, parameters: Mapping[str, Fraction]) -> Energy:
-    """The energy at these parameters, its constant part taken out and its size made about 1."""
-    system = system_from(model)
-    values = {name: from_fraction(parameters[name]) for name in system.ring.parameters}
-    assert system.potential is not None
-    exact = {m: to_fraction(c) for m, c in polynomial_at(system, system.potential, values).items()}
-    offset = exact.pop((0,) * system.ring.width, Fraction(0))
-    unit = Fraction(10) ** magnitude(max(map(abs, exact.values()), default=Fraction(1)))
-    roots = []
-    springs = zip(model.springs, squared_lengths(model), strict=True) if isinstance(model, Mechanism) else ()
-    for spring, square in springs:
-        free = value_at(spring.free, dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters))
-        pull = value_at(spring.stiffness, parameters) * free
-        if pull:
-            offset += pull * free / 2
-            terms = polynomial_at(system, square, values)
-            roots.append((float(-pull / unit), tuple((m, float(to_fraction(c))) for m, c in terms.items())))
-    return Energy(
-        len(model.angles), offset, unit, tuple((m, float(c / unit)) for m, c in sorted(exact.items())), tuple(roots)
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,11 +125,11 @@ def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
     (side,) = sides_of(poses.model, shown)
     values, inputs = side.sampled(_FINE)
     heights = energy(inputs)
-    title = heading(poses, 90)
+    title = _title(poses)
     size = (LEFT + SIDE + KEY + 2 * MARGIN, BOTTOM + SIDE + TITLE_LINE * len(title) + 3 * MARGIN)
     with settings():
         figure = titled(title, size, LEFT)
-        figure.set_label(f"{' '.join(title)}\nEnergy over {side.name} as a curve. {describe(poses)}")
+        figure.set_label(f"{' '.join(title)}\n{drawn(poses)} over {side.name} as a curve. {describe(poses)}")
         axes = figure.add_axes((LEFT / size[0], BOTTOM / size[1], SIDE / size[0], SIDE / size[1]))
         axes.set_gid("landscape")
         axes.plot(values, heights, color=_COLOURS[0], linewidth=1.6, zorder=3)
@@ -204,21 +142,23 @@ def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
         _energy_ticks(axes, scale, energy, poses.model)
         for number, pose in enumerate(shown, 1):
             marker, size_of, face = _MARKERS[_kind(pose)]
-            (value,), level = place_of(pose), energy.scaled(pose.known_energy.center)
+            (value,) = place_of(pose)
             for k, x in enumerate(side.copies(value)):
                 axes.add_artist(
                     Line2D(
-                        (x,), (level,), marker=marker, markersize=size_of, markerfacecolor=face, markeredgecolor=INK,
-                        linestyle="none", clip_on=False, zorder=6, gid=f"equilibrium-{number}" if k == 0 else None,
+                        (x,), (energy.level(pose, (x,)),), marker=marker, markersize=size_of, markerfacecolor=face,
+                        markeredgecolor=INK, linestyle="none", clip_on=False, zorder=6,
+                        gid=f"equilibrium-{number}" if k == 0 else None,
                     )
                 )  # fmt: skip
             x = side.copies(value)[0]
+            level = energy.level(pose, (x,))
             inward = -1 if side.share(x) > 0.9 else 1
             axes.annotate(
                 str(number), (x, level), xytext=(9 * inward, -11 if pose.stable else 11), textcoords="offset points",
                 fontsize=9, fontweight="bold", color=INK, ha="center", va="center", zorder=7, gid=f"number-{number}",
             )  # fmt: skip
-        draw_legend(figure, tuple(_legend(poses.model, shown)), LEFT + SIDE + 2 * MARGIN, BOTTOM + SIDE)
+        draw_legend(figure, tuple(_legend(poses, shown)), LEFT + SIDE + 2 * MARGIN, BOTTOM + SIDE)
     return figure
 
 
@@ -226,13 +166,13 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
     """The energy over two unknowns."""
     energy, sides = energy_of(poses.model, poses.parameters), sides_of(poses.model, shown)
     (across, up), heights = _sampled(energy, sides, _GRID)
-    critical = sorted({energy.scaled(pose.known_energy.center) for pose in shown})
+    critical = sorted({level for pose in shown for level in _levels(energy, sides, pose)})
     levels = contour_levels(critical, float(heights.min()), float(heights.max()))
-    title = heading(poses, 90)
+    title = _title(poses)
     size = (LEFT + SIDE + BAR + KEY + MARGIN, BOTTOM + SIDE + TITLE_LINE * len(title) + 3 * MARGIN)
     with settings():
         figure = titled(title, size, LEFT)
-        figure.set_label(f"{' '.join(title)}\nEnergy over {_what(sides)} as contours. {describe(poses)}")
+        figure.set_label(f"{' '.join(title)}\n{drawn(poses)} over {_what(sides)} as contours. {describe(poses)}")
         axes = figure.add_axes((LEFT / size[0], BOTTOM / size[1], SIDE / size[0], SIDE / size[1]))
         axes.set_gid("landscape")
         colours = LinearSegmentedColormap.from_list("energy", _COLOURS, N=256)
@@ -240,7 +180,7 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
         clipped = np.clip(heights, levels[0], levels[-1])
         filled = axes.contourf(across, up, clipped, levels=levels, cmap=colours, norm=norm)
         axes.contour(across, up, heights, levels=levels[1:-1], colors="white", linewidths=0.35, linestyles="solid")
-        through = sorted({energy.scaled(p.known_energy.center) for p in shown if p.index in (1, None)})
+        through = sorted({v for p in shown if p.index in (1, None) for v in _levels(energy, sides, p)})
         finer, fine_heights = _sampled(energy, sides, _FINE)
         axes.contour(*finer, fine_heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid")
         _decorate(axes, sides)
@@ -252,8 +192,29 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
         for value in through:
             bar.axhline(value, color=INK, linewidth=1.2)
         left = LEFT + SIDE + BAR + 0.1
-        draw_legend(figure, tuple(_legend(poses.model, shown)), left, BOTTOM + SIDE)
+        draw_legend(figure, tuple(_legend(poses, shown)), left, BOTTOM + SIDE)
     return figure
+
+
+def _levels(energy: Energy, sides: Sequence[Side], pose: Pose) -> list[float]:
+    """Where a pose lies: once, and again at the other edge of an angle."""
+    places = product(*(side.copies(value) for side, value in zip(sides, place_of(pose), strict=True)))
+    return [energy.level(pose, place) for place in places]
+
+
+def _title(poses: Poses) -> list[str]:
+    """The title's lines; where moments work with what is drawn, V."""
+    lines, moments = heading(poses, _COLUMNS), moments_at(poses.model, poses.parameters)
+    if not moments:
+        return lines
+    terms = {name: value_text(abs(value)) for name, value in moments.items()}
+    about = "≈" if any(text[0] == "≈" for text in terms.values()) else "="
+    work = "".join(
+        f" {'−' if value > 0 else '+'} {terms[name].lstrip('=≈' + _SPACE)}{_SPACE}{symbol(name)}"
+        for name, value in moments.items()
+    )
+    unit = " (radians)" if is_cut(poses) else ""
+    return [*lines, *textwrap.wrap(f"V {about} U{work}{unit}: {drawn(poses).lower().rstrip(',')}", _COLUMNS)]
 
 
 def _sampled(energy: Energy, sides: Sequence[Side], number: int) -> tuple[tuple[Floats, Floats], Floats]:
@@ -381,10 +342,11 @@ def _energy_ticks(axes: Any, scale: Scale, energy: Energy, model: Model) -> None
     axes.minorticks_off()
     axes.tick_params(labelsize=9, direction="out", length=3.5)
     unit = " (force · length)" if isinstance(model, Mechanism) else ""
-    axes.set_ylabel(f"{scale.name('U')}{unit}", fontsize=10)
+    axes.set_ylabel(f"{scale.name('V' if energy.slopes else 'U')}{unit}", fontsize=10)
 
 
-def _legend(model: Model, shown: Sequence[Pose]) -> Iterator[Entry]:
+def _legend(poses: Poses, shown: Sequence[Pose]) -> Iterator[Entry]:
+    model = poses.model
     yield Entry((noun(model).capitalize(),), strong=True)
     kinds = [_kind(pose) for pose in shown]
     for name, (marker, size, face) in _MARKERS.items():
@@ -399,11 +361,12 @@ def _legend(model: Model, shown: Sequence[Pose]) -> Iterator[Entry]:
                 lines += [f"multiplicity {p.multiplicity}" for p in shown if p.index is None]
             yield Entry(tuple(lines), _marker_mark(marker, size, face))
     if any(len(copies(float(angle))) == 2 for p in shown for angle in p.degrees):
-        yield Entry(("at 180° marked at both edges,", "which are the same"))
+        level = ("at two levels of V: one pose",) if is_cut(poses) else ("which are the same",)
+        yield Entry(("at 180° marked at both edges,", *level))
     if len(model.unknowns) == 1:
         return
     yield Entry(())
-    yield Entry(("Energy",), strong=True)
+    yield Entry(("V",) if moments_at(model, poses.parameters) else ("Energy",), strong=True)
     if any(p.index in (1, None) for p in shown):
         yield Entry(("contour through a saddle", "or a degenerate equilibrium"), 1.2)
     yield Entry(("dark: low, light: high",))

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.answer.words import counted, kind_name, noun
+from ptmcad.answer.words import UNTOLD, counted, kind_name, noun, of_what
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model, Support
 from ptmcad.question.slice import merged
@@ -88,9 +88,11 @@ def in_order(poses: Poses) -> tuple[Pose, ...]:
 
 
 def kind(pose: Pose) -> str:
-    """What an equilibrium is, in words."""
-    if pose.index is None:
+    """What an equilibrium is, in words; just that where nothing says what is stable."""
+    if pose.multiplicity > 1:
         return f"degenerate, multiplicity {pose.multiplicity}"
+    if pose.index is None:
+        return "equilibrium"
     return "stable (minimum)" if pose.index == 0 else kind_name(pose.index, len(pose.eigenvalues))
 
 
@@ -101,10 +103,10 @@ def unknown_texts(model: Model, pose: Pose) -> list[str]:
 
 
 def _lines_below(model: Model, pose: Pose) -> list[str]:
-    """Energy, and unknowns: as many of them on a line as there is room for."""
+    """Energy, if there is one, and unknowns: as many of them on a line as there is room for."""
     unknowns = unknown_texts(model, pose)
     return [
-        f"U = {number_text(pose.known_energy)}",
+        *([] if pose.energy is None else [f"U = {number_text(pose.energy)}"]),
         *(", ".join(unknowns[k : k + 2]) for k in range(0, len(unknowns), 2)),
     ]
 
@@ -125,7 +127,7 @@ def panel(
 ) -> Any:
     """One pose in axes at a place in inches, with its kind above and energy and angles below."""
     width, tall = figure.get_size_inches()
-    strong = pose.stable is True
+    strong = pose.stable is True or not mechanism.tells_stability
     style = STRONG if strong else PALE
     axes = figure.add_axes((corner[0] / width, corner[1] / tall, frame.width / 72 / width, frame.height / 72 / tall))
     axes.set_gid(f"pose-{number}")
@@ -198,13 +200,15 @@ def heading(poses: Poses, columns: int) -> list[str]:
 def _count(poses: Poses) -> str:
     if not poses.equilibria:
         return noun(poses.model).capitalize()
-    return f"{counted(poses.model, len(poses.equilibria))}, {poses.stable} stable,"
+    stable = f", {poses.stable} stable," if poses.model.tells_stability else ""
+    return f"{counted(poses.model, len(poses.equilibria))}{stable}"
 
 
 def describe(poses: Poses) -> str:
     """What the picture shows, in words."""
     parts = [
-        f"{n}: {kind(p)}{', flat' if p.flat else ''}, U {number_text(p.known_energy)}, "
+        f"{n}: {kind(p)}{', flat' if p.flat else ''}, "
+        + ("" if p.energy is None else f"U {number_text(p.energy)}, ")
         + _unknowns_in_words(poses.model, p)
         for n, p in enumerate(in_order(poses), 1)
     ]
@@ -246,20 +250,25 @@ def empty(poses: Poses) -> Figure:
 
 def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
     """What lines and colours mean."""
+    assert isinstance(poses.model, Mechanism)
     yield Entry(("Poses",), strong=True)
-    yield Entry(("stable: strong colours, dark frame",), bar_mark(0, STRONG))
-    yield Entry(("unstable or degenerate: pale",), bar_mark(0, PALE))
-    yield Entry(("U: energy, in force · length",))
+    if poses.model.tells_stability:
+        yield Entry(("stable: strong colours, dark frame",), bar_mark(0, STRONG))
+        yield Entry(("unstable or degenerate: pale",), bar_mark(0, PALE))
+    else:
+        yield Entry(tuple(textwrap.wrap(UNTOLD, _KEY_COLUMNS)))
+    if poses.model.has_potential:
+        left_out = of_what(poses.model, poses.parameters)
+        yield Entry(("U: energy, in force · length", *textwrap.wrap(left_out, _KEY_COLUMNS)))
     yield Entry(())
     yield Entry(("Parts",), strong=True)
-    assert isinstance(poses.model, Mechanism)
     yield from parts_legend(poses.model)
     if arrows:
         known = load_values(poses)
         loads = [_load_text(name, known[name]) for name in arrows]
         shortened = any(abs(length) == SHORTEST_ARROW < LONGEST_ARROW for length in arrows.values())
-        lines = ["load; length by force" + (", except" if shortened else "")]
-        lines += ["that short ones are lengthened"] if shortened else []
+        lines = ["loads; arrows in proportion to them" if len(loads) > 1 else "load"]
+        lines += ["except that short ones are lengthened"] if shortened else []
         yield Entry((*lines, *textwrap.wrap(",  ".join(loads), _KEY_COLUMNS)), symbol_mark("load"))
     yield Entry(())
 
@@ -293,8 +302,8 @@ def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
 
 
 def _load_text(name: str, value: Fraction) -> str:
-    """A load's component: by its name, or by its value alone where that is how it was given."""
-    return assigned(name, value) if name[0].isalpha() else value_text(value).lstrip("=≈\N{NO-BREAK SPACE}")
+    """A load's component: by its name, or as a force of so much where a number is how it was given."""
+    return assigned(name if name[0].isalpha() else "force", value)
 
 
 _KEY_COLUMNS = 33

@@ -115,7 +115,7 @@ function fillPanel(number, cell) {
     if (DATA.landscape) {
       const energy = drawLandscape(cell, () => {});
       cells.redraw = energy.redraw;
-      panel.append(html("h3", "", "Energy over both angles"), energy.box, landscapeLegend());
+      panel.append(html("h3", "", landscapeTitle(cell)), energy.box, landscapeLegend());
     }
     return;
   }
@@ -130,7 +130,7 @@ function fillPanel(number, cell) {
     const figure = html("figure", `pose ${pose.kind}`);
     const caption = html("figcaption");
     caption.append(html("b", "", pose.kind), html("br"), ...pose.unknowns.flatMap((text, n) => [`${MECHANISM.unknowns[n]} = ${text}`, html("br")]),
-      `U = ${pose.energy}`);
+      pose.energy ? `U = ${pose.energy}` : "");
     figure.append(drawPose(cell, pose, frame), caption);
     const k = figures.length;
     figure.addEventListener("pointerenter", () => pointed(k, true));
@@ -138,13 +138,14 @@ function fillPanel(number, cell) {
     figures.push(figure);
     grid.append(figure);
   }
-  panel.append(grid, html("p", "hint", legendOfParts()));
+  const without = cell.moments.length ? " U is the energy of springs and loads, without the moments' work." : "";
+  panel.append(grid, html("p", "hint", legendOfParts() + without));
   const landscape = DATA.landscape ? drawLandscape(cell, pointed) : null;
   cells.redraw = landscape && landscape.redraw;
   const numbers = html("details");
   numbers.append(html("summary", "", "Poses in numbers (every digit certified to one unit of the last place)"), springTable(cell));
-  if (landscape) panel.append(html("h3", "", "Energy over both angles"), landscape.box, landscapeLegend());
-  else panel.append(html("p", "hint", "The energy is drawn here over two angles only; ptmcad solve --landscape draws it over any one or two unknowns."));
+  if (landscape) panel.append(html("h3", "", landscapeTitle(cell)), landscape.box, landscapeLegend());
+  else if (cell.potential.length) panel.append(html("p", "hint", "The energy is drawn here over two angles only; ptmcad solve --landscape draws it over any one or two unknowns."));
   panel.append(numbers);
 }
 
@@ -161,7 +162,7 @@ function legendOfParts() {
   if (slides.length) held.push(`${points(slides)} ${slides.length > 1 ? "sit on sliders" : "sits on the slider"}`);
   const text = parts.join("; ");
   return `${text.charAt(0).toUpperCase()}${text.slice(1)}. ${held.length ? `${held.join(", ")}. ` : ""}`
-    + "All poses are drawn to one scale; a strong frame means stable.";
+    + `All poses are drawn to one scale; ${DATA.told ? "a strong frame means stable" : "nothing says which are stable, as a moment depends on an unknown"}.`;
 }
 theme.changed.push(() => { if (cells.redraw) cells.redraw(); });
 

@@ -14,8 +14,9 @@ from typing import Any, TypeVar
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution
 from ptmcad.answer.words import kind_name
 from ptmcad.errors import ConfigError, PoleError
-from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.evaluate import evaluate, value_at
+from ptmcad.mechanism.moments import moments_at
 from ptmcad.question.slice import merged
 from ptmcad.show.report.bounds import (
     Bounds,
@@ -43,7 +44,9 @@ Value = TypeVar("Value")
 def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     """All that the page shows and draws for a cell's sample: parameters, loads, potential and equilibria, as JSON data.
 
-    In a certified map, whose unknowns are angles, solutions and potential are left out.
+    Moments are those on the unknowns, angles first, whose work is not in the potential; none where all are zero.
+
+    In a certified map, with a cover, solutions and potential are left out.
 
     Raises
     ------
@@ -56,18 +59,20 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
         raise ConfigError(f"a parameter has no value at a sample: {error}") from error
     model = result.slice.model
     # springs with free lengths have square roots in their potential
-    polynomial = result.system.unknowns == coordinates(model)
+    polynomial = result.cover is None and result.system.unknowns == coordinates(model)
     potential = potential_at(result.system, values) if polynomial and result.system.potential else None
     drawn = (
         polynomial
         and all(name in values for name in model.without_free_lengths)
         and all(abs(v) < MAX_DRAWN for v in (*values.values(), *(potential or {}).values()))
     )
+    moments = moments_at(model, values) if drawn and potential is not None else {}
     loads = model.loads if drawn and isinstance(model, Mechanism) else ()
     return {
         "parameters": [[n, both(v)] for n, v in distinct_parameters(values, model).items()],
         "loads": [[float(value_at(load.x, values)), float(value_at(load.y, values))] for load in loads],
         "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()] if drawn else [],
+        "moments": [float(moments.get(name, 0)) for name in (*model.angles, *model.reals)] if moments else [],
         "equilibria": _solutions(model, cell, values, potential) if drawn else [],
     }
 
@@ -79,7 +84,7 @@ def coordinates(model: Model) -> tuple[str, ...]:
 
 def kind_of(solution: Solution, model: Model) -> str:
     """What the signs of the Hessian's eigenvalues say, or those of the conditions for stability."""
-    if isinstance(model, System) and model.potential is None:
+    if not model.has_potential:
         return "solution" if not model.tells_stability else "unstable" if solution.signs.strip("+") else "stable"
     if set(solution.signs) - set("+-") or len(solution.signs) != len(model.unknowns):
         return "degenerate"

@@ -1,13 +1,17 @@
 // The energy over both angles, a picture only: shaded bands, contours, the contour through each saddle, the equilibria.
+// Where moments work it is the energy less their work, in which the equilibria are level, cut at 180 degrees.
 
 const GRID = 120;
 const BANDS = 16;
 const PLOT = { side: 400, left: 84, bottom: 74, rim: 34 };
 
-function energyTable(terms, steps) {
+function energyTable(cell, steps) {
+  const { potential: terms, moments: [one = 0, two = 0] } = cell;
   const powers = [];
+  const angles = [];
   for (let k = 0; k <= steps; k += 1) {
     const angle = -Math.PI + 2 * Math.PI * k / steps;
+    angles.push(angle);
     powers.push([Math.cos(angle), Math.sin(angle)]);
   }
   const first = terms.map((t) => powers.map(([c, s]) => t[4] * c ** t[0] * s ** t[1]));
@@ -18,7 +22,7 @@ function energyTable(terms, steps) {
     for (let i = 0; i <= steps; i += 1) {
       let sum = 0;
       for (let n = 0; n < terms.length; n += 1) sum += first[n][i] * second[n][j];
-      row[i] = sum;
+      row[i] = sum - one * angles[i] - two * angles[j];
     }
     table.push(row);
   }
@@ -48,9 +52,20 @@ function contour(table, level, side) {
   return d;
 }
 
-function shade(canvas, terms, low, high) {
+// What is drawn at an equilibrium, where the picture has it.
+function levelOf(cell, pose) {
+  const [c1, s1, c2, s2] = pose.at;
+  const [one = 0, two = 0] = cell.moments;
+  return pose.level - one * Math.atan2(s1, c1) - two * Math.atan2(s2, c2);
+}
+
+function landscapeTitle(cell) {
+  return cell.moments.length ? "Energy less the moments' work over both angles, cut at ±180° and not periodic" : "Energy over both angles";
+}
+
+function shade(canvas, cell, low, high) {
   const pixels = canvas.width;
-  const table = energyTable(terms, pixels - 1);
+  const table = energyTable(cell, pixels - 1);
   const style = getComputedStyle(document.documentElement);
   const colour = (name) => style.getPropertyValue(name).split(",").map(Number);
   const [dark, light] = [colour("--low"), colour("--high")];
@@ -76,7 +91,7 @@ function markOf(kind) {
 function drawLandscape(cell, pointed) {
   const { side, left, bottom, rim } = PLOT;
   const box = html("div", "landscape");
-  const table = energyTable(cell.potential, GRID);
+  const table = energyTable(cell, GRID);
   let [low, high] = [Infinity, -Infinity];
   for (const row of table) for (const value of row) { low = Math.min(low, value); high = Math.max(high, value); }
   const canvas = html("canvas");
@@ -86,15 +101,15 @@ function drawLandscape(cell, pointed) {
   Object.assign(canvas.style, {
     left: `${100 * left / w}%`, top: `${100 * rim / h}%`, width: `${100 * side / w}%`, height: `${100 * side / h}%`,
   });
-  if (high > low) shade(canvas, cell.potential, low, high);
+  if (high > low) shade(canvas, cell, low, high);
   const kinds = cell.equilibria.map((pose) => pose.kind).join(", ");
-  const picture = svg("svg", { viewBox: `0 0 ${w} ${h}`, role: "img", "aria-label": `Energy over both angles; marked: ${kinds}` });
+  const picture = svg("svg", { viewBox: `0 0 ${w} ${h}`, role: "img", "aria-label": `${landscapeTitle(cell)}; marked: ${kinds}` });
   const plot = svg("g", { transform: `translate(${left} ${rim})` });
   for (let k = 1; k < BANDS && high > low; k += 1) {
     plot.append(svg("path", { class: "contour", d: contour(table, low + (high - low) * k / BANDS, side) }));
   }
   for (const pose of cell.equilibria) {
-    if (pose.kind === "saddle") plot.append(svg("path", { class: "contour pass", d: contour(table, pose.level, side) }));
+    if (pose.kind === "saddle") plot.append(svg("path", { class: "contour pass", d: contour(table, levelOf(cell, pose), side) }));
   }
   for (let k = -2; k <= 2; k += 1) {
     const at = side * (k + 2) / 4;
@@ -129,7 +144,7 @@ function drawLandscape(cell, pointed) {
   });
   picture.append(plot);
   box.append(canvas, picture);
-  const redraw = () => { if (high > low) shade(canvas, cell.potential, low, high); };
+  const redraw = () => { if (high > low) shade(canvas, cell, low, high); };
   return { box, marks, redraw };
 }
 
@@ -146,7 +161,7 @@ function landscapeLegend() {
   const pass = html("li");
   const line = svg("svg", { class: "swatch line", viewBox: "0 0 30 18", "aria-hidden": "true" });
   line.append(svg("path", { class: "contour pass", d: "M0 9H30" }));
-  pass.append(line, html("span", "", "energy of a saddle"), html("small", "", "darker shade: lower energy"));
+  pass.append(line, html("span", "", "level of a saddle"), html("small", "", "darker shade: lower"));
   list.append(pass);
   return list;
 }

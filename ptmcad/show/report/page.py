@@ -58,7 +58,7 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
         policy=escape(_policy(style, script)),
         title=escape(result.slice.heading),
         name=escape(result.slice.name),
-        what="its poses and its energy" if isinstance(result.slice.model, Mechanism) else "its solutions",
+        what=_shown(result.slice.model),
         banner=sections.banner(result),
         question=sections.question(result),
         patterns=pattern_defs([fill_of(r, result.slice.count) for r in result.regions]),
@@ -90,6 +90,13 @@ def _curves(result: RegionMap) -> str:
     if result.cover is not None:
         return ""
     return '<section aria-labelledby="h-curves"><h2 id="h-curves">Boundary curves</h2>' + curves(result) + "</section>"
+
+
+def _shown(model: Model) -> str:
+    """What a cell's button shows."""
+    if not isinstance(model, Mechanism):
+        return "its solutions"
+    return "its poses and its energy" if model.has_potential else "its poses"
 
 
 def _details(drawn: Chart) -> str:
@@ -157,6 +164,7 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "base": result.base,
         "axes": [symbol(name) for name in names],
         "drawable": isinstance(model, Mechanism),
+        "told": model.tells_stability,
         "landscape": len(model.angles) == len(model.unknowns) == 2 and bool(result.system.potential),
         "index": index_words(len(model.unknowns) + 1),
         "mechanism": _drawing(model),

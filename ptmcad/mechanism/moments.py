@@ -1,0 +1,33 @@
+"""Moments where the parameters have values: which unknowns they work on, and how strongly.
+
+A moment M on an angle does the work M times the angle, another one after each turn: the energy less that work has many
+values on the circle, so that whatever is said of an energy's descent has to ask for moments first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from ptmcad.mechanism.description import Mechanism, Model
+from ptmcad.mechanism.evaluate import value_at
+
+
+def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """The unknowns on which a moment that is not zero works, to the moment.
+
+    Parameters
+    ----------
+    model : one that has a potential: no moment depends on an unknown.
+    parameters : all of the model's; free lengths are zero where they are not among them.
+
+    Raises
+    ------
+    ExpressionError
+        When a moment depends on an unknown.
+    """
+    if not isinstance(model, Mechanism):
+        return {}
+    known = dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
+    found = {unknown: value_at(tree, known) for unknown, tree in model.moments}
+    return {unknown: value for unknown, value in found.items() if value}
