@@ -89,7 +89,7 @@ def check_points(record: dict[str, Any], result: RegionMap, number: int, seed: i
             counts = count_by_signature(system, values)
         except HypothesisError:
             continue
-        located = result.locate(at)
+        located = result.locate(**at)
         assert (located.total, located.index) == (counts.total, counts.index)
         assert count_by_isolation(image, {**values, "a": -values["a"]}) == counts
         if system.is_on_torus and counts.index is not None:
