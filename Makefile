@@ -8,6 +8,9 @@ JOBS ?= 2
 # the paper's loaded slices, on which every method is measured
 PAPER := fig3 fig4 fig5-caption fig5-text
 
+# where this is set, each of the hundreds of processes that the tests start would compile all sources again
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help demo test test-slow test-oldest fuzz check bench ablation scaling stress docs free-maps clean distclean
 
 help:

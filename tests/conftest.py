@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import signal
@@ -35,6 +36,13 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ[FOLDER] = folder
         config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
         config.add_cleanup(lambda: os.environ.pop(FOLDER, None))
+
+
+def pytest_collection_finish() -> None:
+    # the modules and tests of the whole suite stay to its end: the collector need not go through them again and again,
+    # nor forked children copy them for it
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(name="shipped")
