@@ -72,8 +72,9 @@ demo: $(VENV)/.installed
 test: $(VENV)/.installed-test
 	$(BIN)/python -m pytest --numprocesses $(JOBS) --dist worksteal
 
+# The slow tests, and those of the fast ones that draw examples, with all of their examples.
 test-slow: $(VENV)/.installed-test
-	$(BIN)/python -m pytest --numprocesses $(JOBS) -m slow
+	$(BIN)/python -m pytest --numprocesses $(JOBS) -m 'slow or hypothesis' --hypothesis-profile thorough
 
 test-oldest: $(OLDEST)/.installed
 	$(OLDEST)/bin/python -m pytest --numprocesses $(JOBS)

@@ -10,16 +10,19 @@ import tempfile
 
 import pytest
 from hypothesis import HealthCheck, settings
+from support.examples import ALL, FAST, FEW, THOROUGH
 from support.maps import FOLDER, shipped
 
-settings.register_profile(
-    "ptmcad",
-    derandomize=True,
-    deadline=None,
-    database=None,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
-)
-settings.load_profile("ptmcad")
+for _profile, _number in ((FAST, FEW), (THOROUGH, ALL)):
+    settings.register_profile(
+        _profile,
+        max_examples=_number,
+        derandomize=True,
+        deadline=None,
+        database=None,
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
+    )
+settings.load_profile(FAST)  # where no other one is asked for on the command line
 
 # a shell makes what it starts in the background ignore Ctrl-C, nohup makes it ignore SIGHUP, and every process that a
 # test starts would inherit that
