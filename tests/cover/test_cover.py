@@ -237,6 +237,11 @@ def test_gathered_rectangles_stay_close_to_a_line() -> None:
     assert after.rectangles == tuple((k, k + 16, k, k + 16) for k in range(0, 1024, 16))
 
 
+def test_where_finer_squares_are_more_than_asked_for_coarse_ones_stay() -> None:
+    nested = Cover(64, ((0, 1, 0, 1), (0, 64, 0, 64)))
+    assert gathered(nested, 1).rectangles == ((0, 64, 0, 64),)
+
+
 def test_of_two_rectangles_that_cover_for_each_other_one_stays() -> None:
     bars = ((0, 1, 0, 4), (2, 3, 0, 4), (0, 4, 0, 1), (0, 4, 2, 3))
     cross = ((0, 3, 1, 2), (1, 2, 0, 3))
