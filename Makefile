@@ -8,6 +8,9 @@ JOBS ?= 2
 # the paper's loaded slices, on which every method is measured
 PAPER := fig3 fig4 fig5-caption fig5-text
 
+# where this is set, each of the hundreds of processes that the tests start would compile all sources again
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help demo test test-slow test-oldest fuzz check bench ablation scaling stress docs free-maps clean distclean
 
 help:
@@ -69,8 +72,9 @@ demo: $(VENV)/.installed
 test: $(VENV)/.installed-test
 	$(BIN)/python -m pytest --numprocesses $(JOBS) --dist worksteal
 
+# The slow tests, and those of the fast ones that draw examples, with all of their examples.
 test-slow: $(VENV)/.installed-test
-	$(BIN)/python -m pytest --numprocesses $(JOBS) -m slow
+	$(BIN)/python -m pytest --numprocesses $(JOBS) -m 'slow or hypothesis' --hypothesis-profile thorough
 
 test-oldest: $(OLDEST)/.installed
 	$(OLDEST)/bin/python -m pytest --numprocesses $(JOBS)

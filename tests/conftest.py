@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import signal
@@ -9,16 +10,19 @@ import tempfile
 
 import pytest
 from hypothesis import HealthCheck, settings
+from support.examples import ALL, FAST, FEW, THOROUGH
 from support.maps import FOLDER, shipped
 
-settings.register_profile(
-    "ptmcad",
-    derandomize=True,
-    deadline=None,
-    database=None,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
-)
-settings.load_profile("ptmcad")
+for _profile, _number in ((FAST, FEW), (THOROUGH, ALL)):
+    settings.register_profile(
+        _profile,
+        max_examples=_number,
+        derandomize=True,
+        deadline=None,
+        database=None,
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
+    )
+settings.load_profile(FAST)  # where no other one is asked for on the command line
 
 # a shell makes what it starts in the background ignore Ctrl-C, nohup makes it ignore SIGHUP, and every process that a
 # test starts would inherit that
@@ -35,6 +39,13 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ[FOLDER] = folder
         config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
         config.add_cleanup(lambda: os.environ.pop(FOLDER, None))
+
+
+def pytest_collection_finish() -> None:
+    # the modules and tests of the whole suite stay to its end: the collector need not go through them again and again,
+    # nor forked children copy them for it
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(name="shipped")

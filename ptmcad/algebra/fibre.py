@@ -243,15 +243,19 @@ def block_hermite_matrix(algebra: Fibre, weights: Sequence[Sequence[fmpq_mat]]) 
             for _ in range(e):
                 m = matrix * m
         multiplications.append(m)
+    # the traces of all w b_i, for w = sum of w_j b_j, are this matrix times the w_j
+    traces = fmpq_mat(size, 1, [sum((m[i, i] for i in range(size)), fmpq(0)) for m in multiplications])
+    # column j of a multiplication is the normal form of its element times b_j
+    transposed = [m.transpose() for m in multiplications]
+    traces_of_products = fmpq_mat(size, size, [t for m in transposed for t in (m * traces).entries()])
     number = len(weights)
     entries = fmpq_mat(number * size, number * size)
     for k, row in enumerate(weights):
         for n, weight in enumerate(row):
-            traces = [sum(((weight * m)[i, i] for i in range(size)), fmpq(0)) for m in multiplications]
-            for b, a in enumerate(multiplications):
-                for j in range(size):
-                    # column j of a is the normal form of b_i b_j
-                    value = sum((a[i, j] * traces[i] for i in range(size)), fmpq(0))
+            # the first basis monomial is 1, so the first column is the weight's own normal form
+            weighted = traces_of_products * fmpq_mat(size, 1, [weight[i, 0] for i in range(size)])
+            for b, m in enumerate(transposed):
+                for j, value in enumerate((m * weighted).entries()):
                     entries[k * size + b, n * size + j] = value
     return entries
 

@@ -10,6 +10,7 @@ import pytest
 from flint import Ordering, fmpq, fmpq_mat, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_mpoly_vec, fmpz_poly
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 from support.maps import CONFIGS, shipped
 
 from ptmcad import load
@@ -80,7 +81,7 @@ rationals = st.one_of(corner, st.fractions(min_value=-4, max_value=4, max_denomi
     st.lists(st.tuples(st.integers(-3, 3), st.integers(1, 3)), max_size=2, unique=True),
     st.sampled_from([(-4, 4), (0, 1), (-1, 1), (-8, 10**7), (Fraction(1, 3), Fraction(7, 8))]),
 )
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_roots_by_construction(roots: set[Fraction], squares: list[tuple[int, int]], window: tuple[int, int]) -> None:
     check_roots(with_roots(roots, squares), roots, Fraction(window[0]), Fraction(window[1]))
 

@@ -14,6 +14,7 @@ from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from support.examples import examples
 
 pytest.importorskip("numba")
 
@@ -70,7 +71,7 @@ def encloses(interval: tuple[float, float], value: Fraction) -> bool:
 
 
 @given(intervals(), intervals())
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=examples(400), deadline=None)
 def test_product(x: tuple[float, float], y: tuple[float, float]) -> None:
     product = arithmetic.multiply(*x, *y)
     for p in points(x):
@@ -79,7 +80,7 @@ def test_product(x: tuple[float, float], y: tuple[float, float]) -> None:
 
 
 @given(intervals())
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 def test_reciprocal(x: tuple[float, float]) -> None:
     result = arithmetic.reciprocal(*x)
     for p in points(x):
@@ -102,7 +103,7 @@ def _product(a: float, b: float) -> tuple[float, float]:
 
 
 @given(FINITE, FINITE)
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=examples(500), deadline=None)
 def test_one_step_makes_up_for_one_rounding(a: float, b: float) -> None:
     assert encloses(_sum(a, b), Fraction(a) + Fraction(b))
     assert encloses(_product(a, b), Fraction(a) * Fraction(b))
@@ -116,7 +117,7 @@ def _size(a: float, b: float) -> tuple[float, float]:
 
 
 @given(intervals())
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 def test_least_and_largest_absolute_value(x: tuple[float, float]) -> None:
     near, far = _size(*x)
     for p in points(x):
@@ -137,7 +138,7 @@ def at_most(bound: float, x: Fraction, y: Fraction) -> bool:
 
 
 @given(intervals(), intervals())
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=examples(500), deadline=None)
 def test_direction_and_length(x: tuple[float, float], y: tuple[float, float]) -> None:
     low, high = arithmetic.direction(*x, *y)
     near, far = arithmetic.length(*x, *y)

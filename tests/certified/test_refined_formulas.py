@@ -275,3 +275,9 @@ def test_the_excess_over_the_cone_is_what_the_statics_say_at_a_spring_of_no_leng
 
 def modular(value: Fraction) -> int:
     return value.numerator * inverse(value.denominator) % PRIME
+
+
+def test_constants_are_combined() -> None:
+    graph = Graph()
+    two, three = graph.constant(2), graph.constant(3)
+    assert ((two + three).value, (two - three).value, (two * three).value) == (5, -1, 6)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 
 pytest.importorskip("numba")
 
@@ -54,7 +55,7 @@ def box_around(p: list[Fraction], q: list[Fraction], low: float, high: float) ->
     return np.array([[sides[0][0], sides[1][0], low, sides[0][1], sides[1][1], high]])
 
 
-@settings(deadline=None, max_examples=200)
+@settings(deadline=None, max_examples=examples(200))
 @given(
     st.lists(COEFFICIENTS, min_size=2, max_size=4),
     st.lists(COEFFICIENTS, min_size=2, max_size=4),
@@ -78,7 +79,7 @@ def test_points_of_a_curve_are_in_pieces_of_its_strips(
             assert any(r[0] <= x <= r[2] and r[1] <= y <= r[3] for r in rectangles.tolist()), (t, x, y)
 
 
-@settings(deadline=None, max_examples=200)
+@settings(deadline=None, max_examples=examples(200))
 @given(st.fractions(-1, 1, max_denominator=100), st.sampled_from((0.5, 0.1, 1e-3)), st.sampled_from((inf, 1e-3, 0.0)))
 def test_points_of_a_circle_are_in_pieces_of_its_strips(s: Fraction, width: float, area: float) -> None:
     """x^2 + y^2 = 1, t = y: the strip's slope is uncertain here, and nothing else is."""

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 
 pytest.importorskip("numba")
 
@@ -40,7 +41,7 @@ def pairs(found: Touching) -> list[tuple[int, int, bool]]:
     return sorted((int(a), int(b), bool(c)) for (a, b), c in zip(ends, found.along, strict=True))
 
 
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=examples(150))
 @given(covers())
 def test_compiled_and_plain_tilings_agree(cover: Cover) -> None:
     rectangles = rectangle_array(cover)
@@ -57,7 +58,7 @@ def test_compiled_and_plain_tilings_agree(cover: Cover) -> None:
     ]
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=examples(100))
 @given(covers())
 def test_components_do_not_depend_on_the_tiling(cover: Cover) -> None:
     def told(tiling: Tiling) -> object:

@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from support.examples import examples
 
 from ptmcad.cover import components, from_boxes, union_area
 from ptmcad.cover.borders import area_bounds
@@ -111,7 +112,7 @@ def check_against_flood(cover: Cover) -> None:
     assert {(label_of[c], cluster_label[k]) for c, k in found.touching} == near
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=examples(80))
 @given(covers())
 def test_components_and_clusters_are_those_of_a_flood_fill(cover: Cover) -> None:
     check_against_flood(cover)
@@ -138,7 +139,7 @@ def test_components_of_many_rectangles_are_those_of_a_flood_fill(seed: int) -> N
     check_against_flood(Cover(steps, tuple(sorted(found))))
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(covers(), st.sampled_from((1, 3, 2**20, 2**36 - 5, 2**36)))
 def test_a_finer_lattice_scales_everything(cover: Cover, factor: int) -> None:
     """Coordinates of forty bits, and areas of eighty, are as exact as small ones."""
@@ -154,7 +155,7 @@ def test_a_finer_lattice_scales_everything(cover: Cover, factor: int) -> None:
     assert union_area(finer) == factor**2 * union_area(cover)
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(covers())
 def test_samples_are_in_their_components_and_rectangles_can_not_grow(cover: Cover) -> None:
     found, grid = components(cover), flood(cover)
@@ -172,7 +173,7 @@ def test_samples_are_in_their_components_and_rectangles_can_not_grow(cover: Cove
             assert left * across < x - x0 < right * across and bottom * up < y - y0 < top * up
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(covers(), st.integers(0, 300))
 def test_filling_removes_the_chosen_components_only(cover: Cover, least: int) -> None:
     found = components(cover)
@@ -182,7 +183,7 @@ def test_filling_removes_the_chosen_components_only(cover: Cover, least: int) ->
     assert union_area(after) == union_area(cover) + sum(found.areas[n] for n in small)
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=examples(80))
 @given(covers())
 def test_a_simplified_cover_covers_the_same_with_no_more_rectangles(cover: Cover) -> None:
     after = simplified(cover)
@@ -191,7 +192,7 @@ def test_a_simplified_cover_covers_the_same_with_no_more_rectangles(cover: Cover
     assert list(after.rectangles) == sorted(set(after.rectangles))
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=examples(80))
 @given(covers())
 def test_a_combined_cover_covers_the_same_with_no_more_rectangles(cover: Cover) -> None:
     after = combined(cover)
@@ -220,7 +221,7 @@ def test_many_rectangles_over_each_other_take_little_memory() -> None:
     assert peak < 20_000_000
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=examples(80))
 @given(covers(), st.integers(1, 20))
 def test_gathered_rectangles_are_few_and_cover_at_least_the_same(cover: Cover, most: int) -> None:
     after = gathered(cover, most)
@@ -236,6 +237,11 @@ def test_gathered_rectangles_stay_close_to_a_line() -> None:
     assert after.rectangles == tuple((k, k + 16, k, k + 16) for k in range(0, 1024, 16))
 
 
+def test_where_finer_squares_are_more_than_asked_for_coarse_ones_stay() -> None:
+    nested = Cover(64, ((0, 1, 0, 1), (0, 64, 0, 64)))
+    assert gathered(nested, 1).rectangles == ((0, 64, 0, 64),)
+
+
 def test_of_two_rectangles_that_cover_for_each_other_one_stays() -> None:
     bars = ((0, 1, 0, 4), (2, 3, 0, 4), (0, 4, 0, 1), (0, 4, 2, 3))
     cross = ((0, 3, 1, 2), (1, 2, 0, 3))
@@ -244,7 +250,7 @@ def test_of_two_rectangles_that_cover_for_each_other_one_stays() -> None:
     assert len(after.rectangles) == 5
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=examples(80))
 @given(covers())
 def test_outlines_go_around_their_components(cover: Cover) -> None:
     """Their signed areas add up to the component's, and every corner turns by a right angle."""
@@ -326,7 +332,7 @@ ends = st.one_of(
 )
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(st.lists(st.tuples(ends, ends, ends, ends), max_size=6), st.sampled_from((1, 64, 2**24, MAX_STEPS)))
 def test_boxes_are_rounded_outward_by_less_than_two_steps(boxes: list[tuple[float, ...]], steps: int) -> None:
     for a, b, c, d in boxes:

@@ -10,6 +10,7 @@ from flint import fmpq
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support import oracle
+from support.examples import examples
 from support.maps import CONFIGS, shipped
 from support.shipped_records import EXACT
 
@@ -141,7 +142,7 @@ def agree_at_extremes(values: Values) -> None:
 
 
 @given(extreme)
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_extreme_ratios(values: Values) -> None:
     agree_at_extremes(values)
 

@@ -123,7 +123,7 @@ def both_ways(slice: Slice) -> None:
 
 
 @given(slices())
-@settings(max_examples=6)
+@settings(max_examples=4)
 def test_the_plain_pipeline_says_the_same_on_random_slices(slice: Slice) -> None:
     both_ways(slice)
 

@@ -16,6 +16,7 @@ import pytest
 from flint import fmpq, fmpz_mpoly, fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
@@ -230,7 +231,7 @@ def check_lines(coefficients: list[tuple[int, int, int]], base: int) -> None:
 
 
 @given(arrangements, st.sampled_from([0, 1]))
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_arrangements_of_lines(coefficients: list[tuple[int, int, int]], base: int) -> None:
     check_lines(coefficients, base)
 
@@ -262,7 +263,7 @@ def check_both_axes(polynomials: list[fmpz_mpoly]) -> None:
 
 
 @given(curves_of_degree_2_and_3)
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 def test_both_axes_agree_on_random_cubics(polynomials: list[fmpz_mpoly]) -> None:
     check_both_axes(polynomials)
 

@@ -12,6 +12,7 @@ from random import Random
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 
 from fuzz import targets
 from fuzz.damage import damaged_bytes, damaged_tokens, damaged_tree
@@ -19,7 +20,7 @@ from fuzz.seeds import records, results
 from fuzz.watch import Tally, watched
 from ptmcad.errors import PtmcadError
 
-FAST = {"record": 400, "options": 300, "points": 150, "small": 10, "result": 150}
+FAST = {"record": 400, "options": 300, "points": 150, "small": 10, "result": 80}
 SLOW = {"record": 5000, "options": 3000, "points": 1500, "small": 200, "result": 2000}
 
 
@@ -45,7 +46,7 @@ def test_more_cases(kind: str, tmp_path: Path) -> None:
 
 
 @given(st.binary(max_size=300) | st.text(max_size=300).map(lambda text: text.encode("utf-8", "surrogatepass")))
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_any_bytes_are_a_record_or_a_refusal(data: bytes) -> None:
     """Hypothesis shrinks what it finds."""
     assert targets.run("record", data) in ("accepted", "refused")
@@ -59,7 +60,7 @@ json_values = st.recursive(
 
 
 @given(st.data())
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_any_value_in_place_of_a_results_value(data: st.DataObject) -> None:
     """One entry of a result, wherever it stands, is replaced by any JSON value."""
     tree = json.loads(data.draw(st.sampled_from(results()[2:4])))

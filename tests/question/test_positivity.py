@@ -11,6 +11,7 @@ import sympy
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.dips import AXES, DIPS, NAMES, Q, X, Y, random_square, thin_dip
+from support.examples import examples
 
 from ptmcad.algebra import definite
 from ptmcad.question.positivity import (
@@ -37,7 +38,7 @@ units = st.fractions(min_value=0, max_value=1, max_denominator=9)
 
 
 @given(coefficients, units, units)
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 def test_the_bernstein_form_has_the_polynomial_values(
     polynomial: dict[tuple[int, int], int], s: Fraction, t: Fraction
 ) -> None:
@@ -222,7 +223,7 @@ def horner(values: list[int], variable: Expression) -> Expression:
 
 @given(univariate, univariate, st.integers(0, 1))
 @example([1, -1], [1, -1], 0)
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 def test_one_variable_agrees_with_sturm_in_sympy(a: list[int], b: list[int], which: int) -> None:
     """Decided completely: never undecided, and as Sturm's theorem counts the roots of the squarefree factors."""
     p = horner(a, (X, Y)[which]) ** 2 * horner(b, (X, Y)[which])

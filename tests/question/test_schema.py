@@ -217,3 +217,11 @@ def test_schema_and_reader_agree_on_the_keys(shipped: Callable[..., RegionMap]) 
             assert not validator.is_valid(data), (path, key, change)
             with pytest.raises(ValueError, match=r"lacks|unknown|format"):
                 RegionMap.from_json(json.dumps(data))
+
+
+def test_one_is_not_true_to_either(shipped: Callable[..., RegionMap]) -> None:
+    data = json.loads(shipped("fig2").to_json())
+    data["components"][0]["separates"] = 1
+    assert not jsonschema.Draft202012Validator(RESULT).is_valid(data)
+    with pytest.raises(ValueError, match="is not true or false"):
+        RegionMap.from_json(json.dumps(data))

@@ -55,6 +55,12 @@ def poses(name: str) -> Poses:
     return solve(**POINTS[name])
 
 
+@cache
+def picture(draw: Callable[[Poses], Figure], name: str) -> Figure:
+    """A drawing for tests that look at it only."""
+    return draw(poses(name))
+
+
 def identifiers(figure: Figure, start: str) -> list[str]:
     return [a.get_gid() for a in figure.findobj() if a.get_gid() and a.get_gid().startswith(start)]  # type: ignore[misc]
 
@@ -64,8 +70,7 @@ def identifiers(figure: Figure, start: str) -> list[str]:
 
 @CASES
 def test_every_pose_has_a_panel_with_all_its_parts(name: str) -> None:
-    found = poses(name)
-    figure = draw_poses(found)
+    found, figure = poses(name), picture(draw_poses, name)
     assert len(figure.axes) == len(found.equilibria) >= 4 or found.status is Status.ON_VARIETY
     for number, axes in enumerate(figure.axes, 1):
         prefix = f"pose-{number}-"
@@ -80,7 +85,7 @@ def test_every_pose_has_a_panel_with_all_its_parts(name: str) -> None:
 
 
 def test_stable_ones_come_first_and_are_strong() -> None:
-    figure = draw_poses(poses("paper, fig. 4"))
+    figure = picture(draw_poses, "paper, fig. 4")
     colours = [
         next(a.get_color() for a in axes.get_children() if str(a.get_gid()).endswith("bar-A1A3"))
         for axes in figure.axes
@@ -92,7 +97,7 @@ def test_stable_ones_come_first_and_are_strong() -> None:
 
 
 def test_a_degenerate_pose_is_named_with_its_multiplicity() -> None:
-    figure = draw_poses(poses("fold"))
+    figure = picture(draw_poses, "fold")
     assert any("degenerate, multiplicity 3, flat" in t.get_text() for t in figure.texts)
 
 
@@ -214,8 +219,7 @@ def test_a_stroke_meets_a_box_where_one_of_its_points_does(ends: tuple[float, ..
 
 @CASES
 def test_every_equilibrium_is_marked_and_numbered_once(name: str) -> None:
-    found = poses(name)
-    figure = draw_landscape(found)
+    found, figure = poses(name), picture(draw_landscape, name)
     n = len(found.equilibria)
     assert sorted(identifiers(figure, "equilibrium-")) == [f"equilibrium-{k}" for k in range(1, n + 1)]
     assert sorted(identifiers(figure, "number-")) == [f"number-{k}" for k in range(1, n + 1)]
@@ -244,8 +248,7 @@ def test_the_drawn_energy_is_that_of_the_poses(name: str) -> None:
 
 
 def test_contours_pass_through_saddles() -> None:
-    found = poses("paper, fig. 4")
-    figure = draw_landscape(found)
+    found, figure = poses("paper, fig. 4"), picture(draw_landscape, "paper, fig. 4")
     energy = energy_of(found.model, found.parameters)
     saddles = sorted(energy.scaled(p.energy.center) for p in found.equilibria if p.index == 1)
     drawn = [list(c.levels) for c in figure.findobj() if hasattr(c, "levels")]
@@ -272,7 +275,7 @@ def test_equilibria_on_the_same_place_stay_visible() -> None:
 def test_the_edges_of_the_torus_are_one() -> None:
     assert copies(180.0) == copies(-179.9) == (180.0, -180.0)
     assert copies(0.0) == (0.0,)
-    figure = draw_landscape(poses("paper, fig. 2"))
+    figure = picture(draw_landscape, "paper, fig. 2")
     (maximum,) = [a for a in figure.findobj() if a.get_gid() == "equilibrium-6"]
     same = [a for a in figure.axes[0].lines + figure.axes[0].artists if a.get_marker() == maximum.get_marker()]
     assert {(a.get_xdata()[0], a.get_ydata()[0]) for a in same} == {(x, y) for x in (180, -180) for y in (180, -180)}
@@ -319,7 +322,7 @@ def boxes_of(figure: Figure) -> list[matplotlib.transforms.Bbox]:
 @pytest.mark.parametrize("draw", DRAWN)
 @CASES
 def test_texts_do_not_overlap_and_are_on_the_page(name: str, draw: Callable[[Poses], Figure]) -> None:
-    figure = draw(poses(name))
+    figure = picture(draw, name)
     boxes = boxes_of(figure)
     width, height = figure.canvas.get_width_height()
     assert not [1 for a, b in combinations(boxes, 2) if a.overlaps(b)]
@@ -333,13 +336,15 @@ def test_texts_of_the_figure_do_not_overlap(name: str, count: str) -> None:
     assert not [1 for a, b in combinations(boxes, 2) if a.overlaps(b)]
 
 
-@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
 @pytest.mark.parametrize("draw", DRAWN)
-def test_the_same_bytes_twice(draw: Callable[[Poses], Figure], suffix: str, tmp_path: Path) -> None:
+def test_the_same_bytes_twice(draw: Callable[[Poses], Figure], tmp_path: Path) -> None:
     before = dict(matplotlib.rcParams)
     for k in range(2):
-        printing.save(draw(poses("paper, fig. 4")), tmp_path / f"{k}.{suffix}", dpi=(100, 300)[suffix != "png"])
-    assert (tmp_path / f"0.{suffix}").read_bytes() == (tmp_path / f"1.{suffix}").read_bytes()
+        figure = draw(poses("paper, fig. 4"))
+        for suffix in ("svg", "png", "pdf"):
+            printing.save(figure, tmp_path / f"{k}.{suffix}", dpi=(100, 300)[suffix != "png"])
+    for suffix in ("svg", "png", "pdf"):
+        assert (tmp_path / f"0.{suffix}").read_bytes() == (tmp_path / f"1.{suffix}").read_bytes()
     assert dict(matplotlib.rcParams) == before
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
@@ -207,7 +208,7 @@ def test_a_wrong_answer_is_called_wrong() -> None:
 # ----------------------------------------------------------------------------------------------------- random cases
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(st.integers(0, 10**6), st.integers(0, 4))
 def test_random_extreme_cases_are_answered_right(seed: int, number: int) -> None:
     c = random_case(seed, number)

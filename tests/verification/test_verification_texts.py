@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 
 from ptmcad.answer.regionmap import RegionMap, Status, System
 from ptmcad.errors import ConfigError
@@ -108,7 +109,7 @@ def records(draw: st.DrawFn) -> dict[str, object]:
     return {"parameters": parameters, "axes": {name: ["1/5", "3/2"] for name in axes}}
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(records())
 def test_texts_of_any_record_are_explained(record: dict[str, object]) -> None:
     try:

@@ -15,6 +15,7 @@ from click.testing import CliRunner
 from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.examples import examples
 
 import ptmcad
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution, Status, System
@@ -481,7 +482,7 @@ def covers(draw: st.DrawFn) -> Cover:
 
 
 @given(covers())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_sweep_and_subdivision_agree(cover: Cover) -> None:
     """Components, clusters, areas, who touches whom, and where points lie, by two methods without common code."""
     one, two = sweep(cover), components(cover)
