@@ -106,15 +106,12 @@ def jobs(method: Method, slice: Slice, record: Path, folder: Path, quick: bool, 
         return f"the sextic is the paper's mechanism's, not that of {slice.mechanism}"
     given = str(folder / "question.json")
     if method is Method.COMPANION:
-        return tuple(
-            _grid(method, folder, n, rank, "companion", given, str(n))
-            for rank, n in enumerate(GRIDS[: 4 if quick else None])
-        )
+        return tuple(_grid(method, folder, n, rank, given) for rank, n in enumerate(GRIDS[: 4 if quick else None]))
     if method is Method.MULTISTART:
         if find_spec("scipy") is None:
             return "scipy is not installed"
         return tuple(
-            _grid(method, folder, n, rank, "multistart", given, str(n), str(seed))
+            _grid(method, folder, n, rank, given, str(seed))
             for rank, n in enumerate(START_GRIDS[: 1 if quick else None])
         )
     if method is Method.GCAD:
@@ -138,9 +135,10 @@ def _classify(method: Method, slice: Slice, record: Path, folder: Path, settings
     return tuple(found)
 
 
-def _grid(method: Method, folder: Path, n: int, rank: int, module: str, *arguments: str) -> Job:
+def _grid(method: Method, folder: Path, n: int, rank: int, given: str, *more: str) -> Job:
     target = folder / f"{method.value}-{n}.npy"
-    return Job(method, f"N = {n}", ((_module(module, *arguments, str(target)), ""),), target, rank, grows=rank > 0)
+    command = _module(method.value, given, str(n), str(target), *more)
+    return Job(method, f"N = {n}", ((command, ""),), target, rank, grows=rank > 0)
 
 
 def _module(name: str, *arguments: str) -> tuple[str, ...]:
