@@ -84,8 +84,7 @@ def signed_solutions_with(design: tuple[str, ...]) -> SignedSolutions:
 @lru_cache(maxsize=4)
 def equilibria_with(design: tuple[str, ...]) -> tuple[ProvedEquilibrium, ...]:
     """The equilibria that were proved at a design given by decimals."""
-    rho, length1, length2, free, f3, f4 = (Fraction(x) for x in design)
-    return proved_equilibria(FreeLengthDesign(rho, length1, length2, free, f3, f4))
+    return proved_equilibria(FreeLengthDesign(*map(Fraction, design)))
 
 
 def squared_degree() -> Finding:

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from ptmcad.studies.paper.claim import Fact, Finding
 from ptmcad.studies.paper.heights import no_level_rod_is_stable, signs_of_heights
-from ptmcad.studies.paper.slices import Exact, equilibria_at, region_map
+from ptmcad.studies.paper.slices import equilibria_at, region_map
+from ptmcad.studies.slices import Exact
 
 
 def two_stable(**at: Exact) -> Finding:

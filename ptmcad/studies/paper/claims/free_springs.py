@@ -21,7 +21,6 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import classify
 from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError
-from ptmcad.question.config import slice_from_mapping
 from ptmcad.studies.paper import printed
 from ptmcad.studies.paper.claim import Fact, Finding
 from ptmcad.studies.paper.claims.extensions import (
@@ -36,6 +35,7 @@ from ptmcad.studies.paper.claims.extensions import (
 )
 from ptmcad.studies.paper.free_potential import LENGTHS, derivative, engine_gradient, l0, squared_lengths
 from ptmcad.studies.paper.symbolic import F3, F4, VERTICAL, Expr, coordinates, equal, potential, vanishes
+from ptmcad.studies.slices import ptm_slice
 
 LOADED = tuple(Fraction(x) for x in ("1/4", "2"))
 """rho, beside that of `ELIMINATED`, for which its other values are eliminated too."""
@@ -43,10 +43,9 @@ WITHOUT_LOADS = tuple(Fraction(x) for x in ("1/2", "5/4", "2"))
 """rho for which the same design is eliminated without loads."""
 PRINTED_ROOTS = (12, 30)
 
-_FIXED: Mapping[str, str | int] = {"L1": 1, "k": 100, "F3": -10, "F4": -10}
-_MAPS: Mapping[str, tuple[Mapping[str, str | int], Mapping[str, list[str]]]] = {
-    "l0 = 1/20": ({"l0": "1/20"}, {"rho": ["1/4", "2"], "L2": ["0", "2"]}),
-    "L2 = 3/2": ({"L2": "3/2"}, {"rho": ["1/4", "5/4"], "l0": ["0", "1/4"]}),
+_MAPS: Mapping[str, tuple[Mapping[str, str], Mapping[str, tuple[str, str]]]] = {
+    "l0 = 1/20": ({"l0": "1/20"}, {"rho": ("1/4", "2"), "L2": ("0", "2")}),
+    "L2 = 3/2": ({"L2": "3/2"}, {"rho": ("1/4", "5/4"), "l0": ("0", "1/4")}),
 }
 """The plane of fig. 4 with a free length, and the free length against the input; `ELIMINATED` is in the second."""
 TOLERANCE = Fraction(1, 10)
@@ -135,9 +134,8 @@ def acceptable() -> Finding:
 def certified(name: str) -> RegionMap:
     """The certified map of one of the slices with free lengths."""
     parameters, axes = _MAPS[name]
-    record = {"name": "free", "mechanism": "ptm", "parameters": {**_FIXED, **parameters}, "axes": axes,
-              "count": "stable"}  # fmt: skip
-    return classify(slice_from_mapping(record), tolerance=TOLERANCE)
+    slice = ptm_slice("free", axes, L1=1, k=100, F3=-10, F4=-10, **parameters)
+    return classify(slice, tolerance=TOLERANCE, count="stable")
 
 
 def difficult() -> Finding:
