@@ -117,7 +117,7 @@ def _pose(
                 if settled is not None:
                     found[name] = settled
         if found.keys() == numbers.keys() and f"eigenvalue {size - 1}" in found:
-            return _assembled(mechanism, parameters, found, solution.signs.count("-")), bits
+            return assembled(mechanism, parameters, found, solution.signs.count("-")), bits
         bits *= 2
     return None, bits // 2
 
@@ -133,9 +133,14 @@ def _eigenvalues(matrix: arb_mat) -> list[arb]:
     return sorted((value.real for value in found), key=lambda value: float(value.mid()))
 
 
-def _assembled(
-    mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Mapping[str, Enclosure], index: int
+def assembled(
+    mechanism: Mechanism,
+    parameters: Mapping[str, Fraction],
+    at: Mapping[str, Enclosure],
+    index: int,
+    flat: bool = False,
 ) -> Pose:
+    """The pose of these numbers by name, whose Hessian was proved to have so many negative eigenvalues."""
     springs = tuple(
         Spring(
             spring.name,
@@ -162,7 +167,7 @@ def _assembled(
         multiplicity=1,
         index=index,
         stable=index == 0,
-        flat=False,
+        flat=flat,
         admissible=index == 0 and all(spring.force.low > 0 for spring in springs),
         reals=tuple(at[f"real {name}"] for name in mechanism.reals),
     )
