@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from copy import deepcopy
 from importlib.resources import files
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import Any
 import jsonschema
 import pytest
 import yaml
+from support.document_keys import entries
 from support.shipped_records import EXACT
 
 from ptmcad import RegionMap, classify, load
@@ -186,22 +187,11 @@ def test_partial_results_validate() -> None:
 FREE_KEYS = {"axes", "parameters", "text", "reference", "versions", "precision", "timings", "sample"}
 
 
-def objects(data: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], str]]:
-    """Places of all entries of JSON objects whose keys are fixed: one in each list."""
-    if isinstance(data, dict):
-        for key, value in data.items():
-            yield path, key
-            if key not in FREE_KEYS:
-                yield from objects(value, (*path, key))
-    elif isinstance(data, list) and data:
-        yield from objects(data[0], (*path, 0))
-
-
 def test_schema_and_reader_agree_on_the_keys(shipped: Callable[..., RegionMap]) -> None:
     """Each key of each record is required by both (but timings and savings), and no other one is allowed by either."""
     text = shipped("fig4").to_json()
     validator = jsonschema.Draft202012Validator(RESULT)
-    for path, key in objects(json.loads(text)):
+    for path, key in entries(json.loads(text), FREE_KEYS):
         for change in ("drop", "add"):
             data = json.loads(text)
             place = data

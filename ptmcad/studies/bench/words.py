@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ptmcad.studies.bench.harness import Times
-from ptmcad.studies.bench.methods import TITLES, Method
+from ptmcad.studies.bench.methods import RIVALS, Method
 from ptmcad.studies.bench.study import (
     SEEN_SHARE,
     Figures,
@@ -137,10 +137,10 @@ def curves(study: Study) -> tuple[Curve, ...]:
     for style, method in enumerate(Method):
         done = [(m, m.seconds) for m in study.measurements if m.method == method.value and m.seconds]
         spots = [Spot(seconds, f.wrong, _label(m)) for m, seconds in done if (f := main_figures(m))]
-        found.append(Curve(TITLES[method], spots, style))
+        found.append(Curve(RIVALS[method].title, spots, style))
         if method is Method.EXACT:
             widths = [Spot(seconds, (m.area_width, m.area_width)) for m, seconds in done if m.area_width]
-            found.append(Curve(f"{TITLES[method]}: width of the area bounds", widths, WIDTH_STYLE))
+            found.append(Curve(f"{RIVALS[method].title}: width of the area bounds", widths, WIDTH_STYLE))
     return tuple(curve for curve in found if curve.spots)
 
 

@@ -12,7 +12,7 @@ import sympy as sp
 
 from ptmcad.studies.paper import printed
 from ptmcad.studies.paper.claim import Finding
-from ptmcad.studies.paper.heights import no_level_rod_is_stable, signs_of_heights
+from ptmcad.studies.paper.claims.figures import no_level_rod_is_stable, signs_of_heights
 from ptmcad.studies.paper.slices import curves, equilibria_at, heights, operation_range, region_map
 from ptmcad.studies.paper.symbolic import (
     F4,
