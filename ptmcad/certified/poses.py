@@ -19,7 +19,7 @@ from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph, Operation
-from ptmcad.certified.plain.poses import assembled
+from ptmcad.certified.plain.poses import NOT_TOLD, ZERO, assembled, point_slice
 from ptmcad.certified.points import point_counter
 from ptmcad.certified.potential import potential
 from ptmcad.certified.ptm.statics import TH1, TH2
@@ -27,24 +27,18 @@ from ptmcad.certified.system import System
 from ptmcad.certified.tape import Tape, record
 from ptmcad.mechanism import ptm
 from ptmcad.question.domain import prove_slice
-from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.question.slice import Count
 from ptmcad.text.balls import ball_of, enclosed
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.expressions import axis
 
 MECHANISM = ptm()
 MORE_BITS = 3000
 """A number that so many bits beyond the digits asked for do not distinguish from zero stays undecided."""
-NOT_TOLD = (
-    "the equilibria could not be distinguished: there are infinitely many, one is nearly degenerate, or a spring has "
-    "nearly no length there"
-)
 _PEAKED = MECHANISM.springs[2]
 _PEAKS = {
     1: f"the energy has a peak where spring {_PEAKED.start}{_PEAKED.end} has no length too",
     2: f"the energy has two peaks where spring {_PEAKED.start}{_PEAKED.end} has no length too",
 }
-ZERO = "a number of an equilibrium could not be distinguished from zero"
 
 
 def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
@@ -60,7 +54,7 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     GeometryError
         When a length or a stiffness is not positive, or the base or a free length is negative.
     """
-    slice = _point_slice(parameters)
+    slice = point_slice(MECHANISM, parameters)
     prove_slice(slice)
     counter = point_counter(slice)
     counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
@@ -76,13 +70,6 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
         poses.append(pose)
     peaks = _PEAKS.get(counts.cones or 0, "")
     return Poses(MECHANISM, parameters, tuple(_ordered(poses)), Status.CERTIFIED, digits, most, peaks)
-
-
-def _point_slice(parameters: Mapping[str, Fraction]) -> Slice:
-    """The mechanism at a point as a slice on whose axes nothing depends."""
-    constants = {name: 0 * axis(0) + value for name, value in parameters.items()}
-    unit = (Fraction(0), Fraction(1))
-    return Slice("point", MECHANISM, (Axis("x", *unit), Axis("y", *unit)), constants)
 
 
 def _ordered(poses: Sequence[Pose]) -> list[Pose]:

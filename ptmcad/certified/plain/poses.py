@@ -49,9 +49,7 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
     ConfigError, GeometryError
         As `ptmcad.certified.plain.points.plain_counter` does, or where a parameter is not what its kind asks for.
     """
-    unit = (Fraction(0), Fraction(1))
-    constants = {name: 0 * axis(0) + value for name, value in parameters.items()}
-    slice = Slice("point", mechanism, (Axis("x", *unit), Axis("y", *unit)), constants, Count.INDEX)
+    slice = point_slice(mechanism, parameters)
     prove_slice(slice)
     counter = plain_counter(slice)
     counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
@@ -66,6 +64,13 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
         poses.append(pose)
     ordered = sorted(poses, key=lambda pose: (not pose.stable, pose.known_energy.center))
     return Poses(mechanism, parameters, tuple(ordered), Status.CERTIFIED, digits, most)
+
+
+def point_slice(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> Slice:
+    """The mechanism at a point as a slice on whose axes nothing depends."""
+    unit = (Fraction(0), Fraction(1))
+    constants = {name: 0 * axis(0) + value for name, value in parameters.items()}
+    return Slice("point", mechanism, (Axis("x", *unit), Axis("y", *unit)), constants, Count.INDEX)
 
 
 def _tape(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[Tape, tuple[str, ...]]:
