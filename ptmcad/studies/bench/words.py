@@ -11,15 +11,7 @@ from typing import NamedTuple
 
 from ptmcad.studies.bench.harness import Times
 from ptmcad.studies.bench.methods import RIVALS, Method
-from ptmcad.studies.bench.study import (
-    SEEN_SHARE,
-    Figures,
-    Measurement,
-    Study,
-    grids,
-    main_figures,
-    smallest_grid,
-)
+from ptmcad.studies.bench.study import SEEN_SHARE, Figures, Measurement, Study, grids, main_figures, smallest_grid
 from ptmcad.studies.tables import columns, listed, markdown
 
 _NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "index"}

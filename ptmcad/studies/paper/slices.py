@@ -13,13 +13,7 @@ from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 
-from ptmcad.algebra.polynomials import (
-    coefficients_in,
-    from_fraction,
-    from_plane,
-    to_fraction,
-    univariate,
-)
+from ptmcad.algebra.polynomials import coefficients_in, from_fraction, from_plane, to_fraction, univariate
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, refine, simplest_between, squarefree_part
 from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.regionmap import Component, RegionMap, Solution

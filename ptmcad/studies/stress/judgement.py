@@ -17,14 +17,7 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Slice
 from ptmcad.studies.equilibria import IndexedPose, angle_error, scale
-from ptmcad.studies.stress.case import (
-    Case,
-    LineAnswer,
-    MapAnswer,
-    PointAnswer,
-    PointQuestion,
-    SliceQuestion,
-)
+from ptmcad.studies.stress.case import Case, LineAnswer, MapAnswer, PointAnswer, PointQuestion, SliceQuestion
 from ptmcad.studies.stress.doubles import double_poses
 from ptmcad.studies.stress.measure import Verdict, as_float
 from ptmcad.studies.stress.reference import newton_pose, sextic_poses

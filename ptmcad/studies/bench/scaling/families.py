@@ -13,13 +13,7 @@ from fractions import Fraction
 from ptmcad.errors import PtmcadError
 from ptmcad.options import Options
 from ptmcad.question.slice import Count, Slice
-from ptmcad.studies.bench.scaling.folds import (
-    fold,
-    grid,
-    regions_of_fold,
-    regions_of_grid,
-    window_of_fold,
-)
+from ptmcad.studies.bench.scaling.folds import fold, grid, regions_of_fold, regions_of_grid, window_of_fold
 from ptmcad.studies.bench.scaling.measurement import Run, Stages
 from ptmcad.studies.bench.scaling.slices import digits, loaded, unloaded
 from ptmcad.studies.slices import ptm_slice

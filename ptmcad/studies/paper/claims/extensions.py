@@ -128,7 +128,7 @@ def eliminated_degree() -> Finding:
             "opposed": solutions.opposed,
             "unsettled": solutions.unsettled,
         },
-        corrected=(found.degree, found.circle, left) == (400, 48, 304) and simple.get(1) == 256 and (whole == left),
+        corrected=(found.degree, found.circle, left) == (400, 48, 304) and simple.get(1) == 256 and whole == left,
         said={
             "factors listed": ", ".join(map(str, found.factors)),
             "rest": 328 - 112,

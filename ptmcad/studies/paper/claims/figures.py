@@ -20,10 +20,11 @@ def two_stable(**at: Exact) -> Finding:
 
 
 def two_regions(figure: str) -> Finding:
-    found = sorted({r.stable for r in region_map(figure).regions if r.stable is not None})
-    twos = sum(r.stable == 2 for r in region_map(figure).regions)
-    facts: dict[str, Fact] = {"stable": tuple(found), "regions with two": twos}
-    return Finding(found == [1, 2] and twos == 1, facts, said={"found": found})
+    regions = [(r.stable, r.total) for r in region_map(figure).regions]
+    found = sorted({stable for stable, _ in regions if stable is not None})
+    twos = sum(stable == 2 for stable, _ in regions)
+    facts: dict[str, Fact] = {"stable": tuple(found), "regions with two": twos, "regions": len(regions)}
+    return Finding(found == [1, 2] and twos == 1, facts, said={"found": found, "regions": regions})
 
 
 def range_is_two_region(figure: str) -> Finding:

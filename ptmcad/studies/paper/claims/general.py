@@ -131,7 +131,7 @@ def slow_and_fast() -> Finding:
     later = [x for x in sorted(found.widths) if x >= Fraction(3, 2)]
     falls = all(found.widths[a][0] > found.widths[b][1] for a, b in pairwise(later))
     return Finding(
-        decreasing and falls and (up[0] > 0) and (down[0] > 5 * up[1]),
+        decreasing and falls and up[0] > 0 and down[0] > 5 * up[1],
         {"decreasing above 1": decreasing and falls, "ratio above 5": down[0] > 5 * up[1]},
         said={
             "up": float(up[0]),

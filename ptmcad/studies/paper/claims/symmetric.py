@@ -158,7 +158,7 @@ def conclusions_four_unsymmetric() -> Finding:
     return Finding(
         unlike == 4 and totals == [6],
         {"bound": bound, "not symmetric": unlike, "unstable": unstable, "totals": tuple(totals)},
-        corrected=bound == 2 and unlike == 2 and (unstable == 4),
+        corrected=bound == 2 and unlike == 2 and unstable == 4,
         said={"all": found.total, "totals": totals},
     )
 

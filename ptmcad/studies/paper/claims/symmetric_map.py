@@ -14,15 +14,7 @@ from ptmcad.studies.paper import printed
 from ptmcad.studies.paper.claim import Finding
 from ptmcad.studies.paper.claims.figures import no_level_rod_is_stable, signs_of_heights
 from ptmcad.studies.paper.slices import curves, equilibria_at, heights, operation_range, region_map
-from ptmcad.studies.paper.symbolic import (
-    F4,
-    SYMMETRIC,
-    Expr,
-    gradient,
-    rho,
-    s1,
-    s2,
-)
+from ptmcad.studies.paper.symbolic import F4, SYMMETRIC, Expr, gradient, rho, s1, s2
 
 
 def rose_and_astroid() -> Finding:
@@ -39,7 +31,7 @@ def rose_and_astroid() -> Finding:
     shapes = ((x**2 + y**2) ** 3 - 4 * x**2 * y**2, (x**2 + y**2 - 4) ** 3 + 108 * x**2 * y**2)
     same = all(bool(sp.cancel(s / w).is_number) for s, w in zip(shapes, wanted, strict=True))
     return Finding(
-        matched == (1, 1) and len(found) == 2 and (degrees == (6, 6)) and same,
+        matched == (1, 1) and len(found) == 2 and degrees == (6, 6) and same,
         {"matched": matched, "curves": len(found), "degrees": degrees, "rose and astroid": same},
     )
 
@@ -146,7 +138,7 @@ def maximal_at_zero() -> Finding:
     exact = at_zero is not None and at_zero.width()[0] <= 1 <= at_zero.width()[1]
     below = all(high < 1 for _, high in limits) and all(a[1] < b[0] for a, b in pairwise(limits))
     return Finding(
-        below and exact and (limits[-1][0] > Fraction(99, 100)),
+        below and exact and limits[-1][0] > Fraction(99, 100),
         {"rising to 1": below, "width 1 at F4 = 0": exact},
         said={"widths": ", ".join(f"{float(w):.6f}" for w, _ in limits)},
     )

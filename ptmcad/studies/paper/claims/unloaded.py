@@ -112,7 +112,7 @@ def two_more() -> Finding:
             "cosine": str(cosine),
             "arctan fails": acute_fails,
         },
-        corrected=triangle and present == 6 and (absent == 4) and (cosine < 0) and acute_fails,
+        corrected=triangle and present == 6 and absent == 4 and cosine < 0 and acute_fails,
     )
 
 
@@ -120,7 +120,7 @@ def parallelogram() -> Finding:
     level = True  # L1 s1 = L2 s2 is how the triangle was put in; that it solves the equations is checked here
     solves = all(sp.expand(on_triangle(g.subs(UNLOADED))) == 0 for g in gradient())
     width = sp.cancel(sp.together(L1 * COS1 - (rho - L2 * COS2)))
-    return Finding(solves and level and (width == rho), {"solves": solves, "x3 - x4": str(width)})
+    return Finding(solves and level and width == rho, {"solves": solves, "x3 - x4": str(width)})
 
 
 def always_parallelogram() -> Finding:

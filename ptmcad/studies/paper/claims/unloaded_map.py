@@ -13,15 +13,7 @@ from ptmcad.studies.paper import printed
 from ptmcad.studies.paper.claim import Finding
 from ptmcad.studies.paper.claims.unloaded import COS1, flat_determinants, on_triangle
 from ptmcad.studies.paper.slices import curves, heights, ranges, region_map
-from ptmcad.studies.paper.symbolic import (
-    L1,
-    L2,
-    UNLOADED,
-    determinant,
-    hessian,
-    k,
-    rho,
-)
+from ptmcad.studies.paper.symbolic import L1, L2, UNLOADED, determinant, hessian, k, rho
 
 
 def non_flat_stable() -> Finding:
@@ -35,20 +27,6 @@ def non_flat_stable() -> Finding:
         {"H(1,1) = k L1^2": plain, "det H = (2 k rho h)^2, h = y3 = y4": matches},
         corrected=plain and matches,
         said={"h11": h11, "whole": whole},
-    )
-
-
-def two_region_exists() -> Finding:
-    regions = [(r.stable, r.total) for r in region_map("fig2").regions]
-    counts = sorted({s for s, _ in regions if s is not None})
-    return Finding(
-        counts == [1, 2] and sum(s == 2 for s, _ in regions) == 1,
-        {
-            "stable counts": tuple(counts),
-            "regions with two": sum(s == 2 for s, _ in regions),
-            "regions": len(regions),
-        },
-        said={"regions": regions},
     )
 
 
@@ -102,7 +80,7 @@ def widths() -> Finding:
     upper, lower = (L2 + 1) / 2, (L2 - 1) / 2
     constant, linear = sp.simplify(upper - lower), sp.simplify(upper + lower)
     return Finding(
-        holds and constant == 1 and (linear == L2),
+        holds and constant == 1 and linear == L2,
         {"L2 > 1": str(constant), "L2 < 1": str(linear), "at samples": holds},
         said={"lengths": ", ".join(found)},
     )
