@@ -28,7 +28,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.studies.bench.harness import Command, Record, made_with, progress, ratio, rounds, times
 from ptmcad.studies.bench.process import Outcome, run
 from ptmcad.studies.bench.sameness import difference
-from ptmcad.studies.tables import markdown, measured_with
+from ptmcad.studies.tables import markdown, measured_with, page
 from ptmcad.text.expressions import Expression
 
 FORMAT = "ptmcad-ablation/1"
@@ -200,37 +200,34 @@ def _enclosed(slice: Slice, without: tuple[str, ...], share: Fraction) -> tuple[
     return result, process_time() - start, True
 
 
+_INTRODUCTION = """
+Processor time of the computation with a saving switched off (`--without NAME`), over that with all savings
+made: 1.00 means that the saving is worth nothing on that slice. `all` is the plain pipeline.
+[plan.md](../plan.md) says what the savings are. Every map was compared with the one that all savings made:
+regions, counts, neighbours, areas. Made by `python -m ptmcad.studies.bench.ablation --out docs/benchmarks`.
+"""
+
+
 def to_markdown(found: Record) -> str:
     """The benchmark as a page."""
     names = (*_names(Engine.EXACT), ALL)
-    lines = [
-        "# What each saving is worth",
-        "",
-        "Processor time of the computation with a saving switched off (`--without NAME`), over that with all savings",
-        "made: 1.00 means that the saving is worth nothing on that slice. `all` is the plain pipeline.",
-        "[plan.md](../plan.md) says what the savings are. Every map was compared with the one that all savings made:",
-        "regions, counts, neighbours, areas. Made by `python -m ptmcad.studies.bench.ablation --out docs/benchmarks`.",
-        "",
-        f"Rounds: {found['rounds']}, seed {found['seed']}; ratios are medians of those within a round.",
-        "",
-    ]
     cells = []
     for row in found["exact"]:
         made = row["all made"]
         spread = f"{1000 * made['median']:.0f} ({1000 * made['least']:.0f}-{1000 * made['most']:.0f})"
         cells.append((row["record"], spread, *_ratios(row, names), "no" if differs(row) else "yes"))
-    lines += [
-        *markdown(("slice", "ms, all made (least-most)", *names, "same answer"), cells),
-        "",
-        "## Whole processes",
-        "",
-        "`ptmcad classify RECORD --format json`, processor time of everything, start-up included.",
-        "",
-    ]
     header = ("slice", "ms, all made", "ms, --without imports", "over", "ms, --without all", "over")
-    lines += markdown(header, map(_process_cells, found["processes"]))
-    lines += [*_certified_lines(found["certified"]), "", *measured_with(found)]
-    return "\n".join(lines) + "\n"
+    return page(
+        "# What each saving is worth",
+        _INTRODUCTION,
+        f"Rounds: {found['rounds']}, seed {found['seed']}; ratios are medians of those within a round.",
+        markdown(("slice", "ms, all made (least-most)", *names, "same answer"), cells),
+        "## Whole processes",
+        "`ptmcad classify RECORD --format json`, processor time of everything, start-up included.",
+        markdown(header, map(_process_cells, found["processes"])),
+        *_certified_blocks(found["certified"]),
+        *measured_with(found),
+    )
 
 
 def differs(row: Record) -> bool:
@@ -250,7 +247,7 @@ def _process_cells(row: Record) -> tuple[str, ...]:
     return row["record"], f"{1000 * row['all made']['median']:.0f}", *chain(*switched)
 
 
-def _certified_lines(rows: Sequence[Record]) -> list[str]:
+def _certified_blocks(rows: Sequence[Record]) -> list[str | list[str]]:
     if not rows:
         return []
     names = (*_names(Engine.CERTIFIED), ALL)
@@ -260,13 +257,10 @@ def _certified_lines(rows: Sequence[Record]) -> list[str]:
         same = "no" if differs(row) else "yes"
         cells.append((row["record"], window, row["open"], f"{row['seconds']:.1f}", *_ratios(row, names), same))
     return [
-        "",
         "## The certified engine",
-        "",
-        "Processor time until at most a given share of the window is undetermined, in one thread, over that with all",
+        "Processor time until at most a given share of the window is undetermined, in one thread, over that with all\n"
         f"savings made; one run each. Above a bound where {PATIENCE:.0f} seconds (of wall time) were not enough.",
-        "",
-        *markdown(("slice", "window", "share", "s, all made", *names, "no contradiction"), cells),
+        markdown(("slice", "window", "share", "s, all made", *names, "no contradiction"), cells),
     ]
 
 

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from ptmcad.question.config import load
 from ptmcad.studies.bench.harness import Command, Record, made_with, progress, ratio, rounds, times
 from ptmcad.studies.bench.process import Outcome, Usage, run
-from ptmcad.studies.tables import markdown, measured_with
+from ptmcad.studies.tables import markdown, measured_with, page
 
 FLOOR = (sys.executable, "-c", "import flint, numpy, click, yaml")
 TEXT, PICTURES = "json", "json,png,svg"
@@ -104,27 +104,25 @@ def _over(runs: Sequence[Usage], floor: Sequence[Usage]) -> float:
     return round(ratio([u.seconds for u in runs], [u.seconds for u in floor]), 4)
 
 
+_INTRODUCTION = """
+Wall seconds of whole processes, start-up included; every round runs each job once, in shuffled order. Ratios
+are medians of the ratios within a round. The floor is the time in which the machine's Python imports flint,
+numpy, click and yaml and does nothing else. Written by `make bench`. Other programs, and the error of each,
+are on [their own page](error-time.md).
+"""
 _HEADER = ("slice", "JSON: median (min-max) s", "over floor", "with PNG and SVG, s", "peak MiB, JSON / pictures")
 
 
 def to_markdown(found: Record) -> str:
     """The record as a page: the table, and what it was measured with."""
     date = f", {found['date']}" if found["date"] else ""
-    lines = [
+    return page(
         "# Benchmark",
-        "",
-        "Wall seconds of whole processes, start-up included; every round runs each job once, in shuffled order. Ratios",
-        "are medians of the ratios within a round. The floor is the time in which the machine's Python imports flint,",
-        "numpy, click and yaml and does nothing else. Written by `make bench`. Other programs, and the error of each,",
-        "are on [their own page](error-time.md).",
-        "",
+        _INTRODUCTION,
         f"Floor: {_times(found['floor'])} s. Rounds: {found['rounds']}, seed {found['seed']}{date}.",
-        "",
-        *markdown(_HEADER, map(_cells, found["rows"])),
-        "",
+        markdown(_HEADER, map(_cells, found["rows"])),
         *measured_with(found),
-    ]
-    return "\n".join(lines) + "\n"
+    )
 
 
 def _cells(row: dict[str, Any]) -> tuple[str, ...]:

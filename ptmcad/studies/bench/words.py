@@ -9,10 +9,11 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from ptmcad.studies import tables
 from ptmcad.studies.bench.harness import Times
 from ptmcad.studies.bench.methods import RIVALS, Method
 from ptmcad.studies.bench.study import SEEN_SHARE, Figures, Measurement, Study, grids, main_figures, smallest_grid
-from ptmcad.studies.tables import columns, listed, markdown
+from ptmcad.studies.tables import columns, markdown
 
 _NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "index"}
 CURVE_FORMAT = "ptmcad-error-time/1"
@@ -158,36 +159,33 @@ def curve_file(study: Study) -> str:
     return json.dumps({"format": CURVE_FORMAT, "error": text, "series": series}, indent=1) + "\n"
 
 
+_INTRODUCTION = """
+What the errors are is defined in [Error](../error.md). Seconds are of whole processes, start-up included,
+medians of repeated runs that took turns; a run of more than 1.25 seconds was not repeated. Written by
+`make bench`, as are the CSV and JSON files of each slice beside this page.
+"""
+
+
 def page(studies: Sequence[Study]) -> str:
     """All studies as one Markdown page with their pictures, which lie beside it."""
     first = studies[0]
-    lines = [
-        "# Error against run time",
-        "",
-        "What the errors are is defined in [Error](../error.md). Seconds are of whole processes, start-up included,",
-        "medians of repeated runs that took turns; a run of more than 1.25 seconds was not repeated. Written by",
-        "`make bench`, as are the CSV and JSON files of each slice beside this page.",
-        "",
-    ]
+    blocks: list[str | list[str]] = []
     for study in studies:
-        lines += [f"## {study.slice}", "", f"{study.heading}. {_checked(study)}", ""]
+        blocks += [f"## {study.slice}", f"{study.heading}. {_checked(study)}"]
         if any(m.seconds for m in study.measurements):
-            lines += [f"![Error against seconds for {study.slice}]({study.slice}.bench.svg)", ""]
-        said = sentences(study)
-        lines += [f"- {s}" for s in said] + ([""] if said else [])
-        lines += [*markdown(_HEADER, rows(study)), ""]
-        lines += [f"\\{note}  " for note in notes(study)] + ([""] if notes(study) else [])
-    lines += [
+            blocks.append(f"![Error against seconds for {study.slice}]({study.slice}.bench.svg)")
+        blocks += [[f"- {s}" for s in sentences(study)], markdown(_HEADER, rows(study))]
+        blocks.append([f"\\{note}  " for note in notes(study)])
+    floor = f"{first.floor.median:g} s ({first.floor.minimum:g}-{first.floor.maximum:g})"
+    return tables.page(
+        "# Error against run time",
+        _INTRODUCTION,
+        *blocks,
         "## Machine",
-        "",
-        listed(first.machine),
-        "",
-        listed(first.versions),
-        "",
-        f"Seed {first.seed}; the reference job takes {first.floor.median:g} s ({first.floor.minimum:g}-"
-        f"{first.floor.maximum:g}).",
-    ]
-    return "\n".join(lines) + "\n"
+        tables.listed(first.machine),
+        tables.listed(first.versions),
+        f"Seed {first.seed}; the reference job takes {floor}.",
+    )
 
 
 def _checked(study: Study) -> str:

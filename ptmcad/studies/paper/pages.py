@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ptmcad.studies.paper.claim import Claim, Outcome, Verdict
 from ptmcad.studies.paper.equations import Equation
+from ptmcad.studies.tables import page
 
 Judged = tuple[Claim, Outcome]
 PAPER = "P. Wenger and D. Chablat, Kinetostatic Analysis and Solution Classification of a Planar Tensegrity Mechanism"
@@ -59,21 +60,16 @@ def summary(judged: Sequence[Judged]) -> str:
 
 def claims_markdown(judged: Sequence[Judged]) -> str:
     """All claims as a page of Markdown."""
-    lines = ["# The claims of the paper", "", f"{PAPER}.", "", f"{summary(judged)}.", ""]
+    blocks: list[str | list[str]] = []
     for section, entries in _sections(judged):
-        lines += [f"## {_title(section)}", ""]
+        blocks.append(f"## {_title(section)}")
         for number, claim, outcome in entries:
-            lines += [
-                f"### {number}. {claim.name}: {outcome.verdict.value}",
-                "",
-                f'{claim.statement} ("{claim.quotation}")',
-                "",
-            ]
-            for name, text in (("Right", outcome.right), ("Witness", outcome.witness), ("Reason", outcome.reason)):
-                if text:
-                    lines += [f"- **{name}:** {_plain(text)}"]
-            lines += [f"- {_plain(sentence)}" for sentence in outcome.evidence] + [""]
-    return "\n".join(lines)
+            told = (("Right", outcome.right), ("Witness", outcome.witness), ("Reason", outcome.reason))
+            points = [f"- **{name}:** {_plain(text)}" for name, text in told if text]
+            points += [f"- {_plain(sentence)}" for sentence in outcome.evidence]
+            heading = f"### {number}. {claim.name}: {outcome.verdict.value}"
+            blocks += [heading, f'{claim.statement} ("{claim.quotation}")', points]
+    return page("# The claims of the paper", f"{PAPER}.", f"{summary(judged)}.", *blocks)
 
 
 def _plain(text: str) -> str:

@@ -15,7 +15,7 @@ from typing import Any
 from ptmcad.studies.stress.campaign import MAX_COST, Campaign
 from ptmcad.studies.stress.case import Case, SliceQuestion
 from ptmcad.studies.stress.measure import Outcome
-from ptmcad.studies.tables import columns
+from ptmcad.studies.tables import columns, page
 from ptmcad.studies.tables import markdown as table_of
 from ptmcad.text.numerals import shortest_text
 
@@ -61,18 +61,17 @@ def markdown(campaign: Campaign) -> str:
     kept = [k for k, name in enumerate(HEADINGS) if name not in ("ms", "x tame")]
     names = [*(HEADINGS[k] for k in kept), "work x tame"]
     wrong, total = len(campaign.double_wrong), len(campaign.outcomes)
-    lines = [
-        "# The stress cases, one by one",
-        "",
-        f"Written by `ptmcad stress` with seed {campaign.seed}. ptmcad is right in {total - len(campaign.wrong)} of "
-        f"{total} cases; double precision is wrong in {wrong}. "
-        "[What is tried, and what the columns mean](../stress.md).",
-    ]
+    blocks: list[str | list[str]] = []
     for family in dict.fromkeys(o.case.family for o in campaign.outcomes):
         chosen = [(cells(o), o) for o in campaign.outcomes if o.case.family == family]
         rows = [[*(row[k] for k in kept), f"{o.cost.work_ratio:.2g}"] for row, o in chosen]
-        lines += ["", f"## {family[0].upper()}{family[1:]}", "", *table_of(names, rows)]
-    return "\n".join(lines) + "\n"
+        blocks += [f"## {family[0].upper()}{family[1:]}", table_of(names, rows)]
+    written = (
+        f"Written by `ptmcad stress` with seed {campaign.seed}. ptmcad is right in {total - len(campaign.wrong)} of "
+        f"{total} cases; double precision is wrong in {wrong}. "
+        "[What is tried, and what the columns mean](../stress.md)."
+    )
+    return page("# The stress cases, one by one", written, *blocks)
 
 
 def summary(campaign: Campaign) -> Iterable[str]:
