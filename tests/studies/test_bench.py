@@ -134,6 +134,14 @@ def test_the_stored_page_is_made_of_the_stored_record(study: Any, request: pytes
     assert study.to_markdown(json.loads(stored.read_text(encoding="utf-8"))) == page
 
 
+@pytest.mark.parametrize("difference", ["", "other neighbours"])
+def test_ablation_ends_with_1_where_an_answer_differs(difference: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    stored = json.loads((CONFIGS.parent / "docs" / "benchmarks" / "ablation.json").read_text(encoding="utf-8"))
+    stored["exact"][0]["switched off"]["all"]["difference"] = difference
+    monkeypatch.setattr(ablation, "ablation", lambda *_: stored)
+    assert ablation.main([str(CONFIGS / "fig2.yaml")]) == bool(difference)
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(qepcad.program() is None, reason="qepcad is not installed")
 @pytest.mark.parametrize("task", qepcad.TOTAL)

@@ -270,14 +270,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command.add_argument("records", nargs="*", type=Path, help="problem records; default: configs/*.yaml")
     chosen = command.chosen(arguments)
     records = command.records(chosen.records, lambda slice: True)
-    found: Record = {}
-
-    def measure() -> Record:
-        found.update(ablation(records, chosen.rounds, chosen.seed))
-        return found
-
-    status = command.status(chosen.out, measure, to_markdown)
-    return status or int(any(map(differs, (*found["exact"], *found["certified"]))))
+    return command.status(
+        chosen.out,
+        lambda: ablation(records, chosen.rounds, chosen.seed),
+        to_markdown,
+        wrong=lambda found: any(map(differs, (*found["exact"], *found["certified"]))),
+    )
 
 
 if __name__ == "__main__":

@@ -121,8 +121,9 @@ class Command(argparse.ArgumentParser):
         measure: Callable[[], Record],
         page: Callable[[Record], str] = lambda _: "",
         more: Callable[[Record, Path], object] = lambda found, folder: None,
+        wrong: Callable[[Record], bool] = lambda _: False,
     ) -> int:
-        """Measure and write; the exit status: 0, or 2, with a message, for bad input.
+        """Measure and write; the exit status: 0, 1 where the record is wrong, or 2, with a message, for bad input.
 
         Parameters
         ----------
@@ -135,7 +136,8 @@ class Command(argparse.ArgumentParser):
             found = measure()
             text = page(found)
             if out is not None:
-                write_record(out / f"{self.record}.json", found)
+                record = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
+                (out / f"{self.record}.json").write_text(record, encoding="utf-8")
                 if text:
                     (out / f"{self.record}.md").write_text(text, encoding="utf-8")
                 more(found, out)
@@ -143,9 +145,4 @@ class Command(argparse.ArgumentParser):
             print(f"{self.prog}: {error}", file=sys.stderr)
             return 2
         print(text, end="")
-        return 0
-
-
-def write_record(path: Path, found: Record) -> None:
-    """The record as a file."""
-    path.write_text(json.dumps(found, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        return int(wrong(found))
