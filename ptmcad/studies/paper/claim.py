@@ -94,7 +94,7 @@ def outcome(finding: Finding, evidence: Sequence[str] = (), right: str = "", wit
     """
     values = {**finding.facts, **finding.said}
     told: list[str] = []
-    for sentence in evidence if values else ():
+    for sentence in () if finding.missing and not values else evidence:
         several = values.get(sentence.strip("{}"))
         told += several if isinstance(several, tuple) else [sentence.format_map(values)]
     if finding.missing:

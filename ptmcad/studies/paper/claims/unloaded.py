@@ -164,6 +164,6 @@ def three_flat_unstable() -> Finding:
         corrected=at_most_one and never == ["(pi, pi)"] and always_negative,
         said={
             "conditions": "; ".join(f"{n}: {a}, {d}" for n, (a, d) in conditions.items()),
-            "conditions2": "; ".join(f"{n}: {s}" for n, s in stable.items()),
+            "stable by design": "; ".join(f"{n}: {s}" for n, s in stable.items()),
         },
     )
