@@ -286,9 +286,9 @@ class PlanStep:
 
 
 @with_methods
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, slots=True, repr=False, kw_only=True)
 class RegionMap:
-    """The answer to a `Slice`.
+    """The answer to a `Slice`; what is not given is what a certified map or a partial one does not have.
 
     Attributes
     ----------
@@ -304,19 +304,19 @@ class RegionMap:
     slice: Slice
     status: Status
     system: System
-    base: int
-    complex_solutions: int
-    components: tuple[Component, ...]
-    critical_values: tuple[CriticalValue, ...]
-    stacks: tuple[Stack, ...]
-    cells: tuple[Cell, ...]
-    adjacencies: tuple[Adjacency, ...]
-    non_adjacencies: tuple[NonAdjacency, ...]
-    regions: tuple[Region, ...]
-    plan: tuple[PlanStep, ...]
+    base: int = 0
+    complex_solutions: int = 0
+    components: tuple[Component, ...] = ()
+    critical_values: tuple[CriticalValue, ...] = ()
+    stacks: tuple[Stack, ...] = ()
+    cells: tuple[Cell, ...] = ()
+    adjacencies: tuple[Adjacency, ...] = ()
+    non_adjacencies: tuple[NonAdjacency, ...] = ()
+    regions: tuple[Region, ...] = ()
+    plan: tuple[PlanStep, ...] = ()
     undetermined: Fraction
     versions: Mapping[str, str]
-    precision: Mapping[str, int]
+    precision: Mapping[str, int] = field(default_factory=dict)
     timings: Mapping[str, float] = field(default_factory=dict, compare=False)
     cover: Cover | None = None
 

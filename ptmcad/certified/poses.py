@@ -14,37 +14,31 @@ from math import isqrt
 
 from flint import arb, ctx
 
-from ptmcad.answer.poses import Pose, Poses, Spring
+from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph, Operation
+from ptmcad.certified.plain.poses import NOT_TOLD, ZERO, assembled, point_slice
 from ptmcad.certified.points import point_counter
 from ptmcad.certified.potential import potential
 from ptmcad.certified.ptm.statics import TH1, TH2
 from ptmcad.certified.system import System
 from ptmcad.certified.tape import Tape, record
 from ptmcad.mechanism import ptm
-from ptmcad.mechanism.evaluate import value_at
 from ptmcad.question.domain import prove_slice
-from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.question.slice import Count
 from ptmcad.text.balls import ball_of, enclosed
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.expressions import axis
 
 MECHANISM = ptm()
 MORE_BITS = 3000
 """A number that so many bits beyond the digits asked for do not distinguish from zero stays undecided."""
-NOT_TOLD = (
-    "the equilibria could not be distinguished: there are infinitely many, one is nearly degenerate, or a spring has "
-    "nearly no length there"
-)
 _PEAKED = MECHANISM.springs[2]
 _PEAKS = {
     1: f"the energy has a peak where spring {_PEAKED.start}{_PEAKED.end} has no length too",
     2: f"the energy has two peaks where spring {_PEAKED.start}{_PEAKED.end} has no length too",
 }
-ZERO = "a number of an equilibrium could not be distinguished from zero"
 
 
 def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
@@ -60,7 +54,7 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
     GeometryError
         When a length or a stiffness is not positive, or the base or a free length is negative.
     """
-    slice = _point_slice(parameters)
+    slice = point_slice(MECHANISM, parameters)
     prove_slice(slice)
     counter = point_counter(slice)
     counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
@@ -76,13 +70,6 @@ def certified_poses(parameters: Mapping[str, Fraction], digits: int) -> Poses:
         poses.append(pose)
     peaks = _PEAKS.get(counts.cones or 0, "")
     return Poses(MECHANISM, parameters, tuple(_ordered(poses)), Status.CERTIFIED, digits, most, peaks)
-
-
-def _point_slice(parameters: Mapping[str, Fraction]) -> Slice:
-    """The mechanism at a point as a slice on whose axes nothing depends."""
-    constants = {name: 0 * axis(0) + value for name, value in parameters.items()}
-    unit = (Fraction(0), Fraction(1))
-    return Slice("point", MECHANISM, (Axis("x", *unit), Axis("y", *unit)), constants)
 
 
 def _ordered(poses: Sequence[Pose]) -> list[Pose]:
@@ -133,7 +120,7 @@ def _pose(
                 if (settled := numbers[name].enclosure(digits)) is not None:
                     found[name] = settled
         if found.keys() == numbers.keys():
-            return _assembled(parameters, found, solution.signs, flat is not None), bits
+            return assembled(MECHANISM, parameters, found, solution.signs.count("-"), flat is not None), bits
         bits *= 2
     return None, bits // 2
 
@@ -233,47 +220,10 @@ def _numbers(tape: Tape, names: Sequence[str], box: Box, flat: list[Fraction] | 
         numerator, denominator = isqrt(spread.exact.numerator), isqrt(spread.exact.denominator)
         whole = Fraction(numerator, denominator)
         root = _Number(ball_of(spread.exact).sqrt(), whole if whole * whole == spread.exact else None)
-    for name, sign in (("low", -1), ("high", 1)):
+    for name, sign in (("eigenvalue 0", -1), ("eigenvalue 1", 1)):
         half_sum = (trace.ball + sign * root.ball) / 2
         if trace.exact is None or root.exact is None:
             numbers[name] = _Number(half_sum)
         else:
             numbers[name] = _Number(half_sum, (trace.exact + sign * root.exact) / Fraction(2))
     return numbers
-
-
-def _assembled(parameters: Mapping[str, Fraction], at: Mapping[str, Enclosure], signs: str, flat: bool) -> Pose:
-    springs = tuple(
-        Spring(
-            spring.name,
-            spring.start,
-            spring.end,
-            value_at(spring.stiffness, parameters),
-            at[f"length {n}"],
-            at[f"force {n}"],
-            value_at(spring.free, parameters),
-        )
-        for n, spring in enumerate(MECHANISM.springs)
-    )
-    index = signs.count("-")
-    if index != (at["low"].high < 0) + (at["high"].high < 0):
-        raise ArithmeticError("the Hessian's eigenvalues contradict the index that was proved")
-    return Pose(
-        angles=(at[MECHANISM.angles[0]], at[MECHANISM.angles[1]]),
-        degrees=(at[f"degrees {MECHANISM.angles[0]}"], at[f"degrees {MECHANISM.angles[1]}"]),
-        cosines_sines=(
-            at[f"cos {MECHANISM.angles[0]}"],
-            at[f"sin {MECHANISM.angles[0]}"],
-            at[f"cos {MECHANISM.angles[1]}"],
-            at[f"sin {MECHANISM.angles[1]}"],
-        ),
-        nodes={name: (at[f"{name} 0"], at[f"{name} 1"]) for name in MECHANISM.points},
-        springs=springs,
-        energy=at["energy"],
-        eigenvalues=(at["low"], at["high"]),
-        multiplicity=1,
-        index=index,
-        stable=index == 0,
-        flat=flat,
-        admissible=index == 0 and all(spring.force.low > 0 for spring in springs),
-    )

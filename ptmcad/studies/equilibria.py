@@ -84,6 +84,15 @@ class _Jets:
         return Jet({(): s, (n,): c, (n, n): -s})
 
 
+@dataclass(frozen=True, slots=True)
+class IndexedPose:
+    """A pose that is, or is taken for, an equilibrium: its angles, and the Hessian's number of negative eigenvalues."""
+
+    th1: Any
+    th2: Any
+    index: int
+
+
 class Derivatives(NamedTuple):
     """dU/dth1, dU/dth2; U11, U12, U22; and the springs' squared lengths."""
 

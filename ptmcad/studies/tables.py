@@ -14,6 +14,12 @@ def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
     ]
 
 
+def page(*blocks: str | Iterable[str]) -> str:
+    """A Markdown page: paragraphs, headings, and tables and lists as their lines, with blank lines between them."""
+    texts = (block if isinstance(block, str) else "\n".join(block) for block in blocks)
+    return "\n\n".join(text.strip("\n") for text in texts if text) + "\n"
+
+
 def columns(rows: Sequence[Sequence[str]], unbounded: Sequence[bool] = ()) -> list[str]:
     """Rows as lines with aligned columns, two spaces apart.
 
@@ -34,9 +40,9 @@ def listed(found: Mapping[str, str]) -> str:
     return "; ".join(f"{key} {value}" for key, value in found.items()) + "."
 
 
-def measured_with(found: Mapping[str, Mapping[str, str]]) -> list[str]:
-    """The lines on the machine and the versions of a document."""
-    return [f"Machine: {listed(found['machine'])}", "", f"Versions: {listed(found['versions'])}"]
+def measured_with(found: Mapping[str, Mapping[str, str]]) -> tuple[str, str]:
+    """The paragraphs on the machine and the versions of a document."""
+    return f"Machine: {listed(found['machine'])}", f"Versions: {listed(found['versions'])}"
 
 
 def installed(packages: Iterable[str]) -> dict[str, str]:

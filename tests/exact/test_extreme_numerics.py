@@ -20,8 +20,8 @@ from ptmcad.algebra.resultants import balanced, discriminant, resultant
 from ptmcad.exact.cad import area
 from ptmcad.exact.models import system_of
 from ptmcad.exact.point_system import point_system
-from ptmcad.studies.stress.measure import work_of
-from ptmcad.studies.stress.slices import FIG4, LOADED, MapQuestion, ten
+from ptmcad.studies.stress.measure import answer, work_of
+from ptmcad.studies.stress.slices import FIG4, LOADED, SliceQuestion, ten
 from ptmcad.verification.sturm import roots_between
 
 
@@ -212,8 +212,8 @@ def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(monkeypatch:
     monkeypatch.setattr(area, "isolate", counted)
     monkeypatch.setattr(area, "_refine", followed)
     s = ten(30)
-    vast = MapQuestion(LOADED, {"rho": (Fraction(0), s), "L2": (Fraction(0), s)})
-    ptmcad.classify(ptmcad.slice_from_mapping(vast.record("vast")))
+    vast = SliceQuestion(LOADED, {"rho": (Fraction(0), s), "L2": (Fraction(0), s)})
+    answer(vast)
     assert len(rounds) == 1
     assert len(seen) == len(set(seen))
 
@@ -291,20 +291,20 @@ def usual_work() -> int:
 @pytest.mark.parametrize("force", [pytest.param(Fraction(1, 10**6), marks=pytest.mark.slow), Fraction(1, 10**20)])
 def test_areas_next_to_a_limit_take_little_more_work(force: Fraction) -> None:
     """The loaded curve runs along the unloaded lines, several branches within force^(2/3) of each other."""
-    nearly = MapQuestion({"F3": -force, "F4": -force}, FIG4.axes)
+    nearly = SliceQuestion({"F3": -force, "F4": -force}, FIG4.axes)
     assert work_of(nearly) <= 3 * usual_work()
 
 
 def test_a_vast_window_takes_at_most_five_times_the_work() -> None:
-    vast = MapQuestion(LOADED, {"rho": (Fraction(0), ten(12)), "L2": (Fraction(0), ten(12))})
+    vast = SliceQuestion(LOADED, {"rho": (Fraction(0), ten(12)), "L2": (Fraction(0), ten(12))})
     assert work_of(vast) <= 5 * usual_work()
 
 
 @pytest.mark.slow
 def test_areas_next_to_a_limit_are_confirmed_by_verification() -> None:
     """The checker integrates power series; it shares no code with arcs."""
-    nearly = MapQuestion({"F3": ten(-12), "F4": ten(-12)}, FIG4.axes)
-    assert ptmcad.verify(ptmcad.classify(ptmcad.slice_from_mapping(nearly.record("nearly")))).ok
+    nearly = SliceQuestion({"F3": ten(-12), "F4": ten(-12)}, FIG4.axes)
+    assert ptmcad.verify(answer(nearly)).ok
 
 
 @pytest.mark.parametrize("roots", [(0, 0, 1), (1, 1, 1), (-1, -1, 0), (0, 0, 0, 1, 1)], ids=str)

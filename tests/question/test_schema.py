@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from copy import deepcopy
 from importlib.resources import files
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import Any
 import jsonschema
 import pytest
 import yaml
+from support.document_keys import changed_keys
 from support.shipped_records import EXACT
 
 from ptmcad import RegionMap, classify, load
@@ -186,37 +187,17 @@ def test_partial_results_validate() -> None:
 FREE_KEYS = {"axes", "parameters", "text", "reference", "versions", "precision", "timings", "sample"}
 
 
-def objects(data: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], str]]:
-    """Places of all entries of JSON objects whose keys are fixed: one in each list."""
-    if isinstance(data, dict):
-        for key, value in data.items():
-            yield path, key
-            if key not in FREE_KEYS:
-                yield from objects(value, (*path, key))
-    elif isinstance(data, list) and data:
-        yield from objects(data[0], (*path, 0))
-
-
 def test_schema_and_reader_agree_on_the_keys(shipped: Callable[..., RegionMap]) -> None:
     """Each key of each record is required by both (but timings and savings), and no other one is allowed by either."""
     text = shipped("fig4").to_json()
     validator = jsonschema.Draft202012Validator(RESULT)
-    for path, key in objects(json.loads(text)):
-        for change in ("drop", "add"):
-            data = json.loads(text)
-            place = data
-            for step in path:
-                place = place[step]
-            if change == "drop":
-                del place[key]
-            else:
-                place["one more"] = 1
-            if change == "drop" and ((path, key) == ((), "timings") or (path[:1], key) == (("plan",), "saving")):
-                validator.validate(data)
-                continue
-            assert not validator.is_valid(data), (path, key, change)
-            with pytest.raises(ValueError, match=r"lacks|unknown|format"):
-                RegionMap.from_json(json.dumps(data))
+    for c in changed_keys(text, FREE_KEYS):
+        if c.dropped and ((c.path, c.key) == ((), "timings") or (c.path[:1], c.key) == (("plan",), "saving")):
+            validator.validate(c.data)
+            continue
+        assert not validator.is_valid(c.data), c[:3]
+        with pytest.raises(ValueError, match=r"lacks|unknown|format"):
+            RegionMap.from_json(json.dumps(c.data))
 
 
 def test_one_is_not_true_to_either(shipped: Callable[..., RegionMap]) -> None:

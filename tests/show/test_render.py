@@ -80,20 +80,14 @@ def bands(
         status=Status.EXACT,
         system=System((), (), "0", (), ()),
         base=base,
-        complex_solutions=0,
         components=tuple(lines),
-        critical_values=(),
         stacks=(Stack(None, None, (p + q) / 2, tuple(Wall(k, 0) for k in range(len(heights))), tuple(numbers)),),
         cells=tuple(Cell(0, k, sample(k), k, None, counts[k], None) for k in numbers),
-        adjacencies=(),
-        non_adjacencies=(),
         regions=tuple(
             Region(counts[k], None, None, (levels[k + 1] - levels[k],) * 2, (k,), sample(k)) for k in numbers
         ),
-        plan=(),
         undetermined=Fraction(0),
         versions={},
-        precision={},
     )
 
 

@@ -7,21 +7,26 @@ import math
 import sys
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
 from support.shipped_records import EXACT
 
 from ptmcad.question import config
-from ptmcad.studies.bench import qepcad, report, suite
-from ptmcad.studies.bench.__main__ import _exact_records
+from ptmcad.studies.bench import ablation, qepcad, suite
 from ptmcad.studies.bench.process import Outcome, Usage, run
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 
 
-def test_maps_with_free_lengths_are_not_timed_by_default() -> None:
+def test_maps_with_free_lengths_are_not_timed_by_default(monkeypatch: pytest.MonkeyPatch) -> None:
     """They take as long as they are given."""
-    assert _exact_records(CONFIGS) == list(EXACT)
+    monkeypatch.chdir(CONFIGS.parent)
+    seen: list[Path] = []
+    monkeypatch.setattr(suite, "measure", lambda records, plan, date: seen.extend(records))
+    monkeypatch.setattr(suite, "to_markdown", lambda found: "")
+    assert suite.main([]) == 0
+    assert [path.resolve() for path in seen] == list(EXACT)
     assert "fig4" in {path.stem for path in EXACT}
 
 
@@ -107,19 +112,34 @@ def test_qepcad_that_ends_without_an_answer_has_failed() -> None:
 def test_summary() -> None:
     runs = [Usage(Outcome.DONE, seconds, 0.5, peak) for seconds, peak in ((3.0, 10.0), (1.0, 30.0), (2.0, 20.0))]
     found = suite.summary(runs)
-    assert found == suite.Summary(runs=3, median=2.0, minimum=1.0, maximum=3.0, processor=0.5, peak=30.0)
+    assert found == {"runs": 3, "median": 2.0, "minimum": 1.0, "maximum": 3.0, "processor": 0.5, "peak": 30.0}
     assert suite.summary([*runs, Usage(Outcome.TIMED_OUT, 60.2, 1.0, 1.0)]) == "timed out after 60 s"
     assert suite.summary([]) == "not run"
 
 
 def test_report_with_and_without_figures() -> None:
-    summary = suite.Summary(2, 0.25, 0.2, 0.3, 0.2, 60.0)
-    rows = (suite.Row("fig4", summary, 2.0, summary), suite.Row("fig2", "failed: a | b", 0.0, "not run"))
-    full = suite.Report({"cores": "2"}, {"python": "3.11"}, "", 1, 2, summary, rows)
-    page = report.to_markdown(full)
+    summary = {"runs": 2, "median": 0.25, "minimum": 0.2, "maximum": 0.3, "processor": 0.2, "peak": 60.0}
+    rows = [{"name": "fig4", "text": summary, "over_floor": 2.0, "pictures": summary},
+            {"name": "fig2", "text": "failed: a | b", "over_floor": 0.0, "pictures": "not run"}]  # fmt: skip
+    page = suite.to_markdown({"machine": {"cores": "2"}, "versions": {"python": "3.11"}, "date": "", "seed": 1,
+                              "rounds": 2, "floor": summary, "rows": rows})  # fmt: skip
     assert "| fig4 | 0.250 (0.200-0.300) | 2.00 | 0.25 | 60 / 60 |" in page
     assert r"| fig2 | failed: a \| b | - | not run | - / - |" in page
-    assert json.loads(report.to_json(full))["rows"][0]["text"]["median"] == 0.25
+
+
+@pytest.mark.parametrize("study", [suite, ablation], ids=["bench", "ablation"])
+def test_the_stored_page_is_made_of_the_stored_record(study: Any, request: pytest.FixtureRequest) -> None:
+    stored = CONFIGS.parent / "docs" / "benchmarks" / f"{request.node.callspec.id}.json"
+    page = stored.with_suffix(".md").read_text(encoding="utf-8")
+    assert study.to_markdown(json.loads(stored.read_text(encoding="utf-8"))) == page
+
+
+@pytest.mark.parametrize("difference", ["", "other neighbours"])
+def test_ablation_ends_with_1_where_an_answer_differs(difference: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    stored = json.loads((CONFIGS.parent / "docs" / "benchmarks" / "ablation.json").read_text(encoding="utf-8"))
+    stored["exact"][0]["switched off"]["all"]["difference"] = difference
+    monkeypatch.setattr(ablation, "ablation", lambda *_: stored)
+    assert ablation.main([str(CONFIGS / "fig2.yaml")]) == bool(difference)
 
 
 @pytest.mark.slow

@@ -20,7 +20,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.studies.bench.compare import BAD, Change, Verdict, compare, comparison_table
 from ptmcad.studies.bench.document import study_of, write_study, write_table
-from ptmcad.studies.bench.errortime import Curve, Spot, draw_error_time
+from ptmcad.studies.bench.errortime import draw_error_time
 from ptmcad.studies.bench.study import Figures, Measurement, Study, Times, outward, smallest_grid
 from ptmcad.studies.bench.words import curve_file, curves, page, sentences, terminal
 
@@ -278,12 +278,7 @@ def test_everything_but_the_times_is_repeatable(tmp_path: Path) -> None:
 
 
 def test_a_zero_is_drawn_in_its_band() -> None:
-    found = curves(STUDY)
-    drawn = tuple(
-        Curve(name, tuple(Spot((m.seconds.median,) * 3, error) for m, error, _ in points if m.seconds), style)
-        for name, style, points in found
-    )
-    figure = draw_error_time("fig4", sentences(STUDY), drawn)
+    figure = draw_error_time("fig4", sentences(STUDY), curves(STUDY))
     (axes,) = figure.axes
     low = axes.get_ylim()[0]
     decade = axes.get_yticks()[0]

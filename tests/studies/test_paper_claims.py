@@ -31,7 +31,7 @@ from ptmcad.answer.regionmap import Merge, Status
 from ptmcad.studies.paper import printed
 from ptmcad.studies.paper.claim import Outcome, Verdict, judge
 from ptmcad.studies.paper.claims import (
-    SECTIONS,
+    TEXTS,
     all_claims,
     basics,
     extensions,
@@ -39,13 +39,15 @@ from ptmcad.studies.paper.claims import (
     general,
     overall,
     symmetric,
-    symmetric_map,
     unloaded,
     unloaded_map,
 )
 from ptmcad.studies.paper.free_lengths import FreeLengthDesign, proved_equilibrium
 from ptmcad.studies.paper.slices import FIGURES, region_map, slice_of
 
+SECTIONS = (
+    "abstract", "1", "2", "3", "3.1", "3.2", "3.3", "4", "4.1", "4.2", "4.3", "5.1", "5.2", "conclusions",
+)  # fmt: skip
 CLAIMS = {claim.name: claim for claim in all_claims()}
 OUTCOMES: dict[Callable[[], Outcome], Outcome] = {}
 
@@ -200,12 +202,13 @@ def test_horizontal_forces_at_rational_points() -> None:
 
 
 def test_the_list_is_whole() -> None:
-    """Names begin with their section, every section that says something checkable is there, quotations are short."""
-    assert len(CLAIMS) == len(all_claims()) > 85
-    assert {c.section for c in CLAIMS.values()} == set(SECTIONS)
-    for claim in CLAIMS.values():
-        assert claim.name.startswith({"abstract": "a-", "conclusions": "c-"}.get(claim.section, f"{claim.section}-"))
-        assert len(claim.quotation) < 90
+    """Names are unique, sections follow each other as in the paper, quotations are short."""
+    assert re.findall(r"^([\w.-]+):$", TEXTS.read_text(encoding="utf-8"), re.MULTILINE) == list(CLAIMS)
+    assert len(CLAIMS) > 85
+    sections = [SECTIONS.index(claim.section) for claim in CLAIMS.values()]
+    assert sections == sorted(sections)
+    assert {*sections} == {*range(len(SECTIONS))}
+    assert all(len(claim.quotation) < 90 for claim in CLAIMS.values())
     assert set(CORRECTED) | set(REFUTED) | set(NOT_CHECKED) <= set(CLAIMS)
 
 
@@ -554,66 +557,64 @@ def _wrong(expression: Any) -> Any:
     return expression + sp.Symbol("rho", positive=True)
 
 
-@pytest.mark.parametrize(("name", "check", "verdict"), [
-    ("EQUATION_3", basics.equation_3, Verdict.UNDECIDED),
-    ("EQUATION_4", basics.equation_4, Verdict.UNDECIDED),
-    ("EQUATION_5", basics.equation_5, Verdict.UNDECIDED),
-    ("EQUATION_6", basics.equation_6, Verdict.UNDECIDED),
-    ("EQUATION_7", unloaded.equations_7_8, Verdict.UNDECIDED),
-    ("EQUATION_10", symmetric.equation_10, Verdict.UNDECIDED),
-    ("EQUATION_11", symmetric.equation_11, Verdict.UNDECIDED),
-    ("EQUATION_12", symmetric.equation_12, Verdict.UNDECIDED),
-    ("BOUNDARY_15", symmetric_map.rose_and_astroid, Verdict.UNDECIDED),
-    ("BOUNDARY_16", symmetric_map.rose_and_astroid, Verdict.UNDECIDED),
-    ("DETERMINANT_13", symmetric.equation_13, Verdict.UNDECIDED),
+@pytest.mark.parametrize(("name", "claim"), [
+    ("EQUATION_3", "2-eq3"),
+    ("EQUATION_4", "2-eq4"),
+    ("EQUATION_5", "3-eq5"),
+    ("EQUATION_6", "3-eq6"),
+    ("EQUATION_7", "3.1-eq7-8"),
+    ("EQUATION_10", "3.2-eq10"),
+    ("EQUATION_11", "3.2-eq11"),
+    ("EQUATION_12", "3.2-eq12"),
+    ("BOUNDARY_15", "4.2-eq15-16"),
+    ("BOUNDARY_16", "4.2-eq15-16"),
+    ("DETERMINANT_13", "3.3-eq13"),
 ])  # fmt: skip
-def test_a_wrong_equation_is_not_confirmed(
-    monkeypatch: pytest.MonkeyPatch, name: str, check: Callable[[], Outcome], verdict: Verdict
-) -> None:
+def test_a_wrong_equation_is_not_confirmed(monkeypatch: pytest.MonkeyPatch, name: str, claim: str) -> None:
     monkeypatch.setattr(printed, name, _wrong(getattr(printed, name)))
-    assert check().verdict is verdict
+    assert CLAIMS[claim].check().verdict is Verdict.UNDECIDED
 
 
-@pytest.mark.parametrize(("name", "right", "check"), [
-    ("EQUATION_4_PRINTED", "EQUATION_4", basics.equation_4),
-    ("EQUATION_6_PRINTED", "EQUATION_6", basics.equation_6),
+@pytest.mark.parametrize(("name", "right", "claim"), [
+    ("EQUATION_4_PRINTED", "EQUATION_4", "2-eq4"),
+    ("EQUATION_6_PRINTED", "EQUATION_6", "3-eq6"),
 ])  # fmt: skip
 def test_a_right_equation_would_be_confirmed(
-    monkeypatch: pytest.MonkeyPatch, name: str, right: str, check: Callable[[], Outcome]
+    monkeypatch: pytest.MonkeyPatch, name: str, right: str, claim: str
 ) -> None:
     """Had the paper printed the right one, the verdict would say so: it is not typed in."""
     monkeypatch.setattr(printed, name, getattr(printed, right))
-    assert check().verdict is Verdict.CONFIRMED
+    assert CLAIMS[claim].check().verdict is Verdict.CONFIRMED
 
 
 def test_a_right_determinant_would_be_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(printed, "DETERMINANT_13", symmetric.on_unequal(symmetric.determinant()))
-    assert symmetric.equation_13().verdict is Verdict.CONFIRMED
+    assert CLAIMS["3.3-eq13"].check().verdict is Verdict.CONFIRMED
 
 
 def test_a_third_line_that_is_none_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(printed, "UNLOADED_LINES", (*printed.UNLOADED_LINES[:2], _wrong(printed.UNLOADED_LINES[2])))
-    assert unloaded_map.three_lines().verdict is Verdict.UNDECIDED
-    assert unloaded_map.lines_are_flat().verdict is Verdict.UNDECIDED
+    assert CLAIMS["4.1-lines"].check().verdict is Verdict.UNDECIDED
+    assert CLAIMS["4.1-boundaries-flat"].check().verdict is Verdict.UNDECIDED
 
 
 def test_six_equilibria_would_not_refute(monkeypatch: pytest.MonkeyPatch) -> None:
     """A witness with six equilibria decides nothing: a lower bound cannot confirm the claim either."""
     monkeypatch.setattr(extensions, "WITNESSES", (extensions.AT_ELIMINATED,))
-    assert extensions.at_most_six().verdict is Verdict.UNDECIDED
+    assert CLAIMS["5.2-six"].check().verdict is Verdict.UNDECIDED
 
 
 def test_an_elimination_without_spurious_roots_would_not_confirm(monkeypatch: pytest.MonkeyPatch) -> None:
     found = dataclasses.replace(extensions.elimination(), real_roots=6)
     monkeypatch.setattr(extensions, "elimination", lambda: found)
-    assert extensions.spurious().verdict is Verdict.UNDECIDED
+    assert CLAIMS["5.2-spurious"].check().verdict is Verdict.UNDECIDED
 
 
 def test_a_wrong_potential_is_not_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
     """5.2-eq17, with the free length added to the lengths."""
     right = printed.potential_17
     monkeypatch.setattr(printed, "potential_17", lambda lengths, free, work: right(lengths, -free, work))
-    assert free_springs.potential_17().verdict is Verdict.UNDECIDED
+    assert CLAIMS["5.2-eq17"].check().verdict is Verdict.UNDECIDED
 
 
 @pytest.mark.parametrize(("numbers", "verdict"), [
@@ -624,7 +625,7 @@ def test_verdict_on_real_roots_follows_the_numbers(
     monkeypatch: pytest.MonkeyPatch, numbers: tuple[int, ...], verdict: Verdict
 ) -> None:
     monkeypatch.setattr(free_springs, "real_roots", lambda: {f"design {n}": n for n in numbers})
-    assert free_springs.twelve_to_thirty().verdict is verdict
+    assert CLAIMS["5.2-real"].check().verdict is verdict
 
 
 def test_tense_springs_everywhere_would_not_confirm(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -632,7 +633,7 @@ def test_tense_springs_everywhere_would_not_confirm(monkeypatch: pytest.MonkeyPa
     whole = extensions.equilibria_with
     tense = lambda design: tuple(dataclasses.replace(e, tense=True) for e in whole(design))  # noqa: E731
     monkeypatch.setattr(free_springs, "equilibria_with", tense)
-    assert free_springs.acceptable().verdict is Verdict.UNDECIDED
+    assert CLAIMS["5.2-acceptable"].check().verdict is Verdict.UNDECIDED
 
 
 @pytest.mark.parametrize("change", [
@@ -642,14 +643,14 @@ def test_an_unfinished_map_decides_nothing(monkeypatch: pytest.MonkeyPatch, chan
     """5.2-difficult stays undecided when a map was stopped or leaves too much open."""
     whole = free_springs.certified
     monkeypatch.setattr(free_springs, "certified", lambda name: dataclasses.replace(whole(name), **change))
-    assert free_springs.difficult().verdict is Verdict.UNDECIDED
+    assert CLAIMS["5.2-difficult"].check().verdict is Verdict.UNDECIDED
 
 
 def test_without_numba_the_forecast_is_not_checked(monkeypatch: pytest.MonkeyPatch) -> None:
     """5.2-difficult needs an optional package, and says so where it is missing."""
     monkeypatch.setitem(sys.modules, "numba", None)
     monkeypatch.delitem(sys.modules, "ptmcad.certified.compiled", raising=False)
-    found = free_springs.difficult()
+    found = CLAIMS["5.2-difficult"].check()
     assert found.verdict is Verdict.NOT_CHECKED
     assert "numba" in found.reason
 
@@ -658,13 +659,13 @@ def test_a_general_count_that_is_not_general_corrects_nothing(monkeypatch: pytes
     """3.3-others: a count seen that the theorem does not allow would show one of the two wrong."""
     allowed, seen = overall.allowed_and_seen()
     monkeypatch.setattr(symmetric, "allowed_and_seen", lambda: (allowed, seen | {(5, 2)}))
-    assert symmetric.general_result().verdict is Verdict.UNDECIDED
+    assert CLAIMS["3.3-others"].check().verdict is Verdict.UNDECIDED
 
 
 @pytest.mark.parametrize("found", [(-1, 3), (3, -1), (2, 2)])
 def test_other_numbers_of_freedom_are_not_confirmed(monkeypatch: pytest.MonkeyPatch, found: tuple[int, int]) -> None:
     monkeypatch.setattr(basics, "degrees_of_freedom", lambda: found)
-    assert basics.three_dof().verdict is Verdict.UNDECIDED
+    assert CLAIMS["2-dof"].check().verdict is Verdict.UNDECIDED
 
 
 def test_a_rod_that_stretches_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -678,7 +679,7 @@ def test_a_rod_that_stretches_is_noticed(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_a_failed_derivation_confirms_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """4.1-non-flat: were the closed form wrong, the paper's "no general information" would not become true by it."""
     monkeypatch.setattr(unloaded_map, "on_triangle", lambda expression: _wrong(unloaded.on_triangle(expression)))
-    assert unloaded_map.non_flat_stable().verdict is Verdict.UNDECIDED
+    assert CLAIMS["4.1-non-flat"].check().verdict is Verdict.UNDECIDED
 
 
 def test_every_step_of_the_proof_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -687,14 +688,14 @@ def test_every_step_of_the_proof_is_needed(monkeypatch: pytest.MonkeyPatch) -> N
     assert len(found.steps) == 16
     for step in found.steps:
         monkeypatch.setattr(general, "widest", lambda: type(found)({**found.steps, step: False}, found.widths))  # noqa: B023
-        assert general.widest_at_one().verdict is Verdict.UNDECIDED
+        assert CLAIMS["4.3-widest"].check().verdict is Verdict.UNDECIDED
 
 
 def test_a_wider_place_would_refute(monkeypatch: pytest.MonkeyPatch) -> None:
     found = general.widest()
     wide = {**found.widths, Fraction(3, 2): (Fraction(3, 5), Fraction(3, 5))}
     monkeypatch.setattr(general, "widest", lambda: type(found)(found.steps, wide))
-    assert general.widest_at_one().verdict is Verdict.REFUTED
+    assert CLAIMS["4.3-widest"].check().verdict is Verdict.REFUTED
 
 
 def test_proven_links_keep_the_counts() -> None:

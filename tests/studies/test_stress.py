@@ -20,7 +20,7 @@ from ptmcad.cli import run
 from ptmcad.studies.equilibria import angle_error
 from ptmcad.studies.stress import campaign as campaign_module
 from ptmcad.studies.stress.campaign import campaign
-from ptmcad.studies.stress.case import Case, MapQuestion, PointAnswer, PointQuestion
+from ptmcad.studies.stress.case import Case, PointAnswer, PointQuestion, SliceQuestion
 from ptmcad.studies.stress.constructions import Degenerate, beside_cusp, beside_fold
 from ptmcad.studies.stress.doubles import double_poses
 from ptmcad.studies.stress.judgement import judge
@@ -199,8 +199,8 @@ def test_a_wrong_answer_is_called_wrong() -> None:
     assert not judge(c, other).right
     assert "reference" in " ".join(judge(c, ptmcad.solve(**point(k=1001, F3=-10, F4=-10).parameters)).remarks)
     question = case("window-line-1e-20").question
-    assert isinstance(question, MapQuestion)
-    halved = MapQuestion(question.parameters, {n: (low, high) for n, (low, high) in question.axes.items()} | {
+    assert isinstance(question, SliceQuestion)
+    halved = SliceQuestion(question.parameters, {n: (low, high) for n, (low, high) in question.axes.items()} | {
         "rho": (question.axes["rho"][0], sum(question.axes["rho"]) / 2)})  # fmt: skip
     assert not judge(case("window-line-1e-20"), answer(halved)).right
 
@@ -293,7 +293,7 @@ def test_a_wrong_answer_gives_exit_status_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def wrong(_case: Case, _found: object) -> Verdict:
-        return Verdict("6/2", "4/1", "6/2", False, ("total 4, but 6 by construction",), True, 0.0, 0.0, 1.0, 112)
+        return Verdict("6/2", "4/1", "6/2", ("total 4, but 6 by construction",), True, 0.0, 0.0, 1.0, 112)
 
     monkeypatch.setattr(campaign_module, "judge", wrong)
     assert run(["stress", "stiffness-1e4", "--repeats", "1", "--format", "table"]) == 1

@@ -62,8 +62,8 @@ def certified(
     open_area = cover.steps**2 - sum(complement.areas)
     system = System(("th1", "th2"), (), "", (), ())
     return RegionMap(
-        slice, status, system, 0, 0, (), (), (), tuple(cells), (), (), tuple(regions), (),
-        Fraction(open_area, cover.steps**2), {}, {}, {}, cover,
+        slice=slice, status=status, system=system, cells=tuple(cells), regions=tuple(regions),
+        undetermined=Fraction(open_area, cover.steps**2), versions={}, cover=cover,
     )  # fmt: skip
 
 

@@ -29,14 +29,9 @@ WINDOW = {"rho": ["1/5", "2"], "L2": ["1/5", "2"]}
 
 def claims(slice: Slice, potential: str = "") -> SimpleNamespace:
     """A result in which only the slice and the potential are looked at, as a file has it."""
-    empty: dict[str, tuple[()]] = {
-        name: ()
-        for name in ("components", "critical_values", "stacks", "cells", "adjacencies", "non_adjacencies", "regions",
-                     "plan")
-    }  # fmt: skip
     system = System(("th1", "th2"), (), potential, (), ())
-    result = RegionMap(slice=slice, status=Status.PARTIAL, system=system, base=0, complex_solutions=6, **empty,
-                       undetermined=Fraction(1), versions={}, precision={}, timings={})  # fmt: skip
+    result = RegionMap(slice=slice, status=Status.PARTIAL, system=system, complex_solutions=6,
+                       undetermined=Fraction(1), versions={})  # fmt: skip
     return SimpleNamespace(result=RegionMap.from_json(result.to_json()))
 
 

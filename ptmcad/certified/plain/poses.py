@@ -49,9 +49,7 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
     ConfigError, GeometryError
         As `ptmcad.certified.plain.points.plain_counter` does, or where a parameter is not what its kind asks for.
     """
-    unit = (Fraction(0), Fraction(1))
-    constants = {name: 0 * axis(0) + value for name, value in parameters.items()}
-    slice = Slice("point", mechanism, (Axis("x", *unit), Axis("y", *unit)), constants, Count.INDEX)
+    slice = point_slice(mechanism, parameters)
     prove_slice(slice)
     counter = plain_counter(slice)
     counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
@@ -66,6 +64,13 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
         poses.append(pose)
     ordered = sorted(poses, key=lambda pose: (not pose.stable, pose.known_energy.center))
     return Poses(mechanism, parameters, tuple(ordered), Status.CERTIFIED, digits, most)
+
+
+def point_slice(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> Slice:
+    """The mechanism at a point as a slice on whose axes nothing depends."""
+    unit = (Fraction(0), Fraction(1))
+    constants = {name: 0 * axis(0) + value for name, value in parameters.items()}
+    return Slice("point", mechanism, (Axis("x", *unit), Axis("y", *unit)), constants, Count.INDEX)
 
 
 def _tape(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[Tape, tuple[str, ...]]:
@@ -117,7 +122,7 @@ def _pose(
                 if settled is not None:
                     found[name] = settled
         if found.keys() == numbers.keys() and f"eigenvalue {size - 1}" in found:
-            return _assembled(mechanism, parameters, found, solution.signs.count("-")), bits
+            return assembled(mechanism, parameters, found, solution.signs.count("-")), bits
         bits *= 2
     return None, bits // 2
 
@@ -133,9 +138,14 @@ def _eigenvalues(matrix: arb_mat) -> list[arb]:
     return sorted((value.real for value in found), key=lambda value: float(value.mid()))
 
 
-def _assembled(
-    mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Mapping[str, Enclosure], index: int
+def assembled(
+    mechanism: Mechanism,
+    parameters: Mapping[str, Fraction],
+    at: Mapping[str, Enclosure],
+    index: int,
+    flat: bool = False,
 ) -> Pose:
+    """The pose of these numbers by name, whose Hessian was proved to have so many negative eigenvalues."""
     springs = tuple(
         Spring(
             spring.name,
@@ -162,7 +172,7 @@ def _assembled(
         multiplicity=1,
         index=index,
         stable=index == 0,
-        flat=False,
+        flat=flat,
         admissible=index == 0 and all(spring.force.low > 0 for spring in springs),
         reals=tuple(at[f"real {name}"] for name in mechanism.reals),
     )

@@ -48,14 +48,7 @@ def make_system(description: Mapping[Any, Any] | None = None, /, **entries: Any)
     >>> make_system(unknowns={"x": "real"}, equations=["x^3 - a*x + b"]).variables
     ('a', 'b')
 
-    Parameters
-    ----------
-    description : a mapping with such entries; further ones may be added by name.
-
-    Raises
-    ------
-    ConfigError
-        With the key of what is wrong; its ``faults`` are all there are.
+    Takes entries, and raises, as `make_mechanism` does.
     """
     found = _model("system", description, entries)
     assert isinstance(found, System)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any
 
 from ptmcad.answer.regionmap import (
     Adjacency,
@@ -110,53 +110,53 @@ NON_ADJACENCY = record(
 PLAN_STEP = record(PlanStep, what=TEXT, done=TRUTH, reason=TEXT, saving=Key(TEXT, default=""))
 
 
-class Parts(NamedTuple):
-    """The codecs of what depends on the slice: names of axes occur in it, or a certified map has it in another way."""
-
-    component: Codec[Component]
-    region: Codec[Region]
-    cell: Codec[Cell]
-
-
-def parts(names: tuple[str, str], certified: bool) -> Parts:
-    """The codecs for a map over axes of these names."""
+def sequences(names: tuple[str, str], certified: bool) -> dict[str, Codec[Any]]:
+    """The codecs of what a map over axes of these names has several of, by its attribute, in the document's order."""
     point: Codec[Point] = Codec(
         lambda at: {name: RATIONAL.write(at[name]) for name in at.names}, lambda node: _point(node, names)
     )
     admissible = {"admissible": COUNT} if certified else {}
     # an area that a checker is to confirm needs no more digits; one that is a sum of rectangles is exact as it is
     area: Codec[Any] = listed(SHARE, 2) if certified else Codec(_outwards, listed(SHARE, 2).read)
-    return Parts(
-        component=record(
-            Component,
-            kind=choice(Kind),
-            separates=TRUTH,
-            left_out=TEXT,
-            polynomial=Codec(lambda p: p.text(names), lambda node: _polynomial(node, names)),
-        ),
-        region=record(
-            Region,
-            stable=COUNT,
-            total=COUNT,
-            index=optional(INDEX),
-            **admissible,
-            area=area,
-            sample=point,
-            cells=listed(NATURAL),
-        ),
-        cell=record(
-            Cell,
-            stack=Codec(lambda stack: stack, _no_stack) if certified else NATURAL,
-            level=NATURAL,
-            sample=point,
-            region=NATURAL,
-            total=COUNT,
-            stable=COUNT,
-            index=optional(INDEX),
-            **admissible,
-            solutions=listed(SOLUTION),
-        ),
+    component = record(
+        Component,
+        kind=choice(Kind),
+        separates=TRUTH,
+        left_out=TEXT,
+        polynomial=Codec(lambda p: p.text(names), lambda node: _polynomial(node, names)),
     )
+    region = record(
+        Region,
+        stable=COUNT,
+        total=COUNT,
+        index=optional(INDEX),
+        **admissible,
+        area=area,
+        sample=point,
+        cells=listed(NATURAL),
+    )
+    cell = record(
+        Cell,
+        stack=Codec(lambda stack: stack, _no_stack) if certified else NATURAL,
+        level=NATURAL,
+        sample=point,
+        region=NATURAL,
+        total=COUNT,
+        stable=COUNT,
+        index=optional(INDEX),
+        **admissible,
+        solutions=listed(SOLUTION),
+    )
+    return {
+        "regions": region,
+        "components": component,
+        "critical_values": CRITICAL_VALUE,
+        "stacks": STACK,
+        "cells": cell,
+        "adjacencies": ADJACENCY,
+        "non_adjacencies": NON_ADJACENCY,
+        "plan": PLAN_STEP,
+    }
 
 
 def _no_stack(node: Node) -> None:

@@ -12,16 +12,7 @@ from ptmcad.question.slice import Count, Slice
 from ptmcad.show.document.codec import NATURAL, TEXT, named
 from ptmcad.show.document.cover import read_cover
 from ptmcad.show.document.node import Node, opened
-from ptmcad.show.document.parts import (
-    ADJACENCY,
-    CRITICAL_VALUE,
-    NON_ADJACENCY,
-    PLAN_STEP,
-    SLICE,
-    STACK,
-    SYSTEM,
-    parts,
-)
+from ptmcad.show.document.parts import SLICE, SYSTEM, sequences
 from ptmcad.show.document.writing import FORMAT
 
 # Limits far beyond any slice's result, like those of `ptmcad.show.document.node`.
@@ -59,21 +50,14 @@ def _decode(document: Node) -> RegionMap:
         raise data["components"].fault(f"has more than {MAX_COMPONENTS} entries")
     if (undetermined := data["undetermined"].size()) > 1:
         raise data["undetermined"].fault("is more than the whole window")
-    own = parts(names, cover is not None)
+    several = sequences(names, cover is not None)
     return RegionMap(
         slice=slice,
         status=status,
         system=SYSTEM.read(data["system"]),
         base=names.index(base),
         complex_solutions=data["complex_solutions"].natural(),
-        components=data["components"].each(own.component.read),
-        critical_values=data["critical_values"].each(CRITICAL_VALUE.read),
-        stacks=data["stacks"].each(STACK.read),
-        cells=data["cells"].each(own.cell.read),
-        adjacencies=data["adjacencies"].each(ADJACENCY.read),
-        non_adjacencies=data["non_adjacencies"].each(NON_ADJACENCY.read),
-        regions=data["regions"].each(own.region.read),
-        plan=data["plan"].each(PLAN_STEP.read),
+        **{name: data[name].each(codec.read) for name, codec in several.items()},
         undetermined=undetermined,
         versions=named(TEXT).read(data["versions"]),
         precision=named(NATURAL).read(data["precision"]),

@@ -11,16 +11,7 @@ from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover.rectangles import Cover
-from ptmcad.show.document.parts import (
-    ADJACENCY,
-    CRITICAL_VALUE,
-    NON_ADJACENCY,
-    PLAN_STEP,
-    SLICE,
-    STACK,
-    SYSTEM,
-    parts,
-)
+from ptmcad.show.document.parts import SLICE, SYSTEM, sequences
 from ptmcad.text.numerals import text_of
 
 FORMAT = "ptmcad-region-map/2"
@@ -45,7 +36,7 @@ def write(result: RegionMap, timings: bool = True) -> str:
 
 def _encode(result: RegionMap) -> dict[str, Any]:
     names = result.slice.axis_names
-    own = parts(names, result.cover is not None)
+    several = sequences(names, result.cover is not None)
     return {
         "format": FORMAT,
         "status": result.status.value,
@@ -54,14 +45,7 @@ def _encode(result: RegionMap) -> dict[str, Any]:
         "base": names[result.base],
         "complex_solutions": result.complex_solutions,
         "undetermined": text_of(result.undetermined),
-        "regions": [own.region.write(r) for r in result.regions],
-        "components": [own.component.write(c) for c in result.components],
-        "critical_values": [CRITICAL_VALUE.write(v) for v in result.critical_values],
-        "stacks": [STACK.write(s) for s in result.stacks],
-        "cells": [own.cell.write(c) for c in result.cells],
-        "adjacencies": [ADJACENCY.write(a) for a in result.adjacencies],
-        "non_adjacencies": [NON_ADJACENCY.write(a) for a in result.non_adjacencies],
-        "plan": [PLAN_STEP.write(p) for p in result.plan],
+        **{name: [codec.write(v) for v in getattr(result, name)] for name, codec in several.items()},
         "versions": dict(result.versions),
         "precision": dict(result.precision),
     }

@@ -25,12 +25,10 @@ from ptmcad.process.extras import require_numba
 from ptmcad.question.config import load
 from ptmcad.question.savings import ALL, SAVINGS, Engine
 from ptmcad.question.slice import Slice
-from ptmcad.studies.bench.command import NO_RECORDS, Command, progress, save
+from ptmcad.studies.bench.harness import Command, Record, made_with, progress, ratio, rounds, times
 from ptmcad.studies.bench.process import Outcome, run
-from ptmcad.studies.bench.rounds import ratio, rounds, times
 from ptmcad.studies.bench.sameness import difference
-from ptmcad.studies.bench.suite import machine, versions
-from ptmcad.studies.tables import markdown, measured_with
+from ptmcad.studies.tables import markdown, measured_with, page
 from ptmcad.text.expressions import Expression
 
 FORMAT = "ptmcad-ablation/1"
@@ -50,12 +48,8 @@ PATIENCE = 30.0
 SWAPPED = ("axis-order",)
 """Savings that are measured with the axes exchanged as well, as the records give the better order first."""
 
-Progress = Callable[[str], None]
 
-
-def ablation(
-    records: Sequence[Path], number: int = 3, seed: int = 1, report: Progress = lambda _: None
-) -> dict[str, Any]:
+def ablation(records: Sequence[Path], number: int = 3, seed: int = 1) -> Record:
     """The benchmark as JSON data.
 
     Parameters
@@ -63,7 +57,6 @@ def ablation(
     records : problem records; of those with free lengths only `CERTIFIED` are taken.
     number : runs of each variant of the exact engine, and of each whole process; certified variants run once.
     seed : of the order within a round.
-    report : called with the name of each record.
 
     Raises
     ------
@@ -74,28 +67,21 @@ def ablation(
     slices = {path: load(path) for path in records}
     if any(slice.name in CERTIFIED for slice in slices.values() if slice.has_free_lengths):
         require_numba()
-    rows, free = [], []
-    for slice in slices.values():
-        report(slice.name)
-        if slice.has_free_lengths:
-            if slice.name in CERTIFIED:
-                free += [_certified(slice, *part) for part in CERTIFIED[slice.name]]
-            continue
-        rows.append(_exact(slice, (*_names(Engine.EXACT), ALL), number, order))
-        rows.append(_exact(exchanged(slice), SWAPPED, number, order))
-    paper = [path for path, slice in slices.items() if slice.name in PAPER]
-    processes = [_processes(path, slices[path].name, number, order) for path in paper]
-    return {
-        "format": FORMAT,
-        "machine": machine(),
-        "versions": versions(),
-        "seed": seed,
-        "rounds": number,
+    found: Record = {
+        "format": FORMAT, **made_with(), "seed": seed, "rounds": number,
         "savings": [{"name": s.name, "engine": s.engine.value, "what": s.what, "why": s.why} for s in SAVINGS],
-        "exact": rows,
-        "processes": processes,
-        "certified": free,
-    }
+        "exact": [], "processes": [], "certified": [],
+    }  # fmt: skip
+    for path, slice in slices.items():
+        progress(slice.name)
+        if slice.has_free_lengths:
+            found["certified"] += [_certified(slice, *part) for part in CERTIFIED.get(slice.name, ())]
+            continue
+        found["exact"].append(_exact(slice, (*_names(Engine.EXACT), ALL), number, order))
+        found["exact"].append(_exact(exchanged(slice), SWAPPED, number, order))
+        if slice.name in PAPER:
+            found["processes"].append(_processes(path, slice.name, number, order))
+    return found
 
 
 def exchanged(slice: Slice) -> Slice:
@@ -188,13 +174,9 @@ def _certified(
     first, seconds, _ = _enclosed(slice, (), share)
     switched = {}
     for name in (*names, ALL):
-        result, spent, reached = _enclosed(slice, tuple(names) if name == ALL else (name,), share)
-        switched[name] = {
-            "seconds": round(spent, 2),
-            "reached": reached,
-            "ratio": round(spent / seconds, 2),
-            "difference": difference(first, result),
-        }
+        result, spent, reached = _enclosed(slice, names if name == ALL else (name,), share)
+        switched[name] = {"seconds": round(spent, 2), "reached": reached, "ratio": round(spent / seconds, 2),
+                          "difference": difference(first, result)}  # fmt: skip
     return {
         "record": slice.name,
         "window": {a.name: [str(a.low), str(a.high)] for a in slice.axes},
@@ -218,86 +200,82 @@ def _enclosed(slice: Slice, without: tuple[str, ...], share: Fraction) -> tuple[
     return result, process_time() - start, True
 
 
-def to_markdown(found: dict[str, Any]) -> str:
+_INTRODUCTION = """
+Processor time of the computation with a saving switched off (`--without NAME`), over that with all savings
+made: 1.00 means that the saving is worth nothing on that slice. `all` is the plain pipeline.
+[plan.md](../plan.md) says what the savings are. Every map was compared with the one that all savings made:
+regions, counts, neighbours, areas. Made by `python -m ptmcad.studies.bench.ablation --out docs/benchmarks`.
+"""
+
+
+def to_markdown(found: Record) -> str:
     """The benchmark as a page."""
     names = (*_names(Engine.EXACT), ALL)
-    lines = [
-        "# What each saving is worth",
-        "",
-        "Processor time of the computation with a saving switched off (`--without NAME`), over that with all savings",
-        "made: 1.00 means that the saving is worth nothing on that slice. `all` is the plain pipeline.",
-        "[plan.md](../plan.md) says what the savings are. Every map was compared with the one that all savings made:",
-        "regions, counts, neighbours, areas. Made by `python -m ptmcad.studies.bench.ablation --out docs/benchmarks`.",
-        "",
-        f"Rounds: {found['rounds']}, seed {found['seed']}; ratios are medians of those within a round.",
-        "",
-    ]
-    cells: list[tuple[str, ...]] = []
+    cells = []
     for row in found["exact"]:
-        off, made = row["switched off"], row["all made"]
-        ratios = (f"{off[n]['ratio']:.2f}" if n in off else "" for n in names)
-        same = "no" if any(v["difference"] for v in off.values()) else "yes"
+        made = row["all made"]
         spread = f"{1000 * made['median']:.0f} ({1000 * made['least']:.0f}-{1000 * made['most']:.0f})"
-        cells.append((row["record"], spread, *ratios, same))
-    lines += [
-        *markdown(("slice", "ms, all made (least-most)", *names, "same answer"), cells),
-        "",
-        "## Whole processes",
-        "",
-        "`ptmcad classify RECORD --format json`, processor time of everything, start-up included.",
-        "",
-    ]
+        cells.append((row["record"], spread, *_ratios(row, names), "no" if differs(row) else "yes"))
     header = ("slice", "ms, all made", "ms, --without imports", "over", "ms, --without all", "over")
-    lines += markdown(header, map(_process_cells, found["processes"]))
-    lines += [*_certified_lines(found["certified"]), "", *measured_with(found)]
-    return "\n".join(lines) + "\n"
+    return page(
+        "# What each saving is worth",
+        _INTRODUCTION,
+        f"Rounds: {found['rounds']}, seed {found['seed']}; ratios are medians of those within a round.",
+        markdown(("slice", "ms, all made (least-most)", *names, "same answer"), cells),
+        "## Whole processes",
+        "`ptmcad classify RECORD --format json`, processor time of everything, start-up included.",
+        markdown(header, map(_process_cells, found["processes"])),
+        *_certified_blocks(found["certified"]),
+        *measured_with(found),
+    )
 
 
-def _process_cells(row: dict[str, Any]) -> tuple[str, ...]:
+def differs(row: Record) -> bool:
+    """Whether an answer without some saving is another."""
+    return any(variant["difference"] for variant in row["switched off"].values())
+
+
+def _ratios(row: Record, names: Sequence[str]) -> list[str]:
+    """Times over that with all savings, above a bound where patience ended; empty for what was not measured."""
+    found = [row["switched off"].get(name) for name in names]
+    return [f"{'' if v.get('reached', True) else '> '}{v['ratio']:.2f}" if v else "" for v in found]
+
+
+def _process_cells(row: Record) -> tuple[str, ...]:
     off = row["switched off"]
     switched = [(f"{1000 * off[name]['median']:.0f}", f"{off[name]['ratio']:.2f}") for name in ("imports", ALL)]
     return row["record"], f"{1000 * row['all made']['median']:.0f}", *chain(*switched)
 
 
-def _certified_lines(rows: Sequence[dict[str, Any]]) -> list[str]:
+def _certified_blocks(rows: Sequence[Record]) -> list[str | list[str]]:
     if not rows:
         return []
     names = (*_names(Engine.CERTIFIED), ALL)
-    lines = [
-        "",
-        "## The certified engine",
-        "",
-        "Processor time until at most a given share of the window is undetermined, in one thread, over that with all",
-        f"savings made; one run each. Above a bound where {PATIENCE:.0f} seconds (of wall time) were not enough.",
-        "",
-    ]
     cells = []
     for row in rows:
-        off = row["switched off"]
-        ratios = (("" if off[n]["reached"] else "> ") + f"{off[n]['ratio']:.2f}" for n in names)
-        same = "no" if any(v["difference"] for v in off.values()) else "yes"
         window = ", ".join(f"{low} < {name} < {high}" for name, (low, high) in row["window"].items())
-        cells.append((row["record"], window, row["open"], f"{row['seconds']:.1f}", *ratios, same))
-    return [*lines, *markdown(("slice", "window", "share", "s, all made", *names, "no contradiction"), cells)]
+        same = "no" if differs(row) else "yes"
+        cells.append((row["record"], window, row["open"], f"{row['seconds']:.1f}", *_ratios(row, names), same))
+    return [
+        "## The certified engine",
+        "Processor time until at most a given share of the window is undetermined, in one thread, over that with all\n"
+        f"savings made; one run each. Above a bound where {PATIENCE:.0f} seconds (of wall time) were not enough.",
+        markdown(("slice", "window", "share", "s, all made", *names, "no contradiction"), cells),
+    ]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, print the page, write ablation.json and ablation.md; 1 when an answer differed, 2 for bad input."""
-    command = Command("bench.ablation", "What each saving is worth.", files="ablation.json and ablation.md", rounds=3)
+    command = Command("bench.ablation", "What each saving is worth.", "ablation", rounds=3)
     command.add_argument("records", nargs="*", type=Path, help="problem records; default: configs/*.yaml")
     chosen = command.chosen(arguments)
-    records = chosen.records or sorted(Path("configs").glob("*.yaml"))
-    if not records:
-        command.error(NO_RECORDS)
-
-    def work() -> int:
-        found = ablation(records, chosen.rounds, chosen.seed, progress)
-        save(chosen.out, "ablation", found, to_markdown(found))
-        print(to_markdown(found), end="")
-        rows = (*found["exact"], *found["certified"])
-        return int(any(v["difference"] for row in rows for v in row["switched off"].values()))
-
-    return command.status(work)
+    records = command.records(chosen.records, lambda slice: True)
+    return command.status(
+        chosen.out,
+        lambda: ablation(records, chosen.rounds, chosen.seed),
+        to_markdown,
+        wrong=lambda found: any(map(differs, (*found["exact"], *found["certified"]))),
+    )
 
 
 if __name__ == "__main__":

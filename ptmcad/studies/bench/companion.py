@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -112,11 +113,11 @@ def _stable(t: Array, p: Values) -> NDArray[np.bool_]:
         return answer
 
 
-def main(arguments: list[str]) -> None:
-    """Read the question, count, save an array of shape (2, N, N) and print the seconds that it took."""
+def main(arguments: list[str], answer: Callable[..., NDArray[np.int8]] = counts) -> None:
+    """Read QUESTION, count on N x N points, save the counts, of shape (2, N, N), as RESULT, and print the seconds."""
     question, n, target = json.loads(Path(arguments[0]).read_text(encoding="utf-8")), int(arguments[1]), arguments[2]
     start = perf_counter()
-    found = counts(grid_values(question, n)).reshape(2, n, n)
+    found = answer(grid_values(question, n), *map(int, arguments[3:])).reshape(2, n, n)
     seconds = perf_counter() - start
     np.save(target, found)
     print(json.dumps({"computing": seconds}))

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from ptmcad.errors import ConfigError
-from ptmcad.studies.bench.rounds import Times
+from ptmcad.studies.bench.harness import Times
 from ptmcad.studies.bench.study import Figures, Measurement, Study
 from ptmcad.studies.tables import columns
 

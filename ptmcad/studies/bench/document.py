@@ -16,7 +16,7 @@ from typing import Any
 from ptmcad.errors import ConfigError
 from ptmcad.show.document.codec import TEXT, TRUTH, Codec, Key, line, listed, named, optional, record
 from ptmcad.show.document.node import Node
-from ptmcad.studies.bench.rounds import Times
+from ptmcad.studies.bench.harness import Times
 from ptmcad.studies.bench.study import FORMAT, Figures, Measurement, Study
 from ptmcad.text.textfile import read_text
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import ceil, floor, log10
+from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -17,9 +17,12 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from ptmcad.show.render.legend import INK
-from ptmcad.show.render.printing import settings
+from ptmcad.show.render.printing import save, settings
+from ptmcad.studies.bench.study import Study
+from ptmcad.studies.bench.words import Curve, Spot, curves, sentences
 
 WIDE, TALL = 9.2, 6.4
+DPI = 110
 BAND = 0.3
 """Height of the band of zero error, as a share of what is above it."""
 RIM = 0.06
@@ -36,25 +39,12 @@ _STYLES: tuple[tuple[str, str, str, Any], ...] = (
 """Line, face, mark and dashes."""
 
 
-@dataclass(frozen=True, slots=True)
-class Spot:
-    """A point: median, least and largest seconds, the error's bounds, and a short label, which may be empty."""
-
-    seconds: tuple[float, float, float]
-    error: tuple[float, float]
-    label: str = ""
+def draw(study: Study, path: Path) -> None:
+    """Draw a study with at least one measurement to a file whose suffix gives the format."""
+    save(draw_error_time(f"{study.slice}: {study.heading}", sentences(study), curves(study)), path, dpi=DPI)
 
 
-@dataclass(frozen=True, slots=True)
-class Curve:
-    """A method's points in order, in one of seven styles; the last is for another kind of error."""
-
-    name: str
-    spots: tuple[Spot, ...]
-    style: int
-
-
-def draw_error_time(title: str, below: Sequence[str], curves: tuple[Curve, ...]) -> Figure:
+def draw_error_time(title: str, below: Sequence[str], curves: Sequence[Curve]) -> Figure:
     """The picture.
 
     Parameters
@@ -65,8 +55,8 @@ def draw_error_time(title: str, below: Sequence[str], curves: tuple[Curve, ...])
     positive = [x for c in curves for s in c.spots for x in s.error if x > 0]
     low, high = floor(log10(min(positive, default=1e-3))), min(0, ceil(log10(max(positive, default=1.0))))
     high = max(high, low + 1)
-    left = 0.75 * min(s.seconds[1] for c in curves for s in c.spots)
-    right = 1.6 * max(s.seconds[2] for c in curves for s in c.spots)
+    left = 0.75 * min(s.seconds.minimum for c in curves for s in c.spots)
+    right = 1.6 * max(s.seconds.maximum for c in curves for s in c.spots)
     exact = [k for k, c in enumerate(curves) if any(s.error[1] <= 0 for s in c.spots)]
     band = BAND * (high - low)
     bottom = 10.0 ** (low - band)
@@ -109,15 +99,18 @@ def draw_error_time(title: str, below: Sequence[str], curves: tuple[Curve, ...])
 
 def _draw(axes: Any, curve: Curve, zero: float) -> Line2D:
     colour, face, marker, dash = _STYLES[curve.style]
-    x = [s.seconds[0] for s in curve.spots]
+    x = [s.seconds.median for s in curve.spots]
     y = [_height(s, zero) for s in curve.spots]
-    spread = [[s.seconds[0] - s.seconds[1] for s in curve.spots], [s.seconds[2] - s.seconds[0] for s in curve.spots]]
+    spread = [
+        [s.seconds.median - s.seconds.minimum for s in curve.spots],
+        [s.seconds.maximum - s.seconds.median for s in curve.spots],
+    ]
     axes.errorbar(x, y, xerr=spread, fmt="none", ecolor=colour, elinewidth=0.8, capsize=2, zorder=2)
     axes.plot(x, y, color=colour, linestyle=dash, linewidth=1.3, zorder=3)
     axes.plot(x, y, color=colour, marker=marker, markerfacecolor=face, linestyle="none", markersize=6, zorder=4)
     for s, at in zip(curve.spots, y, strict=True):
         if s.label:
-            axes.annotate(s.label, (s.seconds[0], at), xytext=(5, 5), textcoords="offset points", fontsize=7.5,
+            axes.annotate(s.label, (s.seconds.median, at), xytext=(5, 5), textcoords="offset points", fontsize=7.5,
                           color=colour, zorder=5)  # fmt: skip
     return Line2D([], [], color=colour, marker=marker, markerfacecolor=face, linestyle=dash, label=curve.name)
 
@@ -127,11 +120,11 @@ def _height(spot: Spot, zero: float) -> float:
     return (low + high) / 2 if high > 0 else zero
 
 
-def _words(curves: tuple[Curve, ...]) -> str:
+def _words(curves: Sequence[Curve]) -> str:
     """The description for who does not see the picture."""
     parts = []
     for c in curves:
-        points = ", ".join(f"{s.seconds[0]:.3g} s: {(s.error[0] + s.error[1]) / 2:.3g}" for s in c.spots)
+        points = ", ".join(f"{s.seconds.median:.3g} s: {(s.error[0] + s.error[1]) / 2:.3g}" for s in c.spots)
         parts.append(f"{c.name}: {points}.")
     return " ".join(parts)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ptmcad.process.output import Writer, text_writer, write_files
 from ptmcad.studies.bench.document import read_study, write_study, write_table
-from ptmcad.studies.bench.picture import draw
+from ptmcad.studies.bench.errortime import draw
 from ptmcad.studies.bench.study import Study
 from ptmcad.studies.bench.words import curve_file, page
 

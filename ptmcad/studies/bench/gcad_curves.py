@@ -1,6 +1,7 @@
 """gcad's open decomposition of the window by the finished curves: what it does of the work, the curves being given.
 
-Guarantee: none of its own; cells are gcad's. It runs as ``python -m ptmcad.studies.bench.gcad_curves QUESTION RESULT``.
+Guarantee: none of its own; cells are gcad's. It runs as ``python -m ptmcad.studies.bench.gcad_curves QUESTION curves
+RESULT``.
 
 gcad takes inequalities, so the product of the curves is asked to be positive, and then negative, in the window. It
 knows neither counts nor which cells are neighbours.
@@ -40,7 +41,7 @@ def main(arguments: list[str]) -> None:
     start = perf_counter()
     found = cells(question)
     seconds = perf_counter() - start
-    Path(arguments[1]).write_text(json.dumps({"cells": found}), encoding="utf-8")
+    Path(arguments[2]).write_text(json.dumps({"cells": found}), encoding="utf-8")
     print(json.dumps({"computing": seconds}))
 
 

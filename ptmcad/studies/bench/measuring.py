@@ -30,12 +30,11 @@ from ptmcad.show.table import count_text
 from ptmcad.studies.bench import qepcad
 from ptmcad.studies.bench.cover_error import cover_error
 from ptmcad.studies.bench.error import MapError, exact_error, grid_error
+from ptmcad.studies.bench.harness import Times, made_with, rounds, times
 from ptmcad.studies.bench.methods import Job, Method, jobs, question
 from ptmcad.studies.bench.process import Outcome, Usage, run
 from ptmcad.studies.bench.reference import COUNTS, Column, Reference, Walls, centres, reference, shown_count, walls
-from ptmcad.studies.bench.rounds import Times, rounds, times
 from ptmcad.studies.bench.study import Figures, Measurement, Study, figures, outward
-from ptmcad.studies.bench.suite import machine, versions
 
 FLOOR = (
     sys.executable,
@@ -132,7 +131,7 @@ def measure(
         report(f"{slice.name}: errors")
         measured = _all_measured(_Known(started, slice, exact, sides))
     return Study(
-        slice=slice.name, heading=slice.heading, machine=machine(), versions=versions(), seed=settings.seed,
+        slice=slice.name, heading=slice.heading, **made_with(), seed=settings.seed,
         rounds=settings.rounds, time_limit=settings.time_limit, quick=settings.quick, verified=sound, floor=floor,
         measurements=(*measured, *absent),
     )  # fmt: skip

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from importlib.util import find_spec
 from pathlib import Path
+from typing import NamedTuple
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.slice import Slice
@@ -31,18 +31,35 @@ class Method(Enum):
     GCAD = "gcad"
 
 
-TITLES = {
-    Method.EXACT: "ptmcad, exact engine",
-    Method.CERTIFIED: "ptmcad, certified engine",
-    Method.COMPANION: "grid of companion matrices",
-    Method.MULTISTART: "grid of scipy starts",
-    Method.QEPCAD: "QEPCAD on the sextic made by hand",
-    Method.GCAD: "gcad on the finished curves, no counts",
+class Rival(NamedTuple):
+    """One of them.
+
+    Attributes
+    ----------
+    label : of a setting, which goes in the place of the braces.
+    settings : from the coarsest.
+    quick : how many of them are run when it has to be quick.
+    needs : an optional package.
+    """
+
+    title: str
+    label: str
+    settings: tuple[str, ...]
+    quick: int
+    needs: str = ""
+
+
+RIVALS = {
+    Method.EXACT: Rival("ptmcad, exact engine", "area tolerance {}", ("1e-2", "1e-4", "1e-8", "1e-12"), 2),
+    Method.CERTIFIED: Rival("ptmcad, certified engine", "tolerance {}", ("1e-1", "1e-2", "1e-3", "1e-4"), 2, "numba"),
+    Method.COMPANION: Rival(
+        "grid of companion matrices", "N = {}", ("25", "50", "100", "200", "400", "800", "1600"), 4
+    ),
+    Method.MULTISTART: Rival("grid of scipy starts", "N = {}", ("12", "25"), 1, "scipy"),
+    Method.QEPCAD: Rival("QEPCAD on the sextic made by hand", "where {}", ("6, where 4", "2 stable"), 2),
+    Method.GCAD: Rival("gcad on the finished curves, no counts", "{}", ("curves",), 1, "gcad"),
 }
-AREA_TOLERANCES = ("1e-2", "1e-4", "1e-8", "1e-12")
-TOLERANCES = ("1e-1", "1e-2", "1e-3", "1e-4")
-GRIDS = (25, 50, 100, 200, 400, 800, 1600)
-START_GRIDS = (12, 25)
+OURS = (Method.EXACT, Method.CERTIFIED)
 TRIAL_SECONDS = 20.0
 
 
@@ -92,59 +109,39 @@ def jobs(method: Method, slice: Slice, record: Path, folder: Path, quick: bool, 
     folder : with the question as ``question.json``; answers go there too.
     quick : fewer and coarser settings.
     """
-    if method is Method.EXACT:
-        if slice.has_free_lengths:
-            return "square roots: springs have a free length"
-        return _classify(method, slice, record, folder, AREA_TOLERANCES[: 2 if quick else None])
-    if method is Method.CERTIFIED:
-        if find_spec("numba") is None:
-            return "numba is not installed"
-        return _classify(method, slice, record, folder, TOLERANCES[: 2 if quick else None])
-    if slice.has_free_lengths:
+    rival = RIVALS[method]
+    if method is Method.EXACT and slice.has_free_lengths:
+        return "square roots: springs have a free length"
+    if method not in OURS and slice.has_free_lengths:
         return "with free lengths there is no sextic"
-    if slice.mechanism != "ptm":
+    if method not in OURS and slice.mechanism != "ptm":
         return f"the sextic is the paper's mechanism's, not that of {slice.mechanism}"
-    given = str(folder / "question.json")
-    if method is Method.COMPANION:
-        return tuple(
-            _grid(method, folder, n, rank, "companion", given, str(n))
-            for rank, n in enumerate(GRIDS[: 4 if quick else None])
-        )
-    if method is Method.MULTISTART:
-        if find_spec("scipy") is None:
-            return "scipy is not installed"
-        return tuple(
-            _grid(method, folder, n, rank, "multistart", given, str(n), str(seed))
-            for rank, n in enumerate(START_GRIDS[: 1 if quick else None])
-        )
-    if method is Method.GCAD:
-        if find_spec("gcad") is None:
-            return "gcad is not installed"
-        target = folder / "gcad.json"
-        return (Job(method, "curves", ((_module("gcad_curves", given, str(target)), ""),), target, 0),)
-    return _qepcad(slice)
-
-
-def _classify(method: Method, slice: Slice, record: Path, folder: Path, settings: Sequence[str]) -> tuple[Job, ...]:
-    count = slice.count.value if slice.has_free_lengths else "index"
-    option = "--area-tolerance" if method is Method.EXACT else "--tolerance"
+    if rival.needs and find_spec(rival.needs) is None:
+        return f"{rival.needs} is not installed"
+    if method is Method.QEPCAD:
+        return _qepcad(slice)
     found = []
-    for rank, setting in enumerate(settings):
-        out = folder / f"{method.value}-{setting}"
-        command = (sys.executable, "-m", "ptmcad", "classify", str(record), "--engine", method.value, "--count", count,
-                   option, setting, "--format", "json", "--out", str(out))  # fmt: skip
-        label = f"{'area ' * (method is Method.EXACT)}tolerance {setting}"
-        found.append(Job(method, label, ((command, ""),), out / f"{slice.name}.json", rank))
+    for rank, setting in enumerate(rival.settings[: rival.quick if quick else None]):
+        target = folder / f"{method.value}-{setting}"
+        if method in OURS:
+            command = (*_classify(method, slice, record), setting, "--format", "json", "--out", str(target))
+            target /= f"{slice.name}.json"
+        else:
+            target = target.with_suffix(".json" if method is Method.GCAD else ".npy")
+            more = (str(seed),) if method is Method.MULTISTART else ()
+            asked = (str(folder / "question.json"), setting, str(target), *more)
+            module = "gcad_curves" if method is Method.GCAD else method.value
+            command = (sys.executable, "-m", f"ptmcad.studies.bench.{module}", *asked)
+        grows = rank > 0 and method not in OURS
+        found.append(Job(method, rival.label.format(setting), ((command, ""),), target, rank, grows))
     return tuple(found)
 
 
-def _grid(method: Method, folder: Path, n: int, rank: int, module: str, *arguments: str) -> Job:
-    target = folder / f"{method.value}-{n}.npy"
-    return Job(method, f"N = {n}", ((_module(module, *arguments, str(target)), ""),), target, rank, grows=rank > 0)
-
-
-def _module(name: str, *arguments: str) -> tuple[str, ...]:
-    return (sys.executable, "-m", f"ptmcad.studies.bench.{name}", *arguments)
+def _classify(method: Method, slice: Slice, record: Path) -> tuple[str, ...]:
+    """The command without its setting."""
+    count = slice.count.value if slice.has_free_lengths else "index"
+    option = "--area-tolerance" if method is Method.EXACT else "--tolerance"
+    return (sys.executable, "-m", "ptmcad", "classify", str(record), "--engine", method.value, "--count", count, option)
 
 
 def _qepcad(slice: Slice) -> tuple[Job, ...] | str:
@@ -163,9 +160,10 @@ def _qepcad(slice: Slice) -> tuple[Job, ...] | str:
     if not seconds:
         return f"no answer within {TRIAL_SECONDS:.0f} s in either order of the axes"
     best = min(seconds, key=lambda swapped: seconds[swapped])
-    texts = {task: asked.text(task, swapped=best) for task in qepcad.Task}
-    totals = tuple((command, texts[task]) for task in qepcad.TOTAL)
-    return (
-        Job(Method.QEPCAD, "where 6, where 4", totals, None, 0),
-        Job(Method.QEPCAD, "where 2 stable", ((command, texts[qepcad.Task.TWO_STABLE]),), None, 1),
+    texts = {task: (command, asked.text(task, swapped=best)) for task in qepcad.Task}
+    commands = (tuple(texts[task] for task in qepcad.TOTAL), (texts[qepcad.Task.TWO_STABLE],))
+    rival = RIVALS[Method.QEPCAD]
+    return tuple(
+        Job(Method.QEPCAD, rival.label.format(setting), asking, None, rank)
+        for rank, (setting, asking) in enumerate(zip(rival.settings, commands, strict=True))
     )

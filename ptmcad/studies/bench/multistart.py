@@ -3,22 +3,19 @@
 Guarantee: none for the counts: a start may run away, and an equilibrium that no start leads to is not counted. The same
 input and seed give the same counts.
 
-It runs as ``python -m ptmcad.studies.bench.multistart QUESTION N SEED RESULT`` and imports no algebra.
+It runs as ``python -m ptmcad.studies.bench.multistart QUESTION N RESULT SEED`` and imports no algebra.
 """
 
 from __future__ import annotations
 
-import json
 import sys
-from pathlib import Path
-from time import perf_counter
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root
 
-from ptmcad.studies.bench.companion import Values, grid_values
+from ptmcad.studies.bench.companion import Values, main
 
 Array = NDArray[np.float64]
 STARTS = 5
@@ -75,16 +72,5 @@ def _count(p: dict[str, float], starts: Array) -> tuple[int, int]:
     return stable, len(seen)
 
 
-def main(arguments: list[str]) -> None:
-    """Read the question, count, save an array of shape (2, N, N) and print the seconds that it took."""
-    question = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
-    n, seed, target = int(arguments[1]), int(arguments[2]), arguments[3]
-    start = perf_counter()
-    found = counts(grid_values(question, n), seed).reshape(2, n, n)
-    seconds = perf_counter() - start
-    np.save(target, found)
-    print(json.dumps({"computing": seconds}))
-
-
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main(sys.argv[1:], counts)

@@ -208,18 +208,15 @@ def _gaps(
         )
 
 
-def _joined(parts: list[tuple[Fraction, Fraction]]) -> Iterator[tuple[Fraction, Fraction]]:
+def _joined(parts: list[tuple[Fraction, Fraction]]) -> list[tuple[Fraction, Fraction]]:
     """Overlapping or touching intervals put together; the intervals are sorted."""
-    current: tuple[Fraction, Fraction] | None = None
+    joined: list[tuple[Fraction, Fraction]] = []
     for low, high in parts:
-        if current is not None and low <= current[1]:
-            current = (current[0], max(current[1], high))
+        if joined and low <= joined[-1][1]:
+            joined[-1] = (joined[-1][0], max(joined[-1][1], high))
         else:
-            if current is not None:
-                yield current
-            current = (low, high)
-    if current is not None:
-        yield current
+            joined.append((low, high))
+    return joined
 
 
 def regions(result: RegionMap, count: str) -> tuple[int, ...]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ptmcad.studies.bench.error import MapError
-from ptmcad.studies.bench.rounds import Times
+from ptmcad.studies.bench.harness import Times
 from ptmcad.text.numerals import decimal
 
 FORMAT = "ptmcad-bench/1"

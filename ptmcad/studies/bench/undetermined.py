@@ -19,8 +19,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import LimitReached
 from ptmcad.options import Options
 from ptmcad.question.config import load
-from ptmcad.studies.bench.command import Command, save
-from ptmcad.studies.bench.suite import machine, versions
+from ptmcad.studies.bench.harness import Command, Record, made_with
 
 FORMAT = "ptmcad-undetermined/2"
 COARSEST = Fraction(1, 100)
@@ -66,26 +65,23 @@ def measure(record: Path, finest: Fraction, timeout: float, jobs: int) -> dict[s
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, print, and write undetermined.json; the exit status is 0, or 2 for bad input."""
-    command = Command("bench.undetermined", "Undetermined area against run time.", files="undetermined.json")
+    command = Command("bench.undetermined", "Undetermined area against run time.", "undetermined")
     command.add_argument("records", nargs="*", type=Path, help="problem records; default: configs/ with free lengths")
     command.add_argument("--finest", type=Fraction, default=Fraction(1, 25600), help="tolerance (default 1/25600)")
     command.add_argument("--timeout", type=float, default=150.0, help="seconds for each run (default 150)")
     command.add_argument("--jobs", type=int, default=2, help="threads (default 2)")
     chosen = command.chosen(arguments)
+    records = command.records(chosen.records, lambda slice: slice.has_free_lengths)
 
-    def work() -> int:
-        records = chosen.records or [p for p in sorted(Path("configs").glob("*.yaml")) if load(p).has_free_lengths]
-        if records:
-            measure(records[0], COARSEST, 60.0, chosen.jobs)  # loads the compiled code, or compiles it
-        rows = []
+    def work() -> Record:
+        found: Record = {"format": FORMAT, **made_with(), "jobs": chosen.jobs, "rows": []}
+        measure(records[0], COARSEST, 60.0, chosen.jobs)  # loads the compiled code, or compiles it
         for record in records:
-            rows.append(measure(record, chosen.finest, chosen.timeout, chosen.jobs))
-            print(json.dumps(rows[-1]), flush=True)
-        found = {"format": FORMAT, "machine": machine(), "versions": versions(), "jobs": chosen.jobs, "rows": rows}
-        save(chosen.out, "undetermined", found)
-        return 0
+            found["rows"].append(measure(record, chosen.finest, chosen.timeout, chosen.jobs))
+            print(json.dumps(found["rows"][-1]), flush=True)
+        return found
 
-    return command.status(work)
+    return command.status(chosen.out, work)
 
 
 if __name__ == "__main__":

@@ -7,18 +7,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
-from ptmcad.studies.bench.methods import TITLES, Method
-from ptmcad.studies.bench.study import (
-    SEEN_SHARE,
-    Figures,
-    Measurement,
-    Study,
-    grids,
-    main_figures,
-    smallest_grid,
-)
-from ptmcad.studies.tables import columns, listed, markdown
+from ptmcad.studies import tables
+from ptmcad.studies.bench.harness import Times
+from ptmcad.studies.bench.methods import RIVALS, Method
+from ptmcad.studies.bench.study import SEEN_SHARE, Figures, Measurement, Study, grids, main_figures, smallest_grid
+from ptmcad.studies.tables import columns, markdown
 
 _NAMES = {"stable": "stable equilibria", "total": "equilibria", "index": "index"}
 CURVE_FORMAT = "ptmcad-error-time/1"
@@ -109,23 +104,37 @@ def notes(study: Study) -> tuple[str, ...]:
     return tuple(dict.fromkeys(f"* {m.method}: {m.note}" for m in study.measurements if m.note and m.seconds))
 
 
-Point = tuple[Measurement, tuple[float, float], str]
 WIDTH_STYLE = len(Method)
 """Of the width of area bounds, which is another kind of error; each method has its own style."""
 
 
-def curves(study: Study) -> list[tuple[str, int, list[Point]]]:
-    """(name, style, points) for the picture: a point is a measurement, its error's bounds and a label."""
-    found: list[tuple[str, int, list[Point]]] = []
+class Spot(NamedTuple):
+    """A point to draw: median, least and largest seconds, the error's bounds, and a short label, which may be empty."""
+
+    seconds: Times
+    error: tuple[float, float]
+    label: str = ""
+
+
+class Curve(NamedTuple):
+    """A method's points in order, and the number of its style."""
+
+    name: str
+    spots: Sequence[Spot]
+    style: int
+
+
+def curves(study: Study) -> tuple[Curve, ...]:
+    """What can be drawn of a study: every measurement with a time and an error."""
+    found = []
     for style, method in enumerate(Method):
-        done = [m for m in study.measurements if m.method == method.value and m.seconds]
-        shown = [(m, f) for m in done if (f := main_figures(m))]
-        if shown:
-            found.append((TITLES[method], style, [(m, f.wrong, _label(m)) for m, f in shown]))
-        if method is Method.EXACT and done:
-            widths = [(m, (m.area_width, m.area_width), "") for m in done if m.area_width]
-            found.append((f"{TITLES[method]}: width of the area bounds", WIDTH_STYLE, widths))
-    return [curve for curve in found if curve[2]]
+        done = [(m, m.seconds) for m in study.measurements if m.method == method.value and m.seconds]
+        spots = [Spot(seconds, f.wrong, _label(m)) for m, seconds in done if (f := main_figures(m))]
+        found.append(Curve(RIVALS[method].title, spots, style))
+        if method is Method.EXACT:
+            widths = [Spot(seconds, (m.area_width, m.area_width)) for m, seconds in done if m.area_width]
+            found.append(Curve(f"{RIVALS[method].title}: width of the area bounds", widths, WIDTH_STYLE))
+    return tuple(curve for curve in found if curve.spots)
 
 
 def _label(m: Measurement) -> str:
@@ -139,8 +148,8 @@ def _label(m: Measurement) -> str:
 def curve_file(study: Study) -> str:
     """The measurements for ``ptmcad report``, which draws positive errors only."""
     series = []
-    for name, _, points in curves(study):
-        shown = [[m.seconds.median, sum(error) / 2] for m, error, _ in points if m.seconds and error[1] > 0]
+    for name, spots, _ in curves(study):
+        shown = [[spot.seconds.median, sum(spot.error) / 2] for spot in spots if spot.error[1] > 0]
         if shown:
             series.append({"name": name, "points": shown})
     text = (
@@ -150,36 +159,33 @@ def curve_file(study: Study) -> str:
     return json.dumps({"format": CURVE_FORMAT, "error": text, "series": series}, indent=1) + "\n"
 
 
+_INTRODUCTION = """
+What the errors are is defined in [Error](../error.md). Seconds are of whole processes, start-up included,
+medians of repeated runs that took turns; a run of more than 1.25 seconds was not repeated. Written by
+`make bench`, as are the CSV and JSON files of each slice beside this page.
+"""
+
+
 def page(studies: Sequence[Study]) -> str:
     """All studies as one Markdown page with their pictures, which lie beside it."""
     first = studies[0]
-    lines = [
-        "# Error against run time",
-        "",
-        "What the errors are is defined in [Error](../error.md). Seconds are of whole processes, start-up included,",
-        "medians of repeated runs that took turns; a run of more than 1.25 seconds was not repeated. Written by",
-        "`make bench`, as are the CSV and JSON files of each slice beside this page.",
-        "",
-    ]
+    blocks: list[str | list[str]] = []
     for study in studies:
-        lines += [f"## {study.slice}", "", f"{study.heading}. {_checked(study)}", ""]
+        blocks += [f"## {study.slice}", f"{study.heading}. {_checked(study)}"]
         if any(m.seconds for m in study.measurements):
-            lines += [f"![Error against seconds for {study.slice}]({study.slice}.bench.svg)", ""]
-        said = sentences(study)
-        lines += [f"- {s}" for s in said] + ([""] if said else [])
-        lines += [*markdown(_HEADER, rows(study)), ""]
-        lines += [f"\\{note}  " for note in notes(study)] + ([""] if notes(study) else [])
-    lines += [
+            blocks.append(f"![Error against seconds for {study.slice}]({study.slice}.bench.svg)")
+        blocks += [[f"- {s}" for s in sentences(study)], markdown(_HEADER, rows(study))]
+        blocks.append([f"\\{note}  " for note in notes(study)])
+    floor = f"{first.floor.median:g} s ({first.floor.minimum:g}-{first.floor.maximum:g})"
+    return tables.page(
+        "# Error against run time",
+        _INTRODUCTION,
+        *blocks,
         "## Machine",
-        "",
-        listed(first.machine),
-        "",
-        listed(first.versions),
-        "",
-        f"Seed {first.seed}; the reference job takes {first.floor.median:g} s ({first.floor.minimum:g}-"
-        f"{first.floor.maximum:g}).",
-    ]
-    return "\n".join(lines) + "\n"
+        tables.listed(first.machine),
+        tables.listed(first.versions),
+        f"Seed {first.seed}; the reference job takes {floor}.",
+    )
 
 
 def _checked(study: Study) -> str:

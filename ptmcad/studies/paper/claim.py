@@ -1,13 +1,13 @@
 """Claims of the paper and what computation says of them: frozen data, with the rule that turns evidence into a verdict.
 
-Guarantee: a verdict is reached only through `judge`, `unchecked` or `undecided`; a printed statement that fails is
-called corrected only when the right one was shown to hold, and refuted only with a witness.
+Guarantee: a verdict is reached only through `judge`; a printed statement that fails is called corrected only when the
+right one was shown to hold, and refuted only with a witness. What no computation can decide says why (`unchecked`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from enum import Enum
 
 Fact = bool | int | str | tuple[int, ...] | tuple[str, ...]
@@ -22,6 +22,26 @@ class Verdict(Enum):
     REFUTED = "refuted"
     NOT_CHECKED = "not checked"
     UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What a check computed; the sentences that tell it are the claim's, in ``claims.yaml``.
+
+    Attributes
+    ----------
+    printed : whether the statement holds as it is printed.
+    facts : the computed values.
+    corrected : whether the statement that the claim's text calls right was shown to hold in its place.
+    said : further values that the sentences name; several sentences, where one is nothing but such a name.
+    missing : why the check cannot be made here, where that is so.
+    """
+
+    printed: bool
+    facts: Mapping[str, Fact]
+    corrected: bool = False
+    said: Mapping[str, object] = field(default_factory=dict)
+    missing: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +85,24 @@ class Claim:
     check: Callable[[], Outcome]
 
 
+def outcome(finding: Finding, evidence: Sequence[str] = (), right: str = "", witness: str = "") -> Outcome:
+    """The outcome of a check that computed whether the printed statement holds.
+
+    Parameters
+    ----------
+    evidence, right, witness : what the claim's text says, with names of computed values in braces.
+    """
+    values = {**finding.facts, **finding.said}
+    told: list[str] = []
+    for sentence in () if finding.missing and not values else evidence:
+        several = values.get(sentence.strip("{}"))
+        told += several if isinstance(several, tuple) else [sentence.format_map(values)]
+    if finding.missing:
+        return unchecked(finding.missing, *told)()
+    right, witness = right.format_map(values), witness.format_map(values)
+    return judge(finding.printed, tuple(told), finding.facts, corrected=finding.corrected, right=right, witness=witness)
+
+
 def judge(
     printed: bool,
     evidence: tuple[str, ...],
@@ -92,14 +130,10 @@ def judge(
         return Outcome(Verdict.CORRECTED, evidence, facts, right=right, witness=witness)
     if witness:
         return Outcome(Verdict.REFUTED, evidence, facts, witness=witness)
-    return undecided("neither the printed statement nor a corrected one was shown to hold", evidence, facts)
+    reason = "neither the printed statement nor a corrected one was shown to hold"
+    return Outcome(Verdict.UNDECIDED, evidence, facts, reason=reason)
 
 
 def unchecked(reason: str, *evidence: str) -> Callable[[], Outcome]:
     """The check of a statement that no computation can decide; ``reason`` says why."""
     return lambda: Outcome(Verdict.NOT_CHECKED, evidence, {}, reason=reason)
-
-
-def undecided(reason: str, evidence: tuple[str, ...] = (), facts: Mapping[str, Fact] | None = None) -> Outcome:
-    """The outcome of a check whose computation came to no end."""
-    return Outcome(Verdict.UNDECIDED, evidence, facts or {}, reason=reason)

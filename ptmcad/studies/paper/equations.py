@@ -40,6 +40,7 @@ from ptmcad.studies.paper.symbolic import (
     t1,
     t2,
 )
+from ptmcad.studies.tables import page
 from ptmcad.text.plane import PlanePolynomial
 
 _THETA1, _THETA2 = sp.symbols("theta_1 theta_2", real=True)
@@ -124,18 +125,16 @@ def _rose_first() -> list[PlanePolynomial]:
     return sorted((c.polynomial for c in curves("fig3")), key=lambda p: any(i == j == 0 for i, j, _ in p.terms))
 
 
+_INTRODUCTION = """
+Derived from the potential of the model. Here f3 = F3/k (the paper's F3'), f4 = F4/k, f3x = F3x/k, f4x = F4x/k;
+t1 and t2 are the tangents of the half angles; L1 stands for the common rod length L in (10) to (13).
+"""
+
+
 def as_markdown() -> str:
     """The equations as a page of text."""
-    lines = [
-        "# The paper's equations, corrected",
-        "",
-        "Derived from the potential of the model. Here f3 = F3/k (the paper's F3'), f4 = F4/k, f3x = F3x/k, f4x "
-        "= F4x/k;",
-        "t1 and t2 are the tangents of the half angles; L1 stands for the common rod length L in (10) to (13).",
-    ]
-    for e in equations():
-        lines += ["", f"{e.number}: {e.what}", "", f"    {e.text}"]
-    return "\n".join(lines) + "\n"
+    blocks = [text for e in equations() for text in (f"{e.number}: {e.what}", f"    {e.text}")]
+    return page("# The paper's equations, corrected", _INTRODUCTION, *blocks)
 
 
 def as_latex() -> str:

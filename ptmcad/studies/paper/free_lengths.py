@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
@@ -24,8 +25,7 @@ RADIUS = fmpq(1, 10**9)
 BITS = 200
 
 
-@dataclass(frozen=True, slots=True)
-class FreeLengthDesign:
+class FreeLengthDesign(NamedTuple):
     """rho, L1, L2 and the springs' common free length l0, in one unit; f3 = F3/k and f4 = F4/k, lengths too."""
 
     rho: Fraction
@@ -38,10 +38,9 @@ class FreeLengthDesign:
     @property
     def parameters(self) -> dict[str, Fraction]:
         """Those of the mechanism with forces and energy divided by k."""
-        return {
-            "rho": self.rho, "L1": self.length1, "L2": self.length2, "F3": self.f3, "F4": self.f4,
-            **dict.fromkeys(ptm().stiffnesses, Fraction(1)), **dict.fromkeys(ptm().free_lengths, self.free),
-        }  # fmt: skip
+        given = zip(("rho", "L1", "L2", "F3", "F4"), (*self[:3], *self[4:]), strict=True)
+        springs = dict.fromkeys(ptm().stiffnesses, Fraction(1)) | dict.fromkeys(ptm().free_lengths, self.free)
+        return dict(given) | springs
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,14 +10,14 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
+from pathlib import Path
 
 from ptmcad.studies.paper.claim import Claim, Outcome, Verdict
 from ptmcad.studies.paper.equations import Equation
+from ptmcad.studies.tables import page
 
 Judged = tuple[Claim, Outcome]
-PAPER = (
-    "P. Wenger and D. Chablat, Kinetostatic Analysis and Solution Classification of a Planar Tensegrity Mechanism"
-)  # fmt: skip
+PAPER = "P. Wenger and D. Chablat, Kinetostatic Analysis and Solution Classification of a Planar Tensegrity Mechanism"
 _SIGNS = {
     Verdict.CONFIRMED: "✓",
     Verdict.CORRECTED: "≠",
@@ -25,32 +25,7 @@ _SIGNS = {
     Verdict.NOT_CHECKED: "–",
     Verdict.UNDECIDED: "?",
 }
-_STYLE = """
-:root { color-scheme: light dark; --ink: #1a1a1a; --paper: #fff; --line: #c8c8c8; --soft: #f3f3f3;
-  --confirmed: #1d6b3a; --corrected: #8a5200; --refuted: #a11d1d; --not-checked: #5a5a5a; --undecided: #5b3a99; }
-@media (prefers-color-scheme: dark) { :root { --ink: #e8e8e8; --paper: #16181b; --line: #44484e; --soft: #22262b;
-  --confirmed: #7fd39b; --corrected: #f0b35a; --refuted: #ff8f8f; --not-checked: #b0b0b0; --undecided: #c3a6ff; } }
-* { box-sizing: border-box; }
-body { margin: 0 auto; padding: 1rem; max-width: 70rem; background: var(--paper); color: var(--ink);
-  font: 16px/1.5 system-ui, sans-serif; }
-h1 { font-size: 1.5rem; } h2 { font-size: 1.2rem; margin-top: 2rem; border-bottom: 1px solid var(--line); }
-article { border: 1px solid var(--line); border-radius: 6px; padding: .6rem .9rem; margin: .7rem 0; }
-article h3 { font-size: 1rem; margin: 0 0 .3rem; } article p { margin: .3rem 0; }
-.verdict { font-weight: 600; white-space: nowrap; } .right { background: var(--soft); padding: .3rem .6rem; }
-.confirmed { color: var(--confirmed); } .corrected { color: var(--corrected); } .refuted { color: var(--refuted); }
-.not-checked { color: var(--not-checked); } .undecided { color: var(--undecided); }
-ul { margin: .3rem 0; padding-left: 1.3rem; } li, p { overflow-wrap: anywhere; }
-figure { margin: 1rem 0; } img { max-width: 100%; height: auto; background: #fff; display: block; margin: .4rem 0; }
-pre { overflow-x: auto; background: var(--soft); padding: .6rem; font-size: .85rem; }
-div.wide { overflow-x: auto; }
-.equation { white-space: pre-wrap; overflow-wrap: anywhere; }
-table { border-collapse: collapse; } td, th { border: 1px solid var(--line); padding: .2rem .6rem; text-align: left; }
-a { color: inherit; }
-@media (max-width: 45rem) {
-  table, tbody, tr, td { display: block; } thead { display: none; } td { border: 0; }
-  tr { border: 1px solid var(--line); border-radius: 6px; margin: .6rem 0; padding: .3rem 0; }
-}
-"""
+_STYLE = Path(__file__).with_suffix(".css")
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,21 +60,16 @@ def summary(judged: Sequence[Judged]) -> str:
 
 def claims_markdown(judged: Sequence[Judged]) -> str:
     """All claims as a page of Markdown."""
-    lines = ["# The claims of the paper", "", f"{PAPER}.", "", f"{summary(judged)}.", ""]
+    blocks: list[str | list[str]] = []
     for section, entries in _sections(judged):
-        lines += [f"## {_title(section)}", ""]
+        blocks.append(f"## {_title(section)}")
         for number, claim, outcome in entries:
-            lines += [
-                f"### {number}. {claim.name}: {outcome.verdict.value}",
-                "",
-                f'{claim.statement} ("{claim.quotation}")',
-                "",
-            ]
-            for name, text in (("Right", outcome.right), ("Witness", outcome.witness), ("Reason", outcome.reason)):
-                if text:
-                    lines += [f"- **{name}:** {_plain(text)}"]
-            lines += [f"- {_plain(sentence)}" for sentence in outcome.evidence] + [""]
-    return "\n".join(lines)
+            told = (("Right", outcome.right), ("Witness", outcome.witness), ("Reason", outcome.reason))
+            points = [f"- **{name}:** {_plain(text)}" for name, text in told if text]
+            points += [f"- {_plain(sentence)}" for sentence in outcome.evidence]
+            heading = f"### {number}. {claim.name}: {outcome.verdict.value}"
+            blocks += [heading, f'{claim.statement} ("{claim.quotation}")', points]
+    return page("# The claims of the paper", f"{PAPER}.", f"{summary(judged)}.", *blocks)
 
 
 def _plain(text: str) -> str:
@@ -107,10 +77,11 @@ def _plain(text: str) -> str:
 
 
 def _page(title: str, body: Sequence[str]) -> str:
+    style = _STYLE.read_text(encoding="utf-8")
     head = (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(title)}</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n<main>\n"
+        f"<title>{escape(title)}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>\n"
     )
     return head + "\n".join(body) + "\n</main>\n</body>\n</html>\n"
 

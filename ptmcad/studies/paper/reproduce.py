@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +25,7 @@ from ptmcad.version import __version__
 
 if TYPE_CHECKING:
     from ptmcad.answer.poses import Poses
+    from ptmcad.answer.regionmap import RegionMap
 
 Progress = Callable[[str, int, int], None]
 
@@ -107,13 +109,11 @@ def reproduce(folder: Path, progress: Progress | None = None) -> Reproduction:
 
     texts = {"equations.md": equations.as_markdown(), "equations.tex": equations.as_latex()}
     done("equations")
-    from ptmcad.studies.paper.pictures import picture_bytes
-
     pictures: dict[str, bytes] = {}
     for number, figure in enumerate(FIGURES):
         if progress is not None:
             progress("figures", number, len(FIGURES))
-        pictures |= picture_bytes(figure, maps[figure], poses_of(figure), PICTURES)
+        pictures |= _pictures(figure, maps[figure], poses_of(figure))
     done("figures")
     illustrations = [
         Illustration(figure, maps[figure].slice.heading, POINTS[figure][0], POINTS[figure][1],
@@ -132,6 +132,22 @@ def reproduce(folder: Path, progress: Progress | None = None) -> Reproduction:
     write_files(folder, {name: writers[name] for name in FILES})
     done("files")
     return Reproduction(judged, seconds)
+
+
+def _pictures(figure: str, result: RegionMap, poses: Poses) -> dict[str, bytes]:
+    """Names, such as ``fig4.png`` (the map beside the stable poses) and ``fig4-poses.svg``, and contents."""
+    from ptmcad.show.render.figure import draw_figure
+    from ptmcad.show.render.poses import draw_poses
+    from ptmcad.show.render.printing import save
+
+    found = {}
+    with TemporaryDirectory() as folder:
+        for suffix in PICTURES:
+            for part, draw in (("", partial(draw_figure, result, poses)), ("-poses", partial(draw_poses, poses))):
+                path = Path(folder) / f"{figure}{part}.{suffix}"
+                save(draw(), path)
+                found[path.name] = path.read_bytes()
+    return found
 
 
 def _write_bytes(data: bytes, path: Path) -> None:

@@ -8,54 +8,32 @@ Figure 5 is two slices, because its text and its caption give different values.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache
 from itertools import pairwise
 
-from ptmcad.algebra.polynomials import (
-    coefficients_in,
-    from_fraction,
-    from_plane,
-    to_fraction,
-    univariate,
-)
+from ptmcad.algebra.polynomials import coefficients_in, from_fraction, from_plane, to_fraction, univariate
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, refine, simplest_between, squarefree_part
 from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.regionmap import Component, RegionMap, Solution
 from ptmcad.ask.classification import classify
 from ptmcad.exact.counting import equilibria
 from ptmcad.exact.models import system_of
-from ptmcad.question.config import slice_from_mapping
-from ptmcad.question.slice import Slice
+from ptmcad.question.slice import Count, Slice
+from ptmcad.studies.slices import Exact, ptm_slice
 from ptmcad.text.parsing import rational
 
-Exact = str | int | Fraction
-"""An exact number: text such as 3/2 stands for one."""
-
-_RECORDS: Mapping[str, tuple[str, Mapping[str, str | int], Mapping[str, list[int]]]] = {
-    "fig2": ("Unloaded mechanism, L1 = 1", {}, {"L2": [0, 4], "rho": [0, 4]}),
-    "fig3": (
-        "Symmetric mechanism, L1 = L2 = 1, F3 = F4 = F, k = 100",
-        {"L2": 1, "F3": "F", "F4": "F"},
-        {"rho": [0, 2], "F": [-10, 0]},
-    ),
-    "fig4": (
-        "Equal loads, L1 = 1, F3 = F4 = -10, k = 100",
-        {"F3": -10, "F4": -10},
-        {"rho": [0, 2], "L2": [0, 2]},
-    ),
-    "fig5-text": (
-        "Unequal loads, L1 = 1, L2 = 3/2, F3 = -10, k = 100",
-        {"L2": "3/2", "F3": -10},
-        {"rho": [0, 2], "F4": [-30, 0]},
-    ),
-    "fig5-caption": (
-        "Unequal loads, L1 = L2 = 1, F3 = -30, k = 100",
-        {"L2": 1, "F3": -30},
-        {"rho": [0, 2], "F4": [-30, 0]},
-    ),
-}
+_RECORDS: Mapping[str, tuple[str, Mapping[str, Exact], Mapping[str, tuple[int, int]]]] = {
+    "fig2": ("Unloaded mechanism, L1 = 1", {}, {"L2": (0, 4), "rho": (0, 4)}),
+    "fig3": ("Symmetric mechanism, L1 = L2 = 1, F3 = F4 = F, k = 100", {"L2": 1, "F3": "F", "F4": "F"},
+             {"rho": (0, 2), "F": (-10, 0)}),
+    "fig4": ("Equal loads, L1 = 1, F3 = F4 = -10, k = 100", {"F3": -10, "F4": -10}, {"rho": (0, 2), "L2": (0, 2)}),
+    "fig5-text": ("Unequal loads, L1 = 1, L2 = 3/2, F3 = -10, k = 100", {"L2": "3/2", "F3": -10},
+                  {"rho": (0, 2), "F4": (-30, 0)}),
+    "fig5-caption": ("Unequal loads, L1 = L2 = 1, F3 = -30, k = 100", {"L2": 1, "F3": -30},
+                     {"rho": (0, 2), "F4": (-30, 0)}),
+}  # fmt: skip
 FIGURES = tuple(_RECORDS)
 
 POINTS: Mapping[str, tuple[str, Mapping[str, str]]] = {
@@ -71,23 +49,14 @@ FINENESS = Fraction(1, 10**15)
 """Ends of ranges are known at least this well."""
 
 
-@lru_cache(maxsize=len(_RECORDS))
+@cache
 def slice_of(figure: str) -> Slice:
     """The slice of a figure of the paper."""
     title, parameters, axes = _RECORDS[figure]
-    return slice_from_mapping(
-        {
-            "name": figure,
-            "title": title,
-            "mechanism": "ptm",
-            "parameters": {"L1": 1, "k": 100, **parameters},
-            "axes": axes,
-            "count": "stable",
-        }
-    )
+    return replace(ptm_slice(figure, axes, **{"L1": 1, "k": 100, **parameters}), title=title, count=Count.STABLE)
 
 
-@lru_cache(maxsize=len(_RECORDS))
+@cache
 def region_map(figure: str) -> RegionMap:
     """The region map of a figure of the paper."""
     return classify(slice_of(figure))

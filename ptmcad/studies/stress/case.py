@@ -8,11 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
 
-Parameters = Mapping[str, Fraction | int | str]
-"""As in a problem record: exact numbers, or text of them or of expressions in the axes."""
-Window = Mapping[str, tuple[Fraction, Fraction]]
+from ptmcad.studies.slices import Exact
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,41 +20,25 @@ class PointQuestion:
 
 
 @dataclass(frozen=True, slots=True)
-class MapQuestion:
+class SliceQuestion:
     """The region map of a slice: `ptmcad.classify`, by the certified engine where springs have free lengths.
 
-    ``tolerance`` is the share of the window that this engine may leave undetermined.
+    Attributes
+    ----------
+    parameters : exact numbers, or text of them or of expressions in the axes.
+    tolerance : the share of the window that the certified engine may leave undetermined.
+    along, at : where an axis is named, the intervals of constant count along it at a value of the other one are asked
+        instead: `ptmcad.intervals`.
     """
 
-    parameters: Parameters
-    axes: Window
+    parameters: Mapping[str, Exact]
+    axes: Mapping[str, tuple[Fraction, Fraction]]
     tolerance: Fraction | None = None
-
-    def record(self, name: str) -> dict[str, Any]:
-        """The problem record."""
-        return {
-            "name": name,
-            "mechanism": "ptm",
-            "axes": {axis: [str(low), str(high)] for axis, (low, high) in self.axes.items()},
-            "parameters": {key: str(value) for key, value in self.parameters.items()},
-        }
+    along: str = ""
+    at: Mapping[str, Fraction] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
-class LineQuestion:
-    """The intervals of constant count along the axis ``along`` at a value of the other one: `ptmcad.intervals`."""
-
-    parameters: Parameters
-    axes: Window
-    along: str
-    at: Mapping[str, Fraction]
-
-    def record(self, name: str) -> dict[str, Any]:
-        """The problem record."""
-        return MapQuestion(self.parameters, self.axes).record(name)
-
-
-Question = PointQuestion | MapQuestion | LineQuestion
+Question = PointQuestion | SliceQuestion
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,13 +9,12 @@ of starts. Deciding which roots are real, which are one, and what is zero takes 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
 from ptmcad.mechanism import ptm
-from ptmcad.studies.equilibria import SAME_POSE, angle_error, guesses, in_doubles
+from ptmcad.studies.equilibria import SAME_POSE, IndexedPose, angle_error, guesses, in_doubles
 
 REAL_TOLERANCE = 1e-8
 """A root is taken for real when its imaginary part is at most this much of 1 + its modulus."""
@@ -25,16 +24,7 @@ STARTS = 24
 """Starts of Newton's method along each angle."""
 
 
-@dataclass(frozen=True, slots=True)
-class DoublePose:
-    """A pose that the double-precision method takes for an equilibrium, with its index (0 is stable)."""
-
-    th1: float
-    th2: float
-    index: int
-
-
-def double_poses(parameters: Mapping[str, Fraction]) -> tuple[DoublePose, ...] | None:
+def double_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...] | None:
     """The equilibria in double precision; None when numbers overflow or the eigenvalue method fails."""
     p = {name: float(value) for name, value in parameters.items()}
     with np.errstate(all="ignore"):
@@ -43,7 +33,7 @@ def double_poses(parameters: Mapping[str, Fraction]) -> tuple[DoublePose, ...] |
         return _companion(p)
 
 
-def _companion(p: Mapping[str, float]) -> tuple[DoublePose, ...] | None:
+def _companion(p: Mapping[str, float]) -> tuple[IndexedPose, ...] | None:
     a1, a2 = (p["k2"] + p["k3"]) * p["rho"] + p["F3x"], (p["k1"] + p["k3"]) * p["rho"] - p["F4x"]
     g, pull = p["k3"] * p["L2"], p["k3"] * p["L1"]
     square = a1 * a1 + p["F3"] ** 2 + g * g
@@ -64,7 +54,7 @@ def _companion(p: Mapping[str, float]) -> tuple[DoublePose, ...] | None:
         return None
     angles = [2 * float(np.arctan(r.real)) for r in roots if abs(r.imag) <= REAL_TOLERANCE * (1 + abs(r))]
     angles += [float(np.pi)] * leading
-    found: list[DoublePose] = []
+    found: list[IndexedPose] = []
     for th2 in angles:
         c2, s2 = float(np.cos(th2)), float(np.sin(th2))
         p_value, q_value = p["F3"] * c2 + a1 * s2, a2 * s2 - p["F4"] * c2
@@ -75,10 +65,10 @@ def _companion(p: Mapping[str, float]) -> tuple[DoublePose, ...] | None:
     return tuple(found)
 
 
-def _pose(p: Mapping[str, float], th1: float, th2: float) -> DoublePose:
+def _pose(p: Mapping[str, float], th1: float, th2: float) -> IndexedPose:
     h11, h12, h22 = _hessian(p, th1, th2)
     values = np.linalg.eigvalsh([[h11, h12], [h12, h22]])
-    return DoublePose(th1, th2, int((values < 0).sum()))
+    return IndexedPose(th1, th2, int((values < 0).sum()))
 
 
 def _hessian(p: Mapping[str, float], th1: float, th2: float) -> tuple[float, float, float]:
@@ -96,6 +86,6 @@ def _hessian(p: Mapping[str, float], th1: float, th2: float) -> tuple[float, flo
     return h11, -p["k3"] * (x3 * turned - y3 * y4), h22
 
 
-def _adopt(found: list[DoublePose], pose: DoublePose) -> None:
+def _adopt(found: list[IndexedPose], pose: IndexedPose) -> None:
     if not any(angle_error(q.th1, pose.th1) <= SAME_POSE and angle_error(q.th2, pose.th2) <= SAME_POSE for q in found):
         found.append(pose)

@@ -16,19 +16,11 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.mechanism import ptm
 from ptmcad.question.slice import Slice
-from ptmcad.studies.equilibria import angle_error, scale
-from ptmcad.studies.stress.case import (
-    Case,
-    LineAnswer,
-    LineQuestion,
-    MapAnswer,
-    MapQuestion,
-    PointAnswer,
-    PointQuestion,
-)
-from ptmcad.studies.stress.doubles import DoublePose, double_poses
+from ptmcad.studies.equilibria import IndexedPose, angle_error, scale
+from ptmcad.studies.stress.case import Case, LineAnswer, MapAnswer, PointAnswer, PointQuestion, SliceQuestion
+from ptmcad.studies.stress.doubles import double_poses
 from ptmcad.studies.stress.measure import Verdict, as_float
-from ptmcad.studies.stress.reference import ReferencePose, newton_pose, sextic_poses
+from ptmcad.studies.stress.reference import newton_pose, sextic_poses
 from ptmcad.text.balls import exact
 from ptmcad.text.enclosure import Enclosure
 
@@ -42,14 +34,14 @@ def judge(case: Case, found: Any) -> Verdict:
     """The verdict on an answer to the case."""
     if isinstance(case.question, PointQuestion) and isinstance(case.expected, PointAnswer):
         return _judge_point(case.question, case.expected, found)
-    if isinstance(case.question, MapQuestion) and isinstance(case.expected, MapAnswer):
+    if isinstance(case.question, SliceQuestion) and isinstance(case.expected, LineAnswer) and case.question.along:
+        return _judge_line(case.expected, found)
+    if isinstance(case.question, SliceQuestion) and isinstance(case.expected, MapAnswer):
         return _judge_map(case.question, case.expected, found)
-    if isinstance(case.question, LineQuestion) and isinstance(case.expected, LineAnswer):
-        return _judge_line(case.question, case.expected, found)
     raise TypeError(f"{case.name}: the expected answer is of another kind than the question")
 
 
-def _counts(poses: Sequence[DoublePose] | Sequence[ReferencePose]) -> tuple[int, int]:
+def _counts(poses: Sequence[IndexedPose]) -> tuple[int, int]:
     """How many poses there are, and how many stable ones."""
     return len(poses), sum(pose.index == 0 for pose in poses)
 
@@ -88,7 +80,6 @@ def _judge_point(question: PointQuestion, expected: PointAnswer, found: Poses) -
         expected=counts_text(*(known if expected.total is None else (expected.total, expected.stable))),
         found=counts_text(total, stable) if found.equilibria else "undecided",
         double="none" if double is None else counts_text(*seen),
-        right=not remarks,
         remarks=tuple(remarks),
         double_right=double is not None and seen == known,
         error=as_float(error),
@@ -98,15 +89,13 @@ def _judge_point(question: PointQuestion, expected: PointAnswer, found: Poses) -
     )
 
 
-def _reference(
-    parameters: dict[str, Fraction], found: Poses, double: Sequence[DoublePose]
-) -> tuple[ReferencePose, ...]:
+def _reference(parameters: dict[str, Fraction], found: Poses, double: Sequence[IndexedPose]) -> tuple[IndexedPose, ...]:
     """The equilibria to 100 digits; with free lengths those from the starts of either method, each proved anew."""
     if not any(parameters.get(name) for name in ptm().free_lengths):
         return sextic_poses(parameters)
     starts = [(pose.th1, pose.th2) for pose in double]
     starts += [(float(pose.angles[0]), float(pose.angles[1])) for pose in found.equilibria]
-    known: list[ReferencePose] = []
+    known: list[IndexedPose] = []
     for start in starts:
         pose = newton_pose(parameters, start)
         if pose is not None and not any(_overlap(pose, other) for other in known):
@@ -114,14 +103,14 @@ def _reference(
     return tuple(known)
 
 
-def _overlap(a: ReferencePose, b: ReferencePose) -> bool:
+def _overlap(a: IndexedPose, b: IndexedPose) -> bool:
     turn = 2 * arb.pi()
     return all(
         any(bool((x - y + n * turn).contains(0)) for n in (-1, 0, 1)) for x, y in ((a.th1, b.th1), (a.th2, b.th2))
     )
 
 
-def _matched(poses: Sequence[Pose], reference: Sequence[ReferencePose]) -> list[tuple[Pose, ReferencePose]] | None:
+def _matched(poses: Sequence[Pose], reference: Sequence[IndexedPose]) -> list[tuple[Pose, IndexedPose]] | None:
     """Each pose with the reference that lies in its enclosures and has its index; None when some has none."""
     left = list(reference)
     pairs = []
@@ -147,7 +136,7 @@ def _arb(value: Fraction) -> fmpq:
     return fmpq(value.numerator, value.denominator)
 
 
-def _distance(pose: Pose, reference: ReferencePose) -> Fraction:
+def _distance(pose: Pose, reference: IndexedPose) -> Fraction:
     """The largest error of an angle, between the enclosure's middle and the reference."""
     turn = exact((2 * arb.pi()).mid())
     return max(
@@ -160,7 +149,7 @@ def _holds(pose: Pose, known: Sequence[Fraction]) -> bool:
     return all(e.low <= value <= e.high for e, value in zip(pose.cosines_sines, known, strict=True))
 
 
-def _double_error(double: Sequence[DoublePose], reference: Sequence[ReferencePose]) -> float | None:
+def _double_error(double: Sequence[IndexedPose], reference: Sequence[IndexedPose]) -> float | None:
     """The largest distance of a pose in double precision to the nearest equilibrium; None without any."""
     angles = [(float(r.th1.mid()), float(r.th2.mid())) for r in reference]
     if not double or not angles:
@@ -178,7 +167,7 @@ def _condition(parameters: dict[str, Fraction], poses: Sequence[Pose]) -> float 
 # ------------------------------------------------------------------------------------------------------ maps, lines
 
 
-def _judge_map(question: MapQuestion, expected: MapAnswer, found: RegionMap) -> Verdict:
+def _judge_map(question: SliceQuestion, expected: MapAnswer, found: RegionMap) -> Verdict:
     certified = question.tolerance is not None
     stable = sorted(r.stable for r in found.regions if r.stable is not None)
     remarks = []
@@ -191,7 +180,8 @@ def _judge_map(question: MapQuestion, expected: MapAnswer, found: RegionMap) -> 
         remarks.append("more is undetermined than was allowed")
     low, high = (sum((r.area[k] for r in found.regions if r.stable == 2), Fraction(0)) for k in (0, 1))
     if certified:  # what is left open may belong to any region
-        high += found.undetermined * _window_area(question)
+        (a, b), (c, d) = question.axes.values()
+        high += found.undetermined * (b - a) * (d - c)
     if expected.area_of_two and not (low <= expected.area_of_two[1] and high >= expected.area_of_two[0]):
         remarks.append(f"two are stable on an area of {as_float(low):.10g} to {as_float(high):.10g}")
     for region in found.regions if not certified else ():
@@ -203,19 +193,11 @@ def _judge_map(question: MapQuestion, expected: MapAnswer, found: RegionMap) -> 
         expected=" ".join(map(str, expected.stable)),
         found=" ".join(map(str, stable)) if not certified else " ".join(map(str, sorted(set(stable)))),
         double=" ".join(map(str, sorted(seen))),
-        right=not remarks,
         remarks=tuple(remarks),
         double_right=wrong == 0 and seen == set(stable),
-        error=None,
         double_error=wrong,
-        condition=None,
         bits=max(found.precision.values(), default=0),
     )
-
-
-def _window_area(question: MapQuestion) -> Fraction:
-    (a, b), (c, d) = question.axes.values()
-    return (b - a) * (d - c)
 
 
 def _values(slice: Slice, x: Fraction, y: Fraction) -> dict[str, Fraction]:
@@ -246,7 +228,7 @@ def _double_on_grid(found: RegionMap) -> tuple[float, set[int]]:
     return wrong / max(decided, 1), seen
 
 
-def _judge_line(question: LineQuestion, expected: LineAnswer, found: CountIntervals) -> Verdict:
+def _judge_line(expected: LineAnswer, found: CountIntervals) -> Verdict:
     remarks = []
     # neighbours that differ in the total alone are one interval of stable counts
     joined = [found.intervals[0]]
@@ -275,13 +257,10 @@ def _judge_line(question: LineQuestion, expected: LineAnswer, found: CountInterv
         expected=" ".join(map(str, expected.stable)),
         found=" ".join(map(str, stable)),
         double=" ".join(map(str, double)),
-        right=not remarks,
         remarks=tuple(remarks),
         double_right=double == stable,
         error=error,
         double_error=double_error,
-        condition=None,
-        bits=0,
     )
 
 

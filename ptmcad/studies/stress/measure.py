@@ -19,7 +19,8 @@ from time import process_time
 from typing import Any
 
 from ptmcad.answer.poses import DIGITS
-from ptmcad.studies.stress.case import Case, LineQuestion, MapQuestion, PointQuestion, Question
+from ptmcad.studies.slices import ptm_slice
+from ptmcad.studies.stress.case import Case, PointQuestion, Question
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +30,8 @@ class Verdict:
     Attributes
     ----------
     expected, found, double : the answers as text.
-    right : whether ptmcad's answer is, by all checks; a decided wrong one is as wrong as an undecided one.
-    remarks : what is not right.
-    double_right : whether the double-precision method's answer is.
+    remarks : what is not right of ptmcad's answer; a decided wrong one is as wrong as an undecided one.
+    double_right : whether the double-precision method's answer is right.
     error : largest error of ptmcad's angles (the middles of its enclosures) in radians; for lines, of the ends relative
         to the window. None where nothing is compared.
     double_error : the same of the double-precision method, over the poses that it has; for maps the share of the
@@ -43,13 +43,17 @@ class Verdict:
     expected: str
     found: str
     double: str
-    right: bool
     remarks: tuple[str, ...]
     double_right: bool
-    error: float | None
-    double_error: float | None
-    condition: float | None
-    bits: int
+    error: float | None = None
+    double_error: float | None = None
+    condition: float | None = None
+    bits: int = 0
+
+    @property
+    def right(self) -> bool:
+        """Whether ptmcad's answer is, by all checks."""
+        return not self.remarks
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,14 +64,15 @@ class Cost:
     ----------
     calls, sibling_calls : functions called, Python's and built in: work that is the same in every run.
     seconds, sibling_seconds : processor time, medians of runs that take turns.
-    spread : smallest and largest of the ratios of the runs.
+    ratio_low, ratio_high : smallest and largest of the ratios of the runs.
     """
 
     calls: int
     sibling_calls: int
     seconds: float
     sibling_seconds: float
-    spread: tuple[float, float]
+    ratio_low: float
+    ratio_high: float
 
     @property
     def ratio(self) -> float:
@@ -95,10 +100,10 @@ def answer(question: Question, name: str = "case") -> Any:
 
     if isinstance(question, PointQuestion):
         return ptmcad.solve(DIGITS, None, **question.parameters)
-    slice = ptmcad.slice_from_mapping(question.record(name))
-    if isinstance(question, LineQuestion):
+    slice = ptm_slice(name, question.axes, **question.parameters)
+    if question.along:
         return ptmcad.intervals(slice, question.along, question.at)
-    if isinstance(question, MapQuestion) and question.tolerance is not None:
+    if question.tolerance is not None:
         return ptmcad.classify(slice, tolerance=question.tolerance, jobs=1)
     return ptmcad.classify(slice)
 
@@ -129,9 +134,8 @@ def cost_of(case: Case, repeats: int) -> Cost:
     calls, sibling_calls = work_of(case.question), work_of(case.sibling)
     pairs = [(_seconds(case.question), _seconds(case.sibling)) for _ in range(repeats)]
     ratios = [a / max(b, 1e-9) for a, b in pairs]
-    return Cost(
-        calls, sibling_calls, median(a for a, _ in pairs), median(b for _, b in pairs), (min(ratios), max(ratios))
-    )
+    mine, its = (median(times) for times in zip(*pairs, strict=True))
+    return Cost(calls, sibling_calls, mine, its, min(ratios), max(ratios))
 
 
 def _seconds(question: Question) -> float:

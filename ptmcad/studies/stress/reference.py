@@ -17,25 +17,17 @@ from typing import Any
 
 from flint import arb, ctx, fmpq, fmpq_poly
 
-from ptmcad.studies.equilibria import balls, in_balls, inverse, proved, sign
+from ptmcad.studies.equilibria import IndexedPose, balls, in_balls, inverse, proved, sign
 from ptmcad.studies.sextic import sextic
 
 DIGITS = 100
+"""To which the angles of a pose are known, or more."""
 _BITS = 400
 _MAX_BITS = 2**15
 
 
 class Degenerate(ArithmeticError):
     """Some equilibrium has a singular Hessian, or there are infinitely many."""
-
-
-@dataclass(frozen=True, slots=True)
-class ReferencePose:
-    """An equilibrium: its angles, to `DIGITS` digits or more, and the number of negative eigenvalues of its Hessian."""
-
-    th1: arb
-    th2: arb
-    index: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +38,7 @@ class _Candidate:
     sign: int
 
 
-def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[ReferencePose, ...]:
+def sextic_poses(parameters: Mapping[str, Fraction]) -> tuple[IndexedPose, ...]:
     """All equilibria of a mechanism whose springs have no free length.
 
     Raises
@@ -115,7 +107,7 @@ def _at(polynomial: fmpq_poly, t: arb) -> arb:
     return total
 
 
-def _pose(p: Mapping[str, fmpq], candidate: _Candidate) -> ReferencePose | None:
+def _pose(p: Mapping[str, fmpq], candidate: _Candidate) -> IndexedPose | None:
     """The pose of a candidate; None when the precision is too low."""
     t = candidate.t
     if t is None:
@@ -139,7 +131,7 @@ def _pose(p: Mapping[str, fmpq], candidate: _Candidate) -> ReferencePose | None:
     determinant = sign(h11 * h22 - h12 * h12)
     if determinant == 0 or not (_fine(th1) and _fine(th2)):
         return None
-    return ReferencePose(th1, th2, 1 if determinant < 0 else 0 if h11 > 0 else 2)
+    return IndexedPose(th1, th2, 1 if determinant < 0 else 0 if h11 > 0 else 2)
 
 
 def _fine(angle: arb) -> bool:
@@ -151,7 +143,7 @@ def _fine(angle: arb) -> bool:
 # ---------------------------------------------------------------------------------------------------- free lengths
 
 
-def newton_pose(parameters: Mapping[str, Fraction], start: tuple[float, float]) -> ReferencePose | None:
+def newton_pose(parameters: Mapping[str, Fraction], start: tuple[float, float]) -> IndexedPose | None:
     """The equilibrium that Newton's method finds from a start, proved; None when it finds none.
 
     Parameters
@@ -175,4 +167,4 @@ def newton_pose(parameters: Mapping[str, Fraction], start: tuple[float, float]) 
             if all(abs(s) < arb(2) ** -(bits - 60) for s in step):
                 break
         found = proved(p, angles, arb(2) ** -(bits - 100))
-        return None if found is None else ReferencePose(*found.box, found.negative)
+        return None if found is None else IndexedPose(*found.box, found.negative)

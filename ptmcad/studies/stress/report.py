@@ -13,12 +13,16 @@ from math import isfinite
 from typing import Any
 
 from ptmcad.studies.stress.campaign import MAX_COST, Campaign
-from ptmcad.studies.stress.case import Case, LineQuestion, MapQuestion
+from ptmcad.studies.stress.case import Case, SliceQuestion
 from ptmcad.studies.stress.measure import Outcome
-from ptmcad.studies.tables import columns
+from ptmcad.studies.tables import columns, page
 from ptmcad.studies.tables import markdown as table_of
 from ptmcad.text.numerals import shortest_text
 
+_OF_VERDICT = (
+    "expected", "found", "right", "remarks", "double", "double_right", "error", "double_error", "condition", "bits"
+)  # fmt: skip
+_OF_COST = ("calls", "sibling_calls", "seconds", "sibling_seconds", "ratio", "ratio_low", "ratio_high")
 HEADINGS = ("case", "known", "ptmcad", "double", "double's error", "condition", "bits", "ms", "x tame")
 
 
@@ -57,18 +61,17 @@ def markdown(campaign: Campaign) -> str:
     kept = [k for k, name in enumerate(HEADINGS) if name not in ("ms", "x tame")]
     names = [*(HEADINGS[k] for k in kept), "work x tame"]
     wrong, total = len(campaign.double_wrong), len(campaign.outcomes)
-    lines = [
-        "# The stress cases, one by one",
-        "",
-        f"Written by `ptmcad stress` with seed {campaign.seed}. ptmcad is right in {total - len(campaign.wrong)} of "
-        f"{total} cases; double precision is wrong in {wrong}. "
-        "[What is tried, and what the columns mean](../stress.md).",
-    ]
+    blocks: list[str | list[str]] = []
     for family in dict.fromkeys(o.case.family for o in campaign.outcomes):
         chosen = [(cells(o), o) for o in campaign.outcomes if o.case.family == family]
         rows = [[*(row[k] for k in kept), f"{o.cost.work_ratio:.2g}"] for row, o in chosen]
-        lines += ["", f"## {family[0].upper()}{family[1:]}", "", *table_of(names, rows)]
-    return "\n".join(lines) + "\n"
+        blocks += [f"## {family[0].upper()}{family[1:]}", table_of(names, rows)]
+    written = (
+        f"Written by `ptmcad stress` with seed {campaign.seed}. ptmcad is right in {total - len(campaign.wrong)} of "
+        f"{total} cases; double precision is wrong in {wrong}. "
+        "[What is tried, and what the columns mean](../stress.md)."
+    )
+    return page("# The stress cases, one by one", written, *blocks)
 
 
 def summary(campaign: Campaign) -> Iterable[str]:
@@ -95,9 +98,9 @@ def listing(cases: Sequence[Case]) -> str:
 
 def question_text(case: Case) -> str:
     """What is asked, in a word."""
-    if isinstance(case.question, MapQuestion):
-        return "map" if case.question.tolerance is None else "certified map"
-    return "line" if isinstance(case.question, LineQuestion) else "point"
+    if not isinstance(case.question, SliceQuestion):
+        return "point"
+    return "line" if case.question.along else "map" if case.question.tolerance is None else "certified map"
 
 
 def to_json(campaign: Campaign) -> str:
@@ -127,32 +130,21 @@ def to_csv(campaign: Campaign) -> str:
 
 def record(outcome: Outcome) -> dict[str, Any]:
     """A case and what came out, as plain data."""
-    case, v, c = outcome.case, outcome.verdict, outcome.cost
-    return {
+    case = outcome.case
+    values = {
         "name": case.name,
         "family": case.family,
         "asked": question_text(case),
         "stiffness": shortest_text(case.stiffness),
         "source": case.source,
-        "expected": v.expected,
-        "found": v.found,
-        "right": v.right,
-        "remarks": list(v.remarks),
-        "double": v.double,
-        "double_right": v.double_right,
-        "error": _finite(v.error),
-        "double_error": _finite(v.double_error),
-        "condition": _finite(v.condition),
-        "bits": v.bits,
-        "calls": c.calls,
-        "sibling_calls": c.sibling_calls,
-        "seconds": c.seconds,
-        "sibling_seconds": c.sibling_seconds,
-        "ratio": c.ratio,
-        "ratio_low": c.spread[0],
-        "ratio_high": c.spread[1],
+        **{name: getattr(outcome.verdict, name) for name in _OF_VERDICT},
+        **{name: getattr(outcome.cost, name) for name in _OF_COST},
     }
+    return {name: _plain(value) for name, value in values.items()}
 
 
-def _finite(value: float | None) -> float | None:
-    return value if value is not None and isfinite(value) else None
+def _plain(value: object) -> object:
+    """A list for a tuple, and None for a number that JSON does not have."""
+    if isinstance(value, tuple):
+        return list(value)
+    return None if isinstance(value, float) and not isfinite(value) else value

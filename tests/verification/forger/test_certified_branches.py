@@ -85,10 +85,8 @@ def made(name: str, count: str = "stable", rectangles: tuple[Rectangle, ...] = U
     left, right = rectangles[0][0], STEPS - rectangles[0][1]
     window = Fraction(1, 10**6)
     r = RegionMap(
-        slice=slice, status=Status.CERTIFIED, system=System(("th1", "th2"), (), POTENTIAL, (), ()), base=0,
-        complex_solutions=0, components=(), critical_values=(), stacks=(), cells=(), adjacencies=(),
-        non_adjacencies=(), regions=(), plan=(), undetermined=1 - Fraction(left + right, STEPS), versions={},
-        precision={}, cover=Cover(STEPS, rectangles),
+        slice=slice, status=Status.CERTIFIED, system=System(("th1", "th2"), (), POTENTIAL, (), ()),
+        undetermined=1 - Fraction(left + right, STEPS), versions={}, cover=Cover(STEPS, rectangles),
     )  # fmt: skip
     claims = CertifiedClaims(r)
     cells, regions = [], []

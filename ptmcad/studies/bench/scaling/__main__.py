@@ -5,9 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from ptmcad.studies.bench.command import Command, progress, save
+from ptmcad.studies.bench.harness import Command, Record
 from ptmcad.studies.bench.scaling.families import FAMILIES, families_named
 from ptmcad.studies.bench.scaling.run import MAX_SECONDS, ROUNDS, scaling
 from ptmcad.studies.bench.scaling.table import grouped, to_markdown
@@ -23,7 +22,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command = Command(
         "bench.scaling",
         "How processor time and memory grow with degree, height, regions, solutions, tolerance.",
-        files="JSON, page and pictures",
+        "scaling",
         rounds=ROUNDS,
         epilog=f"Families: {names}. Example: python -m ptmcad.studies.bench.scaling fold grid --rounds 1 --out out",
     )
@@ -34,22 +33,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = command.chosen(arguments)
     if not chosen.limit > 0:
         command.error("--limit must be positive")
-
-    def work() -> int:
-        if chosen.out is not None:
-            chosen.out.mkdir(parents=True, exist_ok=True)
-        wanted = families_named(chosen.families)
-        report = scaling(wanted, chosen.rounds, chosen.seed, limit=chosen.limit, progress=progress)
-        save(chosen.out, "scaling", report, to_markdown(report))
-        if chosen.out is not None:
-            _draw(report, chosen.out)
-        print(to_markdown(report), end="")
-        return 0
-
-    return command.status(work)
+    return command.status(
+        chosen.out,
+        lambda: scaling(families_named(chosen.families), chosen.rounds, chosen.seed, chosen.limit),
+        to_markdown,
+        _draw,
+    )
 
 
-def _draw(report: dict[str, Any], folder: Path) -> None:
+def _draw(report: Record, folder: Path) -> None:
     # loaded after the measurement, whose children would inherit its pages
     from ptmcad.show.render.printing import save
     from ptmcad.studies.bench.scaling.picture import draw_scaling

@@ -12,17 +12,11 @@ from fractions import Fraction
 
 from ptmcad.errors import PtmcadError
 from ptmcad.options import Options
-from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
-from ptmcad.studies.bench.scaling.folds import (
-    fold,
-    grid,
-    regions_of_fold,
-    regions_of_grid,
-    window_of_fold,
-)
+from ptmcad.studies.bench.scaling.folds import fold, grid, regions_of_fold, regions_of_grid, window_of_fold
 from ptmcad.studies.bench.scaling.measurement import Run, Stages
 from ptmcad.studies.bench.scaling.slices import digits, loaded, unloaded
+from ptmcad.studies.slices import ptm_slice
 
 Measure = Callable[[int, int], Sequence[Run]]
 DESIGNS = 150
@@ -98,13 +92,7 @@ def exact(size: int, slice: Slice, regions: int | None = None) -> tuple[Run]:
 
 def design_slice(free: str, load: str) -> Slice:
     """Equal springs of free length l0 and equal loads, over rho and L2."""
-    return slice_from_mapping(
-        {
-            "mechanism": "ptm",
-            "parameters": {"L1": 1, "k": 100, "l0": free, "F3": load, "F4": load},
-            "axes": {"rho": ["1/10", 2], "L2": ["1/10", 2]},
-        }
-    )
+    return ptm_slice("design", {"rho": ("1/10", 2), "L2": ("1/10", 2)}, L1=1, k=100, l0=free, F3=load, F4=load)
 
 
 def designs(seed: int) -> tuple[tuple[str, str, str, str], ...]:
@@ -153,13 +141,7 @@ def fibres(size: int, seed: int) -> tuple[Run, ...]:
 
 def certified_window() -> Slice:
     """A part of the record free02 with several regions, away from rho = 0."""
-    return slice_from_mapping(
-        {
-            "mechanism": "ptm",
-            "parameters": {"L1": 1, "k": 100, "l0": "1/5", "F3": -10, "F4": -10},
-            "axes": {"rho": ["1/2", "3/2"], "L2": ["11/10", 2]},
-        }
-    )
+    return ptm_slice("window", {"rho": ("1/2", "3/2"), "L2": ("11/10", 2)}, L1=1, k=100, l0="1/5", F3=-10, F4=-10)
 
 
 def tolerances(size: int, seed: int) -> tuple[Run]:

@@ -9,11 +9,12 @@ points. Without loads the stable count is 2 where |L2 - L1| < 2 rho < L2 + L1 an
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from math import cos, pi
 
-from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Slice
+from ptmcad.studies.slices import ptm_slice
 from ptmcad.text.expressions import Expression, axis, constant
 
 MAX_FOLDS = 32
@@ -32,14 +33,8 @@ def chebyshev(n: int, x: Expression) -> Expression:
 
 def fold(n: int, half_width: Fraction = Fraction(1)) -> Slice:
     """rho = y and L2 = 1 + T_n(x)/2: n folds along x, over -half_width < x < half_width and 0 < y < 2."""
-    slice = slice_from_mapping(
-        {
-            "name": f"fold-{n}",
-            "mechanism": "ptm",
-            "parameters": {"L1": 1, "k": 100, "rho": "y", "L2": "1 + x/2"},
-            "axes": {"x": [-half_width, half_width], "y": [0, 2]},
-        }
-    )
+    axes = {"x": (-half_width, half_width), "y": (Fraction(0), Fraction(2))}
+    slice = ptm_slice(f"fold-{n}", axes, L1=1, k=100, rho="y", L2="1 + x/2")
     return with_parameters(slice, L2=1 + chebyshev(n, axis(0)) / 2)
 
 
@@ -59,14 +54,7 @@ def window_of_fold(folds: int) -> Slice:
 
 def grid(n: int) -> Slice:
     """L2 = 1 + T_n(x)/2 and rho = 1/2 + T_n(y)/3: n by n copies, mirrored in turn, of one square."""
-    slice = slice_from_mapping(
-        {
-            "name": f"grid-{n}",
-            "mechanism": "ptm",
-            "parameters": {"L1": 1, "k": 100, "rho": "1/2 + y/3", "L2": "1 + x/2"},
-            "axes": {"x": [-1, 1], "y": [-1, 1]},
-        }
-    )
+    slice = ptm_slice(f"grid-{n}", {"x": (-1, 1), "y": (-1, 1)}, L1=1, k=100, rho="1/2 + y/3", L2="1 + x/2")
     return with_parameters(slice, L2=1 + chebyshev(n, axis(0)) / 2, rho=Fraction(1, 2) + chebyshev(n, axis(1)) / 3)
 
 
@@ -82,11 +70,5 @@ def regions_of_grid(n: int) -> int:
 
 def with_parameters(slice: Slice, **parameters: Expression) -> Slice:
     """The slice with other expressions for some parameters, and without the text that they had."""
-    return Slice(
-        slice.name,
-        slice.model,
-        slice.axes,
-        {**slice.parameters, **parameters},
-        slice.count,
-        text={name: text for name, text in slice.text.items() if name not in parameters},
-    )
+    text = {name: text for name, text in slice.text.items() if name not in parameters}
+    return replace(slice, parameters={**slice.parameters, **parameters}, text=text)

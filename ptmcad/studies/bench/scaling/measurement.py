@@ -2,7 +2,7 @@
 
 Guarantee: seconds are processor time of the child alone, all threads together; memory is what its resident set
 grew by since the fork, at its highest up to the end of each stage. What was found, `Run.found`, is the same in every
-run with the same family, size and seed. A run that failed or took too long is an `Unmeasured` with the reason.
+run with the same family, size and seed. Where a run failed or took too long there is a reason in its place.
 
 Not guaranteed: memory below a few hundred KiB, which the child may find free in the pages it inherited.
 """
@@ -10,19 +10,16 @@ Not guaranteed: memory below a few hundred KiB, which the child may find free in
 from __future__ import annotations
 
 import gc
-import json
-import os
 import resource
-import select
-import signal
 import sys
 import traceback
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from pathlib import Path
 from time import perf_counter, process_time
-from typing import Any
 
 MEBIBYTE = 2**20
 _STATUS = Path("/proc/self/status")
@@ -51,13 +48,6 @@ class Run:
     found: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
-class Unmeasured:
-    """A run without figures."""
-
-    reason: str
-
-
 class Stages:
     """A watch to which a run reports when a stage begins."""
 
@@ -78,13 +68,10 @@ class Stages:
         self._stage, self._since = stage, now
 
     def run(self, size: int, found: Mapping[str, float]) -> Run:
-        """The figures so far, those of the stage that has not ended yet included."""
+        """The figures so far, the stage that has not ended yet ending now."""
         now, wall = process_time(), perf_counter()
-        seconds, memory = dict(self.seconds), dict(self.memory)
-        if self._stage:
-            seconds[self._stage] = seconds.get(self._stage, 0.0) + now - self._since
-            memory[self._stage] = round(highest_mebibytes() - self.memory_before, 2)
-        return Run(size, now - self.started, wall - self.wall, seconds, memory, dict(found))
+        self.begin("")
+        return Run(size, now - self.started, wall - self.wall, self.seconds, self.memory, dict(found))
 
 
 def highest_mebibytes() -> float:
@@ -99,64 +86,42 @@ def highest_mebibytes() -> float:
 
 def in_child(
     task: Callable[[], Sequence[Run]], limit: float, before: Callable[[], object] = lambda: None
-) -> tuple[Run, ...] | Unmeasured:
-    """Run a task in a forked child.
+) -> tuple[Run, ...] | str:
+    """Run a task in a forked child; without figures, the reason.
 
     Parameters
     ----------
-    task : measures itself; what it returns comes back as text.
+    task : measures itself.
     limit : wall seconds after which the child is killed.
     before : called in the child before the task, and not measured.
     """
-    reading, writing = os.pipe()
+    context = get_context("fork")
+    reading, writing = context.Pipe(duplex=False)
+    child = context.Process(target=_child, args=(task, before, writing))
     with warnings.catch_warnings():
         # Python warns of threads, which a numerical library may have started; the child uses none of theirs
         warnings.simplefilter("ignore", DeprecationWarning)
-        child = os.fork()
-    if child == 0:
-        _child(task, before, reading, writing)
-    os.close(writing)
-    ended = False
-    chunks: list[bytes] = []
-    deadline = perf_counter() + limit
+        child.start()
+    writing.close()
     try:
-        while select.select([reading], [], [], max(0.0, deadline - perf_counter()))[0]:
-            chunk = os.read(reading, 1 << 16)
-            if not chunk:
-                ended = True
-                break
-            chunks.append(chunk)
-    finally:
-        os.close(reading)
-        if not ended:  # too slow, or this process is being interrupted: the child must not outlive its measurement
-            os.kill(child, signal.SIGKILL)
-        _, status = os.waitpid(child, 0)
-    if not ended:
-        return Unmeasured(f"no answer within {limit:g} s")
-    if status != 0 or not chunks:
-        return Unmeasured(f"the child ended with status {os.waitstatus_to_exitcode(status)}")
-    answer: dict[str, Any] = json.loads(b"".join(chunks))
-    if "failed" in answer:
-        return Unmeasured(answer["failed"])
-    return tuple(Run(**run) for run in answer["runs"])
+        found: tuple[Run, ...] | str = reading.recv() if reading.poll(limit) else f"no answer within {limit:g} s"
+    except EOFError:
+        child.join()
+        found = f"the child ended with status {child.exitcode}"
+    finally:  # also when this process is being interrupted: the child must not outlive its measurement
+        reading.close()
+        child.kill()
+        child.join()
+    return found
 
 
-def _child(task: Callable[[], Sequence[Run]], before: Callable[[], object], reading: int, writing: int) -> None:
-    """Answer through the pipe and leave without the parent's exit handlers."""
-    os.close(reading)
-    status = 1
+def _child(task: Callable[[], Sequence[Run]], before: Callable[[], object], writing: Connection) -> None:
     try:
-        answer: dict[str, Any]
-        try:
-            before()
-            gc.collect()
-            if _HIGH_WATER.exists():
-                _HIGH_WATER.write_text("5")  # the highest resident set is counted from here
-            answer = {"runs": [asdict(run) for run in task()]}
-        except Exception as error:  # noqa: BLE001  whatever it is, the parent records it as the run's reason
-            answer = {"failed": "".join(traceback.format_exception_only(error)).strip()[:300]}
-        with os.fdopen(writing, "w") as pipe:
-            json.dump(answer, pipe)
-        status = 0
-    finally:
-        os._exit(status)
+        before()
+        gc.collect()
+        if _HIGH_WATER.exists():
+            _HIGH_WATER.write_text("5")  # the highest resident set is counted from here
+        answer: tuple[Run, ...] | str = tuple(task())
+    except Exception as error:  # noqa: BLE001  whatever it is, the parent records it as the run's reason
+        answer = "".join(traceback.format_exception_only(error)).strip()[:300]
+    writing.send(answer)

@@ -9,15 +9,13 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
-from typing import Any
 
-from ptmcad.studies.bench.rounds import rounds
+from ptmcad.studies.bench.harness import Record, made_with, progress, rounds
 from ptmcad.studies.bench.scaling.families import FAMILIES, Family, touch, warm_up
 from ptmcad.studies.bench.scaling.fit import Points, fit
-from ptmcad.studies.bench.scaling.measurement import Run, Unmeasured, in_child
-from ptmcad.studies.bench.suite import machine, versions
+from ptmcad.studies.bench.scaling.measurement import Run, in_child
 
 FORMAT = "ptmcad-scaling/1"
 ROUNDS = 3
@@ -30,13 +28,8 @@ MIN_MEMORY = 1.0
 
 
 def scaling(
-    families: Sequence[Family] = FAMILIES,
-    number: int = ROUNDS,
-    seed: int = 1,
-    *,
-    limit: float = MAX_SECONDS,
-    progress: Callable[[str], None] = lambda _: None,
-) -> dict[str, Any]:
+    families: Sequence[Family] = FAMILIES, number: int = ROUNDS, seed: int = 1, limit: float = MAX_SECONDS
+) -> Record:
     """Measure families of slices and fit power laws to their cost.
 
     Parameters
@@ -44,14 +37,13 @@ def scaling(
     number : runs of each size, but of a family's heavy sizes.
     seed : of slices, of the order within a round, and of the fits' resampling.
     limit : wall seconds after which a run is given up; then this size and larger ones of its family are left out.
-    progress : called with what runs.
 
     Returns
     -------
     JSON data: ``format``, ``machine``, ``versions``, ``seed``, ``rounds``, and for each family its ``runs`` (seconds of
     processor time, MiB, what was found), the ``reasons`` for sizes that have none, and ``fits`` by quantity.
     """
-    before = machine()
+    made = made_with()
     progress("loading")
     warm_up(any(f.certified for f in families))
     runs: dict[str, list[Run]] = {family.name: [] for family in families}
@@ -66,30 +58,20 @@ def scaling(
                 continue
             progress(f"round {index + 1} of {number}: {family.name} {size}")
             found = in_child(partial(family.measure, size, seed), limit, partial(touch, family.certified))
-            if isinstance(found, Unmeasured):
-                reasons[family.name][size] = found.reason
+            if isinstance(found, str):
+                reasons[family.name][size] = found
             else:
                 runs[family.name] += found
-    return {
-        "format": FORMAT,
-        "machine": before,
-        "versions": versions(),
-        "seed": seed,
-        "rounds": number,
-        "families": [_family(f, runs[f.name], reasons[f.name], seed) for f in families],
-    }
+    measured = [_family(f, runs[f.name], reasons[f.name], seed) for f in families]
+    return {"format": FORMAT, **made, "seed": seed, "rounds": number, "families": measured}
 
 
-def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: int) -> dict[str, Any]:
+def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: int) -> Record:
     # sorted and rounded as they are stored, so that the stored runs give the stored fits
-    runs = [Run(**_rounded(asdict(run))) for run in sorted(runs, key=lambda r: _order(family.against, r))]
+    runs = [_rounded(run) for run in sorted(runs, key=lambda r: (r.size, _place(family.against, r), r.seconds))]
     fits = {name: fit(points, seed) for name, points in quantities(family, runs)}
     return {
-        "name": family.name,
-        "title": family.title,
-        "against": family.against,
-        "axis": family.axis,
-        "expected": family.expected,
+        **{name: getattr(family, name) for name in ("name", "title", "against", "axis", "expected")},
         "runs": [asdict(run) for run in runs],
         "reasons": {str(size): reason for size, reason in sorted(reasons.items())},
         "fits": {
@@ -100,35 +82,31 @@ def _family(family: Family, runs: Sequence[Run], reasons: dict[int, str], seed: 
     }
 
 
-def _order(against: str, run: Run) -> tuple[float, ...]:
-    return (run.size, _place(against, run), run.seconds)
-
-
 def _place(against: str, run: Run) -> float:
     return run.size if against == "size" else run.found[against]
 
 
 def quantities(family: Family, runs: Sequence[Run]) -> Iterator[tuple[str, Points]]:
     """What is fitted: processor time in all and by stage, memory, boxes, and wall time where that is asked for."""
-    places = [_place(family.against, run) for run in runs]
-    yield "seconds", [(x, run.seconds) for x, run in zip(places, runs, strict=True)]
+
+    def points(value: Callable[[Run], float]) -> Points:
+        return [(_place(family.against, run), value(run)) for run in runs]
+
+    yield "seconds", points(lambda run: run.seconds)
     if family.wall:
-        yield "wall", [(x, run.wall) for x, run in zip(places, runs, strict=True)]
+        yield "wall", points(lambda run: run.wall)
     stages = list(dict.fromkeys(stage for run in runs for stage in run.stages))
-    if len(stages) > 1:
-        for stage in stages:
-            points = [(x, run.stages.get(stage, 0.0)) for x, run in zip(places, runs, strict=True)]
-            if any(seconds > MIN_SECONDS for _, seconds in points):
-                yield stage, [(x, max(seconds, 1e-6)) for x, seconds in points]
-    grown = [(x, max(run.memory.values())) for x, run in zip(places, runs, strict=True) if run.memory]
-    seen = [(x, mebibytes) for x, mebibytes in grown if mebibytes >= MIN_MEMORY]
+    for stage in stages if len(stages) > 1 else ():
+        if any(run.stages.get(stage, 0.0) > MIN_SECONDS for run in runs):
+            yield stage, points(lambda run, stage=stage: max(run.stages.get(stage, 0.0), 1e-6))  # type: ignore[misc]
+    seen = [(x, y) for x, y in points(lambda run: max(run.memory.values(), default=0.0)) if y >= MIN_MEMORY]
     if len({x for x, _ in seen}) > 2:
         yield "memory", seen
     if all("boxes" in run.found for run in runs):
-        yield "boxes", [(x, run.found["boxes"]) for x, run in zip(places, runs, strict=True)]
+        yield "boxes", points(lambda run: run.found["boxes"])
 
 
-def _rounded(run: dict[str, Any]) -> dict[str, Any]:
+def _rounded(run: Run) -> Run:
     """Seconds to 0.01 ms."""
-    stages = {stage: round(seconds, 5) for stage, seconds in run["stages"].items()}
-    return {**run, "seconds": round(run["seconds"], 5), "wall": round(run["wall"], 5), "stages": stages}
+    stages = {stage: round(seconds, 5) for stage, seconds in run.stages.items()}
+    return replace(run, seconds=round(run.seconds, 5), wall=round(run.wall, 5), stages=stages)

@@ -13,9 +13,9 @@ from __future__ import annotations
 import random
 from fractions import Fraction
 
-from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Slice
 from ptmcad.studies.bench.scaling.folds import with_parameters
+from ptmcad.studies.slices import ptm_slice
 from ptmcad.text.expressions import Expression, Term, axis
 
 SHIFT = Fraction(1, 100)
@@ -36,14 +36,15 @@ def bend(n: int, seed: int) -> Expression:
 
 def unloaded(n: int, seed: int) -> Slice:
     """No loads, rho = 1 + x, L2 = 1 + y + q(x, y): three curves, dense, of total degree n each; four regions."""
-    slice = _mirror("unloaded", n, {"L1": 1, "k": 100, "rho": "1 + x", "L2": "1 + y"}, ("-9/10", "19/20"))
+    ends = ("-9/10", "19/20")
+    slice = ptm_slice(f"unloaded-{n}", {"x": ends, "y": ends}, L1=1, k=100, rho="1 + x", L2="1 + y")
     return with_parameters(slice, L2=1 + axis(1) + bend(n, seed))
 
 
 def loaded(n: int, seed: int) -> Slice:
     """Equal bars and loads, F3 = F4 = -(1 + y + q(x, y)), k = 2, rho = 1/2 + x/3: two curves of total degree 6 n."""
-    parameters: dict[str, str | int] = {"L1": 1, "L2": 1, "k": 2, "rho": "1/2 + x/3", "F3": "-1 - y", "F4": "-1 - y"}
-    slice = _mirror("loaded", n, parameters, ("-4/5", "4/5"))
+    ends = ("-4/5", "4/5")
+    slice = ptm_slice(f"loaded-{n}", {"x": ends, "y": ends}, L1=1, L2=1, k=2, rho="1/2 + x/3", F3="-1 - y", F4="-1 - y")
     force = -(1 + axis(1) + bend(n, seed))
     return with_parameters(slice, F3=force, F4=force)
 
@@ -52,29 +53,6 @@ def digits(n: int, seed: int) -> Slice:
     """Equal bars and loads as in the paper's figure 3, with numbers of about n digits for L, k and F/y."""
     source = random.Random(f"digits {seed}")
     length, stiffness, force = ("".join(source.choice("1379") for _ in range(DIGITS)) for _ in range(3))
-    return slice_from_mapping(
-        {
-            "name": f"digits-{n}",
-            "mechanism": "ptm",
-            "parameters": {
-                "L1": f"1.00{length[:n]}",
-                "L2": f"1.00{length[:n]}",
-                "k": f"100.00{stiffness[:n]}",
-                "F3": f"1.00{force[:n]}*F",
-                "F4": f"1.00{force[:n]}*F",
-            },
-            "axes": {"rho": [0, 2], "F": [-10, 0]},
-        }
-    )
-
-
-def _mirror(name: str, n: int, parameters: dict[str, str | int], ends: tuple[str, str]) -> Slice:
-    """The slice over a square window of x and y."""
-    return slice_from_mapping(
-        {
-            "name": f"{name}-{n}",
-            "mechanism": "ptm",
-            "parameters": parameters,
-            "axes": {"x": list(ends), "y": list(ends)},
-        }
-    )
+    bar, load = f"1.00{length[:n]}", f"1.00{force[:n]}*F"
+    axes = {"rho": (0, 2), "F": (-10, 0)}
+    return ptm_slice(f"digits-{n}", axes, L1=bar, L2=bar, k=f"100.00{stiffness[:n]}", F3=load, F4=load)

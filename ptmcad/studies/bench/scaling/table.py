@@ -6,32 +6,30 @@ from collections.abc import Iterable, Mapping
 from statistics import median
 from typing import Any
 
-from ptmcad.studies.tables import markdown, measured_with
+from ptmcad.studies.tables import markdown, measured_with, page
 
 MANY = 1000
 _NAMES = {"seconds": "processor time", "wall": "wall time", "memory": "memory", "boxes": "boxes treated"}
 
 
+_INTRODUCTION = """
+Exponents p of cost = c x^p, by least squares in logarithms, with 5 % and 95 % bounds from resampled runs.
+Lower and upper are the slopes over the two halves of the range; where they differ, one exponent says little;
+where cost = a + c x^p fits, the fixed cost a is given, and the exponent beyond it with its bounds.
+Seconds are processor time unless they are called wall time; memory is the growth of the resident set.
+[What grows and why](../scaling.md) explains it. Written by `python -m ptmcad.studies.bench.scaling`.
+"""
+
+
 def to_markdown(report: Mapping[str, Any]) -> str:
     """The page."""
-    lines = [
-        "# Scaling",
-        "",
-        "Exponents p of cost = c x^p, by least squares in logarithms, with 5 % and 95 % bounds from resampled runs.",
-        "Lower and upper are the slopes over the two halves of the range; where they differ, one exponent says little;",
-        "where cost = a + c x^p fits, the fixed cost a is given, and the exponent beyond it with its bounds.",
-        "Seconds are processor time unless they are called wall time; memory is the growth of the resident set.",
-        "[What grows and why](../scaling.md) explains it. Written by `python -m ptmcad.studies.bench.scaling`.",
-        "",
-        f"Rounds: {report['rounds']}, seed {report['seed']}.",
-        "",
-        *measured_with(report),
-    ]
+    blocks: list[str | list[str]] = []
     for family in report["families"]:
-        lines += ["", f"## {family['title']}", "", f"Along {family['axis']}. Expected: {family['expected']}.", ""]
-        lines += [*_fits(family), "", *_runs(family)]
-        lines += [f"\nSize {size} has no figures: {reason}." for size, reason in family["reasons"].items()]
-    return "\n".join(lines) + "\n"
+        blocks += [f"## {family['title']}", f"Along {family['axis']}. Expected: {family['expected']}."]
+        blocks += [_fits(family), _runs(family)]
+        blocks += [f"Size {size} has no figures: {reason}." for size, reason in family["reasons"].items()]
+    rounds = f"Rounds: {report['rounds']}, seed {report['seed']}."
+    return page("# Scaling", _INTRODUCTION, rounds, *measured_with(report), *blocks)
 
 
 def grouped(family: Mapping[str, Any]) -> dict[float, list[Any]]:

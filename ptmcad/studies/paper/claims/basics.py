@@ -10,7 +10,7 @@ import sympy as sp
 from ptmcad.exact.models.potential import geometry_of
 from ptmcad.mechanism import ptm
 from ptmcad.studies.paper import printed
-from ptmcad.studies.paper.claim import Claim, Outcome, judge, unchecked
+from ptmcad.studies.paper.claim import Finding
 from ptmcad.studies.paper.claims.overall import when_infinite
 from ptmcad.studies.paper.slices import equilibria_at, heights, region_map
 from ptmcad.studies.paper.symbolic import (
@@ -44,17 +44,16 @@ from ptmcad.studies.paper.symbolic import (
 )
 
 
-def fixed_point() -> Outcome:
+def fixed_point() -> Finding:
     at = geometry_of(ptm()).nodes
     moving = tuple(
         name for name in ("A1", "A2") if any(any(sum(e) for e in p.to_dict()) for p in at[name])
     )  # fmt: skip
-    return judge(
+    return Finding(
         "A1" not in moving and "A2" not in moving,
-        (f"of the two ends of the base, {' and '.join(moving)} depends on a parameter (rho)",),
         {"moving": moving},
         corrected=moving == ("A2",),
-        right="point A1 is fixed; A2 moves along the x-axis",
+        said={"which": " and ".join(moving)},
     )
 
 
@@ -82,116 +81,78 @@ def degrees_of_freedom() -> tuple[int, int]:
     return (3 if regular else -1, 5 - 2 if independent and separate else -1)
 
 
-def three_dof() -> Outcome:
+def three_dof() -> Finding:
     by_coordinates, by_constraints = degrees_of_freedom()
     at = coordinates()
     actuated = all(p.free_symbols <= {rho} for p in at["A2"]) and at["A2"][0] == rho
-    return judge(
+    return Finding(
         by_coordinates == by_constraints == 3 and actuated,
-        (
-            "the nodes' positions have independent derivatives by rho, th1 and th2: their Gram determinant is "
-            "L1^2 L2^2 (1 + cos^2 th2)",
-            f"A2 on its axis, A3 and A4 have five coordinates, and the rods are two independent constraints: "
-            f"{by_constraints} degrees of freedom",
-            "A2, which the actuator moves, depends on rho alone",
-        ),
         {"by coordinates": by_coordinates, "by constraints": by_constraints, "A2 by rho alone": actuated},
     )
 
 
-def one_dof() -> Outcome:
+def one_dof() -> Finding:
     whole, _ = degrees_of_freedom()
     bound = len(sextic()) - 1
     _, only_there = when_infinite()
-    return judge(
+    return Finding(
         whole == 1,
-        (
-            f"the rods and the slider leave {whole} degrees of freedom, as section 2 says",
-            f"for a given rho there are at most {bound} equilibria (finitely many but for rho = 0 without loads): in "
-            "equilibrium the input decides, up to a choice among finitely many poses",
-        ),
         {"degrees of freedom": whole, "equilibria at most": bound, "finite": only_there},
         corrected=whole == 3 and bound == 6 and only_there,
-        right="three degrees of freedom, one of them actuated; equilibrium leaves one, for it fixes the other two up "
-        "to a choice among at most six poses (but for rho = 0 without loads)",
-        witness="section 2 of the paper counts three",
     )
 
 
-def potential_1() -> Outcome:
+def potential_1() -> Finding:
     x3, y3, x4, y4 = L1 * c1, L1 * s1, rho - L2 * c2, L2 * s2
     lengths = x4**2 + y4**2 + (x3 - rho) ** 2 + y3**2 + (x4 - x3) ** 2 + (y4 - y3) ** 2
     holds = equal(potential().subs(VERTICAL), k / 2 * lengths - F3 * y3 - F4 * y4)
-    return judge(holds, ("the model's potential is (1) with the nodes' coordinates put in",), {"holds": holds})
+    return Finding(holds, {"holds": holds})
 
 
-def potential_2() -> Outcome:
+def potential_2() -> Finding:
     ours = potential().subs(VERTICAL)
     as_printed, without = equal(ours, printed.potential_2(rho)), equal(ours, printed.potential_2(sp.Integer(1)))
-    return judge(
-        as_printed,
-        ("y3 = L1 sin th1 and y4 = L2 sin th2, so the work of the forces has no factor rho",),
-        {"printed": as_printed, "without rho": without},
-        corrected=without,
-        right="... - F3 L1 sin th1 - F4 L2 sin th2",
-    )
+    return Finding(as_printed, {"printed": as_printed, "without rho": without}, corrected=without)
 
 
-def _equation(number: int, printed_one: sp.Expr, right_one: sp.Expr, right: str) -> Outcome:
-    length = (L1, L2)[number]
-    ours = -gradient()[number].subs(VERTICAL) / length
-    as_printed, corrected = equal(ours, printed_one), equal(ours, right_one)
-    angle = number + 1
-    return judge(
-        as_printed,
-        (f"-(1/(L{angle} k)) dU/dth{angle} was compared with the printed equation, as polynomials",),
-        {"printed": as_printed, "right": corrected},
-        corrected=corrected,
-        right=right,
-    )
+def _equation(number: int, as_printed: sp.Expr, right: sp.Expr) -> Finding:
+    ours = -gradient()[number].subs(VERTICAL) / (L1, L2)[number]
+    holds, corrected = equal(ours, as_printed), equal(ours, right)
+    return Finding(holds, {"printed": holds, "right": corrected}, corrected=corrected, said={"angle": number + 1})
 
 
-def equation_3() -> Outcome:
-    return _equation(1, printed.EQUATION_3, printed.EQUATION_3, "")
+def equation_3() -> Finding:
+    return _equation(1, printed.EQUATION_3, printed.EQUATION_3)
 
 
-def equation_4() -> Outcome:
-    right = "L2 sin(th2 + th1) - 2 rho sin th1 + F3' cos th1 = 0"
-    return _equation(0, printed.EQUATION_4_PRINTED, printed.EQUATION_4, right)
+def equation_4() -> Finding:
+    return _equation(0, printed.EQUATION_4_PRINTED, printed.EQUATION_4)
 
 
-def both_kinds() -> Outcome:
+def both_kinds() -> Finding:
     found = [(c.total, c.stable) for f in ("fig2", "fig3", "fig4") for c in region_map(f).cells]
     mixed = all(total is not None and stable is not None and 0 < stable < total for total, stable in found)
-    return judge(
-        mixed,
-        (f"in each of the {len(found)} cells of figs. 2 to 4 some equilibria are stable and some are not",),
-        {"cells": len(found), "both kinds everywhere": mixed},
-    )
+    return Finding(mixed, {"cells": len(found), "both kinds everywhere": mixed})
 
 
-def equation_5() -> Outcome:
+def equation_5() -> Finding:
     ours = half_angle_equations()[0].subs(VERTICAL) * k
     holds = bool(sp.expand(ours - printed.EQUATION_5) == 0)
-    return judge(holds, ("(5) is dU/dth1 in half angles, divided by L1 k",), {"printed": holds})
+    return Finding(holds, {"printed": holds})
 
 
-def equation_6() -> Outcome:
+def equation_6() -> Finding:
     ours = half_angle_equations()[1].subs(VERTICAL) * k
     as_printed, right = (
         bool(sp.expand(ours - e) == 0) for e in (printed.EQUATION_6_PRINTED, printed.EQUATION_6)
     )  # fmt: skip
     agrees = bool(sp.expand(printed.EQUATION_6.subs({F3: F4, L2: L1}) - printed.EQUATION_11) == 0)
-    return judge(
-        as_printed,
-        ("(6) is dU/dth2 in half angles, divided by L2 k", "the paper's own (11) has the right signs"),
-        {"printed": as_printed, "right": right, "11 agrees with the right one": agrees},
-        corrected=right,
-        right="... - F4' t1^2 + F4' t2^2 ... in place of + F4' t1^2 - F4' t2^2",
+    return Finding(
+        as_printed, {"printed": as_printed, "right": right, "11 agrees with the right one": agrees}, corrected=right
     )
 
 
-def degree_six() -> Outcome:
+def degree_six() -> Finding:
     first, second = (e.subs({**VERTICAL, k: 1}) for e in half_angle_equations())
     resultant, _, _ = quadratic_elimination(first, second, t1)
     polynomial = sp.Poly(resultant, t2)
@@ -199,20 +160,14 @@ def degree_six() -> Outcome:
     coefficients = sextic()  # raises unless the factor 1 + t2^2 is there once
     left = len(coefficients) - 1
     in_t1 = bool(polynomial.has(t1))
-    return judge(
+    return Finding(
         in_t1 and left == 6,
-        (
-            f"with all parameters symbolic, the resultant by t1 has degree {degree} in t2; "
-            f"divided by 1 + t2^2, degree {left}",
-            "when t1 is eliminated, t2 remains, so the factor is 1 + t2^2 and not 1 + t1^2",
-        ),
         {"degree of the resultant": degree, "degree left": left, "contains t1": in_t1},
         corrected=left == 6 and degree == 8 and not in_t1,
-        right="eliminating t1 leaves a polynomial of degree 6 in t2 after the factor 1 + t2^2 is cleared",
     )
 
 
-def linear_back_solve() -> Outcome:
+def linear_back_solve() -> Finding:
     first, second = (e.subs({**VERTICAL, k: 1}) for e in half_angle_equations())
     _, a, b = quadratic_elimination(first, second, t1)
     generic = a != 0
@@ -221,98 +176,40 @@ def linear_back_solve() -> Outcome:
     )  # fmt: skip
     counted = equilibria_at(L2="3/2", rho=1)
     flat = sum(heights(e)[1] == 0 and e.center[2] > 0 for e in counted.solutions)
-    return judge(
+    return Finding(
         generic and not fails,
-        (
-            "the combination of (5) and (6) without t1^2 is a t1 + b with a not identically zero, so t1 follows "
-            "from t2",
-            "where a and b both vanish it says nothing: without loads this is so at t2 = 0, "
-            f"over which there are {flat} equilibria (th1 = 0 and th1 = pi)",
-        ),
         {"generic": generic, "fails unloaded at t2 = 0": fails, "equilibria over t2 = 0": flat},
         corrected=generic,
-        right="the linear equation gives t1 from t2 (t1 is what was eliminated), unless both its coefficients vanish",
-        witness="F3 = F4 = 0, t2 = 0",
     )
 
 
-def up_to_six() -> Outcome:
+def up_to_six() -> Finding:
     counts = equilibria_at(L2="3/2", rho="7/10", F3=-10, F4=-10)
     bound = len(sextic()) - 1
-    return judge(
-        bound == 6 and counts.total == 6,
-        (
-            f"the eliminated polynomial has degree {bound}, and {counts.total} real equilibria are attained "
-            "at L1 = 1, L2 = 3/2, rho = 7/10, F3 = F4 = -10, k = 100",
-        ),
-        {"bound": bound, "attained": counts.total},
-    )
+    return Finding(bound == 6 and counts.total == 6, {"bound": bound, "attained": counts.total})
 
 
-def sylvester() -> Outcome:
+def sylvester() -> Finding:
     h11, h12, h22 = hessian()
     completed = equal(h11 * (h11 * t1**2 + 2 * h12 * t1 + h22), (h11 * t1 + h12) ** 2 + h11 * h22 - h12**2)
-    return judge(
-        completed,
-        ("h11 (h11 x^2 + 2 h12 x + h22) = (h11 x + h12)^2 + det H, so both signs positive is positive definite",),
-        {"identity": completed},
-    )
+    return Finding(completed, {"identity": completed})
 
 
-def large_minors() -> Outcome:
+def large_minors() -> Finding:
     h11 = sp.expand(hessian()[0].subs(VERTICAL))
     terms, whole = len(h11.args), len(sp.expand(determinant().subs(VERTICAL)).args)
     short = equal(h11, L1 * (2 * k * rho * c1 + F3 * s1 - k * L2 * printed.COS_SUM))
-    numerator = sp.numer(sp.together(half_angles(determinant().subs(VERTICAL))))
-    return unchecked(
-        "how long an expression has to be to be large is no question of mathematics",
-        f"as trigonometric polynomials H(1,1) has {terms} terms: L1 (2 k rho cos th1 + F3 sin th1 - k L2 "
-        "cos(th1 + th2)) "
-        f"({'checked' if short else 'NOT the case'}), det H has {whole}",
-        f"in half angles the numerator of det H has {len(sp.Poly(numerator, t1, t2).terms())} terms in t1, t2",
-    )()
+    numerator = sp.Poly(sp.numer(sp.together(half_angles(determinant().subs(VERTICAL)))), t1, t2)
+    checked = "checked" if short else "NOT the case"
+    said = {"terms": terms, "checked": checked, "whole": whole, "numerator": len(numerator.terms())}
+    return Finding(
+        False, {}, said=said, missing="how long an expression has to be to be large is no question of mathematics"
+    )
 
 
-def cleared_equations_agree() -> Outcome:
+def cleared_equations_agree() -> Finding:
     holds = all(
         bool(sp.expand(cleared(g.subs(VERTICAL)) - e) == 0)
         for g, e in zip(gradient(), (L1 * printed.EQUATION_5, L2 * printed.EQUATION_6), strict=True)
     )
-    return judge(
-        holds,
-        (
-            "the substitution loses the angle pi: t is infinite there, and an equilibrium with th2 = pi is a root at "
-            "infinity, where the degree drops",
-        ),
-        {"holds": holds},
-    )
-
-
-CLAIMS = (
-    Claim("2-fixed-point", "2", "Point A1A2 is fixed", "A1 is fixed while A2 slides.", fixed_point),
-    Claim("2-dof", "2", "This mechanism has three dof", "One actuated and two compliant degrees of freedom.",
-          three_dof),
-    Claim("a-one-dof", "abstract", "planar one-degree-of-freedom (dof) tensegrity mechanisms",
-          "The mechanism has one degree of freedom.", one_dof),
-    Claim("2-zero-free-length", "2", "equivalent zero free lengths springs can be designed",
-          "Springs of free length zero can be built.", unchecked("a statement about hardware, taken from references")),
-    Claim("2-eq1", "2", "U = k/2 sum l_i^2 - F3 y3 - F4 y4", "Equation (1), the potential.", potential_1),
-    Claim("2-eq2", "2", "U can be shown to take the form", "Equation (2), the potential in the angles.", potential_2),
-    Claim("2-eq3", "2", "Eq. (3)", "Equation (3), equilibrium of the second rod.", equation_3),
-    Claim("2-eq4", "2", "Eq. (4)", "Equation (4), equilibrium of the first rod.", equation_4),
-    Claim("2-both-kinds", "2", "both stable and unstable solutions will be obtained",
-          "The equations have stable and unstable solutions.", both_kinds),
-    Claim("3-half-angles", "3", "resorting to the tan-half-angle substitutions",
-          "Equations (3), (4) become polynomials in t1, t2.", cleared_equations_agree),
-    Claim("3-eq5", "3", "Eq. (5)", "Equation (5).", equation_5),
-    Claim("3-eq6", "3", "Eq. (6)", "Equation (6).", equation_6),
-    Claim("3-degree-6", "3", "a polynomial of degree 6 is obtained after clearing the factor",
-          "Eliminating t1 gives degree 6 after a factor 1 + t1^2 is cleared.", degree_six),
-    Claim("3-linear", "3", "t2 is then solved with a linear equation",
-          "The other unknown follows from a linear equation.", linear_back_solve),
-    Claim("3-up-to-6", "3", "the mechanism may have up to 6 solutions", "At most six equilibria, and six occur.",
-          up_to_six),
-    Claim("3-minors", "3", "if its leading principal minors are greater than zero",
-          "Stable exactly when H(1,1) > 0 and det H > 0 (H nonsingular).", sylvester),
-    Claim("3.3-large", "3.3", "Their expression is large", "The minors of H are long expressions.", large_minors),
-)  # fmt: skip
+    return Finding(holds, {"holds": holds})

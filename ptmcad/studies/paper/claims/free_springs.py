@@ -21,20 +21,21 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import classify
 from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError
-from ptmcad.question.config import slice_from_mapping
 from ptmcad.studies.paper import printed
-from ptmcad.studies.paper.claim import Claim, Outcome, judge, unchecked
+from ptmcad.studies.paper.claim import Fact, Finding
 from ptmcad.studies.paper.claims.extensions import (
     AT_ELIMINATED,
     ELIMINATED,
     TWELVE,
     TWENTY_SIX,
+    design_text,
     elimination,
     equilibria_with,
     signed_solutions_with,
 )
 from ptmcad.studies.paper.free_potential import LENGTHS, derivative, engine_gradient, l0, squared_lengths
 from ptmcad.studies.paper.symbolic import F3, F4, VERTICAL, Expr, coordinates, equal, potential, vanishes
+from ptmcad.studies.slices import ptm_slice
 
 LOADED = tuple(Fraction(x) for x in ("1/4", "2"))
 """rho, beside that of `ELIMINATED`, for which its other values are eliminated too."""
@@ -42,10 +43,9 @@ WITHOUT_LOADS = tuple(Fraction(x) for x in ("1/2", "5/4", "2"))
 """rho for which the same design is eliminated without loads."""
 PRINTED_ROOTS = (12, 30)
 
-_FIXED: Mapping[str, str | int] = {"L1": 1, "k": 100, "F3": -10, "F4": -10}
-_MAPS: Mapping[str, tuple[Mapping[str, str | int], Mapping[str, list[str]]]] = {
-    "l0 = 1/20": ({"l0": "1/20"}, {"rho": ["1/4", "2"], "L2": ["0", "2"]}),
-    "L2 = 3/2": ({"L2": "3/2"}, {"rho": ["1/4", "5/4"], "l0": ["0", "1/4"]}),
+_MAPS: Mapping[str, tuple[Mapping[str, str], Mapping[str, tuple[str, str]]]] = {
+    "l0 = 1/20": ({"l0": "1/20"}, {"rho": ("1/4", "2"), "L2": ("0", "2")}),
+    "L2 = 3/2": ({"L2": "3/2"}, {"rho": ("1/4", "5/4"), "l0": ("0", "1/4")}),
 }
 """The plane of fig. 4 with a free length, and the free length against the input; `ELIMINATED` is in the second."""
 TOLERANCE = Fraction(1, 10)
@@ -57,7 +57,7 @@ def _work() -> Expr:
     return F3 * at["A3"][1] + F4 * at["A4"][1]
 
 
-def potential_17() -> Outcome:
+def potential_17() -> Finding:
     whole = printed.potential_17(LENGTHS, l0, _work())
     roots = {length: sp.sqrt(square) for length, square in zip(LENGTHS, squared_lengths(), strict=True)}
     without = equal(sp.expand(whole.subs(l0, 0)).subs(roots), potential().subs(VERTICAL))
@@ -67,15 +67,8 @@ def potential_17() -> Outcome:
         for n, g in enumerate(engine_gradient(), 1)
     )
     odd = sp.Poly(whole, *LENGTHS).coeff_monomial(LENGTHS[0])
-    return judge(
+    return Finding(
         without and all(follows),
-        (
-            "with l0 = 0 (17) is the potential of the model without free lengths",
-            "its derivatives by th1 and th2 are, for all parameters, the equations that the certified engine solves; "
-            "these were translated from the formulas that it evaluates",
-            f"the odd powers of the lengths, which keep the square roots, are {odd} times l1 + l2 + l3: none for "
-            "l0 = 0",
-        ),
         {"(1) for l0 = 0": without, "derivatives": tuple(map(int, follows)), "coefficient of l1": str(odd)},
     )
 
@@ -97,30 +90,30 @@ def _roots_at(base: Fraction, loads: tuple[Fraction, Fraction]) -> int:
     return eliminate(*squared_equations(base, rods, free, loads)).real_roots
 
 
-def twelve_to_thirty() -> Outcome:
+def twelve_to_thirty() -> Finding:
     found = real_roots()
     low, high = PRINTED_ROOTS
     inside = {name: n for name, n in found.items() if low <= n <= high}
     outside = {name: n for name, n in found.items() if not low <= n <= high}
     listed = "; ".join(f"{n} at {name}" for name, n in found.items())
     least, most = min(found.values()), max(found.values())
-    return judge(
+    return Finding(
         not outside,
-        (
-            f"exactly, with L1 = 1, L2 = 3/2, l0 = 1/5, different real roots: {listed}",
-            "the paper does not give the values at which it saw 12 to 30 real solutions, so what it saw is not "
-            "contradicted: such numbers occur, but they are no bounds",
-        ),
         {"real roots": tuple(found.values()), "within 12 to 30": tuple(inside.values())},
         corrected=bool(inside) and bool(outside),
-        right=f"the number depends on the design: from {least} to {most} at the {len(found)} designs computed, within "
-        f"12 to 30 at {len(inside)} of them",
-        witness="; ".join(f"{n} real roots at {name}" for name, n in outside.items()),
+        said={
+            "listed": listed,
+            "least": least,
+            "most": most,
+            "number": len(found),
+            "inside": len(inside),
+            "witness": "; ".join(f"{n} real roots at {name}" for name, n in outside.items()),
+        },
     )
 
 
-def acceptable() -> Outcome:
-    evidence, facts = [], {}
+def acceptable() -> Finding:
+    sentences, facts = [], dict[str, Fact]()
     slack = loose = 0
     for design in (AT_ELIMINATED, TWELVE, TWENTY_SIX):
         poses = equilibria_with(design)
@@ -128,35 +121,29 @@ def acceptable() -> Outcome:
         stable_slack = sum(e.tense is False for e in stable)
         unstable_tense = sum(e.tense is True and not e.stable for e in poses)
         slack, loose = slack + stable_slack, loose + unstable_tense
-        text = ", ".join(design)
-        evidence.append(
-            f"at (rho, L1, L2, l0, F3/k, F4/k) = ({text}), of {len(poses)} equilibria {len(stable)} are stable, "
+        sentences.append(
+            f"at {design_text(design)}, of {len(poses)} equilibria {len(stable)} are stable, "
             f"{stable_slack} of these with a spring shorter than l0; {unstable_tense} unstable ones have all springs "
             "longer than l0"
         )
         facts[f"rho = {design[0]}"] = (len(stable), stable_slack, unstable_tense)
-    return judge(
-        slack > 0 and loose > 0,
-        (*evidence, "so neither of the two conditions follows from the other, and both have to be verified"),
-        facts,
-    )
+    return Finding(slack > 0 and loose > 0, facts, said={"designs": tuple(sentences)})
 
 
 @lru_cache(maxsize=len(_MAPS))
 def certified(name: str) -> RegionMap:
     """The certified map of one of the slices with free lengths."""
     parameters, axes = _MAPS[name]
-    record = {"name": "free", "mechanism": "ptm", "parameters": {**_FIXED, **parameters}, "axes": axes,
-              "count": "stable"}  # fmt: skip
-    return classify(slice_from_mapping(record), tolerance=TOLERANCE)
+    slice = ptm_slice("free", axes, L1=1, k=100, F3=-10, F4=-10, **parameters)
+    return classify(slice, tolerance=TOLERANCE, count="stable")
 
 
-def difficult() -> Outcome:
+def difficult() -> Finding:
     try:
         import_module("ptmcad.certified.compiled")
     except ConfigError as missing:
-        return unchecked(f"the map that decides it cannot be computed here: {missing}")()
-    evidence, shares, counts = [], [], []
+        return Finding(False, {}, missing=f"the map that decides it cannot be computed here: {missing}")
+    sentences, shares, counts = [], [], []
     whole = True
     for name, (_, axes) in _MAPS.items():
         found = certified(name)
@@ -167,7 +154,7 @@ def difficult() -> Outcome:
         shares.append(share)
         counts.append(stable)
         window = ", ".join(f"{axis} in [{low}, {high}]" for axis, (low, high) in axes.items())
-        evidence.append(
+        sentences.append(
             f"{window} with L1 = 1, {name}, F3 = F4 = -10, k = 100: the number of stable equilibria is proved to be "
             f"{' or '.join(map(str, stable))} on all but {float(share):.2g} of the window"
         )
@@ -176,30 +163,12 @@ def difficult() -> Outcome:
     solutions, poses = signed_solutions_with(AT_ELIMINATED), equilibria_with(AT_ELIMINATED)
     # all equilibria are among the proved ones, so the number of stable ones is exact
     alone = sum(e.stable for e in poses) if solutions.equilibria == len(poses) else -1
-    evidence.append(
-        f"at rho = {rho}, l0 = {free} the second map says {there} stable, and elimination finds {alone}: two ways "
-        "that share no code"
-    )
     seen = sorted({s for each in counts for s in each})
-    return judge(
-        False,  # a forecast of effort is refuted by a classification; no number of failures would confirm it
-        tuple(evidence),
-        {
-            "maps": len(_MAPS), "stable counts": tuple(seen), "fine enough": whole, "at the eliminated design":
-            (there if there is not None else -1, alone),
-        },
-        corrected=whole and there == alone and seen == [1, 2],
-        right="branch and prune in interval arithmetic classifies such slices within this run, with proved counts on "
-        f"all but {float(max(shares)):.2g} of each window; it encloses the curves and does not compute them",
-    )  # fmt: skip
-
-
-CLAIMS = (
-    Claim("5.2-eq17", "5.2", "Eq. (1) becomes", "Equation (17), the potential with free lengths.", potential_17),
-    Claim("5.2-real", "5.2", "12 to 30 real solutions", "The eliminated polynomial has 12 to 30 real roots.",
-          twelve_to_thirty),
-    Claim("5.2-acceptable", "5.2", "verified to be greater than l0",
-          "Whether all springs are longer than l0 has to be verified in addition to stability.", acceptable),
-    Claim("5.2-difficult", "5.2", "a classification study as in the case l0 = 0 will be difficult",
-          "A classification with free lengths takes long.", difficult),
-)  # fmt: skip
+    facts: dict[str, Fact] = {
+        "maps": len(_MAPS), "stable counts": tuple(seen), "fine enough": whole,
+        "at the eliminated design": (-1 if there is None else there, alone),
+    }  # fmt: skip
+    # a forecast of effort is refuted by a classification; no number of failures would confirm it
+    said = {"windows": tuple(sentences), "there": there, "alone": alone, "rho": rho, "free": free,
+            "share": float(max(shares))}  # fmt: skip
+    return Finding(False, facts, corrected=whole and there == alone and seen == [1, 2], said=said)

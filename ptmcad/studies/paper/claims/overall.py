@@ -14,8 +14,7 @@ from random import Random
 import sympy as sp
 
 from ptmcad.answer.regionmap import Status
-from ptmcad.studies.paper.claim import Claim, Outcome, Verdict, judge, unchecked
-from ptmcad.studies.paper.claims.unloaded import always_parallelogram, singular_flat
+from ptmcad.studies.paper.claim import Finding
 from ptmcad.studies.paper.claims.unloaded_map import stable_by_region
 from ptmcad.studies.paper.printed import SIN_SUM
 from ptmcad.studies.paper.slices import FIGURES, equilibria_at, ranges, region_map
@@ -58,37 +57,20 @@ def when_infinite() -> tuple[bool, bool]:
     return at_base, all(steps)
 
 
-def up_to_six() -> Outcome:
+def up_to_six() -> Finding:
     bound = len(sextic()) - 1
     attained = max(c.total or 0 for f in FIGURES for c in region_map(f).cells)
-    return judge(
-        bound == 6 and attained == 6,
-        (
-            f"the eliminated polynomial has degree {bound} with all parameters symbolic; {attained} real "
-            "equilibria occur in "
-            "the figures",
-        ),
-        {"bound": bound, "attained": attained},
-    )
+    return Finding(bound == 6 and attained == 6, {"bound": bound, "attained": attained})
 
 
-def always_up_to_six() -> Outcome:
+def always_up_to_six() -> Finding:
     at_base, only_there = when_infinite()
     circle = all(sp.expand(g.subs(UNLOADED).subs(rho, 0) + k * L1 * L2 * SIN_SUM) == 0 for g in gradient())
     generic = up_to_six()
-    return judge(
-        generic.verdict is Verdict.CONFIRMED and only_there and not at_base,
-        (
-            *generic.evidence,
-            "without loads and with rho = 0 it vanishes identically: both derivatives are -k L1 L2 sin(th1 + "
-            "th2), so every "
-            "pose with th1 + th2 = 0 or pi is an equilibrium",
-            f"this is the only exception (from the coefficients, one after the other): {only_there}",
-        ),
+    return Finding(
+        generic.printed and only_there and not at_base,
         {**generic.facts, "infinite at rho = 0 unloaded": at_base and circle, "only there": only_there},
-        corrected=generic.verdict is Verdict.CONFIRMED and at_base and only_there and circle,
-        right="at most six, but for rho = 0 without loads, where there are infinitely many",
-        witness="rho = 0, F3 = F4 = 0",
+        corrected=generic.printed and at_base and only_there and circle,
     )
 
 
@@ -106,22 +88,20 @@ def allowed_and_seen() -> tuple[frozenset[tuple[int, int]], frozenset[tuple[int,
     return frozenset(allowed), frozenset((t or 0, s or 0) for t, s in seen)
 
 
-def one_or_two_stable() -> Outcome:
+def one_or_two_stable() -> Finding:
     allowed, seen = allowed_and_seen()
     stable = {s for _, s in allowed}
-    return judge(
+    return Finding(
         stable == {1, 2} and seen <= allowed,
-        (
-            "on the torus minima - saddles + maxima = 0 with at least one minimum, one maximum and two saddles; "
-            "with at "
-            f"most six critical points (total, stable) is one of {sorted(allowed)}",
-            f"seen in the cells of the five maps and at {POINTS} random points: {sorted(seen)}",
-        ),
-        {"allowed": tuple(f"{a},{b}" for a, b in sorted(allowed)), "seen": tuple(f"{a},{b}" for a, b in sorted(seen))},
+        {
+            "allowed": tuple(f"{a},{b}" for a, b in sorted(allowed)),
+            "seen": tuple(f"{a},{b}" for a, b in sorted(seen)),
+        },
+        said={"pairs": sorted(allowed), "POINTS": POINTS, "seen pairs": sorted(seen)},
     )
 
 
-def constant_width() -> Outcome:
+def constant_width() -> Finding:
     widths = {}
     for length2 in ("1/2", "1", "2"):
         (two,) = (r for r in ranges("fig2", "rho", length2) if r.stable == 2)
@@ -131,58 +111,21 @@ def constant_width() -> Outcome:
         abs(v - w) < Fraction(1, 10**9) for v, w in zip(values, (Fraction(1, 2), Fraction(1), Fraction(1)), strict=True)
     )
     mirrored = bool(stable_by_region().facts["two: mirror images"])
-    return judge(
+    return Finding(
         all(abs(v - values[0]) < Fraction(1, 10**9) for v in values),
-        (
-            "width of the two-solution range: "
-            "" + ", ".join(f"{float(v):.9g} at L2 = {x}" for x, v in zip(widths, values,
-                                                                                                     strict=True)),
-            f"the two stable solutions are mirror images of each other: {mirrored}",
-        ),
         {"widths": tuple(f"{float(v):.9g}" for v in values), "mirror images": mirrored},
         corrected=close and mirrored,
-        right="the range is |L1 - L2|/2 < rho < (L1 + L2)/2, of width min(L1, L2): constant only while L2 >= L1",
-        witness="L1 = 1: width 1/2 at L2 = 1/2, 1 at L2 = 2",
-    )  # fmt: skip
+        said={"widths listed": ", ".join(f"{float(v):.9g} at L2 = {x}" for x, v in zip(widths, values, strict=True))},
+    )
 
 
-def computer_algebra() -> Outcome:
+def computer_algebra() -> Finding:
     maps = {figure: region_map(figure) for figure in FIGURES}
     exact = sum(m.status is Status.EXACT and m.undetermined == 0 for m in maps.values())
     counted = all(c.total is not None and c.stable is not None for m in maps.values() for c in m.cells)
     cells = ", ".join(f"{len(m.cells)} of {figure}" for figure, m in maps.items())
-    return judge(
+    return Finding(
         exact == len(FIGURES) and counted,
-        (
-            f"{exact} of the {len(FIGURES)} slices were mapped by discriminant variety and open CAD with nothing left "
-            f"undetermined; all cells have exact counts: {cells}",
-        ),
         {"exact maps": exact, "all counted": counted},
+        said={"figures": len(FIGURES), "cells": cells},
     )
-
-
-CLAIMS = (
-    Claim("a-six", "abstract", "exhibit up to six equilibrium configurations",
-          "At most six equilibria, and six occur.", up_to_six),
-    Claim("a-stable", "abstract", "of which one or two are stable", "One or two equilibria are stable.",
-          one_or_two_stable),
-    Claim("1-always-six", "1", "there are always up to six equilibrium solutions",
-          "At most six equilibria for all parameters.", always_up_to_six),
-    Claim("1-stable", "1", "at most one or two are stable", "One or two equilibria are stable.", one_or_two_stable),
-    Claim("1-complicated", "1", "the algebra involved in the stability analysis may prove very complicated",
-          "The stability analysis is complicated.", unchecked("a judgement of effort")),
-    Claim("1-references", "1", "Most results on tensegrity mechanisms have been published recently",
-          "The state of the art.", unchecked("statements about references and applications")),
-    Claim("c-degree-6", "conclusions", "a univariate polynomial of degree 6 must be solved",
-          "Degree 6, one or two stable equilibria.", one_or_two_stable),
-    Claim("c-width", "conclusions", "for a range of the input prismatic joint which is of constant width",
-          "Unloaded, the range with two stable equilibria has constant width.", constant_width),
-    Claim("c-parallelogram", "conclusions", "the mechanism remains always in a parallelogram configuration",
-          "The unloaded mechanism is always a parallelogram.", always_parallelogram),
-    Claim("c-singular", "conclusions", "one flat stable solution, which is singular",
-          "The stable flat pose is singular.", singular_flat),
-    Claim("c-tools", "conclusions", "can be treated using computer algebra tools",
-          "Without free lengths computer algebra does it.", computer_algebra),
-    Claim("c-store", "conclusions", "might be of interest to store the mechanism", "A flat pose is useful for storage.",
-          unchecked("a suggestion for use")),
-)  # fmt: skip

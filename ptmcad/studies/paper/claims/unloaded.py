@@ -10,7 +10,7 @@ from fractions import Fraction
 import sympy as sp
 
 from ptmcad.studies.paper import printed
-from ptmcad.studies.paper.claim import Claim, Outcome, judge
+from ptmcad.studies.paper.claim import Finding
 from ptmcad.studies.paper.slices import equilibria_at, heights
 from ptmcad.studies.paper.symbolic import (
     FLAT,
@@ -52,17 +52,17 @@ def on_triangle(expression: Expr) -> Expr:
     return sp.factor(sp.cancel(sp.together(total)))
 
 
-def equations_7_8() -> Outcome:
+def equations_7_8() -> Finding:
     holds = all(
         equal(-g.subs(UNLOADED) / (length * k), e)
         for g, length, e in zip(gradient(), (L1, L2), (printed.EQUATION_8, printed.EQUATION_7), strict=True)
     )
-    return judge(holds, ("(7) and (8) are the gradient without loads, divided by -L2 k and -L1 k",), {"holds": holds})
+    return Finding(holds, {"holds": holds})
 
 
-def four_flat() -> Outcome:
+def four_flat() -> Finding:
     holds = all(sp.expand(g.subs(UNLOADED).subs(flat)) == 0 for g in gradient() for flat in FLAT)
-    return judge(holds, ("the gradient vanishes at each pair of angles 0 or pi, for all lengths",), {"holds": holds})
+    return Finding(holds, {"holds": holds})
 
 
 def flat_determinants() -> dict[str, Expr]:
@@ -71,7 +71,7 @@ def flat_determinants() -> dict[str, Expr]:
     return {name: sp.factor(whole.subs(flat)) for name, flat in zip(FLAT_NAMES, FLAT, strict=True)}
 
 
-def singular_flat() -> Outcome:
+def singular_flat() -> Finding:
     found = flat_determinants()
     singular = all(d == 0 for d in found.values())
     loaded = tuple(
@@ -80,28 +80,19 @@ def singular_flat() -> Outcome:
     )  # fmt: skip
     near = equilibria_at(L2=1, rho=2, F3="-1/1000", F4="-1/1000")
     resisting = sum(e.center[0] > Fraction(99, 100) for e in near.stable_solutions)
-    return judge(
+    return Finding(
         singular,
-        (
-            "det H at the flat equilibria: " + "; ".join(f"{n}: {d}" for n, d in found.items()),
-            "with a vertical force no flat configuration is an equilibrium exactly, but where det H is not zero "
-            "there is "
-            "one nearby: the stiffness against the force is finite and positive at the stable flat one",
-        ),
         {
             "determinants": tuple(str(d) for d in found.values()),
             "flat equilibria under vertical load": loaded,
             "stable ones near the flat one under a small load": resisting,
         },
         corrected=all(d != 0 for d in found.values()) and not loaded and resisting == 1,
-        right="the flat equilibria are regular (det H is not zero) except where rho = 0, 2 rho = L1 + L2 or "
-        "2 rho = |L1 - L2|; "
-        "a vertical force displaces them, with finite stiffness",
-        witness="L1 = L2 = 1, rho = 2: det H = 8 k^2 at th1 = th2 = 0, a stable equilibrium",
+        said={"determinants listed": "; ".join(f"{n}: {d}" for n, d in found.items())},
     )
 
 
-def two_more() -> Outcome:
+def two_more() -> Finding:
     triangle = all(sp.expand(on_triangle(g.subs(UNLOADED))) == 0 for g in gradient())
     absent = equilibria_at(L2="3/2", rho=2).total
     present = equilibria_at(L2="3/2", rho=1).total
@@ -112,14 +103,8 @@ def two_more() -> Outcome:
     acute_fails = not all(
         sp.expand(on_triangle(g.subs(UNLOADED).subs(other, simultaneous=True))) == 0 for g in gradient()
     )
-    return judge(
+    return Finding(
         bool(cosine >= 0),  # whatever Q and R1 are, which the paper does not say, cos(arctan) is positive
-        (
-            f"the triangle with sides L1, L2 and 2 rho solves (7) and (8) for all lengths: {triangle}",
-            f"equilibria in all: {present} at L2 = 3/2, rho = 1; {absent} at rho = 2, where there is no such triangle",
-            f"at L2 = 3/2, rho = 1/2 the angle th1 is obtuse, cos th1 = {cosine}; arctan gives th1 - pi, no "
-            "equilibrium",
-        ),
         {
             "triangle": triangle,
             "total inside": present,
@@ -128,40 +113,25 @@ def two_more() -> Outcome:
             "arctan fails": acute_fails,
         },
         corrected=triangle and present == 6 and absent == 4 and cosine < 0 and acute_fails,
-        right="cos th1 = (4 rho^2 + L1^2 - L2^2)/(4 rho L1), cos th2 = (4 rho^2 + L2^2 - L1^2)/(4 rho L2), "
-        "sines of equal "
-        "sign, L1 sin th1 = L2 sin th2; real for |L1 - L2| < 2 rho < L1 + L2; with arctan of two arguments",
-        witness="L1 = 1, L2 = 3/2, rho = 1/2",
     )
 
 
-def parallelogram() -> Outcome:
+def parallelogram() -> Finding:
     level = True  # L1 s1 = L2 s2 is how the triangle was put in; that it solves the equations is checked here
     solves = all(sp.expand(on_triangle(g.subs(UNLOADED))) == 0 for g in gradient())
     width = sp.cancel(sp.together(L1 * COS1 - (rho - L2 * COS2)))
-    return judge(
-        solves and level and width == rho,
-        (f"with L1 sin th1 = L2 sin th2 the gradient vanishes, and x3 - x4 = {width}",),
-        {"solves": solves, "x3 - x4": str(width)},
-    )
+    return Finding(solves and level and width == rho, {"solves": solves, "x3 - x4": str(width)})
 
 
-def always_parallelogram() -> Outcome:
+def always_parallelogram() -> Finding:
     flat = [sp.expand((L1 * c1 - (rho - L2 * c2)).subs(f)) for f in FLAT]
     stable = equilibria_at(L2=1, rho=2).stable_solutions
     is_flat = [heights(e) for e in stable] == [(0, 0)]
-    return judge(
+    return Finding(
         all(sp.expand(x - rho) == 0 for x in flat),
-        (
-            "x3 - x4 is rho at the non-flat equilibria, but at the flat ones " + ", ".join(map(str, flat)),
-            "where there is one stable equilibrium it is a flat one, so outside the two-solution range the "
-            "mechanism is "
-            "in no parallelogram",
-        ),
         {"x3 - x4 flat": tuple(map(str, flat)), "only stable one is flat at L2 = 1, rho = 2": is_flat},
-        corrected=is_flat and parallelogram().verdict.value == "confirmed",
-        right="it is a parallelogram in the non-flat equilibria, that is for |L1 - L2| < 2 rho < L1 + L2 only",
-        witness="L1 = L2 = 1, rho = 2: the only stable pose has A3 = (1, 0), A4 = (1, 0), x3 - x4 = 0",
+        corrected=is_flat and parallelogram().printed,
+        said={"flat": ", ".join(map(str, flat))},
     )
 
 
@@ -174,7 +144,7 @@ def stable_flat_conditions() -> dict[str, tuple[Expr, Expr]]:
     }
 
 
-def three_flat_unstable() -> Outcome:
+def three_flat_unstable() -> Finding:
     conditions = stable_flat_conditions()
     # which flat equilibrium is stable at each of four designs, one in each part of the plane
     designs = {"2 rho > L1 + L2": (1, 2), "2 rho < L2 - L1": (3, Fraction(1, 2)),
@@ -188,32 +158,12 @@ def three_flat_unstable() -> Outcome:
     never = [n for n in FLAT_NAMES if n not in " ".join(stable.values())]
     h11_last = conditions["(pi, pi)"][0]
     always_negative = bool(sp.expand(h11_last + L1 * k * (2 * rho + L2)) == 0)
-    return judge(
+    return Finding(
         len(never) == 3,
-        (
-            "H(1,1) and det H: " + "; ".join(f"{n}: {a}, {d}" for n, (a, d) in conditions.items()),
-            "stable flat equilibrium: " + "; ".join(f"{n}: {s}" for n, s in stable.items()),
-        ),
         {"stable": tuple(stable.values()), "never": tuple(never), "(pi, pi) has H(1,1) < 0": always_negative},
         corrected=at_most_one and never == ["(pi, pi)"] and always_negative,
-        right="at most one of the four is stable, but not always the same one: (0, 0) for 2 rho > L1 + L2, (pi, 0) for "
-        "2 rho < L2 - L1, (0, pi) for 2 rho < L1 - L2, none in between; only (pi, pi) never is",
-        witness="L1 = 1, L2 = 3, rho = 1/2: (pi, 0) is stable; L1 = L2 = 1, rho = 2: (0, 0) is",
+        said={
+            "conditions": "; ".join(f"{n}: {a}, {d}" for n, (a, d) in conditions.items()),
+            "stable by design": "; ".join(f"{n}: {s}" for n, s in stable.items()),
+        },
     )
-
-
-CLAIMS = (
-    Claim("3.1-eq7-8", "3.1", "Eqs (3) and (4) simplify to", "Equations (7) and (8).", equations_7_8),
-    Claim("3.1-flat", "3.1", "theta_i = 0 or pi", "The four flat configurations are equilibria.", four_flat),
-    Claim("3.1-singular", "3.1", "four singular configuration",
-          "The flat equilibria are singular and resist no vertical force.", singular_flat),
-    Claim("3.1-eq9", "3.1", "two more solutions of the form", "Equation (9), the non-flat equilibria.", two_more),
-    Claim("3.1-parallelogram", "3.1", "y3 = y4 and x3 - x4 = rho",
-          "In the solutions (9) A3A4 is parallel to the base and as long.", parallelogram),
-    Claim("3.1-always", "3.1", "remains always in a parallelogram configuration",
-          "The unloaded mechanism is always a parallelogram.", always_parallelogram),
-    Claim("3.3-three-flat", "3.3", "three solutions of the four flat ones are always unstable",
-          "Three of the flat equilibria are never stable.", three_flat_unstable),
-    Claim("4.1-three-flat", "4.1", "three of the four flat solutions were unstable",
-          "Three of the flat equilibria are never stable.", three_flat_unstable),
-)  # fmt: skip
