@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -18,8 +19,9 @@ from fractions import Fraction
 from pathlib import Path
 
 from ptmcad.errors import ConfigError
-from ptmcad.process.handover import Topic, send
+from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.shortage import LOW_LIMIT, caller_limits, in_units, speaks_of_memory, usage_of
+from ptmcad.process.streams import quiet_stream
 
 DEFAULT_SHARE = Fraction(9, 10)
 """The part of the machine's memory that is the bound where none is asked for."""
@@ -148,7 +150,7 @@ def loading(what: str) -> Iterator[None]:
     """
     send(Topic.LOADING, what)
     try:
-        with _without_bound():
+        with _without_bound(), _words_apart():
             yield
     except (ImportError, OSError) as error:
         missing = isinstance(error, ModuleNotFoundError)
@@ -157,6 +159,25 @@ def loading(what: str) -> Iterator[None]:
             raise MemoryError(str(error)) from error
         raise
     send(Topic.LOADING, "")
+
+
+@contextmanager
+def _words_apart() -> Iterator[None]:
+    """Let libraries that complain of what they cannot load do so to the watching process, which knows the reason.
+
+    hashlib logs fourteen tracebacks, by way of ``sys.stderr``, where it has no room for its own libraries. The handler
+    that it makes for them keeps this stream.
+    """
+    usual = sys.stderr
+    if usual is None or not watched():
+        yield
+        return
+    sys.stderr = quiet_stream(2, usual, for_messages=True)  # what is printed there is the watching process's
+    try:
+        yield
+    finally:
+        sys.stderr.flush()
+        sys.stderr = usual
 
 
 @contextmanager

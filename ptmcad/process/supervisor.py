@@ -85,10 +85,11 @@ def _terminate(number: int, _frame: FrameType | None) -> NoReturn:
     for other in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(other, signal.SIG_IGN)
     disconnect()  # a message may have been cut
-    if sys.stderr is not None:
-        null = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(null, sys.stderr.fileno())
-        os.close(null)
+    for stream in (sys.stderr, sys.__stderr__):  # libraries that are being loaded have one of their own
+        if stream is not None:
+            null = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(null, stream.fileno())
+            os.close(null)
     raise SystemExit(128 + number)
 
 
@@ -130,6 +131,7 @@ def _redirect(printed: int) -> None:
     if sys.stderr is not None:
         unexpected = quiet_stream(fcntl.fcntl(printed, fcntl.F_DUPFD_CLOEXEC, 3), sys.stderr, for_messages=True)
         sys.stderr = quiet_stream(fcntl.fcntl(2, fcntl.F_DUPFD_CLOEXEC, 3), sys.stderr, for_messages=True)
+        sys.__stderr__ = sys.stderr  # type: ignore[misc, assignment]
         _redirect_tracebacks(unexpected)
     os.set_blocking(printed, False)  # a flood of messages must not stop the computation
     os.dup2(printed, 1)

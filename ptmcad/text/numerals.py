@@ -57,10 +57,12 @@ def exactly(number: object) -> Fraction:
     ValueError
         For an infinite float, and one that is not a number.
     """
-    if isinstance(number, SupportsIndex) and not isinstance(number, bool):
+    # numpy's truth values are indices before numpy 2
+    truth = isinstance(number, bool) or getattr(getattr(number, "dtype", None), "kind", "") == "b"
+    if isinstance(number, SupportsIndex) and not truth:
         return Fraction(index(number))
     ratio = getattr(number, "as_integer_ratio", None)
-    if ratio is None or isinstance(number, bool):
+    if ratio is None or truth:
         raise TypeError(f"{number!r} of type {type(number).__name__} is not an exact number")
     try:
         return Fraction(*ratio())

@@ -118,6 +118,46 @@ def test_a_library_that_says_it_lacks_memory() -> None:
         raise ImportError("libx.so: no such file")
 
 
+WORDY = """
+import logging
+from ptmcad.process.memory import loading
+def engine(progress, partial):
+    try:
+        with loading("a library"):
+            try:
+                raise ValueError("unsupported hash type")
+            except ValueError:
+                logging.exception("code for hash was not found")
+            {end}
+    finally:
+        print("own words", file=sys.stderr)
+"""
+
+
+def test_what_libraries_say_while_they_are_loaded(tmp_path: Path) -> None:
+    """Not a word where memory is why they cannot be; else it is kept, and our own words have their stream."""
+    no_room = 'raise ImportError("libcrypto.so: failed to map segment from shared object")'
+    running = Running(tmp_path, WORDY.replace("{end}", no_room), "--max-memory", "2G")
+    status, errors = running.end()
+    own, message = errors.splitlines()
+    assert (status, own) == (3, "own words")
+    assert message.startswith("stopped: the memory limit of 2G was reached")
+    running = Running(tmp_path, WORDY.replace("{end}", "pass"))
+    status, errors = running.end()
+    assert status == 0
+    assert errors.startswith("own words\n")
+    assert "ValueError: unsupported hash type" in errors
+
+
+def test_nothing_is_said_when_a_signal_stops_the_loading_of_libraries(tmp_path: Path) -> None:
+    running = Running(tmp_path, WORDY.replace("{end}", "arrived()\n            time.sleep(60)"))
+    running.arrive()
+    running.process.send_signal(signal.SIGTERM)
+    status, errors = running.end()
+    assert status == 143
+    assert "words" not in errors and "Traceback" not in errors
+
+
 def test_a_library_that_does_not_say_why(monkeypatch: pytest.MonkeyPatch) -> None:
     """LLVM's loader says under a low limit on address space that its file is not found."""
     failure = OSError("Could not find/load shared object file 'libllvmlite.so'")

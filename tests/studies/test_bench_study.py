@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from io import StringIO
@@ -18,9 +19,11 @@ from hypothesis import strategies as st
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.show.report.error_curve import read_error_curve
+from ptmcad.studies.bench import measuring
 from ptmcad.studies.bench.compare import BAD, Change, Verdict, compare, comparison_table
 from ptmcad.studies.bench.document import study_of, write_study, write_table
 from ptmcad.studies.bench.errortime import draw_error_time
+from ptmcad.studies.bench.process import Usage
 from ptmcad.studies.bench.study import Figures, Measurement, Study, Times, outward, smallest_grid
 from ptmcad.studies.bench.words import curve_file, curves, page, sentences, terminal
 
@@ -309,18 +312,42 @@ def test_page_tells_what_is_left_out_and_what_is_claimed() -> None:
     assert ".svg" not in page([replace(STUDY, measurements=STUDY.measurements[-1:])])  # nothing to draw
 
 
+STOPPING = """
+from fractions import Fraction
+from ptmcad.certified import engine
+
+engine._Run._late = lambda run: run.tolerance < Fraction(1, 100) and run.best is not None
+from ptmcad.__main__ import main
+
+raise SystemExit(main())
+"""
+"""The program, whose time is over as soon as a search for a fine tolerance has a map."""
+
+
 @pytest.mark.slow
-def test_a_certified_run_that_is_stopped_is_a_point_too(tmp_path: Path) -> None:
-    """free02 at a tolerance that takes longer than the limit: what was left undetermined then, marked."""
+def test_a_certified_run_that_is_stopped_is_a_point_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was left undetermined then, marked; what no time is left for is left out. No clock decides which."""
     pytest.importorskip("numba")
+    taken = {"1e-1": 2.0, "1e-2": 5.0, "1e-3": 593.0}
+
+    def timed(command: Sequence[str], **_: Any) -> Usage:
+        if "ptmcad" not in command:
+            return measured(command)
+        usage = measured([command[0], "-c", STOPPING, *command[command.index("ptmcad") + 1 :]])
+        return replace(usage, seconds=taken[command[command.index("--tolerance") + 1]])
+
+    measured = measuring.run
+    monkeypatch.setattr(measuring, "run", timed)
     arguments = ["bench", str(ROOT / "configs" / "free02.yaml"), "--method", "certified", "--rounds", "1"]
-    assert run([*arguments, "--time-limit", "14", "--out", str(tmp_path)]) == 0
+    assert run([*arguments, "--time-limit", "600", "--out", str(tmp_path)]) == 0
     study = study_of((tmp_path / "free02.bench.json").read_text(encoding="utf-8"))
-    told = [m for m in study.measurements if m.seconds is not None]
-    assert told
-    for m in told:
-        tolerance = float(m.setting.split()[-1])
+    told = {m.setting.split()[-1]: m for m in study.measurements}
+    for tolerance, seconds in taken.items():
+        m = told.pop(tolerance)
+        assert m.seconds is not None and m.seconds.median == seconds
         share = next(iter((m.figures or {}).values())).undetermined
-        assert (share > tolerance) == ("stopped" in m.note)
-    left_out = [m for m in study.measurements if m.seconds is None and m.method == "certified"]
-    assert all(m.reason for m in left_out)
+        assert (share > float(tolerance)) == ("stopped at the limit" in m.note) == (tolerance == "1e-3")
+        assert share < 1
+    left_out = told.pop("1e-4")
+    assert left_out.seconds is None and left_out.reason.startswith("left out")
+    assert not told

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
+from copy import deepcopy
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import pytest
@@ -20,6 +21,11 @@ from ptmcad.answer.regionmap import HARMLESS, Cell, Component, Kind, RegionMap
 from ptmcad.mechanism import described
 from ptmcad.question.slice import Count
 from ptmcad.text.plane import PlanePolynomial
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.counts import check_counts
+from ptmcad.verification.report import Violation
+from ptmcad.verification.solutions import check_solutions
+from ptmcad.verification.variety import check_norm
 
 AB = {"a": [-2, 2], "b": [-2, 2]}
 
@@ -74,6 +80,22 @@ RECORDS: dict[str, dict[str, Any]] = {
             "loads": {"P": ["1/10", "W"]},
         },
         "axes": {"a": [0, 3], "W": [-4, 4]},
+    },
+    "torque": {
+        "mechanism": {
+            "name": "torque",
+            "parameters": {
+                "c": {"kind": "stiffness", "range": [0, 4]},
+                "W": {"kind": "force", "default": 1},
+                "M": {"kind": "force"},
+            },
+            "unknowns": {"th": "angle"},
+            "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
+            "torsion": [{"angle": "th", "k": "c", "rest": {"cos": "3/5", "sin": "4/5"}}],
+            "loads": {"P": [0, "-W"]},
+            "moments": {"th": "M"},
+        },
+        "axes": {"c": [0, 2], "M": [-3, 3]},
     },
     # the second condition is zero at the solution x = 0, and one more sign condition has a curve of its own
     "stable where": {
@@ -141,6 +163,7 @@ SMALL = (
     "mechanism 0",
     "moment",
     "constant moment",
+    "torque",
 )
 
 
@@ -288,7 +311,7 @@ def other_system(change: Callable[[dict[str, Any]], Any], name: str) -> RegionMa
     """The claims of a map, said of a model that differs."""
     record = {"name": "map", **RECORDS[name]}
     key = "system" if "system" in record else "mechanism"
-    model = {**record[key]}
+    model = deepcopy(record[key])
     change(model)
     slice = ptmcad.slice_from_mapping({**record, key: model})
     return replace(map_of(name), slice=replace(map_of(name).slice, model=slice.model))
@@ -302,6 +325,9 @@ def other_system(change: Callable[[dict[str, Any]], Any], name: str) -> RegionMa
         ("duffing", lambda m: m.update(positive=["z", "z + 1"]), "there are 2 inequalities, not 1"),
         ("stable where", lambda m: m.update(stable=["x + b", "x"]), "the stored condition 1 for stability differs"),
         ("pendulum", lambda m: m.update(loads={"P": ["1/9", "W"]}), "the stored potential differs"),
+        ("torque", lambda m: m["torsion"][0].update(rest={"cos": "4/5", "sin": "3/5"}), "the stored potential differs"),
+        ("torque", lambda m: m.update(moments={"th": "-M"}), "the stored gradient's entry 0 differs"),
+        ("torque", lambda m: m.update(moments={"th": "M*cos(th)"}), "the moment on th depends on an unknown"),
     ],
 )
 def test_claims_of_another_model(name: str, change: Callable[[dict[str, Any]], Any], what: str) -> None:
@@ -309,6 +335,14 @@ def test_claims_of_another_model(name: str, change: Callable[[dict[str, Any]], A
     assert found is not None
     assert found[0] == "equations"
     assert what in found[1]
+
+
+@pytest.mark.parametrize("check", [check_counts, check_solutions, partial(check_norm, seed="")])
+def test_counts_boxes_and_the_norm_are_those_with_the_moment(check: Callable[[Claims], str]) -> None:
+    """Whatever the stored equations say: what they are checked with is derived anew."""
+    check(Claims(map_of("torque")))
+    with pytest.raises(Violation):
+        check(Claims(other_system(lambda m: m.update(moments={"th": "M + 1"}), "torque")))
 
 
 def test_a_free_length_makes_it_another_mechanism() -> None:

@@ -233,6 +233,7 @@ SHAPE: list[tuple[str, Change, str]] = [
     ("fig2", of("stacks", 0, walls=(Wall(99, 0),) * 2), "on component 99, which is not used"),
     ("fig3", lambda r: of("stacks", walled(r), walls=(Wall(first(r, left_out=NO_POINT), 0),) * len(
         r.stacks[walled(r)].walls))(r), "which is not used"),
+    ("fig3", lambda r: replace(r, cells=r.cells[:-1]), "is not the one at level"),
     ("fig3", of("cells", 0, level=5), "cell 0 is not the one at level 0 of stack 0"),
     ("fig3", lambda r: replace(r, cells=(*r.cells, r.cells[0])), "12 cells are stored, the stacks have 11"),
     ("fig3", of("adjacencies", 0, first=99), "adjacency 0 joins cells 99 and"),
@@ -342,6 +343,11 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_adjacencies, "fig3", with_segment(lambda r, s: s[0], lambda r, s: s[0], lambda r, s: s[2]), "does not join"),
     (check_adjacencies, "fig3", with_segment(lambda r, s: s[0], lambda r, s: s[1], lambda r, s: other_height(r)),
      "is outside the window"),
+    *((check_adjacencies, "fig3", with_segment(lambda r, s: s[0], lambda r, s: s[1], edge), "is outside the window")
+      for edge in (lambda r, s: r.slice.axes[1 - r.base].low, lambda r, s: r.slice.axes[1 - r.base].high)),
+    (check_critical_values, "fig3", lambda r: of("critical_values", 0, low=r.slice.axes[r.base].low)(r), "in the win"),
+    (check_critical_values, "fig3", lambda r: of("critical_values", len(r.critical_values) - 1,
+        high=r.slice.axes[r.base].high)(r), "in the window"),
     (check_adjacencies, "fig3", height_on_the_way, "meets the segment"),
     (check_adjacencies, "fig4", lambda r: of("adjacencies", across(r, 1), segment=r.adjacencies[across(r)].segment)(r),
      "roots below it, so it is not in cell"),
