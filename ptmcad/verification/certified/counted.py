@@ -83,7 +83,7 @@ class Counting(Protocol):
         ...
 
     def same(self, one: Any, two: Any) -> bool:
-        """Whether a solution lies where another one is alone."""
+        """Whether a solution is another one."""
         ...
 
     def over(self, slice: Slice, x: arb, y: arb, there: Counted) -> Counts:

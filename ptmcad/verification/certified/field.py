@@ -193,7 +193,7 @@ _ZERO, _ONE = arb(0), arb(1)
 
 def square(x: arb) -> arb:
     """The square: no product of two balls that have nothing to do with one another."""
-    return power(x, 2)
+    return _ZERO.union(_product(x.abs_upper(), 2)) if x.contains(0) else x * x
 
 
 def power(x: arb, exponent: int) -> arb:
@@ -212,7 +212,8 @@ def _product(x: arb, exponent: int) -> arb:
 
 def size(x: arb, y: arb) -> arb:
     """An upper bound of a vector's length."""
-    return (_product(x.abs_upper(), 2) + _product(y.abs_upper(), 2)).sqrt().upper()
+    a, b = x.abs_upper(), y.abs_upper()
+    return (a * a + b * b).sqrt().upper()
 
 
 def unit(value: arb) -> arb:

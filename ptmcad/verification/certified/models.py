@@ -22,7 +22,7 @@ from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Field
 from ptmcad.verification.certified.parameters import exact, over
 from ptmcad.verification.certified.ranges import half_widths
-from ptmcad.verification.certified.solving import Box, Zero, same, zeros
+from ptmcad.verification.certified.solving import Box, Spent, Zero, disjoint, same, zeros
 from ptmcad.verification.certified.vectors import evaluated
 from ptmcad.verification.certified.waves import Form
 from ptmcad.verification.claims import Claims
@@ -54,6 +54,8 @@ class ModelCounting:
                 try:
                     field = _field_at(self.form, values)
                     found, _ = zeros(field, _only_minima(self.form, count), [_start(field)], self._budget)
+                except Spent:
+                    raise  # more digits would not make them fewer
                 except Unproved as unproved:
                     reason = unproved
                 else:
@@ -68,8 +70,18 @@ class ModelCounting:
             return [_only(field, solution, k, self._budget) for k, solution in enumerate(boxes)]
 
     def same(self, one: Zero, two: Zero) -> bool:
-        """Whether a solution lies where another one is alone."""
-        return same(one, two, self.form.is_circle)
+        """Whether a solution lies where another one is alone.
+
+        Raises
+        ------
+        Unproved
+            When it may or may not be the other one.
+        """
+        if same(one, two, self.form.is_circle):
+            return True
+        if disjoint(one, two, self.form.is_circle):
+            return False
+        raise Unproved("a stored box may have one of two solutions")
 
     def over(self, slice: Slice, x: arb, y: arb, there: Counted) -> Counts:
         """At all points of a box."""
@@ -163,8 +175,10 @@ def _only(field: Field, solution: Solution, k: int, budget: int) -> Zero:
     inside, _ = zeros(field, False, [(center, radii)], budget)
     held = [zero for zero in inside if _distances(zero, solution, "in")]
     open_ = [zero for zero in inside if zero not in held and not _distances(zero, solution, "out")]
-    if len(held) != 1 or open_:
-        near = ", ".join(f"{x:.6g}" for x in center)
+    near = ", ".join(f"{x:.6g}" for x in center)
+    if open_ and len(held) < 2:
+        raise Unproved(f"a solution may be in box {k} of the solutions, around ({near}), or beside it")
+    if len(held) != 1:
         raise Violation(f"box {k} of the solutions, around ({near}), has {len(held)} equilibria, not one")
     return held[0]
 

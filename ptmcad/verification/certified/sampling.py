@@ -27,7 +27,7 @@ from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.counted import Counted, differs, stored
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.parameters import exact
-from ptmcad.verification.certified.points import counting_of
+from ptmcad.verification.certified.points import HOPELESS, counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.report import Unchecked, Violation
 
@@ -81,6 +81,8 @@ def check_boxes(claims: CertifiedClaims, seed: str, number: int) -> str:
     area = Fraction(0)
     tried = [(box, k < far) for k, box in enumerate(by_area)] + [(p, k < near) for k, p in enumerate(beside)]
     for box, with_box in tried:
+        if not points and missing == HOPELESS:
+            return Unchecked(f"none of the first {missing} points could be decided; seed {seed}")
         there = _check_point(claims, box, box.u, box.v)
         if there is not None:
             points += 1

@@ -13,8 +13,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 from math import isfinite, pi
+from operator import gt
 
 from flint import arb, arb_mat
 
@@ -32,11 +33,17 @@ _MAX_TURN = 3.0
 _NEWTON_STEPS = 12
 _CLOSE = 2.0**-20
 """Of a box's width: where Newton's method does not come closer to rest, nothing is to be proved."""
-_NARROWING = 3
+_NARROWING = 12
 _NEAR = 4.0
 """Balances are looked at where a spring may be shorter than so many times what it changes by in the box."""
+_PROMISING = 1.0
+"""The width of Krawczyk's image, as a share of the box's, below which Newton's method is tried."""
 _WORTH = 0.6
 """A box is replaced by Krawczyk's image when that has less than this share of it."""
+
+
+class Spent(Unproved):
+    """The boxes that a search may look at were not enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +89,8 @@ def zeros(
     circles = field.form.is_circle
     waiting = list(start)
     whole = waiting[0][1]
-    found = [_persisting(field, zero) for zero in near]
+    least = [smallest * w for w in whole]
+    found = [_persisting(field, zero, whole) for zero in near]
     if not all(disjoint(one, two, circles) for one, two in combinations(found, 2)):
         raise Unproved("two solutions may meet")
     used = 0
@@ -90,7 +98,7 @@ def zeros(
         box = waiting.pop()
         used += 1
         if used > budget:
-            raise Unproved(f"{budget} boxes were not enough")
+            raise Spent(f"{budget} boxes were not enough")
         jet = field(_balls(box))
         if _excluded(jet, box, minima) or any(_inside(box, zero, circles) for zero in found):
             continue
@@ -98,16 +106,16 @@ def zeros(
         if image is not None:
             if any(abs(step) > r for step, r in zip(image, box[1], strict=True)):
                 continue
-            new = _settled(field, box, found)
+            new = _settled(field, box, found, whole) if _contracts(box, image) else None
             if new is not None and all(disjoint(new, zero, circles) for zero in found):
                 found.append(new)
                 if _inside(box, new, circles):
                     continue
             narrower = _met(box, image)
-            if narrower is not None:
+            if narrower is not None and all(map(gt, narrower[1], least)):
                 waiting.append(narrower)
                 continue
-        halves = _halves(box, _widest(jet, box, whole), [smallest * w for w in whole])
+        halves = _halves(box, _widest(jet, box, whole), least)
         if halves is None:
             where = ", ".join(f"{x:.6g}" for x in box[0])
             raise Unproved(f"a solution near ({where}) may be degenerate")
@@ -164,8 +172,8 @@ def _inverse(jacobian: Matrix) -> arb_mat | None:
 def _rest(jacobian: Matrix, inverse: arb_mat) -> Matrix:
     """I - C f'."""
     n = len(jacobian)
-    product = (inverse * arb_mat(jacobian)).entries()
-    return [[(i == j) - product[i * n + j] for j in range(n)] for i in range(n)]
+    whole = (inverse * arb_mat(jacobian)).entries()
+    return [[(i == j) - whole[i * n + j] for j in range(n)] for i in range(n)]
 
 
 def _steps(field: Field, center: Floats, inverse: arb_mat) -> list[arb]:
@@ -187,6 +195,11 @@ def _krawczyk(field: Field, box: Box, jet: Jet) -> list[arb] | None:
     ]
 
 
+def _contracts(box: Box, image: Sequence[arb]) -> bool:
+    """Whether Krawczyk's image of a box is not much wider, so that it is worth looking for a solution in it."""
+    return all(step.rad() < _PROMISING * r for step, r in zip(image, box[1], strict=True))
+
+
 def _met(box: Box, image: Sequence[arb]) -> Box | None:
     """What a box has in common with its image, if that is worth it; a little more than that."""
     middle, radii, share = [], [], 1.0
@@ -204,12 +217,12 @@ def _met(box: Box, image: Sequence[arb]) -> Box | None:
     return (tuple(middle), tuple(radii)) if share < _WORTH else None
 
 
-def _settled(field: Field, box: Box, found: Sequence[Zero]) -> Zero | None:
+def _settled(field: Field, box: Box, found: Sequence[Zero], whole: Floats) -> Zero | None:
     """A solution that Newton's method reaches from the box's middle, proved to be one; None when none is."""
     center = _newton(field, box)
     if center is None or any(_within(center, z.center, z.alone, field.form.is_circle) for z in found):
         return None
-    return _proved(field, center, box[1])
+    return _proved(field, center, _shapes(box[1], whole))
 
 
 def _newton(field: Field, box: Box) -> Floats | None:
@@ -229,21 +242,26 @@ def _newton(field: Field, box: Box) -> Floats | None:
     return tuple(x) if share < _CLOSE else None
 
 
-def _persisting(field: Field, zero: Zero) -> Zero:
+def _persisting(field: Field, zero: Zero, whole: Floats) -> Zero:
     """The solution for all parameters that one for some parameters belongs to."""
-    persisting = _proved(field, zero.center, zero.alone)
+    persisting = _proved(field, zero.center, _shapes(zero.alone, whole))
     if persisting is None:
         where = ", ".join(f"{x:.6g}" for x in zero.center)
         raise Unproved(f"the solution near ({where}) may not persist")
     return persisting
 
 
-def _proved(field: Field, center: Floats, shape: Floats) -> Zero | None:
+def _shapes(radii: Floats, whole: Floats) -> tuple[Floats, Floats]:
+    """Half widths of boxes that are tried around a solution: of the start's shape, which a box in it need not have."""
+    share = max(r / w for r, w in zip(radii, whole, strict=True))
+    return tuple(share * w for w in whole), radii
+
+
+def _proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | None:
     """The solution around a point that is alone in a box of some shape; None when it is not proved, nor its signs."""
-    circles = field.form.is_circle
-    for power in _SHRINKINGS:
-        sizes = [r * 2.0**power for r in shape]
-        if any(circle and r > _MAX_TURN for circle, r in zip(circles, sizes, strict=True)):
+    for shape, power in product(shapes, _SHRINKINGS):
+        sizes = tuple(r * 2.0**power for r in shape)
+        if any(circle and r > _MAX_TURN for circle, r in zip(field.form.is_circle, sizes, strict=True)):
             continue
         jet = field(list(map(arb, center, sizes)))
         inverse = None if jet.short else _inverse(jet.jacobian)
@@ -251,17 +269,29 @@ def _proved(field: Field, center: Floats, shape: Floats) -> Zero | None:
             continue
         rest = [[x.abs_upper() for x in row] for row in _rest(jet.jacobian, inverse)]
         off = [s.abs_upper() for s in _steps(field, center, inverse)]
-
         if not all(reach < r for reach, r in zip(_image(sizes, rest, off), sizes, strict=True)):
             continue
-        radii = sizes
-        for _ in range(_NARROWING):
-            reaches = [float(reach.upper()) * 1.0001 + 2.0**-1000 for reach in _image(radii, rest, off)]
-            radii = list(map(min, radii, reaches))
+        radii = _narrowed(field, center, sizes)
         near = field(list(map(arb, center, radii)))
         signs = "" if not field.form.is_gradient else None if near.short else inertia(near.jacobian)
-        return None if signs is None else Zero(center, tuple(radii), tuple(sizes), signs)
+        return None if signs is None else Zero(center, radii, sizes, signs)
     return None
+
+
+def _narrowed(field: Field, center: Floats, radii: Floats) -> Floats:
+    """A smaller box that has the only solution of a box, too: its image, and that of that, while it gets narrower."""
+    for _ in range(_NARROWING):
+        jet = field(list(map(arb, center, radii)))
+        inverse = None if jet.short else _inverse(jet.jacobian)
+        if inverse is None:
+            break
+        rest = [[x.abs_upper() for x in row] for row in _rest(jet.jacobian, inverse)]
+        off = [s.abs_upper() for s in _steps(field, center, inverse)]
+        reaches = [float(reach.upper()) * 1.0001 + 2.0**-1000 for reach in _image(radii, rest, off)]
+        before, radii = radii, tuple(map(min, radii, reaches))
+        if all(r > 0.9 * b for r, b in zip(radii, before, strict=True)):
+            break
+    return radii
 
 
 def _image(radii: Sequence[float], rest: Matrix, off: Sequence[arb]) -> list[arb]:
@@ -287,8 +317,8 @@ def inertia(h: Matrix) -> str | None:
         if minors < 0:
             return "+-"
         return None if not minors > 0 else "++" if trace > 0 else "--" if trace < 0 else None
-    product = _determinant(h)
-    sign = 1 if product > 0 else -1 if product < 0 else 0
+    determinant = _determinant(h)
+    sign = 1 if determinant > 0 else -1 if determinant < 0 else 0
     if not sign:
         return None
     one, other = ("+", "-") if sign > 0 else ("-", "+")
@@ -375,4 +405,4 @@ def same(one: Zero, two: Zero, circles: Sequence[bool]) -> bool:
     )
 
 
-__all__ = ["Box", "Floats", "Zero", "disjoint", "inertia", "same", "zeros"]
+__all__ = ["Box", "Floats", "Spent", "Zero", "disjoint", "inertia", "same", "zeros"]
