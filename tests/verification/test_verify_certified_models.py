@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -22,7 +23,7 @@ from ptmcad.mechanism.ptm import RECORD
 from ptmcad.options import Options
 from ptmcad.question.slice import Count
 from ptmcad.text.expressions import constant
-from ptmcad.text.tree import Name, Number
+from ptmcad.text.tree import Chain, Name, Number, Step
 from ptmcad.verification.certified.counted import Counts
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Field, power
@@ -34,6 +35,7 @@ from ptmcad.verification.certified.solving import inertia, zeros
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
+from ptmcad.verification.report import Violation
 
 pytest.importorskip("numba")
 
@@ -197,6 +199,12 @@ def with_model(r: RegionMap, **changes: Any) -> RegionMap:
     return replace(r, slice=replace(r.slice, model=replace(r.slice.model, **changes)))
 
 
+def with_free_less(r: RegionMap, value: Fraction) -> RegionMap:
+    """All springs with a shorter free length."""
+    springs = (s._replace(free=Chain(s.free, (Step("-", Number(value)),))) for s in r.slice.model.springs)
+    return with_model(r, springs=tuple(springs))
+
+
 def beside(s: Solution) -> Solution:
     return replace(s, center=tuple(x + s.radius * Fraction(19, 20) for x in s.center), radius=s.radius / 10**9)
 
@@ -240,6 +248,7 @@ SOME: dict[str, tuple[str, Callable[[RegionMap], RegionMap], str]] = {
     "another free length": ("truss", lambda r: with_parameter(r, "l0", Fraction(1, 2)), "counts and solutions"),
     "another free length as text": ("truss", lambda r: with_text(r, "l0", "1/2"), "parameters as written"),
     "a negative free length": ("truss", lambda r: with_parameter(r, "l0", Fraction(-1)), "signs of parameters"),
+    "a spring that pushes together": ("truss", lambda r: with_free_less(r, Fraction(2)), "signs of parameters"),
     "a negative stiffness": ("pendulum", lambda r: with_parameter(r, "c", Fraction(-1)), "signs of parameters"),
     "a spring in the potential": ("truss", lambda r: with_potential(r, "- l0)^2", "- 2*l0)^2"), "equations"),
     "a root that is no length": ("truss", lambda r: with_potential(r, "- f*h", "- f*sqrt(h^2)"), "equations"),
@@ -398,6 +407,37 @@ def test_no_solution_is_beyond_the_bounds_of_real_unknowns() -> None:
     assert half_widths(form, {"a": arb(1), "b": arb(0, 3)}) == (4.0,)
     with pytest.raises(Unproved, match="no bound of the unknown x"):
         half_widths(form, {"a": arb(0, 1), "b": arb(1)})
+
+
+@pytest.mark.parametrize(("free", "half", "bends"), [("1/4", 0.01, True), ("1/100", 0.1, False)])
+def test_minima_near_a_spring_without_length(free: str, half: float, bends: bool) -> None:
+    """A box is discarded where all Hessians in it have a negative eigenvalue; a wide one around a weak peak is not."""
+    record = {**CHAIN, "mechanism": {**CHAIN["mechanism"], "springs": [{"between": ["A", "Q"], "k": 1, "free": free}]}}
+    form = form_of(ptmcad.slice_from_mapping({"name": "c", **record}).model)
+    field = Field(form, {"a": arb(1), "F": arb(0)})
+    at = (math.pi / 3, -math.pi / 3)  # where Q is A
+    jet = field([arb(x, half) for x in at])
+    (short,) = jet.short
+    assert jet.bends_down(short) is bends
+    rng = random.Random(0)
+    places = [[arb(x + rng.uniform(-half, half)) for x in at] for _ in range(200)]
+    signs = {inertia(field(place).jacobian) for place in places}
+    assert ("++" not in signs) is bends
+
+
+def test_a_solution_on_the_edge_of_a_stored_box_is_not_decided() -> None:
+    """The irrational root of x^3 - 2 x is told from the edge, the root 1 of x^3 - x at the edge is not."""
+    model = ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}).model
+    counting = ModelCounting(form_of(model))
+    for a, outside in ((2, "0 equilibria"), (1, "or beside it")):
+        claims: Claims = _At(model, {"a": Fraction(a), "b": Fraction(0)}, Count.TOTAL)  # type: ignore[assignment]
+        there = counting.at(claims, Fraction(0), Fraction(0))
+        assert there.counts.total == 3
+        (found,) = counting.within(there, [Solution((Fraction(5, 4),), Fraction(3, 8), "")])
+        assert abs(found.center[0] - a**0.5) < 1e-12
+        edge = Fraction(1) if a == 1 else Fraction(3, 2)
+        with pytest.raises((Unproved, Violation), match=outside):
+            counting.within(there, [Solution((edge + Fraction(1, 4),), Fraction(1, 4), "")])
 
 
 def test_nothing_is_proved_of_a_double_solution() -> None:

@@ -33,7 +33,7 @@ _MAX_TURN = 3.0
 _NEWTON_STEPS = 12
 _CLOSE = 2.0**-20
 """Of a box's width: where Newton's method does not come closer to rest, nothing is to be proved."""
-_NARROWING = 12
+_NARROWING = 40
 _NEAR = 4.0
 """Balances are looked at where a spring may be shorter than so many times what it changes by in the box."""
 _PROMISING = 1.0
@@ -289,7 +289,7 @@ def _narrowed(field: Field, center: Floats, radii: Floats) -> Floats:
         off = [s.abs_upper() for s in _steps(field, center, inverse)]
         reaches = [float(reach.upper()) * 1.0001 + 2.0**-1000 for reach in _image(radii, rest, off)]
         before, radii = radii, tuple(map(min, radii, reaches))
-        if all(r > 0.9 * b for r, b in zip(radii, before, strict=True)):
+        if all(r > 0.999 * b for r, b in zip(radii, before, strict=True)):
             break
     return radii
 
