@@ -6,6 +6,7 @@ Guarantee: the potential is written from the mechanism's description, in the nam
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 
 from ptmcad.answer.regionmap import PlanStep, System
 from ptmcad.certified.curve import Curve
@@ -35,14 +36,24 @@ def _energy(mechanism: Mechanism) -> str:
         (x0, y0), (x1, y1) = mechanism.points[spring.start], mechanism.points[spring.end]
         length = f"sqrt(({_difference(x1, x0)})^2 + ({_difference(y1, y0)})^2)"
         energy.append(f"1/2*{_factor(spring.stiffness)}*({length} - {_factor(spring.free)})^2")
-    energy += [to_text(torsion.energy) for torsion in mechanism.torsion]
+    for torsion in mechanism.torsion:
+        turned = "".join(
+            f" - {_number(value)}*{function}({to_text(torsion.angle)})"
+            for value, function in zip(torsion.rest, ("cos", "sin"), strict=True)
+            if value
+        )
+        energy.append(f"{_factor(torsion.stiffness)}*(1{turned})")
     work = [
         f" - {_factor(force)}*{_factor(coordinate)}"
         for load in mechanism.loads
         for force, coordinate in zip((load.x, load.y), mechanism.points[load.point], strict=True)
     ]
     work += [f" - {_factor(moment.value)}*{moment.unknown}" for moment in mechanism.moments]
-    return (" + ".join(energy) + "".join(work)).removeprefix(" ")
+    return (" + ".join(energy) or "0") + "".join(work)
+
+
+def _number(value: Fraction) -> str:
+    return to_text(Number(value)) if value.denominator == 1 and value > 0 else f"({value})"
 
 
 def _difference(tree: Tree, less: Tree) -> str:

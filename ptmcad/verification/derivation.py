@@ -27,8 +27,6 @@ UNKNOWNS = tuple(f"{function}_{angle}" for angle in ANGLES for function in ("cos
 """As the exact engine names them."""
 POSITIVE = MECHANISM.positive
 NOT_NEGATIVE = MECHANISM.nonnegative
-SHORTHANDS = tuple(name for name in MECHANISM.shorthands if MECHANISM.kind(name) is not Kind.FREE_LENGTH)
-"""That a slice may name beside what they stand for."""
 
 
 def parameters_of(model: Model) -> tuple[str, ...]:

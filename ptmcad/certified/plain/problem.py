@@ -24,7 +24,7 @@ MAX_UNKNOWNS = 3
 FIRST = 2
 """Number of the first unknown among the variables, after the two axes."""
 
-_IRRELEVANT = frozenset({"name", "parameters", "unknowns", "source", "bars", "supports", "symmetries"})
+_IRRELEVANT = frozenset({"name", "parameters", "unknowns", "source", "bars", "bodies", "supports", "symmetries"})
 _USED = frozenset(
     {"points", "springs", "torsion", "loads", "moments", "equations", "potential", "inequalities", "stability"}
 )

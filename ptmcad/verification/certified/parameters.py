@@ -15,12 +15,14 @@ from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import Unproved
-from ptmcad.verification.certified.vectors import NAMES, SPRINGS
+from ptmcad.verification.certified.field import power
+from ptmcad.verification.certified.vectors import NAMES, SPRINGS, evaluated
+from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, NOT_NEGATIVE, POSITIVE, rational
 from ptmcad.verification.parameters import auxiliary, written
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.signs import Sign, has_no_pole, is_in_domain
+from ptmcad.verification.signs import Sign, Window, has_no_pole, is_in_domain
 
 Values = dict[str, Fraction]
 
@@ -51,11 +53,29 @@ def check_domain(claims: Claims) -> str:
                 raise Violation(f"{name} is {'not positive' if strict else 'negative'} somewhere in the window")
         if Sign.UNCHECKED in (pole, sign):
             unchecked.append(name)
+    if claims.result.cover is not None and claims.result.slice.model != MECHANISM:
+        unchecked += _undecided_pulls(claims, here)
     if unchecked:
         return Unchecked(
             f"{', '.join(unchecked)}: of too high degree, or zero at a point where that could not be decided"
         )
     return f"{len(asked)} parameters"
+
+
+def _undecided_pulls(claims: Claims, window: Window) -> list[str]:
+    """The springs of which it could not be decided that stiffness times free length is nowhere negative.
+
+    Where it is negative, a spring without length is a minimum that is not smooth, and is not counted.
+    """
+    undecided, zero = [], 0 * axis(0)
+    parameters = {name: zero for name in claims.model.free_lengths} | dict(claims.result.slice.parameters)
+    for cone in form_of(claims.model).cones:
+        sign = is_in_domain(evaluated(cone.pull, parameters) + zero, window, False)
+        if sign is Sign.WRONG:
+            raise Violation(f"stiffness times free length of the spring {cone.name} is negative somewhere")
+        if sign is Sign.UNCHECKED:
+            undecided.append(f"stiffness times free length of {cone.name}")
+    return undecided
 
 
 def _expressions(slice: Slice) -> dict[str, Expression]:
@@ -102,7 +122,7 @@ def energy_over(slice: Slice, x: arb, y: arb) -> Energy:
     """
     values = {name: arb(0) for name in MECHANISM.free_lengths}
     for name, expression in slice.parameters.items():
-        values[name] = _over(expression, x, y)
+        values[name] = over(expression, x, y)
         if name in POSITIVE and not values[name] > 0:
             raise Unproved(f"{name} may be zero")
         if name in NOT_NEGATIVE and not (values[name] >= 0):
@@ -110,7 +130,14 @@ def energy_over(slice: Slice, x: arb, y: arb) -> Energy:
     return Energy({name: values[name] for name in NAMES}, tuple(s.has_crease(slice.parameters) for s in SPRINGS))
 
 
-def _over(expression: Expression, x: arb, y: arb) -> arb:
+def over(expression: Expression, x: arb, y: arb) -> arb:
+    """A parameter's values over a box.
+
+    Raises
+    ------
+    Unproved
+        When it may have a pole there.
+    """
     denominator = _sum(expression.denominator, x, y)
     if denominator.contains(0):
         raise Unproved("a parameter may have a pole")
@@ -118,4 +145,4 @@ def _over(expression: Expression, x: arb, y: arb) -> arb:
 
 
 def _sum(terms: Sequence[tuple[int, int, Fraction]], x: arb, y: arb) -> arb:
-    return sum((exact(c) * x**i * y**j for i, j, c in terms), arb(0))
+    return sum((exact(c) * power(x, i) * power(y, j) for i, j, c in terms), arb(0))

@@ -23,19 +23,17 @@ from itertools import accumulate
 from math import ceil, isqrt
 
 from ptmcad.cover.rectangles import Rectangle
-from ptmcad.question.slice import Count
 from ptmcad.text.numerals import text_of
-from ptmcad.verification.certified.equilibria import Equilibrium, Unproved, equilibria
-from ptmcad.verification.certified.parameters import energy_over, exact, values_at
-from ptmcad.verification.certified.points import MINIMA, Counts, admissible, all_equilibria, counts_of, differs, stored
+from ptmcad.verification.certified.counted import Counted, differs, stored
+from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.parameters import exact
+from ptmcad.verification.certified.points import HOPELESS, counting_of
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.report import Unchecked, Violation
 
 FIRST_BOX_PARTS = 512
 """The first box tried has at most this part of the window's width on each side of its middle."""
 ATTEMPTS = 9
-BUDGET = 12_000
-"""Squares of the torus for one box."""
 POINTS_PER_BOX = Fraction(32, 5)
 """Points by area for each box that is asked for."""
 MIN_WINDOW_PARTS = 2**30
@@ -83,6 +81,8 @@ def check_boxes(claims: CertifiedClaims, seed: str, number: int) -> str:
     area = Fraction(0)
     tried = [(box, k < far) for k, box in enumerate(by_area)] + [(p, k < near) for k, p in enumerate(beside)]
     for box, with_box in tried:
+        if not points and missing == HOPELESS:
+            return Unchecked(f"none of the first {missing} points could be decided; seed {seed}")
         there = _check_point(claims, box, box.u, box.v)
         if there is not None:
             points += 1
@@ -211,24 +211,22 @@ def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None
     return SampleBox(u, v, half, claims.cell_of[component])
 
 
-def _check_point(claims: CertifiedClaims, box: SampleBox, u: Fraction, v: Fraction) -> list[Equilibrium] | None:
+def _check_point(claims: CertifiedClaims, box: SampleBox, u: Fraction, v: Fraction) -> Counted | None:
     """The counts at a point are those of the cell; its equilibria, None if they were not proved."""
     x, y = claims.off_lattice(u, v)
-    values = values_at(claims, x, y)
     cell = claims.result.cells[box.cell]
     try:
-        energy, found = all_equilibria(values, claims.result.slice.count)
-        true = counts_of(energy, values, found, claims.result.slice.count)
+        there = counting_of(claims).at(claims, x, y)
     except Unproved:
         return None
-    if differs(cell, true):
+    if differs(cell, there.counts):
         one, two = claims.result.slice.axis_names
         raise Violation(f"at {one}={text_of(x)}, {two}={text_of(y)} in cell {box.cell}, which is said to have "
-                        f"{stored(cell)}, there are {true}")  # fmt: skip
-    return found
+                        f"{stored(cell)}, there are {there.counts}")  # fmt: skip
+    return there
 
 
-def _constant_over(claims: CertifiedClaims, box: SampleBox, there: list[Equilibrium]) -> Fraction | None:
+def _constant_over(claims: CertifiedClaims, box: SampleBox, there: Counted) -> Fraction | None:
     """Half the width of the box over which the counts were proved; None when none was small enough."""
     half = box.half
     for _ in range(ATTEMPTS):
@@ -243,7 +241,7 @@ def _constant_over(claims: CertifiedClaims, box: SampleBox, there: list[Equilibr
     return None
 
 
-def _prove(claims: CertifiedClaims, box: SampleBox, half: Fraction, there: list[Equilibrium]) -> None:
+def _prove(claims: CertifiedClaims, box: SampleBox, half: Fraction, there: Counted) -> None:
     """Prove the cell's counts for every point of the box.
 
     Raises
@@ -251,21 +249,7 @@ def _prove(claims: CertifiedClaims, box: SampleBox, half: Fraction, there: list[
     Unproved
         When the box is too large, or the counts change in it.
     """
-    slice = claims.result.slice
     low, high = (claims.off_lattice(box.u + d, box.v + d) for d in (-half, half))
     x, y = (exact(low[i]).union(exact(high[i])) for i in (0, 1))
-    energy = energy_over(slice, x, y)
-    # squares much smaller than the box of parameters are excluded no better than larger ones
-    smallest = energy.resolution(max(float(max(x.rad(), y.rad())) / 64, 2.0**-30))
-    found, _ = equilibria(energy, slice.count in MINIMA, budget=BUDGET, smallest=smallest, near=there)
-    kinds = [e.signs for e in found]
-    stable = kinds.count("++")
-    cell = claims.result.cells[box.cell]
-    if slice.count is Count.STABLE:
-        true = Counts(None, stable, None, None)
-    elif slice.count is Count.ADMISSIBLE:
-        true = Counts(None, stable, None, sum(admissible(energy, e) for e in found if e.signs == "++"))
-    else:
-        index = (stable, kinds.count("+-"), kinds.count("--"))
-        true = Counts(len(kinds), stable, index, None)
-    assert not differs(cell, true), "the box holds its middle, whose counts are the cell's"
+    true = counting_of(claims).over(claims.result.slice, x, y, there)
+    assert not differs(claims.result.cells[box.cell], true), "the box holds its middle, whose counts are the cell's"

@@ -11,15 +11,16 @@ from functools import cached_property
 from itertools import pairwise
 
 from ptmcad.answer.regionmap import Status
-from ptmcad.question.slice import Count
+from ptmcad.mechanism import System
+from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.sweep import Sweep, sweep
-from ptmcad.verification.certified.vectors import NAMES
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import MECHANISM, SHORTHANDS
+from ptmcad.verification.derivation import MECHANISM, shorthands_of
 from ptmcad.verification.report import Violation
 
 MAX_STEPS = 2**40
+MAX_UNKNOWNS = 3
 _NEEDED = {
     Count.STABLE: {"stable"},
     Count.ADMISSIBLE: {"stable", "admissible"},
@@ -96,9 +97,7 @@ def check_form(claims: CertifiedClaims) -> str:
     r = claims.result
     if r.cover is None or r.status not in (Status.CERTIFIED, Status.PARTIAL):
         raise Violation(f"the status is {r.status.value!r}, and there is {'no' if r.cover is None else 'a'} cover")
-    needed, known = set(MECHANISM.without_free_lengths), {*SHORTHANDS, *NAMES}
-    if r.slice.model != MECHANISM or not needed <= set(r.slice.parameters) <= known:
-        raise Violation(f"the mechanism {r.slice.mechanism!r} is not known, or its parameters are others")
+    _check_model(r.slice)
     if any(axis.low >= axis.high for axis in r.slice.axes):
         raise Violation("the window is empty")
     for name in ("components", "critical_values", "stacks", "adjacencies", "non_adjacencies"):
@@ -115,7 +114,7 @@ def check_form(claims: CertifiedClaims) -> str:
     for one, two in pairwise(r.cover.rectangles):
         if not one < two:
             raise Violation(f"the rectangles {one} and {two} are not sorted")
-    needed = _NEEDED[r.slice.count]
+    needed = _NEEDED[r.slice.count] if r.slice.model.has_potential else {"total"}
     for what, items in (("cell", r.cells), ("region", r.regions)):
         for n, item in enumerate(items):
             present = {name for name in _COUNTS if getattr(item, name) is not None}
@@ -128,6 +127,27 @@ def check_form(claims: CertifiedClaims) -> str:
             if getattr(cell, name) < 0:
                 raise Violation(f"cell {n} has a negative count")
     return f"{len(r.cover.rectangles)} rectangles, {len(r.cells)} cells, {len(r.regions)} regions"
+
+
+def _check_model(slice: Slice) -> None:
+    """The model is one that the certified engine answers, and the parameters are its own."""
+    model = slice.model
+    needed, known = set(model.without_free_lengths), {*shorthands_of(model), *model.variables}
+    if not needed <= set(slice.parameters) <= known:
+        raise Violation(f"the mechanism {slice.mechanism!r} is not known, or its parameters are others")
+    if model == MECHANISM:
+        return
+    if not 1 <= len(model.unknowns) <= MAX_UNKNOWNS:
+        raise Violation(f"no certified map is of {len(model.unknowns)} unknowns")
+    if slice.count is Count.ADMISSIBLE or not (model.has_potential or slice.count is Count.TOTAL):
+        raise Violation(f"no certified map of {model.name!r} counts {slice.count.value}")
+    if isinstance(model, System):
+        if model.inequalities or model.stability:
+            raise Violation("no certified map is of a system with sign conditions")
+        if model.potential is None and len(model.equations) != len(model.unknowns):
+            raise Violation(f"there are {len(model.equations)} equations for {len(model.unknowns)} unknowns")
+    elif not model.has_potential:
+        raise Violation("no certified map is of a mechanism with a moment that depends on an unknown")
 
 
 def check_components(claims: CertifiedClaims) -> str:

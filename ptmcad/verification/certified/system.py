@@ -1,8 +1,9 @@
-"""Check of the stored potential of a certified map, as a polynomial in the springs' lengths.
+"""Check of the stored equations of a certified map, as polynomials in the springs' lengths.
 
-Guarantee: exact. The text equals the energy that follows from the nodes' coordinates, as a function of all
-parameters and both angles: both are polynomials over Q in the parameters, cosines, sines and lengths l_i, modulo
-cos^2 + sin^2 = 1 and l_i^2 = q_i, and their normal forms are the same. A root is read only where it is a length.
+Guarantee: exact. The text equals the energy, or the equations, that follow from the description, as a function of all
+parameters and all unknowns: both are polynomials over Q in the parameters, real unknowns, cosines, sines and lengths
+l_i, modulo cos^2 + sin^2 = 1 and l_i^2 = q_i, and their normal forms are the same. A root is read only where it is a
+length. An angle stands outside of cosines and sines only where a constant moment works on it.
 
 Values at points would not do: what agrees at points of any number and precision may still be wrong elsewhere, be it
 sqrt(F3^2) for F3, a high power of a number below one, or a product that vanishes at the points.
@@ -12,145 +13,253 @@ from __future__ import annotations
 
 import ast
 import re
-from functools import cache
+from functools import cached_property, lru_cache
+from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
-from ptmcad.verification.certified.vectors import NAMES
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import ANGLES, MECHANISM, UNKNOWNS, Configuration, work
-from ptmcad.verification.report import Violation
+from ptmcad.verification.derivation import MECHANISM, Configuration, formulas, work
+from ptmcad.verification.report import Unchecked, Violation
 
-_LENGTHS = tuple(f"l{n}" for n in range(1, len(MECHANISM.springs) + 1))
-_CIRCLES = UNKNOWNS
-_NAMES = (*_LENGTHS, *_CIRCLES, *NAMES)
-_RING: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(_NAMES, Ordering.lex)
 _MAX_TEXT = 5_000
+"""Of the paper's mechanism; that of others, which may be large, is not checked beyond `_LARGE_TEXT`."""
+_LARGE_TEXT = 100_000
 _SIGNS = re.compile(r"[A-Za-z0-9_ ()^*/+-]*", re.ASCII)
 _WRONG = re.compile(r"\*\*|(?<![A-Za-z0-9_])(?:_|[0-9]+[A-Za-z_])", re.ASCII)
 """Integers, names and signs: no comments, lines, decimals, or other things that are Python. Each takes linear time;
 possessive quantifiers, which would do, are wrong in Python before 3.11.5."""
+_NAME = re.compile(r"(?<![A-Za-z0-9_])[A-Za-z]", re.ASCII)
 _MAX_TERMS, _MAX_DEGREE, _MAX_BITS = 2_000, 60, 2_000
 """Of what a part of the text stands for, so that no text takes long; the energy has some 30 terms of degree 5."""
 
 
+class _TooLarge(Violation):
+    """A part of the text has too many terms to go on with."""
+
+
 def check_potential(claims: Claims) -> str:
-    """The unknowns, and the potential in them."""
-    system = claims.result.system
-    if system.unknowns != ANGLES:
-        raise Violation(f"the unknowns are {system.unknowns}, not {ANGLES}")
-    if system.relations or system.gradient or system.hessian:
+    """The unknowns, and the potential or the equations in them."""
+    system, model = claims.result.system, claims.result.slice.model
+    unknowns = tuple(model.unknowns)
+    if system.unknowns != unknowns:
+        raise Violation(f"the unknowns are {system.unknowns}, not {unknowns}")
+    if system.relations or system.hessian or (model.has_potential and system.gradient):
         raise Violation("a certified map has no relations, and its gradient and Hessian follow from the potential")
+    if system.inequalities or system.stability:
+        raise Violation("a certified map has no conditions")
+    text = _Text(model)
+    if model.has_potential:
+        pairs = [("potential", system.potential, _energy(model))]
+    else:
+        equations = formulas(text.configuration, model).equations
+        if system.potential or len(system.gradient) != len(equations):
+            raise Violation(f"there are {len(equations)} equations and no potential")
+        pairs = [(f"equation {k}", t, e) for k, (t, e) in enumerate(zip(system.gradient, equations, strict=True))]
     try:
-        stored = _value(_parsed(system.potential))
-    except RecursionError:
-        raise Violation("the stored potential has too many parts within each other") from None
-    difference = _reduced(stored - _energy())
-    if not difference.is_zero():
-        raise Violation(f"the stored potential differs from the mechanism's by {str(difference)[:80]}")
-    return f"the potential in {len(ANGLES)} unknowns and {len(NAMES)} parameters"
+        for what, stored, true in pairs:
+            difference = text.reduced(text.value(what, stored) - true)
+            if not difference.is_zero():
+                raise Violation(f"the stored {what} differs from the mechanism's by {text.shown(difference)}")
+    except _TooLarge as large:
+        if model == MECHANISM:
+            raise
+        return Unchecked(str(large))
+    what = "the potential" if model.has_potential else "the equations"
+    return f"{what} in {len(unknowns)} unknowns and {len(model.variables)} parameters"
 
 
-def _variable(name: str) -> fmpq_mpoly:
-    return _RING.gen(_NAMES.index(name))
+class _Text:
+    """The ring of a model's texts, and what they stand for.
+
+    Attributes
+    ----------
+    outside : the names that may stand outside of cosines and sines.
+    squares : the squares of the springs' lengths, each once, in normal form.
+    """
+
+    def __init__(self, model: Model):
+        self.model = model
+        springs = len(model.springs) if isinstance(model, Mechanism) else 0
+        kinds = [(f"cos {a}", f"sin {a}") for a in model.angles]
+        names = [f"l{n}" for n in range(springs)] + [name for pair in kinds for name in pair]
+        names += [f"unknown {n}" for n in model.unknowns] + [f"parameter {n}" for n in model.variables]
+        # plain names for the ring: those of a description may be any
+        self._shown = [re.sub(r"^(cos|sin) (.*)", r"\1(\2)", name).removeprefix("unknown ") for name in names]
+        ring = tuple(f"x{k}" for k in range(len(names)))
+        self.ring: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(ring, Ordering.lex)
+        self._gen = {name: self.ring.gen(k) for k, name in enumerate(names)}
+        circles = {a: (self._gen[f"cos {a}"], self._gen[f"sin {a}"]) for a in model.angles}
+        known = {n: self._gen[f"parameter {n}"] for n in model.variables}
+        self.names = known | {n: self._gen[f"unknown {n}"] for n in model.unknowns}
+        self.configuration = Configuration(known | {n: self.names[n] for n in model.reals}, circles)
+        moved = {unknown for unknown, _ in model.moments} if isinstance(model, Mechanism) else set()
+        self.outside = {*known, *model.reals, *moved}
+        self.circles = [c * c + s * s - 1 for c, s in circles.values()]
+
+    def shown(self, p: fmpq_mpoly) -> str:
+        """The beginning of a polynomial's text."""
+        text = re.sub(r"x([0-9]+)", lambda m: self._shown[int(m[1])].removeprefix("parameter "), str(p)[:400])
+        return text[:80]
+
+    @cached_property
+    def squares(self) -> list[fmpq_mpoly]:
+        found: list[fmpq_mpoly] = []
+        if isinstance(self.model, Mechanism):
+            points = self.configuration.points(self.model)
+            for spring in self.model.springs:
+                across, up = (points[spring.end][i] - points[spring.start][i] for i in (0, 1))
+                square = self.on_circles(self.ring.constant(0) + across * across + up * up)
+                if square not in found:
+                    found.append(square)
+        return found
+
+    def length(self, square: fmpq_mpoly) -> fmpq_mpoly | None:
+        """The length whose square, in normal form, is given; None when no spring has it."""
+        return self._gen[f"l{self.squares.index(square)}"] if square in self.squares else None
+
+    def on_circles(self, p: fmpq_mpoly) -> fmpq_mpoly:
+        """At most the first power of each cosine."""
+        for circle in self.circles:
+            p = divmod(p, circle)[1]
+        return p
+
+    def reduced(self, p: Any) -> fmpq_mpoly:
+        """The normal form: at most the first power of each length and of each cosine."""
+        p = self.ring.constant(0) + p
+        for n, square in enumerate(self.squares):
+            p = divmod(p, self._gen[f"l{n}"] ** 2 - square)[1]
+        return self.on_circles(p)
+
+    def value(self, what: str, text: str) -> fmpq_mpoly:
+        """What a text stands for."""
+        try:
+            return self._value(_parsed(self.model, what, text))
+        except RecursionError:
+            raise Violation(f"the stored {what} has too many parts within each other") from None
+
+    def _value(self, node: ast.expr, inside: bool = False) -> fmpq_mpoly:
+        """What sums, products, small powers, quotients by numbers, lengths, sines and cosines stand for.
+
+        Parameters
+        ----------
+        inside : of a cosine or a sine, where all angles may stand.
+        """
+        match node:
+            case ast.Constant(value=int(number)) if not isinstance(number, bool):
+                return _bounded(self.ring.constant(number))
+            case ast.Name(id=name) if _plain(name) in self.outside or (inside and _plain(name) in self.names):
+                return self.names[_plain(name)]
+            case ast.UnaryOp(op=ast.USub(), operand=inner):
+                return -self._value(inner, inside)
+            case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int(exponent))) if (
+                0 <= exponent <= _MAX_DEGREE
+            ):
+                power, factor = self.ring.constant(1), self._value(base, inside)
+                for _ in range(exponent):
+                    power = _product(power, factor)
+                return power
+            case ast.BinOp(left=one, op=operator, right=two):
+                a, b = self._value(one, inside), self._value(two, inside)
+                match operator:
+                    case ast.Add():
+                        return _bounded(a + b)
+                    case ast.Sub():
+                        return _bounded(a - b)
+                    case ast.Mult():
+                        return _product(a, b)
+                    case ast.Div() if b.is_constant() and not b.is_zero():
+                        return _product(a, self.ring.constant(1 / b.coeffs()[0]))
+            case ast.Call(func=ast.Name(id=name), args=[inner], keywords=[]):
+                return self._call(_plain(name), inner, node)
+        raise Violation(f"the stored potential has a part that is no formula: {_shown(node)}")
+
+    def _call(self, name: str, inner: ast.expr, node: ast.expr) -> fmpq_mpoly:
+        if name == "sqrt":
+            length = self.length(self.reduced(self._value(inner)))
+            if length is None:
+                raise Violation(f"the stored potential has a root of what is no spring's length: {_shown(node)}")
+            return length
+        if name not in ("cos", "sin"):
+            raise Violation(f"the stored potential has a part that is no formula: {_shown(node)}")
+        cosine, sine = self.ring.constant(1), self.ring.constant(0)
+        for angle, multiple in self._angles(inner, node).items():
+            c, s = self._gen[f"cos {angle}"], self._gen[f"sin {angle}"]
+            for _ in range(abs(multiple)):
+                turned = s if multiple > 0 else -s
+                cosine, sine = (
+                    _product(cosine, c) - _product(sine, turned), _product(sine, c) + _product(cosine, turned)
+                )  # fmt: skip
+        return cosine if name == "cos" else sine
+
+    def _angles(self, inner: ast.expr, node: ast.expr) -> dict[str, int]:
+        """The whole multiples of angles of which a text is the sum."""
+        rest, found = self._value(inner, inside=True), {}
+        for angle in self.model.angles:
+            unknown = self.names[angle]
+            c = rest.derivative(unknown.context().variable_to_index(str(unknown)))
+            if not c.is_constant():
+                break
+            multiple = fmpq(0) if c.is_zero() else c.coeffs()[0]
+            if multiple.q != 1 or abs(multiple) > _MAX_DEGREE:
+                break
+            found[angle] = int(multiple.p)
+            rest = rest - multiple * unknown
+        if not rest.is_zero():
+            raise Violation(f"the stored potential has a part that is no formula: {_shown(node)}")
+        return found
 
 
-@cache
-def _configuration() -> Configuration:
-    circles = {angle: (_variable(f"cos_{angle}"), _variable(f"sin_{angle}")) for angle in ANGLES}
-    return Configuration({name: _variable(name) for name in NAMES}, circles)
-
-
-@cache
-def _circles() -> tuple[fmpq_mpoly, ...]:
-    return tuple(c * c + s * s - 1 for c, s in _configuration().circles.values())
-
-
-@cache
-def _squares() -> tuple[fmpq_mpoly, ...]:
-    """The squares of the springs' lengths in cosines and sines, in normal form."""
-    found, points = [], _configuration().points()
-    for spring in MECHANISM.springs:
+@lru_cache(maxsize=8)
+def _energy(model: Model) -> fmpq_mpoly:
+    """The potential of a system, or of a mechanism whose springs have free lengths."""
+    text = _Text(model)
+    if not isinstance(model, Mechanism):
+        given: Any = formulas(text.configuration, model).energy
+        return text.reduced(given)
+    here = text.configuration
+    points = here.points(model)
+    energy: Any = text.ring.constant(0) + work(here, points, model)
+    for spring in model.springs:
         across, up = (points[spring.end][i] - points[spring.start][i] for i in (0, 1))
-        square = across * across + up * up
-        for circle in _circles():
-            square = divmod(square, circle)[1]
-        found.append(square)
-    return tuple(found)
+        length = text.length(text.on_circles(text.ring.constant(0) + across * across + up * up))
+        assert length is not None
+        stretch = length - here.value(spring.free)
+        energy = energy + stretch * stretch * (here.value(spring.stiffness) * fmpq(1, 2))
+    for torsion in model.torsion:
+        cosine, sine = here.circle(torsion.angle)
+        at_rest = [fmpq(value.numerator, value.denominator) for value in torsion.rest]
+        energy = energy + here.value(torsion.stiffness) * (1 - cosine * at_rest[0] - sine * at_rest[1])
+    for unknown, tree in model.moments:
+        energy = energy - here.value(tree) * text.names[unknown]
+    return text.reduced(energy)
 
 
-def _reduced(p: fmpq_mpoly) -> fmpq_mpoly:
-    """The normal form: at most the first power of each length and of each cosine."""
-    for name, square in zip(_LENGTHS, _squares(), strict=True):
-        p = divmod(p, _variable(name) ** 2 - square)[1]
-    for circle in _circles():
-        p = divmod(p, circle)[1]
-    return p
+def _plain(name: str) -> str:
+    """A name without the letter before it that keeps it from being one of Python's words."""
+    return name[1:]
 
 
-@cache
-def _energy() -> fmpq_mpoly:
-    configuration = _configuration()
-    energy: fmpq_mpoly = work(configuration, configuration.points())
-    for length, spring in zip(_LENGTHS, MECHANISM.springs, strict=True):
-        stretch = _variable(length) - configuration.value(spring.free)
-        energy += stretch * stretch * (configuration.value(spring.stiffness) * fmpq(1, 2))
-    return energy
-
-
-def _parsed(text: str) -> ast.expr:
-    if len(text) > _MAX_TEXT or _SIGNS.fullmatch(text) is None or _WRONG.search(text):
-        raise Violation("the stored potential is not a formula in the names of problem records")
+def _parsed(model: Model, what: str, text: str) -> ast.expr:
+    most = _MAX_TEXT if model == MECHANISM else _LARGE_TEXT
+    if len(text) > most and model != MECHANISM:
+        raise _TooLarge(f"the stored {what} is longer than {most} letters")
+    if len(text) > most or _SIGNS.fullmatch(text) is None or _WRONG.search(text):
+        raise Violation(f"the stored {what} is not a formula in the names of problem records")
     try:
-        return ast.parse(text.replace("^", "**"), mode="eval").body
+        return ast.parse(_NAME.sub(lambda m: f"x{m[0]}", text).replace("^", "**"), mode="eval").body
     except (SyntaxError, RecursionError, MemoryError):
-        raise Violation(f"the stored potential cannot be read: {text[:60]!r}") from None
-
-
-def _value(node: ast.expr) -> fmpq_mpoly:
-    """What sums, products, small powers, quotients by numbers, lengths, sines and cosines stand for."""
-    match node:
-        case ast.Constant(value=int(number)) if not isinstance(number, bool):
-            return _bounded(_RING.constant(number))
-        case ast.Name(id=name) if name in NAMES:
-            return _variable(name)
-        case ast.UnaryOp(op=ast.USub(), operand=inner):
-            return -_value(inner)
-        case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int(exponent))) if 0 <= exponent <= 9:
-            power, factor = _RING.constant(1), _value(base)
-            for _ in range(exponent):
-                power = _product(power, factor)
-            return power
-        case ast.BinOp(left=one, op=operator, right=two):
-            a, b = _value(one), _value(two)
-            match operator:
-                case ast.Add():
-                    return _bounded(a + b)
-                case ast.Sub():
-                    return _bounded(a - b)
-                case ast.Mult():
-                    return _product(a, b)
-                case ast.Div() if b.is_constant() and not b.is_zero():
-                    return _product(a, _RING.constant(1 / b.coeffs()[0]))
-        case ast.Call(func=ast.Name(id="sin" | "cos" as name), args=[ast.Name(id=angle)], keywords=[]) if (
-            angle in ANGLES
-        ):
-            return _variable(f"{name}_{angle}")
-        case ast.Call(func=ast.Name(id="sqrt"), args=[inner], keywords=[]):
-            square = _reduced(_value(inner))
-            if square in _squares():
-                return _variable(_LENGTHS[_squares().index(square)])
-            raise Violation(f"the stored potential has a root of what is no spring's length: {_shown(node)}")
-    raise Violation(f"the stored potential has a part that is no formula: {_shown(node)}")
+        raise Violation(f"the stored {what} cannot be read: {text[:60]!r}") from None
 
 
 def _shown(node: ast.expr) -> str:
-    return repr(ast.unparse(node)[:60])
+    return repr(re.sub(r"(?<![A-Za-z0-9_])x(?=[A-Za-z])", "", ast.unparse(node))[:60])
 
 
 def _product(a: fmpq_mpoly, b: fmpq_mpoly) -> fmpq_mpoly:
     if len(a) * len(b) > _MAX_TERMS:
-        raise Violation(f"the stored potential has a product of more than {_MAX_TERMS} terms")
+        raise _TooLarge(f"the stored potential has a product of more than {_MAX_TERMS} terms")
     return _bounded(a * b)
 
 
@@ -158,5 +267,5 @@ def _bounded(p: fmpq_mpoly) -> fmpq_mpoly:
     """A polynomial that is not too large to go on with."""
     bits = max((max(int(c.p).bit_length(), int(c.q).bit_length()) for c in p.coeffs()), default=0)
     if len(p) > _MAX_TERMS or p.total_degree() > _MAX_DEGREE or bits > _MAX_BITS:
-        raise Violation("the stored potential has a part of too many terms, too high a degree or too long numbers")
+        raise _TooLarge("the stored potential has a part of too many terms, too high a degree or too long numbers")
     return p

@@ -6,6 +6,7 @@ need no compiled code, and there is one on every place that a proof stops at.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -277,11 +278,11 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
       for text in ("0*L1**2", "0*\N{GREEK SMALL LETTER ALPHA}", "1.5", "0 # L1", "0\n", "0\0", "0x0", "0*1_0",
                    "L1 % L2", "cos(th1, th2)", "0if L1 else 0", "0*L1[0]", "0*L1.real")),
     *((check_potential, springs, plus(text), "the stored potential cannot be read")
-      for text in ("1 +", "((1)", "01", "1" * 4400, "(" * 250 + "0" + ")" * 250)),
+      for text in ("1 +", "((1)", "01", "(0 if L1 else 0)", "1" * 4400, "(" * 250 + "0" + ")" * 250)),
     (check_potential, springs, with_system(potential="+".join("1" * 2000)), "too many parts within each other"),
     *((check_potential, springs, plus(text), "the stored potential has a part that is no formula")
-      for text in ("exit()", "True", "L9", "th1 - th1", "sin(2*th1)", "L1^-1", "L1^10", "L1^F3", "2^3^2", "1/L1",
-                   "1/(L1 - L1)", "tan(th1)", "sin(L1)", "+L1", "(0 if L1 else 0)", "l1")),
+      for text in ("exit()", "True", "L9", "th1 - th1", "sin(th1/2)", "sin(th1^2)", "sin(99*th1)", "L1^-1", "L1^61",
+                   "L1^F3", "2^3^2", "1/L1", "1/(L1 - L1)", "tan(th1)", "sin(L1)", "+L1", "l1")),
     (check_potential, springs, plus("(L1 + L2 + rho + k1 + F3)^9"), "a product of more than 2000 terms"),
     (check_potential, springs, plus(POWER), "too many terms, too high a degree or too long numbers"),
     (check_potential, springs, plus("((L1^9)^9)^9"), "too many terms, too high a degree or too long numbers"),
@@ -291,6 +292,8 @@ ROWS: list[tuple[Check, Callable[[], RegionMap], Change, str]] = [
     (check_potential, springs, instead("F3*L1", "sqrt(F3^2)*L1"), "a root of what is no spring's length: 'sqrt"),
     (check_potential, springs, instead("1/2*k1", "1/2*k2"), "the stored potential differs from the mechanism's by"),
     (check_potential, springs, instead("- F3*", "+ F3*"), "the stored potential differs from the mechanism's by"),
+    *((check_potential, springs, plus(text), f"differs from the mechanism's by {re.escape(by)}")
+      for text, by in (("sin(2*th1)", "2*cos(th1)*sin(th1)"), ("L1^10", "L1^10"))),
     (check_potential, springs, plus("F3/1" + "0" * 300), "the stored potential differs from the mechanism's by"),
     (check_potential, springs, plus("(F3 - 1)*(F3 - 2)*(F3 - 3)"), "the stored potential differs from the mechanism's"),
     (check_points, springs, both(0, stable=0), "cell 0, at .*: said to have stable 0; there are stable [1-9]"),

@@ -1,0 +1,91 @@
+"""What is counted at a point, and what a way of counting offers: the paper's mechanism has one of its own.
+
+Guarantee: data and a protocol only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Protocol
+
+from flint import arb
+
+from ptmcad.answer.counts import MorseIndex
+from ptmcad.answer.regionmap import Cell, Solution
+from ptmcad.question.slice import Count, Slice
+from ptmcad.verification.claims import Claims
+
+MINIMA = (Count.STABLE, Count.ADMISSIBLE)
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """What a `Count` asks for; None what it does not need."""
+
+    total: int | None
+    stable: int | None
+    index: MorseIndex | None
+    admissible: int | None
+
+    def __str__(self) -> str:
+        parts = [("total", self.total), ("stable", self.stable), ("index", self.index), ("admissible", self.admissible)]
+        return ", ".join(f"{name} {value}" for name, value in parts if value is not None)
+
+
+def stored(cell: Cell) -> Counts:
+    """The counts of a cell as they are stored."""
+    return Counts(cell.total, cell.stable, cell.index, cell.admissible)
+
+
+def differs(cell: Cell, true: Counts) -> bool:
+    """Whether the stored counts of a cell are not these."""
+    return stored(cell) != true
+
+
+class Enclosed(Protocol):
+    """A solution that is proved: the middle of its box, and the signs of the Hessian's eigenvalues."""
+
+    @property
+    def center(self) -> tuple[float, ...]: ...
+
+    @property
+    def signs(self) -> str: ...
+
+    @property
+    def within(self) -> tuple[arb, ...]: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Counted:
+    """All solutions at a point, or all minima and perhaps others where no more is asked for, and their counts."""
+
+    counts: Counts
+    found: Sequence[Any]
+    values: Any
+
+
+class Counting(Protocol):
+    """A way of counting the solutions of one model. What it cannot prove raises `Unproved`."""
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether it decides every true map's samples, so that an undecided one counts as false."""
+        ...
+
+    def at(self, claims: Claims, x: Fraction, y: Fraction) -> Counted:
+        """At a point of the window; a parameter outside of its domain is a `Violation`."""
+        ...
+
+    def within(self, there: Counted, boxes: Sequence[Solution]) -> Sequence[Enclosed]:
+        """The only solution in each of the stored boxes; a box that has none, or several, is a `Violation`."""
+        ...
+
+    def same(self, one: Any, two: Any) -> bool:
+        """Whether a solution is another one."""
+        ...
+
+    def over(self, slice: Slice, x: arb, y: arb, there: Counted) -> Counts:
+        """At all points of a box around one at which the solutions are known."""
+        ...

@@ -1,0 +1,224 @@
+"""The equations of any model and their Jacobian in balls of Arb, over boxes of the unknowns and of the parameters.
+
+Guarantee: every ball contains the exact value at each configuration and for all parameters in the balls given. Where a
+spring with a free length may have no length, its direction is any unit vector, and nothing is said of the Jacobian.
+
+The potential is V - sum of K |d|. With u = d/|d|, slopes g_i of d by the unknowns, second derivatives g_ij, and
+c_i = u x g_i, a spring's part of the equations is -K u.g_i and of the Hessian -K (c_i c_j/|d| + u.g_ij).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from math import prod
+from typing import NamedTuple
+
+from flint import arb, arb_mat
+
+from ptmcad.verification.certified.vectors import evaluated
+from ptmcad.verification.certified.waves import Cone, Form, Waves
+
+Matrix = list[list[arb]]
+Vector = tuple[arb, arb]
+_ANY = arb(0, 1)
+
+
+class Spring(NamedTuple):
+    """A spring in balls.
+
+    Attributes
+    ----------
+    number : of the cone.
+    length : |d|.
+    slopes : g_i.
+    part : K u.g_i.
+    bends : K times an upper bound of |g_ii|.
+    is_short : whether it may have no length.
+    """
+
+    number: int
+    pull: arb
+    length: arb
+    slopes: tuple[Vector, ...]
+    part: tuple[arb, ...]
+    bends: tuple[arb, ...]
+    is_short: bool
+
+
+class Jet(NamedTuple):
+    """The equations and their derivatives; these without the parts of springs that may have no length.
+
+    Attributes
+    ----------
+    smooth : the equations without the springs' parts.
+    """
+
+    values: list[arb]
+    jacobian: Matrix
+    smooth: list[arb]
+    springs: tuple[Spring, ...]
+
+    @property
+    def short(self) -> list[Spring]:
+        """The springs that may have no length; if there are any, the Jacobian is not known."""
+        return [s for s in self.springs if s.is_short]
+
+    def balances(self, s: Spring) -> list[arb]:
+        """Numbers that are zero at every solution, whatever the direction of a spring.
+
+        With r_i what the equations are without it, a solution has r_i = K u.g_i for a unit vector u; for two unknowns
+        adj(A) r = K det(A) u, A having the rows g_i and g_j.
+        """
+        others = [other for other in self.springs if other.number != s.number]
+        rest = [value - sum((o.part[k] for o in others), arb(0)) for k, value in enumerate(self.smooth)]
+        found = []
+        for i, j in combinations(range(len(rest)), 2):
+            (ai, bi), (aj, bj) = s.slopes[i], s.slopes[j]
+            x, y = bj * rest[i] - bi * rest[j], ai * rest[j] - aj * rest[i]
+            found.append(square(x) + square(y) - square(s.pull * (ai * bj - aj * bi)))
+        return found
+
+    def bends_down(self, s: Spring) -> bool:
+        """Whether the Hessian has a negative eigenvalue wherever the one short spring has a length.
+
+        Its trace is at most that of the rest plus K sum |g_ii| - K m/|d|, with m the least value of the sum of
+        (u x g_i)^2 over all unit vectors: the smaller eigenvalue of the sum of the g_i g_i^T, at least its
+        determinant over its trace.
+        """
+        if len(s.slopes) == 1:
+            return False
+        xx = sum((square(a) for a, _ in s.slopes), arb(0))
+        yy = sum((square(b) for _, b in s.slopes), arb(0))
+        # Lagrange's identity: no difference of large numbers
+        gram = sum((square(a * d - b * c) for (a, b), (c, d) in combinations(s.slopes, 2)), arb(0))
+        trace = sum((self.jacobian[i][i] + s.bends[i] for i in range(len(s.slopes))), arb(0))
+        size = xx + yy
+        if not (gram > 0 and size > 0):
+            return False
+        return bool(trace.upper() - (s.pull * gram / size).lower() / s.length.upper() < 0)
+
+
+class Field:
+    """The equations at given parameters as functions of the unknowns.
+
+    Parameters
+    ----------
+    values : a ball for each parameter; no pull of a spring is negative.
+    """
+
+    def __init__(self, form: Form, values: Mapping[str, arb]):
+        self.form, self.values = form, dict(values)
+        self.cones: list[tuple[int, Cone, arb]] = []
+        for number, cone in enumerate(form.cones):
+            pull = arb(evaluated(cone.pull, values))
+            if not (pull == 0):  # noqa: SIM201 (a ball that is not exactly zero: != would ask for one without zero)
+                self.cones.append((number, cone, pull))
+        rows: list[Waves] = [*form.equations, *form.jacobian]
+        for _, cone, _ in self.cones:
+            for pair in (cone.vector, *cone.slopes, *cone.bends):
+                rows += pair
+        found = sorted({(turned, raised) for row in rows for turned, raised, _ in row})
+        self.basis = found
+        place = {key: 2 * k for k, key in enumerate(found)}
+        entries = [arb(0)] * (len(rows) * 2 * len(found))
+        for n, row in enumerate(rows):
+            for (turned, raised, sine), terms in row.items():
+                entries[n * 2 * len(found) + place[turned, raised] + sine] = arb(evaluated(terms, values))
+        self._matrix = arb_mat(len(rows), 2 * len(found), entries)
+        self._turned = sorted({turned for turned, _ in found if any(turned)})
+
+    def _waves(self, at: Sequence[arb]) -> arb_mat:
+        waves = {}
+        for turned in self._turned:
+            angle = arb(0)
+            for multiple, x in zip(turned, at, strict=True):
+                if multiple:
+                    angle = angle + (x if multiple == 1 else multiple * x)
+            sine, cosine = angle.sin_cos()
+            waves[turned] = cosine, sine
+        column = []
+        for turned, raised in self.basis:
+            cosine, sine = waves.get(turned, (_ONE, _ZERO))
+            for exponent, x in zip(raised, at, strict=True):
+                if exponent:
+                    factor = power(x, exponent)
+                    cosine, sine = cosine * factor, sine * factor
+            column += [cosine, sine]
+        return arb_mat(len(column), 1, column)
+
+    def __call__(self, at: Sequence[arb]) -> Jet:
+        """At all configurations in a box."""
+        n = self.form.size
+        rows: list[arb] = (self._matrix * self._waves(at)).entries()
+        smooth, place = rows[:n], n + n * n
+        values, jacobian = list(smooth), [rows[n + n * i : n + n * i + n] for i in range(n)]
+        springs = []
+        for number, _, pull in self.cones:
+            new = _spring(number, pull, rows[place : place + 2 + 2 * n + 2 * n * n], jacobian)
+            values = [value - part for value, part in zip(values, new.part, strict=True)]
+            springs.append(new)
+            place += 2 + 2 * n + 2 * n * n
+        return Jet(values, jacobian, smooth, tuple(springs))
+
+
+def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix) -> Spring:
+    """A spring from its vector and its derivatives; its part is taken off the Jacobian if it surely has a length."""
+    n = len(jacobian)
+    a, b = rows[:2]
+    slopes = tuple((rows[2 + 2 * i], rows[3 + 2 * i]) for i in range(n))
+    bends = rows[2 + 2 * n :]
+    q = square(a) + square(b)
+    outer = tuple(pull * size(*bends[2 * i * (n + 1) : 2 * i * (n + 1) + 2]) for i in range(n))
+    if not q > 0:
+        reach = (square(a).upper() + square(b).upper()).sqrt()
+        part = tuple(pull * _ANY * size(*g) for g in slopes)
+        return Spring(number, pull, reach, slopes, part, outer, True)
+    inverse = q.rsqrt()
+    u, v = unit(a * inverse), unit(b * inverse)
+    cross = [u * gy - v * gx for gx, gy in slopes]
+    for i in range(n):
+        for j in range(i, n):
+            across, up = bends[2 * (i * n + j)], bends[2 * (i * n + j) + 1]
+            turning = square(cross[i]) if i == j else cross[i] * cross[j]
+            entry = pull * (turning * inverse + u * across + v * up)
+            jacobian[i][j] = jacobian[i][j] - entry
+            if i != j:
+                jacobian[j][i] = jacobian[j][i] - entry
+    return Spring(number, pull, q.sqrt(), slopes, tuple(pull * (u * x + v * y) for x, y in slopes), outer, False)
+
+
+_ZERO, _ONE = arb(0), arb(1)
+
+
+def square(x: arb) -> arb:
+    """The square: no product of two balls that have nothing to do with one another."""
+    return _ZERO.union(_product(x.abs_upper(), 2)) if x.contains(0) else x * x
+
+
+def power(x: arb, exponent: int) -> arb:
+    """A power; an even one of a ball with both signs is not negative."""
+    if exponent % 2 == 0 and x.contains(0):
+        return _ZERO.union(_product(x.abs_upper(), exponent))
+    if x.rad() == 0:
+        return _product(x, exponent)
+    return _product(x.lower(), exponent).union(_product(x.upper(), exponent))
+
+
+def _product(x: arb, exponent: int) -> arb:
+    """Not by the operator, which has no answer for balls around 0."""
+    return prod([x] * exponent, start=_ONE)
+
+
+def size(x: arb, y: arb) -> arb:
+    """An upper bound of a vector's length."""
+    a, b = x.abs_upper(), y.abs_upper()
+    return (a * a + b * b).sqrt().upper()
+
+
+def unit(value: arb) -> arb:
+    """A ball for a number that is known to lie from -1 to 1, given one ball for it."""
+    return value if value.rad() < 1 else _ANY
+
+
+__all__ = ["Field", "Jet", "Matrix", "Spring", "power", "size", "square"]

@@ -1,0 +1,190 @@
+"""The solutions of any model at a point of the window, or over a box of it, counted with proof.
+
+Guarantee: counts that are returned are true, at the point or at every point of the box; what is not proved raises
+`Unproved`. Springs without length are no solutions.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, ctx
+
+from ptmcad.answer.regionmap import Solution
+from ptmcad.mechanism import Model
+from ptmcad.question.slice import Count, Slice
+from ptmcad.verification.certified.counted import MINIMA, Counted, Counts
+from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.field import Field
+from ptmcad.verification.certified.parameters import exact, over
+from ptmcad.verification.certified.ranges import half_widths
+from ptmcad.verification.certified.solving import Box, Spent, Zero, disjoint, same, zeros
+from ptmcad.verification.certified.vectors import evaluated
+from ptmcad.verification.certified.waves import Form
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.report import Violation
+
+PRECISIONS = (53, 128)
+_BOX_PRECISION = 128
+BUDGETS = (20_000, 40_000, 60_000)
+"""Boxes of the unknowns for one point, by their number; one more unknown makes each of them dearer, too."""
+BOX_BUDGET_SHARE = 4
+"""For a box of parameters so many times fewer."""
+MAX_ANGLE = 8
+"""Of the middle of a stored box."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelCounting:
+    """Counts for one model, from the form that follows from its description."""
+
+    form: Form
+    is_complete = False
+
+    def at(self, claims: Claims, x: Fraction, y: Fraction) -> Counted:
+        """At a point of the window."""
+        values, count = _values_at(claims, self.form, x, y), claims.result.slice.count
+        reason: Unproved | None = None
+        for bits in PRECISIONS:
+            with ctx.workprec(bits):
+                try:
+                    field = _field_at(self.form, values)
+                    found, _ = zeros(field, _only_minima(self.form, count), [_start(field)], self._budget)
+                except Spent:
+                    raise  # more digits would not make them fewer
+                except Unproved as unproved:
+                    reason = unproved
+                else:
+                    return Counted(counts_of(self.form, found, count), found, values)
+        assert reason is not None
+        raise reason
+
+    def within(self, there: Counted, boxes: Sequence[Solution]) -> list[Zero]:
+        """The only solution in each of the stored boxes."""
+        with ctx.workprec(_BOX_PRECISION):
+            field = _field_at(self.form, there.values)
+            return [_only(field, solution, k, self._budget) for k, solution in enumerate(boxes)]
+
+    def same(self, one: Zero, two: Zero) -> bool:
+        """Whether a solution lies where another one is alone.
+
+        Raises
+        ------
+        Unproved
+            When it may or may not be the other one.
+        """
+        if same(one, two, self.form.is_circle):
+            return True
+        if disjoint(one, two, self.form.is_circle):
+            return False
+        raise Unproved("a stored box may have one of two solutions")
+
+    def over(self, slice: Slice, x: arb, y: arb, there: Counted) -> Counts:
+        """At all points of a box."""
+        values = {name: over(expression, x, y) for name, expression in slice.parameters.items()}
+        for name, value in values.items():
+            if not _is_in_domain(slice.model, name, value):
+                raise Unproved(f"{name} may be outside of its domain")
+        values = {name: arb(0) for name in slice.model.free_lengths} | values
+        if not all(evaluated(cone.pull, values) >= 0 for cone in self.form.cones):
+            raise Unproved("a stiffness times a free length may be negative")
+        field = Field(self.form, values)
+        # boxes much smaller than the box of parameters are excluded no better than larger ones
+        smallest = max(float(max(x.rad(), y.rad())) / 256, 2.0**-32)
+        minima = _only_minima(self.form, slice.count)
+        budget = self._budget // BOX_BUDGET_SHARE
+        found, _ = zeros(field, minima, [_start(field)], budget, smallest, there.found)
+        return counts_of(self.form, found, slice.count)
+
+    @property
+    def _budget(self) -> int:
+        return BUDGETS[self.form.size - 1]
+
+
+def _only_minima(form: Form, count: Count) -> bool:
+    return form.is_gradient and count in MINIMA
+
+
+def _is_in_domain(model: Model, name: str, value: Any) -> bool:
+    """Whether a parameter, a number or a ball, surely is what its kind asks for."""
+    return bool(value > 0 if name in model.positive else value >= 0 if name in model.nonnegative else True)
+
+
+def _values_at(claims: Claims, form: Form, x: Fraction, y: Fraction) -> dict[str, Fraction]:
+    """Every parameter at a point.
+
+    Raises
+    ------
+    Violation
+        When one has a pole there, or is outside its domain.
+    """
+    model = claims.model
+    values = {name: Fraction(0) for name in model.free_lengths} | claims.parameters_at(x, y)
+    for name, value in values.items():
+        if not _is_in_domain(model, name, value):
+            raise Violation(f"{name} is {'not positive' if name in model.positive else 'negative'}")
+    for cone in form.cones:
+        if evaluated(cone.pull, values) < 0:
+            raise Violation(f"stiffness times free length of the spring {cone.name} is negative")
+    return values
+
+
+def _field_at(form: Form, values: Mapping[str, Fraction]) -> Field:
+    return Field(form, {name: exact(value) for name, value in values.items()})
+
+
+def _start(field: Field) -> Box:
+    """All configurations that may be solutions."""
+    widths = half_widths(field.form, field.values)
+    return (0.0,) * len(widths), widths
+
+
+def counts_of(form: Form, found: Sequence[Zero], count: Count) -> Counts:
+    """The counts that follow from the solutions; Euler's sum is checked where it holds.
+
+    Raises
+    ------
+    Violation
+        When the sum is wrong, which would be a fault of this check.
+    """
+    if not form.is_gradient:
+        return Counts(len(found), None, None, None)
+    negative = Counter(zero.signs.count("-") for zero in found)
+    index = tuple(negative[k] for k in range(form.size + 1))
+    if count is Count.STABLE:
+        return Counts(None, index[0], None, None)
+    if form.is_smooth_on_a_torus and sum((-1) ** k * number for k, number in enumerate(index)):
+        raise Violation(f"critical points of a function on the torus by index {index} contradict Euler's sum")
+    return Counts(len(found), index[0], index, None)
+
+
+def _only(field: Field, solution: Solution, k: int, budget: int) -> Zero:
+    """The one solution in a stored box."""
+    circles = field.form.is_circle
+    if len(solution.center) != len(circles) or not 0 < solution.radius <= (1 if any(circles) else 2**60):
+        raise Violation(f"box {k} of the solutions is not a box of {len(circles)} unknowns")
+    if any(circle and abs(x) > MAX_ANGLE for circle, x in zip(circles, solution.center, strict=True)):
+        raise Violation(f"box {k} of the solutions is too many turns away")
+    center = tuple(float(x) for x in solution.center)
+    # floats have the centers and radii of stored boxes exactly, or nearly: then the box is made a little larger
+    radii = tuple(float(solution.radius) * (1 + 2.0**-40) + 2.0**-50 * max(1.0, abs(x)) for x in center)
+    inside, _ = zeros(field, False, [(center, radii)], budget)
+    held = [zero for zero in inside if _distances(zero, solution, "in")]
+    open_ = [zero for zero in inside if zero not in held and not _distances(zero, solution, "out")]
+    near = ", ".join(f"{x:.6g}" for x in center)
+    if open_ and len(held) < 2:
+        raise Unproved(f"a solution may be in box {k} of the solutions, around ({near}), or beside it")
+    if len(held) != 1:
+        raise Violation(f"box {k} of the solutions, around ({near}), has {len(held)} equilibria, not one")
+    return held[0]
+
+
+def _distances(zero: Zero, solution: Solution, where: str) -> bool:
+    """Whether a solution is surely in a stored box, or surely out of it."""
+    radius = exact(solution.radius)
+    away = [abs(x - exact(c)) for x, c in zip(zero.within, solution.center, strict=True)]
+    return all(d <= radius for d in away) if where == "in" else any(d > radius for d in away)

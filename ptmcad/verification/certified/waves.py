@@ -1,0 +1,209 @@
+"""The equations of any model as sums of waves, from its description: Fourier's normal form in the unknown angles.
+
+Guarantee: exact; polynomials over Q in the parameters. Angles are read as exponentials, and a real number is a sum of
+products of one wave, a cosine or a sine of a sum of whole multiples of angles, with powers of the real unknowns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+
+from ptmcad.mechanism import Mechanism, Model
+from ptmcad.verification.certified.vectors import Terms
+from ptmcad.verification.derivation import Configuration, formulas, has_index
+
+Multi = tuple[int, ...]
+"""For each unknown the multiple of an angle, or the power of a real unknown."""
+Key = tuple[Multi, Multi, int]
+"""The multiples, the powers, and 0 for the cosine or 1 for the sine."""
+Waves = Mapping[Key, Terms]
+"""Factors of the waves; the first multiple that is not zero is positive, and there is no sine of nothing."""
+_Polynomials = dict[Key, fmpq_mpoly]
+
+
+class Cone(NamedTuple):
+    """A spring with a free length, which takes K times the length of a vector off the potential.
+
+    Attributes
+    ----------
+    name : of the spring.
+    pull : K, the stiffness times the free length.
+    across, up : the vector between the spring's ends.
+    slopes, bends : first derivatives of both by the unknowns, and the second ones row by row.
+    """
+
+    name: str
+    pull: Terms
+    vector: tuple[Waves, Waves]
+    slopes: tuple[tuple[Waves, Waves], ...]
+    bends: tuple[tuple[Waves, Waves], ...]
+
+
+class Form(NamedTuple):
+    """What is zero at a solution, one equation for each unknown.
+
+    Attributes
+    ----------
+    is_circle : of each unknown, whether it is an angle.
+    is_gradient : whether the equations are the derivatives of a potential, so that the Jacobian is a Hessian.
+    equations, jacobian : without the parts of the cones; the derivatives row by row.
+    """
+
+    unknowns: tuple[str, ...]
+    is_circle: tuple[bool, ...]
+    is_gradient: bool
+    equations: tuple[Waves, ...]
+    jacobian: tuple[Waves, ...]
+    cones: tuple[Cone, ...]
+
+    @property
+    def size(self) -> int:
+        """The number of unknowns."""
+        return len(self.unknowns)
+
+    @property
+    def is_smooth_on_a_torus(self) -> bool:
+        """Whether the alternating sum of the index is zero (Poincare and Hopf; moments do not matter)."""
+        return self.is_gradient and all(self.is_circle) and not self.cones
+
+
+class _Ring:
+    """Polynomials in the parameters, the real unknowns, the imaginary unit and the exponentials of the angles."""
+
+    def __init__(self, model: Model):
+        self.unknowns, self.parameters = tuple(model.unknowns), tuple(model.variables)
+        turns = [f"{way} {angle}" for angle in model.angles for way in ("exp", "inverse")]
+        names = [f"p {n}" for n in self.parameters] + [f"h {n}" for n in model.reals] + ["i", *turns]
+        self.context: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(tuple(f"x{k}" for k in range(len(names))), Ordering.lex)
+        places = {name: k for k, name in enumerate(names)}
+        gen = self.context.gen
+        self.i = gen(places["i"])
+        exponentials = {a: (gen(places[f"exp {a}"]), gen(places[f"inverse {a}"])) for a in model.angles}
+        self.squares = [self.i * self.i + 1, *(e * f - 1 for e, f in exponentials.values())]
+        half = fmpq(1, 2)
+        self.configuration = Configuration(
+            {n: gen(places[f"p {n}"]) for n in self.parameters} | {n: gen(places[f"h {n}"]) for n in model.reals},
+            {a: ((e + f) * half, -self.i * (e - f) * half) for a, (e, f) in exponentials.items()},
+        )
+        self.reals = {n: places[f"h {n}"] for n in model.reals}
+        self.turns = {a: (places[f"exp {a}"], places[f"inverse {a}"]) for a in model.angles}
+        self.unit = places["i"]
+        self.numbers: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(self.parameters or ("none",), Ordering.lex)
+
+    def waves(self, value: Any) -> _Polynomials:
+        """The waves of a real element, which may be a number of its own."""
+        p: fmpq_mpoly = self.context.constant(0) + value
+        for square in self.squares:
+            p = divmod(p, square)[1]
+        zero, count = (0,) * len(self.unknowns), len(self.parameters)
+        found = []
+        for exponents, c in p.terms():
+            powers = [int(e) for e in exponents]
+            turned, raised = list(zero), list(zero)
+            for k, name in enumerate(self.unknowns):
+                if name in self.reals:
+                    raised[k] = powers[self.reals[name]]
+                else:
+                    ahead, back = self.turns[name]
+                    turned[k] = powers[ahead] - powers[back]
+            # the real part of the exponential of i w is cos w, and that of i times it is -sin w
+            sine = powers[self.unit]
+            factor = self.numbers.from_dict({tuple(powers[:count]) or (0,): -c if sine else c})
+            found.append(((tuple(turned), tuple(raised), sine), factor))
+        return _collected(found)
+
+
+def _collected(terms: Iterable[tuple[Key, fmpq_mpoly]]) -> _Polynomials:
+    found: _Polynomials = {}
+    for (turned, raised, sine), c in terms:
+        lead = next((m for m in turned if m), 0)
+        if not lead and sine:
+            continue
+        key = (tuple(-m for m in turned) if lead < 0 else turned), raised, sine
+        signed = -c if lead < 0 and sine else c
+        found[key] = found[key] + signed if key in found else signed
+    return {key: c for key, c in found.items() if not c.is_zero()}
+
+
+def _by(f: _Polynomials, k: int) -> _Polynomials:
+    """The derivative by an unknown."""
+    found = []
+    for (turned, raised, sine), c in f.items():
+        if turned[k]:
+            found.append(((turned, raised, 1 - sine), c * (turned[k] if sine else -turned[k])))
+        if raised[k]:
+            lower = tuple(e - (k == j) for j, e in enumerate(raised))
+            found.append(((turned, lower, sine), c * raised[k]))
+    return _collected(found)
+
+
+def _less(f: _Polynomials, moment: _Polynomials) -> _Polynomials:
+    return _collected([*f.items(), *((key, -c) for key, c in moment.items())])
+
+
+@lru_cache(maxsize=8)
+def form_of(model: Model) -> Form:
+    """The form of a model.
+
+    Raises
+    ------
+    Violation
+        For a moment that depends on an unknown.
+    """
+    ring = _Ring(model)
+    unknowns = tuple(model.unknowns)
+    given = formulas(ring.configuration, model)
+    everything = range(len(unknowns))
+    if given.energy is None:
+        equations = [ring.waves(e) for e in given.equations]
+    else:
+        potential = ring.waves(given.energy)
+        order = model.angles + model.reals
+        equations = [_less(_by(potential, k), ring.waves(given.moment(order.index(unknowns[k])))) for k in everything]
+    jacobian = [_by(e, k) for e in equations for k in everything]
+    return Form(
+        unknowns,
+        tuple(name in model.angles for name in unknowns),
+        has_index(model),
+        tuple(_kept(e, ring.parameters) for e in equations),
+        tuple(_kept(e, ring.parameters) for e in jacobian),
+        tuple(_cones(ring, model)) if isinstance(model, Mechanism) else (),
+    )
+
+
+def _cones(ring: _Ring, mechanism: Mechanism) -> Iterable[Cone]:
+    points = ring.configuration.points(mechanism)
+    everything = range(len(ring.unknowns))
+    for spring in mechanism.springs:
+        pull = ring.configuration.value(spring.stiffness) * ring.configuration.value(spring.free)
+        vector = [ring.waves(points[spring.end][i] - points[spring.start][i]) for i in (0, 1)]
+        slopes = [[_by(d, k) for d in vector] for k in everything]
+        bends = [[_by(d, j) for d in slope] for slope in slopes for j in everything]
+        strength = _kept(ring.waves(pull), ring.parameters)
+        if not strength or not any(d for slope in slopes for d in slope):
+            continue
+
+        def pair(found: list[_Polynomials]) -> tuple[Waves, Waves]:
+            across, up = (_kept(f, ring.parameters) for f in found)
+            return across, up
+
+        ((_, terms),) = strength.items()
+        yield Cone(spring.name, terms, pair(vector), tuple(map(pair, slopes)), tuple(map(pair, bends)))
+
+
+def _kept(f: _Polynomials, parameters: tuple[str, ...]) -> Waves:
+    def terms(p: fmpq_mpoly) -> Terms:
+        return tuple(
+            (
+                int(c.p),
+                int(c.q),
+                tuple(n for n, power in zip(parameters, powers, strict=False) for _ in range(int(power))),
+            )
+            for powers, c in p.terms()
+        )
+
+    return {key: terms(p) for key, p in f.items()}

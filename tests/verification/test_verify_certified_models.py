@@ -1,0 +1,472 @@
+"""Certified maps of other models than the paper's mechanism: true ones are accepted, false ones are rejected."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+import pytest
+from flint import arb, ctx
+from forger import certified
+from forger.consistency import drop, put
+from support.maps import once_per_run
+
+import ptmcad
+from ptmcad.answer.regionmap import RegionMap, Solution, Status
+from ptmcad.mechanism import Model
+from ptmcad.mechanism.ptm import RECORD
+from ptmcad.options import Options
+from ptmcad.question.slice import Count
+from ptmcad.text.expressions import constant
+from ptmcad.text.tree import Chain, Name, Number, Step
+from ptmcad.verification.certified.counted import Counts
+from ptmcad.verification.certified.equilibria import Unproved
+from ptmcad.verification.certified.field import Field, power
+from ptmcad.verification.certified.models import ModelCounting
+from ptmcad.verification.certified.parameters import exact
+from ptmcad.verification.certified.points import PaperCounting
+from ptmcad.verification.certified.ranges import half_widths
+from ptmcad.verification.certified.solving import inertia, zeros
+from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.certified.waves import form_of
+from ptmcad.verification.claims import Claims
+from ptmcad.verification.report import Violation
+
+pytest.importorskip("numba")
+
+TRUSS: dict[str, Any] = {
+    "mechanism": {
+        "name": "truss",
+        "parameters": {
+            "a": {"kind": "base", "default": 1},
+            "k": {"kind": "stiffness", "default": 1},
+            "l0": {"kind": "free length", "default": 1},
+            "f": {"kind": "force"},
+        },
+        "unknowns": {"h": "length"},
+        "points": {"A": ["-a", 0], "B": ["a", 0], "P": [0, "h"]},
+        "springs": [{"between": ["A", "P"], "k": "k", "free": "l0"}, {"between": ["B", "P"], "k": "k", "free": "l0"}],
+        "loads": {"P": [0, "f"]},
+    },
+    "parameters": {"l0": 1},
+    "axes": {"a": [0, 2], "f": [-1, 1]},
+    "count": "index",
+}
+PENDULUM: dict[str, Any] = {
+    "mechanism": {
+        "name": "stretched",
+        "parameters": {
+            "a": {"kind": "base", "default": 1},
+            "l0": {"kind": "free length", "default": 0},
+            "W": {"kind": "force"},
+            "c": {"kind": "stiffness", "default": "1/5"},
+            "M": {"kind": "force"},
+        },
+        "unknowns": {"th": "angle"},
+        "points": {"O": [0, 0], "A": [0, "a"], "P": ["sin(th)", "cos(th)"]},
+        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
+        "loads": {"P": ["1/10", "W"]},
+        "torsion": [{"angle": "2*th", "k": "c", "rest": {"cos": "3/5", "sin": "4/5"}}],
+        "moments": {"th": "M"},
+    },
+    "parameters": {"l0": "1/2", "M": "1/20"},
+    "axes": {"a": ["1/2", 2], "W": [-2, 2]},
+    "count": "stable",
+}
+CHAIN: dict[str, Any] = {
+    "mechanism": {
+        "name": "chain",
+        "parameters": {"a": {"kind": "base", "default": 1}, "F": {"kind": "force"}},
+        "unknowns": {"s": "angle", "t": "angle"},
+        "points": {
+            "O": [0, 0], "A": [0, "a"],
+            "P": ["sin(s)", "cos(s)"], "Q": ["sin(s) + sin(t)", "cos(s) + cos(t)"],
+        },
+        "bars": [["O", "P"], ["P", "Q"]],
+        "springs": [
+            {"between": ["A", "P"], "k": 1, "free": "1/4"}, {"between": ["A", "Q"], "k": 1, "free": "1/3"},
+        ],
+        "loads": {"P": ["1/10", 0], "Q": [0, "F"]},
+    },
+    "axes": {"a": [1, 2], "F": ["1/2", 1]},
+    "count": "index",
+}  # fmt: skip
+RECORDS: dict[str, dict[str, Any]] = {
+    "truss": TRUSS,
+    "pendulum": PENDULUM,
+    "chain": CHAIN,
+    "cubic": {
+        "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
+        "axes": {"a": [-2, 2], "b": [-2, 2]},
+    },
+    "well": {
+        "system": {
+            "unknowns": {"x": "real", "t": "angle"},
+            "potential": "x^4/4 - a*x^2/2 + b*x*cos(t) - cos(t) - 1/5*sin(2*t)",
+        },
+        "axes": {"a": ["1/2", 2], "b": [-1, 1]},
+        "count": "total",
+    },
+    "oscillators": {
+        "system": {
+            "unknowns": {"u": "angle", "v": "angle", "w": "angle"},
+            "potential": "-F*(cos(u) + cos(v) + cos(w)) - k*(cos(u - v) + cos(v - w)) - 1/3*sin(u)",
+        },
+        "axes": {"k": [0, 1], "F": [1, 2]},
+        "count": "index",
+    },
+}  # fmt: skip
+
+
+@cache
+def map_of(name: str) -> RegionMap:
+    def compute() -> RegionMap:
+        from ptmcad.certified.engine import certified_map
+
+        slice = ptmcad.slice_from_mapping({"name": "small", **RECORDS[name]})
+        return certified_map(slice, Options(tolerance=Fraction(1, 10), jobs=1))
+
+    return ptmcad.RegionMap.from_json(once_per_run(f"certified model {name}", compute).to_json())
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_a_true_map_is_accepted(name: str) -> None:
+    """As its file says it; nothing is left undecided, and the report says what was not tried."""
+    report = ptmcad.verify(map_of(name), boxes=2)
+    assert report.ok, report.violation
+    assert [c.name for c in report.checks if c.passed is None] == ["the whole free area", "plan", "provenance"]
+    assert "2 boxes" in report.table()
+    assert len({(c.total, c.stable, c.index) for c in map_of(name).cells}) > 1
+
+
+def recounted(r: RegionMap, n: int, by: int) -> RegionMap:
+    """Other counts of a cell that agree with each other, and with Euler's sum."""
+    cell = r.cells[n]
+    if cell.index is not None:
+        index = (cell.index[0] + by, cell.index[1] + by, *cell.index[2:])
+        return certified.with_counts(r, n, index=index, total=sum(index), stable=index[0])
+    if cell.total is not None:
+        return certified.with_counts(r, n, total=cell.total + 2 * by)
+    assert cell.stable is not None
+    return certified.with_counts(r, n, stable=cell.stable + by)
+
+
+def with_solution(r: RegionMap, change: Callable[[Solution], Solution]) -> RegionMap:
+    n, cell = max(enumerate(r.cells), key=lambda item: len(item[1].solutions))
+    return replace(r, cells=put(r.cells, n, solutions=(change(cell.solutions[0]), *cell.solutions[1:])))
+
+
+def with_solutions(r: RegionMap, change: Callable[[tuple[Solution, ...]], tuple[Solution, ...]]) -> RegionMap:
+    n, cell = max(enumerate(r.cells), key=lambda item: len(item[1].solutions))
+    return replace(r, cells=put(r.cells, n, solutions=change(cell.solutions)))
+
+
+def exchanged(r: RegionMap) -> RegionMap:
+    """Two cells with each other's counts."""
+    return next(certified.counts_exchanged(r))()
+
+
+def shifted(r: RegionMap) -> RegionMap:
+    """A rectangle where a sample is."""
+    assert r.cover is not None
+    first, *others = sorted(r.cover.rectangles, key=lambda q: (q[1] - q[0]) * (q[3] - q[2]))
+    u, v = (int(c) for c in CertifiedClaims(r).on_lattice(*r.cells[0].sample))
+    moved = (u - 1, u - 1 + first[1] - first[0], v - 1, v - 1 + first[3] - first[2])
+    return replace(r, cover=replace(r.cover, rectangles=tuple(sorted([*others, moved]))))
+
+
+def with_text(r: RegionMap, name: str, text: str) -> RegionMap:
+    return replace(r, slice=replace(r.slice, text={**r.slice.text, name: text}))
+
+
+def with_parameter(r: RegionMap, name: str, value: Fraction) -> RegionMap:
+    """A parameter as if the map had been made with it."""
+    slice = replace(r.slice, parameters={**r.slice.parameters, name: constant(value)})
+    return with_text(replace(r, slice=slice), name, str(value))
+
+
+def with_potential(r: RegionMap, old: str, new: str) -> RegionMap:
+    assert old in r.system.potential
+    return replace(r, system=replace(r.system, potential=r.system.potential.replace(old, new, 1)))
+
+
+def with_model(r: RegionMap, **changes: Any) -> RegionMap:
+    return replace(r, slice=replace(r.slice, model=replace(r.slice.model, **changes)))
+
+
+def with_free_less(r: RegionMap, value: Fraction) -> RegionMap:
+    """All springs with a shorter free length."""
+    springs = (s._replace(free=Chain(s.free, (Step("-", Number(value)),))) for s in r.slice.model.springs)
+    return with_model(r, springs=tuple(springs))
+
+
+def beside(s: Solution) -> Solution:
+    return replace(s, center=tuple(x + s.radius * Fraction(19, 20) for x in s.center), radius=s.radius / 10**9)
+
+
+def other_signs(s: Solution) -> Solution:
+    return replace(s, signs=s.signs[:-1] + ("+" if s.signs[-1:] == "-" else "-"))
+
+
+def one_index(r: RegionMap) -> RegionMap:
+    """Two saddles for a minimum and a maximum: total and Euler's sum stay."""
+    index = r.cells[0].index
+    assert index is not None
+    return certified.with_counts(r, 0, index=(index[0] + 1, index[1] - 2, index[2] + 1), stable=index[0] + 1)
+
+
+ALL: dict[str, tuple[Callable[[RegionMap], RegionMap], str]] = {
+    "more solutions": (lambda r: recounted(r, 0, 1), "counts and solutions"),
+    "fewer solutions": (lambda r: recounted(r, -1 % len(r.cells), -1), "counts and solutions"),
+    "counts of another cell": (exchanged, "counts and solutions"),
+    "counts of a region": (lambda r: replace(r, regions=put(r.regions, 0, total=17)), "form|regions and areas"),
+    "no cell": (lambda r: replace(r, cells=drop(r.cells, 1)), "components|regions and areas"),
+    "a region and its cell dropped": (lambda r: replace(r, cells=r.cells[:-1], regions=r.regions[:-1]), "components"),
+    "a rectangle in another cell": (shifted, "components"),
+    "nothing undetermined": (lambda r: replace(r, undetermined=Fraction(0)), "components"),
+    "a solution too few": (lambda r: with_solutions(r, lambda s: s[1:]), "counts and solutions"),
+    "a solution twice": (lambda r: with_solutions(r, lambda s: (s[0], *s[:-1])), "counts and solutions"),
+    "a box beside the solution": (lambda r: with_solution(r, beside), "counts and solutions"),
+    "a box too large": (lambda r: with_solution(r, lambda s: replace(s, radius=Fraction(4))), "counts and solutions"),
+    "a box without width": (lambda r: with_solution(r, lambda s: replace(s, radius=Fraction(0))), "counts and sol"),
+    "a box of more unknowns": (
+        lambda r: with_solution(r, lambda s: replace(s, center=(*s.center, Fraction(0)))), "counts and solutions",
+    ),
+    "signs": (lambda r: with_solution(r, other_signs), "counts and solutions"),
+    "status": (lambda r: replace(r, status=Status.EXACT), "form"),
+    "unknowns": (lambda r: replace(r, system=replace(r.system, unknowns=("q",))), "equations"),
+    "a gradient": (lambda r: replace(r, system=replace(r.system, gradient=("1", "1", "1", "1"))), "equations"),
+    "conditions": (lambda r: replace(r, system=replace(r.system, stability=("1",))), "equations"),
+}  # fmt: skip
+SOME: dict[str, tuple[str, Callable[[RegionMap], RegionMap], str]] = {
+    "an angle for a saddle": ("chain", one_index, "counts and solutions"),
+    "another free length": ("truss", lambda r: with_parameter(r, "l0", Fraction(1, 2)), "counts and solutions"),
+    "another free length as text": ("truss", lambda r: with_text(r, "l0", "1/2"), "parameters as written"),
+    "a negative free length": ("truss", lambda r: with_parameter(r, "l0", Fraction(-1)), "signs of parameters"),
+    "a spring that pushes together": ("truss", lambda r: with_free_less(r, Fraction(2)), "signs of parameters"),
+    "a negative stiffness": ("pendulum", lambda r: with_parameter(r, "c", Fraction(-1)), "signs of parameters"),
+    "a spring in the potential": ("truss", lambda r: with_potential(r, "- l0)^2", "- 2*l0)^2"), "equations"),
+    "a root that is no length": ("truss", lambda r: with_potential(r, "- f*h", "- f*sqrt(h^2)"), "equations"),
+    "an angle outside": ("chain", lambda r: with_potential(r, "sin(s)", "s"), "equations"),
+    "no moment": ("pendulum", lambda r: with_potential(r, " - M*th", ""), "equations"),
+    "a torsion spring's rest": ("pendulum", lambda r: with_potential(r, "(4/5)*sin", "(3/5)*sin"), "equations"),
+    "an angle's multiple": ("well", lambda r: with_potential(r, "sin(2*t)", "sin(3*t)"), "equations"),
+    "an equation": (
+        "cubic", lambda r: replace(r, system=replace(r.system, gradient=("x^3 - a*x - b",))), "equations",
+    ),
+    "no equation": ("cubic", lambda r: replace(r, system=replace(r.system, gradient=())), "equations"),
+    "a potential for equations": (
+        "cubic", lambda r: replace(r, system=replace(r.system, potential="x^4")), "equations",
+    ),
+    "a load in the description": (
+        "truss", lambda r: with_model(r, loads=(r.slice.model.loads[0]._replace(y=Number(Fraction(1))),)), "form|equat",
+    ),
+    "a sign condition": ("cubic", lambda r: with_model(r, inequalities=(Name("x"),)), "form"),
+    "one more equation": ("cubic", lambda r: with_model(r, equations=r.slice.model.equations * 2), "form"),
+    "admissible": ("truss", lambda r: replace(r, slice=replace(r.slice, count=Count.ADMISSIBLE)), "form"),
+    "stable roots": ("cubic", lambda r: replace(r, slice=replace(r.slice, count=Count.STABLE)), "form"),
+    "a moment that turns": (
+        "pendulum", lambda r: with_model(r, moments=(r.slice.model.moments[0]._replace(value=Name("th")),)), "form",
+    ),
+}  # fmt: skip
+
+
+def assert_rejected(false: RegionMap, by: str) -> None:
+    report = ptmcad.verify(false, boxes=0)
+    assert report.violation is not None, report.table()
+    assert any(report.violation.startswith(name) for name in by.split("|")), report.violation
+
+
+@pytest.mark.parametrize("name", RECORDS)
+@pytest.mark.parametrize("kind", ALL)
+def test_a_false_map_is_rejected(kind: str, name: str) -> None:
+    change, by = ALL[kind]
+    if name == "cubic" and kind == "signs":
+        assert map_of(name).cells[0].solutions[0].signs == ""
+    assert_rejected(change(map_of(name)), by)
+
+
+@pytest.mark.parametrize("kind", SOME)
+def test_a_map_of_something_else_is_rejected(kind: str) -> None:
+    name, change, by = SOME[kind]
+    assert_rejected(change(map_of(name)), by)
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_random_points_find_that_curves_were_left_out(name: str) -> None:
+    """All else agrees with a map that has one cell and no rectangles."""
+    false = certified.covered(replace(map_of(name), cells=map_of(name).cells[:1]), ())
+    assert ptmcad.verify(false, boxes=0).ok
+    report = ptmcad.verify(false, boxes=4)
+    assert report.violation is not None
+    assert report.violation.startswith("random boxes:")
+
+
+def test_what_is_not_decided_is_not_called_true(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nor false: a search that may look at three boxes says nothing of samples and of random points."""
+    monkeypatch.setattr("ptmcad.verification.certified.models.BUDGETS", (3, 3, 3))
+    report = ptmcad.verify(map_of("oscillators"), boxes=4)
+    assert report.ok
+    told = {c.name: c for c in report.checks}
+    for name in ("counts and solutions", "random boxes"):
+        assert told[name].passed is None
+    assert "3 boxes were not enough" in told["counts and solutions"].detail
+    assert "none of the first 16 points" in told["random boxes"].detail
+
+
+class _At:
+    """Claims of a slice that are about a single point."""
+
+    def __init__(self, model: Model, values: Mapping[str, Fraction], count: Count):
+        from types import SimpleNamespace
+
+        self.model, self.values = model, dict(values)
+        self.result = SimpleNamespace(slice=SimpleNamespace(count=count, model=model))
+
+    def parameters_at(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
+        return self.values
+
+
+def counts_at(counting: Any, model: Model, values: Mapping[str, Fraction], count: Count) -> Counts:
+    claims: Claims = _At(model, values, count)  # type: ignore[assignment]
+    found: Counts = counting.at(claims, Fraction(0), Fraction(0)).counts
+    return found
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_paper_s_mechanism_counted_in_two_ways(seed: int) -> None:
+    """By the formulas of its own, and by those that its description gives."""
+    model = ptmcad.slice_from_mapping({
+        "name": "other", "mechanism": {k: v for k, v in RECORD.items() if k != "symmetries"} | {"name": "other"},
+        "axes": {"rho": [1, 2], "L2": [1, 2]},
+    }).model  # fmt: skip
+    rng = random.Random(seed)
+    values = {n: Fraction(rng.randint(20, 200), 100) for n in model.variables}
+    values |= {n: Fraction(rng.randint(-200, 200), 100) for n in model.forces}
+    for count in (Count.INDEX, Count.STABLE):
+        one = counts_at(PaperCounting(), model, values, count)
+        assert counts_at(ModelCounting(form_of(model)), model, values, count) == one
+
+
+@pytest.mark.parametrize("name", ["cubic", "well", "oscillators"])
+def test_counts_are_those_of_the_exact_engine(name: str) -> None:
+    slice = ptmcad.slice_from_mapping({"name": "small", **RECORDS[name]})
+    rng = random.Random(name)
+    for _ in range(3):
+        x, y = (a.low + (a.high - a.low) * Fraction(rng.randint(1, 996), 997) for a in slice.axes)
+        values = {n: e.evaluate(x, y) for n, e in slice.parameters.items()}
+        found = counts_at(ModelCounting(form_of(slice.model)), slice.model, values, Count.INDEX)
+        true = ptmcad.counts_at(slice.model, **{n: str(v) for n, v in zip(slice.axis_names, (x, y), strict=True)})
+        assert (found.total, found.index) == (true.total, true.index)
+
+
+@pytest.mark.parametrize("name", ["truss", "chain", "oscillators"])
+def test_derivatives_are_those_of_the_stored_potential(name: str) -> None:
+    """Divided differences of the text that a map has, with 400 bits and a step of 2^-60."""
+    r = map_of(name)
+    form, rng = form_of(r.slice.model), random.Random(name)
+    values = {n: e.evaluate(*r.cells[0].sample) for n, e in r.slice.parameters.items()}
+    with ctx.workprec(400):
+        balls = {n: exact(v) for n, v in values.items()}
+        at = [exact(Fraction(rng.randint(-300, 300), 100)) for _ in form.unknowns]
+        jet, h = Field(form, balls)(at), arb(2) ** -60
+        code = compile(r.system.potential.replace("^", "**"), "potential", "eval")
+
+        def energy(*steps: int) -> arb:
+            where = {u: x + n * h for u, x, n in zip(form.unknowns, at, steps, strict=True)}
+            names = {"sqrt": arb.sqrt, "cos": arb.cos, "sin": arb.sin, "__builtins__": {}}
+            value: arb = eval(code, names, {**balls, **where})  # text of our own engine
+            return value
+
+        for i in range(form.size):
+            e = [int(k == i) for k in range(form.size)]
+            back = [-k for k in e]
+            assert abs(jet.values[i] - (energy(*e) - energy(*back)) / (2 * h)) < 1e-25
+            for j in range(form.size):
+                f = [int(k == j) for k in range(form.size)]
+                corners = [
+                    energy(*(s * a + t * b for a, b in zip(e, f, strict=True))) for s in (1, -1) for t in (1, -1)
+                ]
+                mixed = (corners[0] - corners[1] - corners[2] + corners[3]) / (4 * h**2)
+                assert abs(jet.jacobian[i][j] - mixed) < 1e-25
+
+
+def test_no_solution_is_beyond_the_bounds_of_real_unknowns() -> None:
+    """x^3 - a x + b has a root beyond the square root of a; an unknown that may be anywhere has no bound."""
+    cubic = form_of(ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}).model)
+    for a in (1, 100, 10**6):
+        (bound,) = half_widths(cubic, {"a": arb(a), "b": arb(1, 1)})
+        assert a**0.5 < bound < 4 * a**0.5
+    ramp = {"system": {"unknowns": {"x": "real"}, "equations": ["a*x + b"]}, "axes": {"a": [-1, 1], "b": [-1, 1]}}
+    form = form_of(ptmcad.slice_from_mapping({"name": "r", **ramp}).model)
+    assert half_widths(form, {"a": arb(1), "b": arb(0, 3)}) == (4.0,)
+    with pytest.raises(Unproved, match="no bound of the unknown x"):
+        half_widths(form, {"a": arb(0, 1), "b": arb(1)})
+
+
+@pytest.mark.parametrize(("free", "half", "bends"), [("1/4", 0.01, True), ("1/100", 0.1, False)])
+def test_minima_near_a_spring_without_length(free: str, half: float, bends: bool) -> None:
+    """A box is discarded where all Hessians in it have a negative eigenvalue; a wide one around a weak peak is not."""
+    record = {**CHAIN, "mechanism": {**CHAIN["mechanism"], "springs": [{"between": ["A", "Q"], "k": 1, "free": free}]}}
+    form = form_of(ptmcad.slice_from_mapping({"name": "c", **record}).model)
+    field = Field(form, {"a": arb(1), "F": arb(0)})
+    at = (math.pi / 3, -math.pi / 3)  # where Q is A
+    jet = field([arb(x, half) for x in at])
+    (short,) = jet.short
+    assert jet.bends_down(short) is bends
+    rng = random.Random(0)
+    places = [[arb(x + rng.uniform(-half, half)) for x in at] for _ in range(200)]
+    signs = {inertia(field(place).jacobian) for place in places}
+    assert ("++" not in signs) is bends
+
+
+def test_a_solution_on_the_edge_of_a_stored_box_is_not_decided() -> None:
+    """The irrational root of x^3 - 2 x is told from the edge, the root 1 of x^3 - x at the edge is not."""
+    model = ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}).model
+    counting = ModelCounting(form_of(model))
+    for a, outside in ((2, "0 equilibria"), (1, "or beside it")):
+        claims: Claims = _At(model, {"a": Fraction(a), "b": Fraction(0)}, Count.TOTAL)  # type: ignore[assignment]
+        there = counting.at(claims, Fraction(0), Fraction(0))
+        assert there.counts.total == 3
+        (found,) = counting.within(there, [Solution((Fraction(5, 4),), Fraction(3, 8), "")])
+        assert abs(found.center[0] - a**0.5) < 1e-12
+        edge = Fraction(1) if a == 1 else Fraction(3, 2)
+        with pytest.raises((Unproved, Violation), match=outside):
+            counting.within(there, [Solution((edge + Fraction(1, 4),), Fraction(1, 4), "")])
+
+
+def test_nothing_is_proved_of_a_double_solution() -> None:
+    form = form_of(ptmcad.slice_from_mapping({"name": "c", **RECORDS["cubic"]}).model)
+    field = Field(form, {"a": arb(3), "b": arb(2)})
+    with pytest.raises(Unproved, match="degenerate"):
+        zeros(field, False, [((0.0,), half_widths(form, field.values))], 5_000)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_inertia_of_matrices_with_known_eigenvalues(seed: int) -> None:
+    """V' D V has the signs of D."""
+    rng = random.Random(seed)
+    for size in (1, 2, 3):
+        values = [rng.choice((-1, 1)) * rng.uniform(0.5, 3) for _ in range(size)]
+        v = [[rng.uniform(-1, 1) + 2 * (i == j) for j in range(size)] for i in range(size)]
+        h = [[sum((arb(v[k][i]) * values[k] * v[k][j] for k in range(size)), arb(0)) for j in range(size)]
+             for i in range(size)]  # fmt: skip
+        assert inertia(h) == "".join(sorted(("+" if x > 0 else "-" for x in values), key="+-".index))
+        assert inertia([[arb(0, 1)] * size for _ in range(size)]) is None
+
+
+@pytest.mark.parametrize("exponent", [0, 1, 2, 3, 4])
+@pytest.mark.parametrize("ball", [arb(0, 1), arb(0.25, 1), arb(-2, 1), arb(3), arb(0)])
+def test_powers_of_balls(ball: arb, exponent: int) -> None:
+    found = power(ball, exponent)
+    for share in (-1, -0.5, 0, 0.5, 1):
+        x = float(ball.mid()) + share * float(ball.rad())
+        assert found.contains(x**exponent)
+    if exponent and exponent % 2 == 0:
+        assert not found < 0
+        assert found.abs_upper() >= float(ball.abs_upper()) ** exponent
