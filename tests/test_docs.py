@@ -188,4 +188,10 @@ def test_the_manual_is_built_without_a_warning(tmp_path: Path) -> None:
         assert not re.findall(r"url\([\"']?(?:https?:)?//|@import", style.read_text(encoding="utf-8")), style
     for record in EXACT:
         assert f"{record.stem}.svg" in pages["generated/gallery.html"]
+    for folder in ("mechanisms", "systems"):
+        for record in (ROOT / "configs" / folder).glob("*.yaml"):
+            assert f"{record.stem}.svg" in pages["generated/gallery-models.html"]
+            notes = " ".join(yaml.safe_load(record.read_text(encoding="utf-8"))["notes"].split())
+            assert notes.count(".") >= 3
+            assert notes.split(".")[0].split(",")[0] in pages["generated/gallery-models.html"]
     assert "--slice" in pages["command-line.html"] and "–slice" not in pages["command-line.html"]

@@ -1,4 +1,4 @@
-"""The gallery: every shipped record without free lengths, with its picture, its table and the command for them.
+"""The galleries: every shipped record without free lengths, with its picture, its table and the command for them.
 
 Guarantee: pictures and tables are computed from the record when the manual is built.
 """
@@ -8,18 +8,30 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import yaml
+
 import ptmcad
 from ptmcad.show.render import draw
+from ptmcad.show.render.poses import draw_poses
+from ptmcad.show.render.printing import save
 
 _START = """# Gallery
 
 Each map is computed from its problem record when this manual is built.
 
 """
+_MODELS = """# Gallery of other mechanisms and systems
+
+Each record is shipped with figures of the literature or of a second computation. The pictures are made from the
+records when this manual is built.
+
+"""
+POINTS_ONLY = {"three-bar-chain": {"a": "1", "F": "1/2"}}
+"""Records of which no exact map is made, with a point at which their poses are drawn."""
 
 
 def page(configs: Path, folder: Path) -> str:
-    """The page as Markdown; pictures go into the folder.
+    """The page of the built-in mechanism as Markdown; pictures go into the folder.
 
     Parameters
     ----------
@@ -27,27 +39,45 @@ def page(configs: Path, folder: Path) -> str:
     folder : where the page will be.
     """
     exact = (path for path in sorted(configs.glob("*.yaml")) if not ptmcad.load(path).has_free_lengths)
-    return _START + "\n".join(entry(path, folder) for path in exact)
+    return _START + "\n".join(entry(path, configs, folder) for path in exact)
 
 
-def entry(path: Path, folder: Path) -> str:
-    """One record: picture, command, table and record."""
-    result = ptmcad.classify(ptmcad.load(path))
+def models_page(configs: Path, folder: Path) -> str:
+    """The page of the other mechanisms and systems, in the same way."""
+    records = [*sorted((configs / "mechanisms").glob("*.yaml")), *sorted((configs / "systems").glob("*.yaml"))]
+    return _MODELS + "\n".join(entry(path, configs, folder) for path in records)
+
+
+def entry(path: Path, configs: Path, folder: Path) -> str:
+    """One record: picture, what it shows, command, table and record."""
+    slice, text = ptmcad.load(path), path.read_text(encoding="utf-8")
     picture = folder / f"{path.stem}.svg"
-    draw(result, picture)
-    table = replace(result, timings={}).table().replace("time      not recorded; ", "          ")
-    source = str(result.slice.reference.get("source", ""))
+    record = f"configs/{path.relative_to(configs).as_posix()}"
+    if path.stem in POINTS_ONLY:
+        at = POINTS_ONLY[path.stem]
+        poses = ptmcad.solve(model=slice.model, **at)
+        save(draw_poses(poses), picture)
+        place = ",".join(f"{name}={value}" for name, value in at.items())
+        command, table = f"ptmcad solve {record} --at {place} --format table,svg", poses.table()
+    else:
+        result = ptmcad.classify(slice)
+        draw(result, picture)
+        command = f"ptmcad classify {record} --format svg"
+        table = replace(result, timings={}).table().replace("time      not recorded; ", "          ")
+    source = " ".join(str(slice.reference.get("source", "")).split())
+    notes = " ".join(yaml.safe_load(text).get("notes", "").split())
     return "\n".join(
         (
             f"## {path.stem}",
             "",
-            f"{result.slice.heading}",
+            f"{slice.heading}",
             "",
-            f"![The map of {path.stem}]({picture.name})",
+            f"![{'Poses' if path.stem in POINTS_ONLY else 'The map'} of {path.stem}]({picture.name})",
             "",
+            *((notes, "") if notes else ()),
             *((f"Answers to compare with: {source}.", "") if source else ()),
             "```sh",
-            f"ptmcad classify configs/{path.name} --format svg",
+            command,
             "```",
             "",
             "```text",
@@ -55,13 +85,19 @@ def entry(path: Path, folder: Path) -> str:
             "```",
             "",
             "```yaml",
-            _without_reference(path.read_text(encoding="utf-8")),
+            _shortened(text),
             "```",
             "",
         )
     )
 
 
-def _without_reference(record: str) -> str:
+def _shortened(record: str) -> str:
+    """The record without comments, notes and reference answers."""
     lines = record.split("\nreference:", maxsplit=1)[0].splitlines()
-    return "\n".join(line for line in lines if not line.startswith("#"))
+    kept, within = [], False
+    for line in lines:
+        within = line.startswith("notes:") or (within and line.startswith(" "))
+        if not within and not line.startswith("#"):
+            kept.append(line)
+    return "\n".join(kept)

@@ -1,4 +1,4 @@
-"""Pages that are made when the manual is built: the gallery, the schemas' tables and the changelog.
+"""Pages that are made when the manual is built: the galleries, the schemas' tables and the changelog.
 
 Guarantee: what they show is what the sources say at that moment; a page is written only when its text has changed.
 """
@@ -29,6 +29,7 @@ def make_pages(app: Sphinx) -> None:
         write(folder / f"{name}.md", schema_tables.page(title, path.name, json.loads(text)))
     write(folder / "changelog.md", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))
     write(folder / "gallery.md", gallery.page(ROOT / "configs", folder))
+    write(folder / "gallery-models.md", gallery.models_page(ROOT / "configs", folder))
 
 
 def schemas() -> dict[str, tuple[str, Path]]:
