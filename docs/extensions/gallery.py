@@ -12,8 +12,6 @@ import yaml
 
 import ptmcad
 from ptmcad.show.render import draw
-from ptmcad.show.render.poses import draw_poses
-from ptmcad.show.render.printing import save
 
 _START = """# Gallery
 
@@ -26,8 +24,9 @@ Each record is shipped with figures of the literature or of a second computation
 records when this manual is built.
 
 """
-POINTS_ONLY = {"three-bar-chain": {"a": "1", "F": "1/2"}}
-"""Records of which no exact map is made, with a point at which their poses are drawn."""
+CERTIFIED = {"three-bar-chain": {"a": "1", "F": "1/2"}}
+"""Records whose map takes the certified engine minutes, each with a point of which the table is; `scripts/free-maps`
+draws their maps."""
 
 
 def page(configs: Path, folder: Path) -> str:
@@ -51,18 +50,19 @@ def models_page(configs: Path, folder: Path) -> str:
 def entry(path: Path, configs: Path, folder: Path) -> str:
     """One record: picture, what it shows, command, table and record."""
     slice, text = ptmcad.load(path), path.read_text(encoding="utf-8")
-    picture = folder / f"{path.stem}.svg"
+    picture = f"{path.stem}.svg"
     record = f"configs/{path.relative_to(configs).as_posix()}"
-    if path.stem in POINTS_ONLY:
-        at = POINTS_ONLY[path.stem]
-        poses = ptmcad.solve(model=slice.model, **at)
-        save(draw_poses(poses), picture)
+    if path.stem in CERTIFIED:
+        at = CERTIFIED[path.stem]
         place = ",".join(f"{name}={value}" for name, value in at.items())
-        command, table = f"ptmcad solve {record} --at {place} --format table,svg", poses.table()
+        picture = f"../img/{path.stem}.png"
+        commands = (f"ptmcad classify {record} --engine certified --tolerance 1/100 --format png",
+                    f"ptmcad solve {record} --at {place}")  # fmt: skip
+        table = ptmcad.solve(model=slice.model, **at).table()
     else:
         result = ptmcad.classify(slice)
-        draw(result, picture)
-        command = f"ptmcad classify {record} --format svg"
+        draw(result, folder / picture)
+        commands = (f"ptmcad classify {record} --format svg",)
         table = replace(result, timings={}).table().replace("time      not recorded; ", "          ")
     source = " ".join(str(slice.reference.get("source", "")).split())
     notes = " ".join(yaml.safe_load(text).get("notes", "").split())
@@ -72,12 +72,12 @@ def entry(path: Path, configs: Path, folder: Path) -> str:
             "",
             f"{slice.heading}",
             "",
-            f"![{'Poses' if path.stem in POINTS_ONLY else 'The map'} of {path.stem}]({picture.name})",
+            f"![The map of {path.stem}]({picture})",
             "",
             *((notes, "") if notes else ()),
             *((f"Answers to compare with: {source}.", "") if source else ()),
             "```sh",
-            command,
+            *commands,
             "```",
             "",
             "```text",

@@ -12,8 +12,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
+from ptmcad.ask.classification import check_taken
 from ptmcad.ask.engines import is_certified
-from ptmcad.mechanism import Mechanism, ptm
+from ptmcad.mechanism import Mechanism
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
 
@@ -65,10 +66,7 @@ def check(slice: Slice) -> Check:
     sample = tuple(a.low + (a.high - a.low) * share for a, share in zip(slice.axes, (_ACROSS, _UP), strict=True))
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
-        if slice.model != ptm():
-            from ptmcad.certified.plain.problem import problem_of
-
-            problem_of(slice)
+        check_taken(slice)
         return Check(slice, at, None, "certified", _CERTIFIED)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return Check(slice, at, None, "exact", _BEYOND)
@@ -93,7 +91,7 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:
     degree, bound = degree_bound(problem.system, values)
     if degree > MAX_DEGREE or bound > MAX_BOUND:
         return Check(slice, sample, None, "exact", "not known: try single points first, by ptmcad solve", bound)
-    found, _ = solutions_at(problem.system, values)
+    found = solutions_at(problem.system, values)[0] or solutions_at(problem.system, values, saturated=True)[0]
     if not found:
         return Check(slice, sample, None, "exact", "none: there are infinitely many solutions, or none, at the sample")
     return Check(slice, sample, found, "exact", next((cost for most, cost in _CLASSES if found <= most), _BEYOND))

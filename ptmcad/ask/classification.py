@@ -20,6 +20,7 @@ from typing import Any
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.mechanism import ptm
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import slice_from
@@ -124,6 +125,7 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
     options = replace(options, without=switched_off(options.without, certified))
     if certified:
         _check_certified(slice, options)
+        check_taken(slice)
         prepare(slice, options)
     started = perf_counter()
     options = replace(options, deadline=None if options.timeout is None else started + options.timeout)
@@ -188,6 +190,20 @@ def _check_certified(slice: Slice, options: Options) -> None:
         )
     if options.resume is not None:
         check_resumable(slice, options.resume)
+
+
+def check_taken(slice: Slice) -> None:
+    """Refuse what the certified engine does not take, before it is loaded, let alone compiled.
+
+    Raises
+    ------
+    ConfigError, GeometryError
+        As the engine does.
+    """
+    if slice.model != ptm():
+        from ptmcad.certified.plain.problem import problem_of
+
+        problem_of(slice)
 
 
 def _certified(slice: Slice, options: Options) -> RegionMap:

@@ -139,10 +139,17 @@ def degree_bound(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[
     return max(degrees), prod(degrees) * 2 ** len(simplest.ring.angles)
 
 
-def solutions_at(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int | None, int]:
-    """Number of different complex solutions, and their number with multiplicity; (None, 0) for infinitely many."""
+def solutions_at(
+    system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False
+) -> tuple[int | None, int]:
+    """Number of different complex solutions, and their number with multiplicity; (None, 0) for infinitely many.
+
+    Parameters
+    ----------
+    saturated : whether solutions at which an inequality's polynomial vanishes are left out.
+    """
     try:
-        algebra = point_system(system, values).algebra
+        algebra = point_system(system, values, saturated and bool(system.inequalities)).algebra
     except DegeneratePoint:
         return None, 0
     one = evaluate(algebra, {(0,) * len(algebra.multiplication): fmpq(1)})

@@ -10,7 +10,7 @@ the resultant of two: that is decided in integers. Either way the sequence is kn
 count the different real roots (Sturm; for the multiple root all terms are divided by their last one).
 
 Otherwise, where several roots are multiple, roots are counted of the polynomials in v among whose roots all points are
-(`structure.points_over`), which takes long for critical values of high degree.
+(`structure.points_over`), but for those that balls show to be on no curve; this takes long for values of high degree.
 """
 
 from __future__ import annotations
@@ -26,9 +26,11 @@ from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.verification.claims import Claims, ball, is_root
 from ptmcad.verification.elimination import discriminant, resultant
 from ptmcad.verification.structure import points_over
-from ptmcad.verification.sturm import isolated, parting, roots_between
+from ptmcad.verification.sturm import isolated, parting, real_roots
 
 _BITS = (256, 1024, 4096)
+_FINEST = 512
+"""Bits of candidates that are compared with the curves."""
 
 
 class _Undecided(ArithmeticError):
@@ -52,7 +54,22 @@ class Heights:
                     return self._changes(low, bits) - self._changes(high, bits) - self._is_point(high)
             except _Undecided:
                 continue
-        return roots_between(self._polynomial, low, high)
+        return self._candidates_between(low, high)
+
+    def _candidates_between(self, low: fmpq, high: fmpq) -> int:
+        """The number of roots of the polynomial in v at which balls do not tell that no curve is there.
+
+        It has the points over the conjugates of the critical value among its roots as well.
+        """
+        number = 0
+        with ctx.workprec(2 * _FINEST):
+            value = ball(self.value, fmpq(1, 1 << _FINEST))
+            ends = [end for end in (low, high) if self._is_point(end)]
+            for v in real_roots(tuple(int(c) for c in self._polynomial.coeffs()), _FINEST):
+                if v < low or v > high or any(v.contains(end) for end in ends):
+                    continue
+                number += any(arb_poly([c(value) for c in curve.in_v])(v).contains(0) for curve in self.claims.curves)
+        return number
 
     def separated(self, low: fmpq, high: fmpq) -> list[fmpq]:
         """A rational height in each open interval that the points leave of (low, high)."""

@@ -64,7 +64,7 @@ def _balls_between(coefficients: tuple[int, ...], low: fmpq, high: fmpq, ends: S
     bits = 64
     while True:
         inside = 0
-        for ball in _real_roots(coefficients, bits):
+        for ball in real_roots(coefficients, bits):
             if any(ball.contains(end) for end in ends):
                 continue  # there is one root in the ball, so it is this end
             if ball > low and ball < high:
@@ -77,7 +77,7 @@ def _balls_between(coefficients: tuple[int, ...], low: fmpq, high: fmpq, ends: S
 
 
 @lru_cache(maxsize=256)
-def _real_roots(coefficients: tuple[int, ...], bits: int) -> tuple[arb, ...]:
+def real_roots(coefficients: tuple[int, ...], bits: int) -> tuple[arb, ...]:
     """Disjoint balls with one real root each, of so many bits."""
     with ctx.workprec(bits):
         pairs: Any = squarefree(fmpz_poly(list(coefficients))).complex_roots()  # FLINT's stub says otherwise

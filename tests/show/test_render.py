@@ -7,7 +7,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from fractions import Fraction
-from itertools import combinations, pairwise
+from itertools import combinations, pairwise, product
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -26,7 +26,7 @@ from ptmcad.mechanism import known_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.show.render import draw
 from ptmcad.show.render.axes import scale_of, symbol, unit
-from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of
+from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of, fill_of_index
 from ptmcad.show.render.labels import place
 from ptmcad.show.render.outline import outline
 from ptmcad.show.render.regionmap import figure_of
@@ -427,6 +427,20 @@ def test_index_colours_differ_on_grey_prints() -> None:
     assert min(abs(a - b) for a, b in combinations(shades, 2)) > 10
 
 
+@pytest.mark.parametrize("unknowns", [1, 2])
+def test_indices_of_any_sum_have_different_fills(unknowns: int) -> None:
+    """On lines, or where inequalities leave solutions out, the sum of the indices need not be zero."""
+    fills = [fill_of_index(index) for index in product(range(4), repeat=unknowns + 1)]
+    assert len(set(fills)) == len(fills)
+
+
+@pytest.mark.parametrize("maxima", range(3))
+def test_indices_of_three_unknowns_with_as_many_maxima_have_different_fills(maxima: int) -> None:
+    fills = [fill_of_index((minima, saddles, 0, maxima)) for minima in range(5) for saddles in range(5)]
+    assert len(set(fills)) == len(fills)
+    assert all(len(fill.hatch) < 20 for fill in fills)
+
+
 def region(stable: int = 0, total: int = 0, index: tuple[int, int, int] = (0, 0, 0), admissible: int = 0) -> Region:
     at = Point(("a", "b"), HALF, HALF)
     return Region(stable, total, index, (Fraction(1), Fraction(1)), (0,), at, admissible)
@@ -438,7 +452,7 @@ def test_different_counts_have_different_fills(count: Count) -> None:
         Count.STABLE: [region(stable=n) for n in range(40)],
         Count.TOTAL: [region(total=n) for n in range(40)],
         Count.ADMISSIBLE: [region(admissible=n) for n in range(40)],
-        Count.INDEX: [region(index=(a, a + b, b)) for a in range(9) for b in range(9)],
+        Count.INDEX: [region(index=(a, a + b, b)) for a in range(9) for b in range(9)],  # on a torus
     }[count]
     fills = [fill_of(r, count) for r in regions]
     assert len(set(fills)) == len(fills)

@@ -171,6 +171,18 @@ def test_record_and_command_pose_the_slice_again(path: Path, count: ptmcad.Count
                                    options.get("--count", [None])[0])) == core(slice)  # fmt: skip
 
 
+@pytest.mark.parametrize("path", sorted(CONFIGS.glob("*/*.yaml")), ids=lambda p: p.stem)
+def test_a_record_poses_the_slice_of_another_model_again(path: Path, tmp_path: Path) -> None:
+    """With its whole description; no command line says as much."""
+    slice = load(path)
+    found = reproduction(slice)
+    assert found.record is not None
+    assert found.command is None
+    record = tmp_path / "again.yaml"
+    record.write_text(found.record, encoding="utf-8")
+    assert core(load(record)) == core(slice)
+
+
 def test_the_commands_on_the_page_give_the_same_result(
     shipped: Shipped, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -116,6 +116,15 @@ RECORDS: dict[str, dict[str, Any]] = {
         "system": {"unknowns": {"x": "real", "t": "angle"}, "equations": ["a*x^2 + b*x - 1", "sin(t) - x/4"]},
         "axes": AB,
     },
+    # two roots are multiple over b = -0.88, and over its conjugate 1.41 there are others
+    "symmetric": {
+        "system": {
+            "unknowns": {"p": "angle", "q": "angle", "r": "real"},
+            "equations": ["cos(p) + cos(q) - a", "r*sin(p) - sin(q)", "r + cos(p - q) - b"],
+            "positive": ["r"],
+        },
+        "axes": AB,
+    },
     # three angles
     "chain": {
         "system": {
@@ -327,7 +336,7 @@ def other_system(change: Callable[[dict[str, Any]], Any], name: str) -> RegionMa
         ("pendulum", lambda m: m.update(loads={"P": ["1/9", "W"]}), "the stored potential differs"),
         ("torque", lambda m: m["torsion"][0].update(rest={"cos": "4/5", "sin": "3/5"}), "the stored potential differs"),
         ("torque", lambda m: m.update(moments={"th": "-M"}), "the stored gradient's entry 0 differs"),
-        ("torque", lambda m: m.update(moments={"th": "M*cos(th)"}), "the moment on th depends on an unknown"),
+        ("torque", lambda m: m.update(moments={"th": "M*cos(th)"}), "a moment depends on an unknown"),
     ],
 )
 def test_claims_of_another_model(name: str, change: Callable[[dict[str, Any]], Any], what: str) -> None:

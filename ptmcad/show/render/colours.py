@@ -1,7 +1,9 @@
 """The colour of a count: the same in every picture, distinguishable to the colour-blind and on grey prints.
 
-Guarantee: two different counts of a torus (where saddles = minima + maxima) never have the same fill. Along a row of
-the palette the lightness falls by at least six units of CIE L* a step; the hues start from those of Okabe & Ito.
+Guarantee: two different counts of a torus of two unknowns (where saddles = minima + maxima) never have the same fill,
+nor have others of one or two unknowns with up to three maxima. Of three unknowns few have: hatches would be too dense.
+Along a row of the palette the lightness falls by at least six units of CIE L* a step; the hues start from those of
+Okabe & Ito.
 
 Reference: Okabe & Ito, Color universal design, 2008.
 """
@@ -66,19 +68,34 @@ def fill_of_index(index: MorseIndex) -> Fill:
     """The fill for numbers of critical points by index.
 
     Of one unknown as of two; of more the fewest saddles that a torus allows (strong Morse inequality) are without a
-    hatch, and further saddles and maxima change it.
+    hatch, and further saddles and maxima change it. So does what no torus has: fewer saddles, or a sum of indices that
+    is not zero.
     """
     minima, maxima = index[0], index[-1]
     turns = (1, 0, 0)[maxima] if maxima < 3 else maxima - 2
-    if len(index) > 3:
-        turns += max(0, index[1] - minima - len(index) + 2)
+    surplus = sum(index[1::2]) - sum(index[::2])
+    fewest = minima + len(index) - 2
+    if len(index) == 3:
+        turns += 2 * _natural(surplus)
+    elif len(index) > 3:
+        turns += index[1] - fewest if index[1] >= fewest and not surplus else 2 * (index[1] + 3 * sum(index[2:-1]))
     return _of(ONE_MAXIMUM if maxima <= 1 else TWO_MAXIMA, minima, turns)
 
 
+def _natural(number: int) -> int:
+    """Whole numbers to natural ones: 0, -1, 1, -2, 2 ... to 0, 1, 2, 3, 4 ..."""
+    return 2 * number if number >= 0 else -2 * number - 1
+
+
+def _paired(one: int, other: int) -> int:
+    """A number of its own for each pair of natural numbers (Cantor)."""
+    return (one + other) * (one + other + 1) // 2 + other
+
+
 def _of(row: tuple[str, ...], step: int, turns: int) -> Fill:
-    # diagonal numbering of (turns, rounds), so that no two pairs share a hatch
+    # no two pairs (turns, rounds) share a hatch: odd numbers are for counts within the palette
     rounds = step // len(row)
-    number = (turns + rounds) * (turns + rounds + 1) // 2 + rounds
+    number = max(2 * turns - 1, 0) if rounds == 0 else 2 * _paired(turns, rounds - 1) + 2
     if number == 0:
         return Fill(row[step % len(row)])
     repeats, kind = divmod(number - 1, len(HATCHES))

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Kind
+from ptmcad.mechanism import Kind, System
 from ptmcad.question.config import slice_from_mapping, slice_from_options
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import text_of
@@ -71,11 +71,17 @@ def _mapping(slice: Slice, values: Mapping[str, str]) -> dict[str, object]:
     return {
         "name": slice.name,
         **({"title": slice.title} if slice.title else {}),
-        "mechanism": slice.mechanism,
+        **_model(slice),
         "parameters": dict(values),
         "axes": {axis.name: [text_of(axis.low), text_of(axis.high)] for axis in slice.axes},
         "count": slice.count.value,
     }
+
+
+def _model(slice: Slice) -> dict[str, object]:
+    """The key of the model: a built-in mechanism by its name, others as they were described."""
+    key = "system" if isinstance(slice.model, System) else "mechanism"
+    return {key: dict(slice.model.source) or slice.mechanism}
 
 
 def _same(slice: Slice, record: str) -> bool:
@@ -115,17 +121,18 @@ def _yaml(mapping: Mapping[str, object]) -> str:
     """The record as YAML; every text in double quotes, which take JSON's escapes."""
     lines = []
     for key, value in mapping.items():
-        if isinstance(value, dict):
-            inner = ", ".join(f"{_quoted(k)}: {_value(v)}" for k, v in value.items())
-            lines.append(f"{key}: {{{inner}}}")
+        if key in ("mechanism", "system") and isinstance(value, dict):
+            lines += [f"{key}:", *(f"  {part}: {_value(entry)}" for part, entry in value.items())]
         else:
             lines.append(f"{key}: {_value(value)}")
     return "\n".join(lines) + "\n"
 
 
 def _value(value: object) -> str:
-    if isinstance(value, list):
-        return f"[{', '.join(_quoted(v) for v in value)}]"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{_quoted(k)}: {_value(v)}' for k, v in value.items())}}}"
     return _quoted(value)
 
 
