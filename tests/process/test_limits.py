@@ -93,6 +93,30 @@ def test_a_failure_with_memory_left_is_shown(tmp_path: Path) -> None:
     assert running.files() == {}
 
 
+NO_ROOM = """
+import resource
+from ptmcad.__main__ import main
+with open("/proc/self/status") as file:
+    used = next(int(line.split()[1]) for line in file if line.startswith("{counted}"))
+resource.setrlimit(resource.{which}, (used + {spare} << 10, resource.RLIM_INFINITY))
+main()
+"""
+
+
+@pytest.mark.parametrize("spare", [0, 256])
+@pytest.mark.parametrize(
+    ("which", "counted", "option"), [("RLIMIT_DATA", "VmData", "-d"), ("RLIMIT_AS", "VmSize", "-v")]
+)
+def test_a_limit_under_which_nothing_can_be_loaded_is_named(spare: int, which: str, counted: str, option: str) -> None:
+    """Not even what watches and knows of limits; what Python raises then is a MemoryError or something odd."""
+    program = NO_ROOM.format(which=which, counted=counted, spare=spare)
+    command = [sys.executable, "-c", program]
+    ended = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60, cwd=ROOT)
+    assert ended.returncode == 2
+    said = rf"error: ptmcad cannot start: .*, with the memory limit of [0-9]+K .* \(ulimit {option}\)\n"
+    assert re.fullmatch(said, ended.stderr), ended.stderr
+
+
 def test_a_bound_that_the_libraries_exceed_is_refused() -> None:
     usage = usage_of(os.getpid())
     assert usage is not None
