@@ -27,8 +27,8 @@ def main() -> "NoReturn":
         signal.signal(number, lambda caught, _frame: os._exit(128 + caught))  # there is nothing to tidy up yet
     try:
         from ptmcad.process.supervisor import supervise
-    except (MemoryError, OSError, ImportError, SystemError) as error:  # the caller's limits, or a broken installation
-        _refuse(error)
+    except (MemoryError, OSError, ImportError, SystemError, SyntaxError) as error:
+        _refuse(error)  # the caller's limits, which Python's parser may take for a mistake, or a broken installation
     supervise(_command_line, heeded)
 
 
