@@ -27,17 +27,37 @@ def main() -> "NoReturn":
         signal.signal(number, lambda caught, _frame: os._exit(128 + caught))  # there is nothing to tidy up yet
     try:
         from ptmcad.process.supervisor import supervise
-    except (MemoryError, OSError, ImportError, SystemError) as error:  # the caller's limits, or a broken installation
-        _refuse(error)
+    except (MemoryError, OSError, ImportError, SystemError, SyntaxError) as error:
+        _refuse(error)  # the caller's limits, which Python's parser may take for a mistake, or a broken installation
     supervise(_command_line, heeded)
 
 
 def _refuse(error: Exception) -> "NoReturn":
     """Say that not even what watches can be loaded, with as little as there is, and exit."""
     try:
-        os.write(2, f"error: ptmcad cannot start: {type(error).__name__} {error}\n".encode(errors="replace"))
+        why = f"{type(error).__name__} {error}".strip()
+        os.write(2, f"error: ptmcad cannot start: {why}{_low_memory_limits()}\n".encode(errors="replace"))
     finally:
         os._exit(2)
+
+
+def _low_memory_limits() -> str:
+    """Name the caller's low limits on memory: what Python raises under them need not be a MemoryError.
+
+    They are read from a file, because there may be no room to import a module.
+    """
+    try:
+        file = os.open("/proc/self/limits", os.O_RDONLY)  # and never closed: the process ends
+        lines = os.read(file, 4096).decode("ascii").splitlines()
+    except OSError:  # no such file on this system
+        return ""
+    named = ""
+    for line in lines:
+        for option, name in (("-d", "Max data size"), ("-v", "Max address space")):
+            soft = line[len(name) :].split()[0] if line.startswith(name) else "unlimited"
+            if soft != "unlimited" and int(soft) < 1 << 30:  # `ptmcad.process.shortage.LOW_LIMIT`
+                named += f", with the memory limit of {int(soft) >> 10}K that the caller has set (ulimit {option})"
+    return named
 
 
 def _command_line() -> int:

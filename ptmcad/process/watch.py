@@ -7,6 +7,7 @@ import math
 import os
 import select
 import signal
+import sys
 import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -14,6 +15,9 @@ from typing import TYPE_CHECKING
 from ptmcad.process.handover import Receiver, Topic
 from ptmcad.process.salvage import clean_up, save_last
 from ptmcad.process.streams import report
+
+if sys.platform != "win32":
+    import resource  # noqa: F401 - os.wait4 does, when the child has ended: there may be no room left for it then
 
 if TYPE_CHECKING:
     from ptmcad.process.shortage import Limit, Usage, Waiting

@@ -93,6 +93,65 @@ def test_a_failure_with_memory_left_is_shown(tmp_path: Path) -> None:
     assert running.files() == {}
 
 
+NO_ROOM = """
+import resource
+from ptmcad.__main__ import main
+with open("/proc/self/status") as file:
+    used = next(int(line.split()[1]) for line in file if line.startswith("{counted}"))
+resource.setrlimit(resource.{which}, (used + {spare} << 10, resource.RLIM_INFINITY))
+main()
+"""
+
+
+@pytest.mark.parametrize("spare", [0, 256])
+@pytest.mark.parametrize(
+    ("which", "counted", "option"), [("RLIMIT_DATA", "VmData", "-d"), ("RLIMIT_AS", "VmSize", "-v")]
+)
+def test_a_limit_under_which_nothing_can_be_loaded_is_named(spare: int, which: str, counted: str, option: str) -> None:
+    """Not even what watches and knows of limits; what Python raises then is a MemoryError or something odd."""
+    program = NO_ROOM.format(which=which, counted=counted, spare=spare)
+    command = [sys.executable, "-c", program]
+    ended = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60, cwd=ROOT)
+    assert ended.returncode == 2
+    said = rf"error: ptmcad cannot start: .*, with the memory limit of [0-9]+K .* \(ulimit {option}\)\n"
+    assert re.fullmatch(said, ended.stderr), ended.stderr
+
+
+FAILING = """
+import resource, sys
+from ptmcad.__main__ import main
+
+class Finder:
+    def find_spec(self, name, path=None, target=None):
+        if name == "ptmcad.process.supervisor":
+            raise {error}
+
+sys.meta_path.insert(0, Finder())
+resource.setrlimit(resource.RLIMIT_DATA, ({size} << 20, resource.RLIM_INFINITY))
+main()
+"""
+
+
+@pytest.mark.parametrize(
+    ("size", "named"), [(300, ", with the memory limit of 307200K that the caller has set (ulimit -d)"), (1024, "")]
+)
+@pytest.mark.parametrize("error", ["MemoryError", "SystemError", "ImportError", "OSError", "SyntaxError"])
+def test_whatever_python_makes_of_too_little_memory(error: str, size: int, named: str) -> None:
+    """Its parser says that a colon was expected. A limit that is high enough for all libraries is not named."""
+    command = [sys.executable, "-c", FAILING.format(error=f"{error}('in vain')", size=size)]
+    ended = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60, cwd=ROOT)
+    assert (ended.returncode, ended.stderr) == (2, f"error: ptmcad cannot start: {error} in vain{named}\n")
+
+
+def test_what_waiting_for_the_child_needs_is_loaded_before_there_is_one() -> None:
+    """os.wait4 imports a module for what it returns; where there was no room for it, the child was left alone."""
+    program = "import sys\nfrom ptmcad.__main__ import main\nsys.modules['resource'] = None\nmain()"
+    command = [sys.executable, "-c", program]
+    ended = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60, cwd=ROOT)
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert ended.stderr.startswith("error: ptmcad cannot start: ModuleNotFoundError ")
+
+
 def test_a_bound_that_the_libraries_exceed_is_refused() -> None:
     usage = usage_of(os.getpid())
     assert usage is not None

@@ -1,4 +1,4 @@
-"""A campaign: ``python -m forger [--places N] [--kinds NAME,...] MAP...`` in the folder tests/.
+"""A campaign: ``PYTHONPATH=.. python -m forger [--places N] [--kinds NAME,...] MAP...`` in tests/verification/.
 
 A map is the name of a shipped slice, with savings to switch off after a plus sign (``fig2+sign-curve``), or the number
 of a random one (``17``). The figures follow as text.

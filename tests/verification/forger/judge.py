@@ -30,8 +30,9 @@ MALFORMED = (IndexError, KeyError, ValueError, TypeError, AttributeError, Arithm
 """What a check may stumble over when those before it were left out."""
 
 
-BEFORE = {"variety complete": ("irreducible components",)}
-"""Checks that another one rests on: without them it need not end."""
+BEFORE = {"variety complete": ("irreducible components",), "areas": ("walls and samples",)}
+"""Checks that another one rests on: without them it need not end. Where a wall is not there, its panels are halved for
+hours."""
 
 
 def violation(r: RegionMap, likely: str = "") -> tuple[str, str] | None:

@@ -19,6 +19,7 @@ from ptmcad.answer.regionmap import (
     Adjacency,
     Cell,
     Component,
+    CriticalValue,
     Kind,
     Merge,
     NonAdjacency,
@@ -191,6 +192,16 @@ def diagonal() -> RegionMap:
     )  # fmt: skip
 
 
+def halves() -> RegionMap:
+    """The unit square, parted into a left and a right half by a line over a critical value: no wall is integrated."""
+    r = diagonal()
+    value = CriticalValue((-1, 2), HALF, HALF, "")
+    return replace(
+        r, critical_values=(value,), adjacencies=(),
+        stacks=tuple(Stack(*ends, Fraction(1 + 2 * n, 4), (), (n,)) for n, ends in enumerate(((None, 0), (0, None)))),
+    )  # fmt: skip
+
+
 def point(r: RegionMap, u: Fraction, v: Fraction) -> Point:
     return Point(r.slice.axis_names, *((u, v) if r.base == 0 else (v, u)))
 
@@ -211,6 +222,9 @@ def area(k: int, low: Fraction, high: Fraction) -> Change:
 
 
 HALF = Fraction(1, 2)
+NEAR = Fraction(1, 1000)
+ALMOST_ONE = 1 + Fraction(1, 10**15)
+"""The most that an upper bound of an area may be in a window of area 1."""
 
 SHAPE: list[tuple[str, Change, str]] = [
     ("fig3", lambda r: replace(r, status=Status.CERTIFIED), "the status 'certified' cannot be checked"),
@@ -255,6 +269,8 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_text, "fig3", with_text("L1", "2"), "L1 was written as '2', but is 1"),
     (check_system, "fig3", with_system(potential="a b"), "the potential is not a sum of monomials"),
     (check_system, "fig3", with_system(potential=" + ".join(["L1"] * 20_001)), "is not a sum of monomials"),
+    (check_system, "fig3", with_system(potential="10*" + " + ".join(["L1"] * 20_000)), "the stored potential differs"),
+    (check_system, "fig3", with_system(potential="100*" + " + ".join(["L1"] * 20_000)), "is not a sum of monomials"),
     (check_system, "fig3", with_system(potential="0*L1"), "the potential has a zero coefficient"),
     (check_system, "fig3", with_system(potential="L9"), "the potential names 'L9'"),
     (check_system, "fig3", with_system(unknowns=("a",)), "the unknowns are"),
@@ -323,7 +339,8 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
      "box 0 is not a box around a point of the torus"),
     *((check_solutions, "fig3", partial(lambda changes, r: of("cells", 0, solutions=put(r.cells[0].solutions, 0,
         **changes))(r), changes), "box 0 is not a box around a point of the torus")
-      for changes in ({"radius": Fraction(0)}, {"center": (Fraction(1),) * 3}, {"center": (Fraction(3),) * 4})),
+      for changes in ({"radius": Fraction(0)}, {"radius": 1 + Fraction(1, 10**30)}, {"center": (Fraction(1),) * 3},
+                      {"center": (Fraction(3),) * 4})),
     (check_solutions, "fig3", lambda r: of("cells", 0, solutions=r.cells[0].solutions[:1] * (r.cells[0].total or 0))(r),
      "the boxes 0 and 1 of its solutions meet"),
     (check_solutions, "fig3", lambda r: of("cells", 0, solutions=put(r.cells[0].solutions, 0,
@@ -375,6 +392,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_regions, "fig3", of("regions", 0, stable=9), "region 0: stable is"),
     (check_regions, "fig3", lambda r: of("regions", 0, sample=r.regions[1].sample)(r), "the sample of region 0 is not"),
     (check_areas, "diagonal", area(0, Fraction(0), Fraction(2)), "no area in the window is between"),
+    (check_areas, "diagonal", area(1, HALF, ALMOST_ONE + Fraction(1, 10**30)), "no area in the window is between"),
     (check_areas, "diagonal", lambda r: replace(r, regions=(replace(r.regions[0], area=(HALF, HALF)),)), "the only re"),
     (check_areas, "diagonal", area(0, HALF, HALF * (1 + Fraction(1, 10**90))), "too narrow"),
     (check_areas, "diagonal", area(0, HALF, HALF + Fraction(1, 1000)), "could not be confirmed with"),
@@ -399,6 +417,34 @@ def test_references_of_tables_to_each_other(name: str, change: Change, words: st
 def test_rejecting_branches(check: Check, name: str, change: Change, words: str) -> None:
     true = diagonal() if name == "diagonal" else the(name)
     rejected(check, change(true), words)
+
+
+@pytest.mark.parametrize(
+    ("made", "change"),
+    [
+        (diagonal, area(0, Fraction(0), HALF + NEAR)),
+        (diagonal, area(1, HALF - NEAR, ALMOST_ONE)),
+        (halves, area(0, HALF, HALF + NEAR)),
+        (halves, area(1, HALF - NEAR, HALF)),
+    ],
+)
+def test_bounds_of_areas_may_be_at_the_very_edge(made: Callable[[], RegionMap], change: Change) -> None:
+    """At nothing, at the window's area with its rounding, and at the region's own area where it is found exactly."""
+    assert check_areas(Claims(change(made()))).startswith("2 enclosures within the stored bounds")
+
+
+def test_a_box_may_be_as_wide_as_a_circle() -> None:
+    """It has one solution as long as no other box meets it: of radius 1 about one of six, the others far away."""
+    r = the("fig3")
+    check_solutions(Claims(of("cells", 0, solutions=put(r.cells[0].solutions, 0, radius=Fraction(1)))(r)))
+
+
+def test_the_narrowest_bounds_that_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    narrowest = (HALF + NEAR) / (2 * NEAR)  # of the regions of the map as it is
+    monkeypatch.setattr("ptmcad.verification.areas.NARROWEST", narrowest)
+    check_areas(Claims(diagonal()))
+    monkeypatch.setattr("ptmcad.verification.areas.NARROWEST", narrowest - Fraction(1, 10**9))
+    rejected(check_areas, diagonal(), "too narrow")
 
 
 @pytest.mark.parametrize(

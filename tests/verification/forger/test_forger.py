@@ -91,6 +91,24 @@ def test_stacks_without_walls_need_a_pair(shipped: Callable[..., RegionMap]) -> 
         assert report.violation.startswith("no adjacency missing: the adjacency of cells")
 
 
+def test_areas_are_not_tried_over_walls_that_are_not_there(
+    shipped: Callable[..., RegionMap], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`ptmcad.verify` never does, and what comes first here must not: in a window above all walls it would not end."""
+
+    def endless(*_: object) -> None:
+        raise AssertionError("integrated a wall that is not in the window")
+
+    monkeypatch.setattr("ptmcad.verification.areas.integral_over", endless)
+    r = shipped("fig2")
+    axis = r.slice.axes[1 - r.base]
+    width = axis.high - axis.low
+    axes = put(r.slice.axes, 1 - r.base, low=axis.low + width, high=axis.high + width)
+    found = violation(replace(r, slice=replace(r.slice, axes=axes)), "areas")
+    assert found is not None
+    assert found[0] == "walls and samples"
+
+
 @cache
 def with_sign_curve() -> RegionMap:
     return named("fig2+sign-curve+no-areas")
