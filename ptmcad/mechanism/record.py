@@ -105,11 +105,8 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
         source=record,
     )
     faults.check()
-    if not proved:
-        check_bars(found, faults)
-        check_unknowns(found, faults)
-        check_symmetries(found, faults)
-    check_use(found, faults)
+    for check in (check_use,) if proved else (check_bars, check_unknowns, check_symmetries, check_use):
+        check(found, faults)
     faults.check()
     return found
 
