@@ -31,11 +31,12 @@ def command(
 
     CONFIG is a problem record (YAML); options override it. Each curve is irreducible and has a kind: critical (an
     equilibrium is singular there), infinity (a complex solution leaves every bounded set) or boundary (the slice's
-    equations lose their meaning).
+    equations lose their meaning, or an inequality or condition of a system becomes zero at a solution).
 
     sympy, maple and mathematica are programs that define the list "variety". qepcad is a session that decomposes the
     window by the curves. msolve is the system from which they follow: "msolve -e 4 -g 2 -f FILE" eliminates its
-    unknowns, and the critical curves are factors of what is left.
+    four unknowns (as many as -e says), and the critical curves are factors of what is left. Solutions that inequalities
+    exclude are in it; where they are infinitely many, nothing is left.
 
     \b
     Examples:
