@@ -86,7 +86,7 @@ def check_areas(claims: Claims) -> str:
         if degrees == (2,):
             degrees = (2, 10)
         else:
-            bits, strip, margin = 2 * bits, strip / 2**16, margin / 64
+            bits, strip, margin = 2 * bits, strip / 2**16, margin / 2**16
     raise Violation(unconfirmed)
 
 
