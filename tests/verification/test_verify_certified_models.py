@@ -31,7 +31,8 @@ from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.parameters import exact
 from ptmcad.verification.certified.points import PaperCounting
 from ptmcad.verification.certified.ranges import half_widths
-from ptmcad.verification.certified.solving import inertia, zeros
+from ptmcad.verification.certified.solving import zeros
+from ptmcad.verification.certified.spectrum import inertia
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims

@@ -17,12 +17,13 @@ from flint import arb, ctx
 from ptmcad.answer.regionmap import Solution
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Count, Slice
+from ptmcad.verification.certified.boxes import Box, Zero, disjoint, same
 from ptmcad.verification.certified.counted import MINIMA, Counted, Counts
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import Field
 from ptmcad.verification.certified.parameters import exact, over
 from ptmcad.verification.certified.ranges import half_widths
-from ptmcad.verification.certified.solving import Box, Spent, Zero, disjoint, same, zeros
+from ptmcad.verification.certified.solving import Spent, zeros
 from ptmcad.verification.certified.vectors import evaluated
 from ptmcad.verification.certified.waves import Form
 from ptmcad.verification.claims import Claims

@@ -1,0 +1,129 @@
+"""Krawczyk's test of boxes of the unknowns, and the solutions that it proves, for all parameters in balls at once.
+
+Guarantee: with C near the inverse of the Jacobian at the middle m of a box X, Krawczyk's image is
+m - C f(m) + (I - C f'(X)) (X - m). It has all zeros that X has; if it lies inside of X, there is exactly one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import product
+from math import isfinite
+
+from flint import arb, arb_mat
+
+from ptmcad.verification.certified.boxes import Box, Floats, Zero
+from ptmcad.verification.certified.field import Field, Jet, Matrix
+from ptmcad.verification.certified.spectrum import inertia
+
+_SHRINKINGS = (1, 0, -1, -2, -3, -4, -5, -6, -8, -10, -12, -15, -18, -22, -26, -30, -34, -38, -42, -46)
+"""Powers of two times the shape of the box in which a solution is proved to be alone."""
+_MAX_TURN = 3.0
+"""Half the width of the widest box of an angle in which a solution is proved to be alone."""
+_NEWTON_STEPS = 12
+_CLOSE = 2.0**-20
+"""Of a box's width: where Newton's method does not come closer to rest, nothing is to be proved."""
+_NARROWING = 40
+
+
+def inverse_of(jacobian: Matrix) -> arb_mat | None:
+    """An approximate inverse of the middle of a matrix, of exact numbers."""
+    n = len(jacobian)
+    middle = [float(x.mid()) for row in jacobian for x in row]
+    if not all(map(isfinite, middle)):
+        return None
+    try:
+        inverse = arb_mat(n, n, middle).inv()
+    except ZeroDivisionError:
+        return None
+    entries = [float(x.mid()) for x in inverse.entries()]
+    return arb_mat(n, n, entries) if all(map(isfinite, entries)) else None
+
+
+def _rest(jacobian: Matrix, inverse: arb_mat) -> Matrix:
+    """I - C f'."""
+    n = len(jacobian)
+    whole = (inverse * arb_mat(jacobian)).entries()
+    return [[(i == j) - whole[i * n + j] for j in range(n)] for i in range(n)]
+
+
+def _steps(field: Field, center: Floats, inverse: arb_mat) -> list[arb]:
+    """C f at a point."""
+    values = field([arb(x) for x in center]).values
+    steps: list[arb] = (inverse * arb_mat(len(values), 1, values)).entries()
+    return steps
+
+
+def image_of(field: Field, box: Box, jet: Jet) -> list[arb] | None:
+    """Krawczyk's image of a box, less its middle."""
+    inverse = inverse_of(jet.jacobian)
+    if inverse is None:
+        return None
+    reach = [arb(0, r) for r in box[1]]
+    return [
+        sum((entry * x for entry, x in zip(row, reach, strict=True)), arb(0)) - step
+        for row, step in zip(_rest(jet.jacobian, inverse), _steps(field, box[0], inverse), strict=True)
+    ]
+
+
+def newton(field: Field, box: Box) -> Floats | None:
+    """Where Newton's method comes to rest from a box's middle, near the box; None when it does not. Nothing is proved."""
+    x, share = list(box[0]), 1.0
+    for _ in range(_NEWTON_STEPS):
+        jet = field([arb(c) for c in x])
+        inverse = None if jet.short else inverse_of(jet.jacobian)
+        if inverse is None:
+            return None
+        steps = [float(s.mid()) for s in (inverse * arb_mat(len(x), 1, jet.values)).entries()]
+        x = [c - s for c, s in zip(x, steps, strict=True)]
+        if not all(abs(c - m) <= 2 * r for c, m, r in zip(x, *box, strict=True)):
+            return None
+        before, share = share, max(abs(s) / r for s, r in zip(steps, box[1], strict=True))
+        if share == 0 or (share < _CLOSE and share >= before / 2):
+            break
+    return tuple(x) if share < _CLOSE else None
+
+
+def proved(field: Field, center: Floats, shapes: Iterable[Floats]) -> Zero | None:
+    """The solution around a point that is alone in a box of some shape; None when it is not proved, nor its signs."""
+    for shape, power in product(shapes, _SHRINKINGS):
+        sizes = tuple(r * 2.0**power for r in shape)
+        if any(circle and r > _MAX_TURN for circle, r in zip(field.form.is_circle, sizes, strict=True)):
+            continue
+        jet = field(list(map(arb, center, sizes)))
+        inverse = None if jet.short else inverse_of(jet.jacobian)
+        if inverse is None:
+            continue
+        rest = [[x.abs_upper() for x in row] for row in _rest(jet.jacobian, inverse)]
+        off = [s.abs_upper() for s in _steps(field, center, inverse)]
+        if not all(reach < r for reach, r in zip(_image(sizes, rest, off), sizes, strict=True)):
+            continue
+        radii = _narrowed(field, center, sizes)
+        near = field(list(map(arb, center, radii)))
+        signs = "" if not field.form.is_gradient else None if near.short else inertia(near.jacobian)
+        return None if signs is None else Zero(center, radii, sizes, signs)
+    return None
+
+
+def _narrowed(field: Field, center: Floats, radii: Floats) -> Floats:
+    """A smaller box that has the only solution of a box, too: its image, and that of that, while it gets narrower."""
+    for _ in range(_NARROWING):
+        jet = field(list(map(arb, center, radii)))
+        inverse = None if jet.short else inverse_of(jet.jacobian)
+        if inverse is None:
+            break
+        rest = [[x.abs_upper() for x in row] for row in _rest(jet.jacobian, inverse)]
+        off = [s.abs_upper() for s in _steps(field, center, inverse)]
+        reaches = [float(reach.upper()) * 1.0001 + 2.0**-1000 for reach in _image(radii, rest, off)]
+        before, radii = radii, tuple(map(min, radii, reaches))
+        if all(r > 0.999 * b for r, b in zip(radii, before, strict=True)):
+            break
+    return radii
+
+
+def _image(radii: Sequence[float], rest: Matrix, off: Sequence[arb]) -> list[arb]:
+    """Half widths of Krawczyk's image of a box."""
+    return [
+        step + sum((entry * r for entry, r in zip(row, radii, strict=True)), arb(0))
+        for step, row in zip(off, rest, strict=True)
+    ]
