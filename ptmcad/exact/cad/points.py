@@ -72,12 +72,14 @@ class PointsOver:
                 if group is None or not self._are_points(k, group):
                     return None
                 groups.append(group)
+            same: list[tuple[Cluster, Cluster]] = []
             for (k, one), (m, other) in combinations(enumerate(groups), 2):
                 meeting = [(c, d) for c in one for d in other if c.meets(d)]
                 # where they have a root in common, it is in the only place where it can be
                 if len(meeting) > 1 or (meeting and not self._meet(k, m)):
                     return None
-            return _merged([c.extent for group in groups for c in group if c.is_real])
+                same += meeting
+            return _merged([c for group in groups for c in group if c.is_real], same)
 
     def _are_points(self, k: int, group: Sequence[Cluster]) -> bool:
         """Whether each disc of a curve is known to hold one root only, as often as it counts."""
@@ -116,12 +118,16 @@ def _vanishes(p: UnivariatePolynomial, root: RealRoot) -> bool:
     return not p or is_root_of(p.gcd(root.polynomial), root)
 
 
-def _merged(intervals: Sequence[Interval]) -> list[Interval]:
-    """Intervals that meet hold the same point: those of one curve are disjoint."""
-    merged: list[Interval] = []
-    for low, high in sorted(intervals):
-        if merged and low <= merged[-1][1]:
-            merged[-1] = (merged[-1][0], max(high, merged[-1][1]))
-        else:
-            merged.append((low, high))
-    return merged
+def _merged(found: Sequence[Cluster], same: Sequence[tuple[Cluster, Cluster]]) -> list[Interval] | None:
+    """The discs' intervals, those of discs with the same point as one; None where others meet, by their rounding."""
+    merged: list[tuple[Interval, list[Cluster]]] = []
+    for cluster in sorted(found, key=lambda c: c.extent[0]):
+        low, high = cluster.extent
+        if not merged or low > merged[-1][0][1]:
+            merged.append(((low, high), [cluster]))
+            continue
+        (start, end), members = merged.pop()
+        if not any({id(cluster), id(member)} == {id(c), id(d)} for member in members for c, d in same):
+            return None
+        merged.append(((start, max(high, end)), [*members, cluster]))
+    return [interval for interval, _ in merged]

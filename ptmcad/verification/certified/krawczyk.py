@@ -67,7 +67,7 @@ def image_of(field: Field, box: Box, jet: Jet) -> list[arb] | None:
 
 
 def newton(field: Field, box: Box) -> Floats | None:
-    """Where Newton's method comes to rest from a box's middle, near the box; None when it does not. Nothing is proved."""
+    """Where Newton's method comes to rest from a box's middle, near the box; None when it does not."""
     x, share = list(box[0]), 1.0
     for _ in range(_NEWTON_STEPS):
         jet = field([arb(c) for c in x])
