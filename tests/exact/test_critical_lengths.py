@@ -13,12 +13,12 @@ import sympy
 from support.programs import needs_msolve
 
 from ptmcad.algebra import msolve
-from ptmcad.algebra.signed import signed_solutions
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.errors import ConfigError
 from ptmcad.exact.ranges.critical_lengths import NAMES, critical_system
 from ptmcad.exact.ranges.free_lengths import critical_free_lengths, critical_on_line
 from ptmcad.question.config import slice_from_options
+from ptmcad.studies.paper.squaring.solutions import signed_solutions
 
 RHO, RODS, LOADS = Fraction(7, 10), (Fraction(1), Fraction(3, 2)), (Fraction(-1, 10), Fraction(-1, 10))
 

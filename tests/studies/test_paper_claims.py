@@ -26,7 +26,6 @@ from support.free_length_equilibria import free_length_equilibria
 from support.maps import once_per_run
 
 from ptmcad.algebra.elimination import real_root_number
-from ptmcad.algebra.squared import squared_equations
 from ptmcad.answer.regionmap import Merge, Status
 from ptmcad.studies.paper import printed
 from ptmcad.studies.paper.claim import Outcome, Verdict, judge
@@ -44,6 +43,7 @@ from ptmcad.studies.paper.claims import (
 )
 from ptmcad.studies.paper.free_lengths import FreeLengthDesign, proved_equilibrium
 from ptmcad.studies.paper.slices import FIGURES, region_map, slice_of
+from ptmcad.studies.paper.squaring.equations import squared_equations
 
 SECTIONS = (
     "abstract", "1", "2", "3", "3.1", "3.2", "3.3", "4", "4.1", "4.2", "4.3", "5.1", "5.2", "conclusions",

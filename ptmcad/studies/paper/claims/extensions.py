@@ -13,12 +13,12 @@ from functools import lru_cache
 import sympy as sp
 
 from ptmcad.algebra.elimination import Elimination, eliminate
-from ptmcad.algebra.signed import SignedSolutions, signed_solutions
-from ptmcad.algebra.squared import squared_equations
 from ptmcad.studies.paper import printed
 from ptmcad.studies.paper.claim import Fact, Finding
 from ptmcad.studies.paper.free_lengths import FreeLengthDesign, ProvedEquilibrium, proved_equilibria
 from ptmcad.studies.paper.slices import equilibria_at
+from ptmcad.studies.paper.squaring.equations import squared_equations
+from ptmcad.studies.paper.squaring.solutions import SignedSolutions, signed_solutions
 from ptmcad.studies.paper.symbolic import F3, F4, F3x, F4x, half_angle_equations, k, quadratic_elimination, rho, t1, t2
 
 TWELVE = ("0.96859", "1", "1.00609", "0.2", "-0.1", "-0.1")

@@ -16,7 +16,6 @@ from importlib import import_module
 import sympy as sp
 
 from ptmcad.algebra.elimination import eliminate
-from ptmcad.algebra.squared import squared_equations
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.classification import classify
 from ptmcad.ask.location import locate
@@ -34,6 +33,7 @@ from ptmcad.studies.paper.claims.extensions import (
     signed_solutions_with,
 )
 from ptmcad.studies.paper.free_potential import LENGTHS, derivative, engine_gradient, l0, squared_lengths
+from ptmcad.studies.paper.squaring.equations import squared_equations
 from ptmcad.studies.paper.symbolic import F3, F4, VERTICAL, Expr, coordinates, equal, potential, vanishes
 from ptmcad.studies.slices import ptm_slice
 

@@ -18,9 +18,9 @@ import sympy
 from support.free_length_equilibria import free_length_equilibria
 from support.programs import needs_msolve, real_solutions
 
-from ptmcad.algebra import simple_roots
-from ptmcad.algebra.signed import SignedSolutions, SpecialDesignError, signed_solutions
 from ptmcad.studies.paper.free_lengths import FreeLengthDesign, proved_equilibrium
+from ptmcad.studies.paper.squaring import simple_roots
+from ptmcad.studies.paper.squaring.solutions import SignedSolutions, SpecialDesignError, signed_solutions
 
 Numbers = tuple[str, str, str, str, str, str]
 """rho, L1, L2, l0, f3, f4."""

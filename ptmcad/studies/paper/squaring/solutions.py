@@ -7,9 +7,9 @@ With v_i^2 l_i^2 = 1 and m_i = 1 - l0 v_i the equations are linear in each v_i,
 
     E1 = m2 rho s1 + m3 (rho s1 - L2 s12) - f3 c1,    E2 = m1 rho s2 + m3 (rho s2 - L1 s12) - f4 c2,
 
-and an equilibrium is a real solution with all v_i > 0. The squared equations (`ptmcad.algebra.squared`) are
-the products of E1 over the signs of v2 and v3, and of E2 over those of v1 and v3. So a simple root t2 of their
-resultant belongs to one t1 and one choice of signs in each; it is a solution where both choose the same sign of v3.
+and an equilibrium is a real solution with all v_i > 0. The squared equations (`squared_equations`) are the products of
+E1 over the signs of v2 and v3, and of E2 over those of v1 and v3. So a simple root t2 of their resultant belongs to one
+t1 and one choice of signs in each; it is a solution where both choose the same sign of v3.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from flint import acb, acb_poly, arb, ctx, fmpq, fmpz_poly
 
 from ptmcad.algebra.polynomials import coefficients_in
 from ptmcad.algebra.resultants import resultant
-from ptmcad.algebra.signed_equations import SignedEquations, ball, complex_roots, value_at, vanishes
-from ptmcad.algebra.simple_roots import SpecialDesignError, flat_poses, simple_part
-from ptmcad.algebra.squared import squared_equations
+from ptmcad.studies.paper.squaring.equations import squared_equations
+from ptmcad.studies.paper.squaring.signed import SignedEquations, ball, complex_roots, value_at, vanishes
+from ptmcad.studies.paper.squaring.simple_roots import SpecialDesignError, flat_poses, simple_part
 
 BITS = 400
 TOLERANCE = fmpq(1, 10**60)

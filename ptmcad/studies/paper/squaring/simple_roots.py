@@ -16,7 +16,7 @@ from ptmcad.algebra.elimination import squarefree_factors
 from ptmcad.algebra.polynomials import Coefficient, coefficients_in
 from ptmcad.algebra.real_roots import squarefree_part
 from ptmcad.algebra.resultants import resultant
-from ptmcad.algebra.signed_equations import SignedEquations, ball, complex_roots, value_at, vanishes
+from ptmcad.studies.paper.squaring.signed import SignedEquations, ball, complex_roots, value_at, vanishes
 
 _CIRCLE = fmpz_poly([1, 0, 1])
 
