@@ -11,6 +11,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from pandas import DataFrame
+
+    from ptmcad.answer.boundaries import Boundary, Grid
     from ptmcad.answer.poses import Poses
     from ptmcad.answer.regionmap import Location, RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
@@ -58,6 +61,60 @@ def _map_table(self: RegionMap) -> str:
     return table(self)
 
 
+def _map_boundaries(self: RegionMap, tolerance: Any = "1/1000") -> tuple[Boundary, ...]:
+    """The boundaries between regions, and the variety's other curves, as polylines.
+
+    No curve is further from its polyline than the tolerance, a share of the window's side, unless the polyline says so
+    (`Boundary.distance`). A certified map gives the outlines of its cells, between which lies what is undetermined.
+
+    Raises
+    ------
+    ConfigError
+        When the tolerance is not between 0 and 1, or the map has no cells yet.
+
+    >>> import ptmcad
+    >>> curve = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho")).boundaries()[0]
+    >>> curve.points.shape, curve.kind.value
+    ((5, 2), 'critical')
+    """
+    from ptmcad.ask.boundaries import boundaries
+
+    return boundaries(self, tolerance)
+
+
+def _map_grid(self: RegionMap, columns: int = 200, rows: int | None = None) -> Grid:
+    """Region and counts at the centres of columns x rows pixels, exactly; as many rows as columns if not given.
+
+    Raises
+    ------
+    ConfigError
+        When the numbers are not positive or too large, or the map has no cells yet.
+
+    >>> import ptmcad
+    >>> ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho")).grid(4, 2).stable
+    array([[1, 1, 1, 1],
+           [1, 2, 2, 2]])
+    """
+    from ptmcad.ask.pixels import grid
+
+    return grid(self, columns, rows)
+
+
+def _map_to_dataframe(self: RegionMap, what: str = "regions", **options: Any) -> DataFrame:
+    """The map as a pandas data frame: its ``regions``, ``cells``, ``components``, ``boundaries`` or ``grid``.
+
+    Options are those of `boundaries` (``tolerance``) and `grid` (``columns``, ``rows``).
+
+    Raises
+    ------
+    ConfigError
+        For another name, an option that the table does not have, or when pandas is not installed.
+    """
+    from ptmcad.show.data import data_frame
+
+    return data_frame(self, what, options)
+
+
 def _variety_text(self: SliceVariety, format: str = "text") -> str:
     """The variety in one of the formats of `ptmcad.show.export.FORMATS`.
 
@@ -103,6 +160,9 @@ METHODS["RegionMap"] = {
     "to_json": _map_to_json,
     "from_json": classmethod(_map_from_json),
     "table": _map_table,
+    "boundaries": _map_boundaries,
+    "grid": _map_grid,
+    "to_dataframe": _map_to_dataframe,
 }
 METHODS["SliceVariety"] = {"text": _variety_text}
 METHODS["Poses"] = {

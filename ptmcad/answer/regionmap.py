@@ -17,6 +17,11 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.question.slice import Point, Slice
 from ptmcad.text.plane import PlanePolynomial
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from ptmcad.answer.boundaries import Boundary, Grid
+
 
 class Status(Enum):
     """How far a result, or a point's answer, is proved; a PARTIAL result was stopped by a limit."""
@@ -336,3 +341,9 @@ class RegionMap:
         def from_json(cls, text: str) -> RegionMap: ...
 
         def table(self) -> str: ...
+
+        def boundaries(self, tolerance: Any = "1/1000") -> tuple[Boundary, ...]: ...
+
+        def grid(self, columns: int = 200, rows: int | None = None) -> Grid: ...
+
+        def to_dataframe(self, what: str = "regions", **options: Any) -> DataFrame: ...

@@ -46,7 +46,7 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     base = result.base
     u, v = from_fraction(point[base]), from_fraction(point[1 - base])
     curves = curves_of(result.components, base)
-    stack, on_critical = _stack(result, u)
+    stack, on_critical = stack_over(result, u)
     if stack >= len(result.stacks):
         raise ConfigError(f"the map contradicts itself: there is no stack {stack}; check it with ptmcad verify")
     if on_critical:
@@ -67,28 +67,28 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
 
 
 def _locate_outside_cover(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> Location:
-    complement, cells = _complement(result, cover)
-    number = cells.get(complement.locate(*_in_steps(result, cover, point)))
+    complement, cells = component_cells(result, cover)
+    number = cells.get(complement.locate(*in_steps(result, cover, point)))
     if number is None:
         return Location(Status.UNDECIDED)
     cell = result.cells[number]
     return Location(Status.CERTIFIED, cell.region, number, cell.total, cell.stable, cell.index, cell.admissible)
 
 
-def _in_steps(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
+def in_steps(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
     """Lattice coordinates."""
     u, v = ((x - a.low) / (a.high - a.low) * cover.steps for a, x in zip(result.slice.axes, point, strict=True))
     return u, v
 
 
-def _complement(result: RegionMap, cover: Cover) -> tuple[Components, dict[int | None, int]]:
+def component_cells(result: RegionMap, cover: Cover) -> tuple[Components, dict[int | None, int]]:
     """The components outside the cover, and which cell each of them is; kept for the next point of the same map."""
     if not _latest or _latest[0][0] is not result:
         complement = components(cover)
         cells: dict[int | None, int] = {}
         for number, cell in enumerate(result.cells):
             try:
-                place = complement.locate(*_in_steps(result, cover, (cell.sample[0], cell.sample[1])))
+                place = complement.locate(*in_steps(result, cover, (cell.sample[0], cell.sample[1])))
             except ValueError as error:
                 raise _contradiction(f"the sample of cell {number} is not in the window") from error
             if place is None or place in cells:
@@ -114,7 +114,7 @@ def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction
     return number_for(names[0], at[names[0]]), number_for(names[1], at[names[1]])
 
 
-def _stack(result: RegionMap, u: fmpq) -> tuple[int, bool]:
+def stack_over(result: RegionMap, u: fmpq) -> tuple[int, bool]:
     """The stack over u; or, when u is a critical value, the stack at its left and True."""
     for number, critical in enumerate(result.critical_values):
         order = _compare(u, critical)

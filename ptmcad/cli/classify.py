@@ -6,23 +6,21 @@ import time
 from collections.abc import Iterable
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import click
 
-from ptmcad.cli.formats import formats_of
+from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
-from ptmcad.cli.pictures import picture, write_result
+from ptmcad.cli.pictures import write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.errors import ConfigError, ExpressionError, LimitReached
 from ptmcad.options import Options
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.output import (
-    Writer,
     check_writable,
     how_to_go_on,
     save_stopped,
@@ -34,7 +32,7 @@ from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.parsing import rational
 
-FORMATS = ("json", "png", "svg", "pdf")
+FORMATS = ("json", *PICTURES, *DATA)
 MIN_SECONDS = 0.01
 """Seconds that are left in any case, so that the result from which to go on is handed on."""
 
@@ -45,8 +43,13 @@ class Output(NamedTuple):
     out: Path
     formats: tuple[str, ...]
     explain: bool
-    samples: bool
     no_timings: bool
+    drawing: Drawing
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """The formats of the files beside the JSON."""
+        return tuple(kind for kind in self.formats if kind != "json")
 
     def text(self, result: Any) -> str:
         """The result's JSON."""
@@ -90,9 +93,9 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
     PtmcadError
         Any other of its kinds, with nothing written.
     """
-    check_writable(output.out, tuple(f"{slice.name}.{suffix}" for suffix in output.formats))
+    check_writable(output.out, names_of(slice.name, output.formats))
     target = output.out / f"{slice.name}.json"
-    beside = tuple(f"{slice.name}.{suffix}" for suffix in output.formats if suffix != "json")
+    beside = names_of(slice.name, output.beside)
     if "json" in output.formats:
         send(Topic.TARGET, str(target), *beside)
 
@@ -146,18 +149,10 @@ def _percent(share: Fraction) -> str:
 
 
 def _save(result: Any, name: str, output: Output) -> None:
-    """Write the pictures and, last, the JSON."""
-    writers: dict[str, Writer] = {}
+    """Write the pictures and tables and, last, the JSON."""
     # first: drawing may take longer than there is time
     text = _hand_over(output, result) if "json" in output.formats else ""
-
-    def draw(path: Path) -> None:
-        from ptmcad.show.render import draw as drawn  # brings matplotlib
-
-        drawn(result, path, samples=output.samples)
-
-    for file in (f"{name}.{suffix}" for suffix in output.formats if suffix != "json"):
-        writers[file] = picture(file, draw)
+    writers = output.drawing.writers(result, name, output.beside)
     if "json" in output.formats:
         writers[f"{name}.json"] = text_writer(text)
         write_result(output.out, writers, f"{name}.json", text)
@@ -242,8 +237,6 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @click.option("--count", type=click.Choice([c.value for c in Count]), help="What distinguishes two regions.")
 @click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
-@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="json,png,svg",
-              show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
 @click.option("--without", multiple=True, callback=_names_of_savings, metavar="NAME",
               help="Do without a saving, compute what it leaves out; 'all' for every one. Repeatable.")  # fmt: skip
@@ -271,8 +264,8 @@ def _resumed(slice: Slice, path: Path) -> Any:
     "--area-tolerance", callback=_share, metavar="EPS", help="Relative width of the areas' bounds (exact engine)."
 )
 @click.option("--no-areas", is_flag=True, help="Leave the regions' areas out, often half of the work (exact engine).")
-@click.option("--samples", is_flag=True, help="Draw the cells' sample points.")
 @click.option("--no-timings", is_flag=True, help="Leave run times out of the JSON, so that it is the same every time.")
+@drawing_options(FORMATS, "json,png,svg", "Files to write")
 @gathered(options=_wanted, output=Output)
 def command(
     *, asked: Asked, count: str | None, options: Options, output: Output, limits: Limits, resume: Path | None

@@ -201,7 +201,7 @@ def load(progress):
     pass
 def search():
     pass
-def draw(result, path, samples):
+def draw(result, path, **how):
     path.write_text("a picture")
 {work}
 def certified_map(slice, options):
@@ -297,7 +297,7 @@ def test_compiling_is_no_part_of_the_time_limit(
 @forked
 @pytest.mark.parametrize("options", [["--timeout", "5"], []], ids=["time", "signal"])
 def test_a_complete_map_is_not_lost_while_its_pictures_are_drawn(tmp_path: Path, options: list[str]) -> None:
-    work = "def draw(result, path, samples):\n    arrived()"
+    work = "def draw(result, path, **how):\n    arrived()"
     stop = None if options else signal.SIGINT
     status, said = _stand_in(tmp_path, work, "--format", "json,png", *options, stop=stop)
     assert status == (3 if options else 130)

@@ -217,7 +217,7 @@ def test_sigterm_removes_the_temporary_files(tmp_path: Path) -> None:
         "class Result:\n"
         "    cover, status = None, types.SimpleNamespace(value='exact')\n"
         "    def to_json(self, timings): return 'new'\n"
-        "def draw(result, path, samples):\n"
+        "def draw(result, path, **how):\n"
         "    path.write_text('half'); time.sleep(60)\n"
         "pipeline.region_map, pipeline.prepare = lambda slice, options: Result(), lambda *_: None\n"
         "render.draw = draw\n"

@@ -63,7 +63,7 @@ def for_long_in_c():
     flint.fmpz(10**999 + 7).is_prime()
 def engine(progress, partial):
     pass
-def draw(result, path, samples):
+def draw(result, path, **how):
     path.write_text("half a picture")
 {work}
 def region_map(slice, options):
@@ -88,7 +88,7 @@ def engine(progress, partial):
         except OSError:
             for_long_in_c()
 """
-DRAWING = "def draw(result, path, samples):\n    path.write_text('half')\n    arrived()\n"
+DRAWING = "def draw(result, path, **how):\n    path.write_text('half')\n    arrived()\n"
 
 
 ALWAYS = ("flint", "ptmcad.__main__", "ptmcad.process.supervisor", "ptmcad.cli.classify", "ptmcad.question.config")
@@ -327,7 +327,7 @@ def waiting(descriptor, operation):
         arrived()
     return flock(descriptor, operation)
 fcntl.flock, draws = waiting, []
-def draw(result, path, samples):
+def draw(result, path, **how):
     path.write_text("half a picture")
     draws.append(path)
 """

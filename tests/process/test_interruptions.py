@@ -59,7 +59,7 @@ def telling(topic, *texts):
         if texts[0] == "complete":
             arrived("computed")
 handover.send = telling
-def draw(result, path, samples):
+def draw(result, path, **how):
     path.write_text(result.slice.count.value)
     (here / "drawn").touch()
 sys.modules["ptmcad.show.render"] = render = types.ModuleType("ptmcad.show.render")

@@ -72,6 +72,12 @@ class Branch:
         """Its height over an abscissa, isolated."""
         return isolate(self.curve.fibre(u), *self.fibre)[self.root]
 
+    def share_at(self, share: Fraction) -> Fraction:
+        """The same in shares of the window, rounded by at most a half of `ROUNDING`."""
+        bottom, height = self.fibre[0], self.fibre[1] - self.fibre[0]
+        at = refine(self.at(from_share(share, self.base)), height / _GRID_STEPS)
+        return Fraction(int(((at.middle - bottom) / height * _GRID_STEPS + fmpq(1, 2)).floor()), _GRID_STEPS)
+
 
 def chords(
     wall: Branch,
@@ -79,6 +85,7 @@ def chords(
     max_distance: Fraction,
     narrowest: Fraction,
     check: Callable[[], None] = lambda: None,
+    flat: tuple[Fraction, Fraction] = (FLAT, LITTLE),
 ) -> tuple[Chord, ...]:
     """A wall from left to right without gaps.
 
@@ -90,16 +97,14 @@ def chords(
     narrowest : panels of at most this share of the base are not halved. Where nothing is proved on one, the distance to
         its chord is `UNPROVED`, which always holds.
     check : called between panels; may raise to stop.
+    flat : how far apart two heights may be between which a wall is enclosed, and the largest area between them.
     """
     found: list[Chord] = []
     heights: dict[Fraction, Fraction] = {}
-    bottom, height = wall.fibre[0], wall.fibre[1] - wall.fibre[0]
 
     def place(share: Fraction) -> Fraction:
         if share not in heights:
-            at = refine(wall.at(from_share(share, wall.base)), height / _GRID_STEPS)
-            rounded = ((at.middle - bottom) / height * _GRID_STEPS + fmpq(1, 2)).floor()
-            heights[share] = Fraction(int(rounded), _GRID_STEPS)
+            heights[share] = wall.share_at(share)
         return heights[share]
 
     waiting = [span]
@@ -110,8 +115,8 @@ def chords(
         distance = _distance(wall, (left, right))
         enough = distance is not None and distance <= max_distance
         if distance is None and right - left <= SHORT:
-            distance = _between_heights(wall, (left, right), (place(left), place(right)))
-            enough = distance is not None and distance <= FLAT and distance * (right - left) <= LITTLE
+            distance = shut_in(wall, (left, right), (place(left), place(right)), flat[0])
+            enough = distance is not None and distance <= flat[0] and distance * (right - left) <= flat[1]
         if right - left > narrowest and not enough:
             waiting += [(middle, right), (left, middle)]
         else:
@@ -130,8 +135,10 @@ def _distance(wall: Branch, panel: Span) -> Fraction | None:
     return -((-distance * _GRID_STEPS).__floor__()) * Fraction(1, _GRID_STEPS)
 
 
-def _between_heights(wall: Branch, panel: Span, ends: Span) -> Fraction | None:
+def shut_in(wall: Branch, panel: Span, ends: Span, most: Fraction = FLAT) -> Fraction | None:
     """How far apart two heights are between which a wall with these ends is shut in over a panel; None: not proved.
+
+    None is more than ``most`` away from an end.
 
     The wall does not leave the window, and it cannot cross a height at which p has no zero over the panel.
     """
@@ -147,7 +154,7 @@ def _between_heights(wall: Branch, panel: Span, ends: Span) -> Fraction | None:
                 found.append(at)
                 break
             margin *= 4
-            if margin > FLAT:
+            if margin > most:
                 return None
     return found[1] - found[0]
 

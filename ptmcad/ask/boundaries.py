@@ -1,0 +1,159 @@
+"""The boundaries of a map's regions as polylines, for other programs to draw.
+
+Guarantee: each curve is within `Boundary.distance` of its polyline, as `ptmcad.exact.cad.chains` proves, and the
+distance is at most the tolerance unless it is said to be more; a certified map's polylines are its cells' own outlines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import inf, nextafter
+from typing import Any
+
+import numpy as np
+
+from ptmcad.answer.boundaries import Boundary
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.ask.location import component_cells
+from ptmcad.cover.outlines import outlines
+from ptmcad.cover.rectangles import Cover
+from ptmcad.errors import ConfigError
+from ptmcad.exact.cad.chains import Chain, chains, critical_shares
+from ptmcad.exact.cad.curves import lines_of
+from ptmcad.text.parsing import number_for
+
+TOLERANCE = Fraction(1, 1000)
+
+Share = tuple[Fraction, Fraction]
+"""A point: shares of the window along the base and along the fibre."""
+
+
+def boundaries(result: RegionMap, tolerance: Any = TOLERANCE) -> tuple[Boundary, ...]:
+    """The boundaries between regions and the variety's other curves.
+
+    Parameters
+    ----------
+    tolerance : the largest distance from a curve to its polyline, as a share of the window's side.
+
+    Raises
+    ------
+    ConfigError
+        When the tolerance is not between 0 and 1, or the map has no cells yet.
+    """
+    wanted = number_for("tolerance", tolerance)
+    if not 0 < wanted < 1:
+        raise ConfigError(f"tolerance={tolerance} is not between 0 and 1")
+    if not result.cells:
+        raise ConfigError(f"the map {result.slice.name} was stopped before it had cells: it has no boundaries")
+    if result.cover is not None:
+        return tuple(_outlines(result, result.cover))
+    return tuple(_drawn(result, piece) for piece in _pieces(result, wanted))
+
+
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """A polyline; the regions are those below and above it, or before and behind a line across the base."""
+
+    points: tuple[Share, ...]
+    component: int
+    regions: tuple[int, int]
+    distance: Fraction
+    across: bool = False
+
+
+def _pieces(result: RegionMap, tolerance: Fraction) -> Iterator[_Piece]:
+    chained = chains(result, tolerance)
+    pending: list[_Piece] = []
+    for k, (stack, walls) in enumerate(zip(result.stacks, chained, strict=True)):
+        here = [result.cells[n].region for n in stack.cells]
+        found = [
+            _Piece(c.points, w.component, sides, c.distance)
+            for w, c, sides in zip(stack.walls, walls, pairwise(here), strict=True)
+        ]
+        if k:
+            found, done = _joined(pending, found)
+            yield from done
+        pending = found
+    yield from pending
+    yield from _lines(result, chained)
+
+
+def _joined(before: list[_Piece], after: list[_Piece]) -> tuple[list[_Piece], list[_Piece]]:
+    """Pieces that go on, where there is only one that they can be; with those that end."""
+    joined, used = [], set()
+    for piece in after:
+        own = [k for k, other in enumerate(before) if _continues(other, piece)]
+        if len(own) == 1 and sum(_continues(before[own[0]], other) for other in after) == 1:
+            used.add(own[0])
+            joined.append(_together(before[own[0]], piece))
+        else:
+            joined.append(piece)
+    return joined, [piece for k, piece in enumerate(before) if k not in used]
+
+
+def _together(left: _Piece, right: _Piece) -> _Piece:
+    points = (*left.points, *right.points[1:])
+    return _Piece(points, right.component, right.regions, max(left.distance, right.distance))
+
+
+def _continues(left: _Piece, right: _Piece) -> bool:
+    near = abs(left.points[-1][1] - right.points[0][1]) <= left.distance + right.distance
+    return near and (left.component, left.regions) == (right.component, right.regions)
+
+
+def _lines(result: RegionMap, chained: tuple[tuple[Chain, ...], ...]) -> Iterator[_Piece]:
+    """Lines across the base, from wall to wall."""
+    lines = lines_of(result.components, result.base)
+    spans = critical_shares(result)
+    for component, polynomial in lines.items():
+        own = [int(c) for c in polynomial.coeffs()]
+        for k, value in enumerate(result.critical_values):
+            if list(value.polynomial) not in (own, [-c for c in own]):
+                continue
+            at, radius = (spans[k][0] + spans[k][1]) / 2, (spans[k][1] - spans[k][0]) / 2
+            ends = [chain.points[-1][1] for chain in chained[k]], [chain.points[0][1] for chain in chained[k + 1]]
+            cells = [[result.cells[n].region for n in result.stacks[k + j].cells] for j in (0, 1)]
+            for low, high in pairwise(sorted({Fraction(0), *ends[0], *ends[1], Fraction(1)})):
+                sides = [own[sum(h <= low for h in heights)] for own, heights in zip(cells, ends, strict=True)]
+                yield _Piece(((at, low), (at, high)), component, (sides[0], sides[1]), radius, across=True)
+
+
+def _drawn(result: RegionMap, piece: _Piece) -> Boundary:
+    """In the axes' order and units."""
+    base = result.base
+    axes = (result.slice.axes[base], result.slice.axes[1 - base])
+    units = [
+        [a.low + (a.high - a.low) * c for c in column]
+        for a, column in zip(axes, zip(*piece.points, strict=True), strict=True)
+    ]
+    points = np.array([[float(v) for v in column] for column in (units if base == 0 else units[::-1])]).T
+    # along x what is above is at the left hand; along y what is at smaller x is
+    below, above = piece.regions
+    swapped = (base == 0) == piece.across
+    left, right = (below, above) if swapped else (above, below)
+    side = axes[0 if piece.across else 1]
+    distance = piece.distance * (side.high - side.low)
+    component = result.components[piece.component]
+    return Boundary(points, left, right, piece.component, component.kind, _upper(distance))
+
+
+def _upper(value: Fraction) -> float:
+    """A float that is not smaller."""
+    near = float(value)
+    return near if Fraction(near) >= value else nextafter(near, inf)
+
+
+def _outlines(result: RegionMap, cover: Cover) -> Iterator[Boundary]:
+    """The outlines of a certified map's cells."""
+    complement, cells = component_cells(result, cover)
+    numbers = [n for n in cells if n is not None]
+    scale = [((a.high - a.low) / cover.steps, a.low) for a in result.slice.axes]
+    for number, polygons in zip(numbers, outlines(complement, numbers), strict=True):
+        region = result.cells[cells[number]].region
+        for corners in polygons:
+            closed = np.concatenate([corners, corners[:1]])
+            points = [[float(low + step * int(c)) for c in closed[:, k]] for k, (step, low) in enumerate(scale)]
+            yield Boundary(np.array(points).T, region, None)

@@ -1,0 +1,145 @@
+"""What a map says at the centres of a grid's pixels.
+
+Guarantee: exact. A column of pixels is answered at once: every wall's place among the centres comes from signs of its
+polynomial at centres; a certified map's pixels from its cover, in integers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+from flint import fmpq
+from numpy.typing import NDArray
+
+from ptmcad.algebra.polynomials import from_fraction
+from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
+from ptmcad.answer.boundaries import NONE, Grid
+from ptmcad.answer.regionmap import Cell, RegionMap
+from ptmcad.ask.location import component_cells, in_steps, locate, stack_over
+from ptmcad.cover.rectangles import Cover
+from ptmcad.cover.subdivision import FREE
+from ptmcad.errors import ConfigError
+from ptmcad.exact.cad.curves import by_component, curves_of, lines_of
+
+MAX_PIXELS = 10**8
+
+Labels = NDArray[np.int64]
+
+
+def grid(result: RegionMap, columns: int = 200, rows: int | None = None) -> Grid:
+    """Cell, region and counts at the centres of so many pixels along the first axis and, if not as many, the second.
+
+    Raises
+    ------
+    ConfigError
+        When the numbers are not positive or there are more than `MAX_PIXELS` pixels, or the map has no cells yet.
+    """
+    down = columns if rows is None else rows
+    for name, number in (("columns", columns), ("rows", down)):
+        if isinstance(number, bool) or not isinstance(number, (int, np.integer)) or number < 1:
+            raise ConfigError(f"{name}={number!r} is not a positive whole number")
+    if columns * down > MAX_PIXELS:
+        raise ConfigError(f"{columns} x {down} pixels are more than {MAX_PIXELS}")
+    if not result.cells:
+        raise ConfigError(f"the map {result.slice.name} was stopped before it had cells: there is nothing to show")
+    centres = [
+        [a.low + (a.high - a.low) * Fraction(2 * k + 1, 2 * int(n)) for k in range(int(n))]
+        for a, n in zip(result.slice.axes, (columns, down), strict=True)
+    ]
+    cells = _exact(result, centres) if result.cover is None else _certified(result, result.cover, centres)
+    x, y = (np.array([float(v) for v in values]) for values in centres)
+    return Grid(
+        x, y, result.slice.axis_names, cells, _of(result, cells, lambda c: c.region),
+        _of(result, cells, lambda c: c.stable), _of(result, cells, lambda c: c.total),
+    )  # fmt: skip
+
+
+def _of(result: RegionMap, cells: Labels, value: Callable[[Cell], int | None]) -> Labels:
+    """What the cells say, at their pixels."""
+    known = [value(cell) for cell in result.cells]
+    table = np.array([*(NONE if v is None else v for v in known), NONE], dtype=np.int64)
+    return table[cells]  # the label `NONE` is the last entry
+
+
+def _exact(result: RegionMap, centres: list[list[Fraction]]) -> Labels:
+    base = result.base
+    curves = by_component(curves_of(result.components, base))
+    lines = list(lines_of(result.components, base).values())
+    heights = [from_fraction(v) for v in centres[1 - base]]
+    axis = result.slice.axes[1 - base]
+    fibre = from_fraction(axis.low), from_fraction(axis.high)
+    image = np.full((len(centres[base]), len(heights)), NONE, dtype=np.int64)
+    for k, at in enumerate(centres[base]):
+        u = from_fraction(at)
+        if any(sign_at(p, u) == 0 for p in lines):
+            continue  # the whole column is on a curve
+        number, on_critical = stack_over(result, u)
+        if on_critical:
+            for row, v in enumerate(centres[1 - base]):
+                cell = locate(result, dict(zip(result.slice.axis_names, (at, v)[:: 1 - 2 * base], strict=True))).cell
+                image[k, row] = NONE if cell is None else cell
+            continue
+        stack = result.stacks[number]
+        roots = {n: isolate(curves[n].fibre(u), *fibre) for n in {w.component for w in stack.walls}}
+        first = 0
+        for cell, wall in zip(stack.cells, stack.walls, strict=False):
+            below, on_wall = _below(roots[wall.component][wall.root], heights)
+            image[k, first:below] = cell
+            first = below + on_wall
+        image[k, first:] = stack.cells[-1]
+    return image if base else image.T
+
+
+def _below(root: RealRoot, heights: list[fmpq]) -> tuple[int, bool]:
+    """How many of the increasing heights lie below a root, and whether the next one is the root."""
+    low, high = 0, len(heights)
+    at_low = 0 if root.is_rational else sign_at(root.polynomial, root.low)
+    while low < high:
+        middle = (low + high) // 2
+        at = heights[middle]
+        if at <= root.low:
+            order = 0 if root.is_rational and at == root.low else -1
+        elif at >= root.high:
+            order = 1
+        else:
+            sign = sign_at(root.polynomial, at)
+            order = 0 if sign == 0 else -1 if sign == at_low else 1
+        if order == 0:
+            return middle, True
+        if order < 0:
+            low = middle + 1
+        else:
+            high = middle
+    return low, False
+
+
+def _certified(result: RegionMap, cover: Cover, centres: list[list[Fraction]]) -> Labels:
+    complement, cells = component_cells(result, cover)
+    number_of = np.full(len(complement.areas) + 1, NONE, dtype=np.int64)
+    for component, cell in cells.items():
+        if component is not None:
+            number_of[component] = cell
+    places = [
+        [in_steps(result, cover, point)[k] for point in points]
+        for k, points in enumerate((
+            [(x, centres[1][0]) for x in centres[0]],
+            [(centres[0][0], y) for y in centres[1]],
+        ))
+    ]  # fmt: skip
+    tree = complement.subdivision
+    whole = [np.array([int(p) for p in values], dtype=np.int64) for values in places]
+    columns, rows = (len(values) for values in places)
+    leaf = tree.leaves_right_above(np.tile(whole[0], rows), np.repeat(whole[1], columns))
+    labels = np.full(len(leaf), NONE, dtype=np.int64)
+    free = tree.state[leaf] == FREE
+    labels[free] = number_of[complement.owner[leaf[free]]]
+    image = labels.reshape(rows, columns)
+    # a centre on a line of the lattice may touch a closed rectangle at its left or below
+    on_line = [{k for k, p in enumerate(values) if p.denominator == 1} for values in places]
+    for row in range(rows):
+        for column in range(columns) if row in on_line[1] else on_line[0]:
+            component = complement.locate(places[0][column], places[1][row])
+            image[row, column] = NONE if component is None else number_of[component]
+    return image

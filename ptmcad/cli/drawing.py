@@ -1,0 +1,138 @@
+"""What `classify` and `plot` write beside the JSON of a map: pictures, and tables of numbers for other programs.
+
+Guarantee: the names of all files are known before anything is computed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache, partial
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from ptmcad.cli.formats import formats_of
+from ptmcad.cli.gathering import gathered
+from ptmcad.cli.pictures import picture
+from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.process.output import Writer, text_writer
+from ptmcad.text.parsing import rational
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+PICTURES = ("png", "svg", "pdf")
+DATA = ("csv", "npz")
+TABLES = ("boundaries", "regions", "cells")
+"""Each is a file of its own in CSV."""
+MAX_SIDE = 10_000
+
+
+def names_of(stem: str, formats: tuple[str, ...]) -> tuple[str, ...]:
+    """The files of these formats."""
+    return tuple(
+        name
+        for kind in formats
+        for name in ([f"{stem}-{table}.csv" for table in TABLES] if kind == "csv" else [f"{stem}.{kind}"])
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """How a map is drawn and tabulated.
+
+    Attributes
+    ----------
+    samples : whether pictures show the cells' sample points.
+    dpi : resolution of a PNG.
+    boundary_tolerance : distance of polylines from their curves, as a share of the window's side.
+    pixels : columns and rows of the grid in an NPZ.
+    """
+
+    samples: bool = False
+    dpi: int = 150
+    boundary_tolerance: Fraction = Fraction(1, 1000)
+    pixels: tuple[int, int] = (400, 400)
+
+    def writers(self, result: Any, stem: str, formats: tuple[str, ...]) -> dict[str, Writer]:
+        """For each file a function that writes it, in the order of the formats."""
+        boundaries = cache(lambda: result.boundaries(self.boundary_tolerance))
+        found: dict[str, Writer] = {}
+        for kind in formats:
+            for name in names_of(stem, (kind,)):
+                write = {"csv": self._table, "npz": self._arrays}.get(kind, self._picture)
+                found[name] = picture(name, partial(write, result, name, boundaries))
+        return found
+
+    def _picture(self, result: Any, _name: str, _boundaries: Callable[[], Any], path: Path) -> None:
+        from ptmcad.show.render import draw  # brings matplotlib
+
+        draw(result, path, samples=self.samples, dpi=self.dpi)
+
+    def _table(self, result: Any, name: str, boundaries: Callable[[], Any], path: Path) -> None:
+        from ptmcad.show import data
+
+        table = name.removesuffix(".csv").rpartition("-")[2]
+        if table == "boundaries":
+            text = data.csv_text(data.boundary_rows(result, boundaries()))
+        else:
+            text = data.csv_text({"regions": data.region_rows, "cells": data.cell_rows}[table](result))
+        text_writer(text)(path)
+
+    def _arrays(self, result: Any, _name: str, boundaries: Callable[[], Any], path: Path) -> None:
+        from ptmcad.show.data import npz_bytes
+
+        path.write_bytes(npz_bytes(result, boundaries(), result.grid(*self.pixels)))
+
+
+def _tolerance(_context: click.Context, parameter: click.Parameter, value: str) -> Fraction:
+    option = parameter.opts[0]
+    try:
+        share = rational(value)
+    except ExpressionError as error:
+        raise ConfigError(str(error), key=option) from error
+    if not 0 < share < 1:
+        raise ConfigError(f"{value} is not between 0 and 1: write a number such as 1e-4", key=option)
+    return share
+
+
+def _pixels(_context: click.Context, parameter: click.Parameter, value: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,6})(?:x(\d{1,6}))?", value.strip(), re.ASCII)
+    sides = (int(match[1]), int(match[2] or match[1])) if match else (0, 0)
+    if not all(1 <= side <= MAX_SIDE for side in sides):
+        raise ConfigError(
+            f"{value!r} is not a size such as 400 or 400x300, of 1 to {MAX_SIDE} each", key=parameter.opts[0]
+        )
+    return sides
+
+
+def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable[[F], F]:
+    """Add ``--format``, which the command gets as ``formats``, and the options that it gets as a `Drawing`.
+
+    Parameters
+    ----------
+    known, default : formats.
+    what : the help's first words about the formats.
+    """
+
+    def decorate(command: F) -> F:
+        command = gathered(drawing=Drawing)(command)
+        for option in (
+            click.option("--pixels", callback=_pixels, default="400x400", show_default=True, metavar="NxM",
+                         help="Columns and rows of the grid of exact counts in an NPZ."),
+            click.option("--boundary-tolerance", callback=_tolerance, default="1/1000", show_default=True,
+                         metavar="EPS", help="How far boundaries in CSV and NPZ may be from the true curves, as a "
+                                             "share of the window's side."),
+            click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
+                         help="Resolution of a PNG; regions that it hides are shown zoomed, in every format."),
+            click.option("--samples", is_flag=True, help="Draw the cells' sample points."),
+            click.option("--format", "formats", callback=partial(formats_of, known=known), default=default,
+                         show_default=True, metavar="LIST", help=f"{what}, of {', '.join(known)}."),
+        ):  # fmt: skip
+            command = option(command)
+        return command
+
+    return decorate

@@ -1,0 +1,110 @@
+"""Every wall of a stack as one polyline from critical value to critical value, with a proved distance.
+
+Guarantee: over the whole open interval of its stack the wall stays within `Chain.distance` of the polyline, measured
+along the fibre and as a share of the window.
+
+Inside, chords are those of `ptmcad.exact.cad.polyline`. Towards an end, where the wall may turn upright, a last piece
+is level: two heights without a root of p(., v) from there to the end, the end included, shut the wall in, and the piece
+is so short that they are near enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from flint import fmpq
+
+from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction
+from ptmcad.algebra.real_roots import RealRoot, halve, refine
+from ptmcad.answer.regionmap import CriticalValue, RegionMap
+from ptmcad.exact.cad.curves import by_component, curves_of
+from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Branch, Span, chords, shut_in, to_share
+
+_NARROWEST = Fraction(1, 2**40)
+_END = fmpq(1, 2**60)
+"""Width to which a critical value is known, as a share of its distance from the samples beside it."""
+_FIRST, _QUARTERS = Fraction(1, 8), 40
+"""Share of its stack that the level piece at an end has at first, and how often it is made four times shorter."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """A wall as a polyline; coordinates are shares of the window along the base and along the fibre.
+
+    Attributes
+    ----------
+    points : from left to right.
+    distance : the wall's largest distance, along the fibre.
+    """
+
+    points: tuple[tuple[Fraction, Fraction], ...]
+    distance: Fraction
+
+
+def chains(
+    result: RegionMap, tolerance: Fraction, check: Callable[[], None] = lambda: None
+) -> tuple[tuple[Chain, ...], ...]:
+    """The walls of every stack, from below.
+
+    Parameters
+    ----------
+    tolerance : the largest distance wanted, as a share of the window. `Chain.distance` says what was reached.
+    check : called between pieces; may raise to stop.
+    """
+    axes = result.slice.axes
+    base, fibre = ((from_fraction(axes[k].low), from_fraction(axes[k].high)) for k in (result.base, 1 - result.base))
+    curves = by_component(curves_of(result.components, result.base))
+    ends = [(Fraction(0), Fraction(0)), *critical_shares(result), (Fraction(1), Fraction(1))]
+    found = []
+    for k, stack in enumerate(result.stacks):
+        branches = [Branch(curves[w.component], w.root, base, fibre) for w in stack.walls]
+        found.append(tuple(_chain(b, ends[k], ends[k + 1], tolerance, check) for b in branches))
+    return tuple(found)
+
+
+def critical_shares(result: RegionMap) -> list[Span]:
+    """Every critical value between two shares of the base, near together against the stacks beside it."""
+    axis = result.slice.axes[result.base]
+    base = from_fraction(axis.low), from_fraction(axis.high)
+    samples = [from_fraction(s.sample) for s in result.stacks]
+    ends = [_enclosed(v, samples[k], samples[k + 1]) for k, v in enumerate(result.critical_values)]
+    return [(to_share(root.low, base), to_share(root.high, base)) for root in ends]
+
+
+def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:
+    """A critical value in an interval that is short against its distance from the samples beside it."""
+    p = UnivariatePolynomial(list(value.polynomial))
+    root = RealRoot(p, from_fraction(value.low), from_fraction(value.high))
+    while root.low <= before or root.high >= after:
+        root = halve(root)
+    return refine(root, min(root.low - before, after - root.high) * _END)
+
+
+def _chain(wall: Branch, left: Span, right: Span, tolerance: Fraction, check: Callable[[], None]) -> Chain:
+    width = right[0] - left[1]
+    start, first = _level(wall, left, width, tolerance)
+    end, last = _level(wall, right, -width, tolerance)
+    parts = chords(wall, (start, end), tolerance, _NARROWEST * width, check, (tolerance, Fraction(1)))
+    points = [((left[0] + left[1]) / 2, parts[0].at_left), (start, parts[0].at_left)]
+    points += [(c.right, c.at_right) for c in parts]
+    points.append(((right[0] + right[1]) / 2, parts[-1].at_right))
+    return Chain(tuple(points), max(first, last, *(c.distance for c in parts)))
+
+
+def _level(wall: Branch, end: Span, width: Fraction, tolerance: Fraction) -> tuple[Fraction, Fraction]:
+    """Where the level piece at an end of a wall stops, and how far the wall is from it at most."""
+    away = end[1] if width > 0 else end[0]
+    far = end[0] if width > 0 else end[1]
+    share, best = _FIRST, (away + width * _FIRST, UNPROVED)
+    for _ in range(_QUARTERS):
+        at = away + width * share
+        height = wall.share_at(at)
+        distance = shut_in(wall, (min(far, at), max(far, at)), (height, height), tolerance)
+        if distance is not None and distance + ROUNDING < best[1]:
+            best = at, distance + ROUNDING
+        if best[1] <= tolerance:
+            break
+        share /= 4
+    return best

@@ -1,0 +1,204 @@
+"""A map as tables of numbers: for data frames, as CSV and as NumPy's NPZ.
+
+Guarantee: the same map gives the same text. Numbers are the floats nearest to the exact ones, areas' bounds rounded
+outwards. Between two polylines there is a line without numbers (``nan``), where MATLAB, pgfplots and matplotlib break
+a line.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from io import BytesIO, StringIO
+from math import inf, nan, nextafter
+from typing import TYPE_CHECKING, Any
+
+from ptmcad.answer.boundaries import Boundary, Grid
+from ptmcad.answer.counts import MorseIndex
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.errors import ConfigError
+from ptmcad.show.polynomial_text import Style, polynomial_text
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+Row = dict[str, Any]
+TABLES = ("regions", "cells", "components", "boundaries", "grid")
+"""What a map is as a data frame."""
+_OF_ITS_OWN = {
+    "region", "stable", "total", "index", "admissible", "area_low", "area_high", "cells", "cell", "stack", "level",
+    "piece", "component", "kind", "separates", "left", "right", "distance", "polynomial",
+}  # fmt: skip
+
+
+def axis_columns(result: RegionMap) -> tuple[str, str]:
+    """The names of the coordinates' columns: the axes', with an underscore where a table has such a column already."""
+    first, second = (f"{n}_" if n in _OF_ITS_OWN else n for n in result.slice.axis_names)
+    return first, second
+
+
+def region_rows(result: RegionMap) -> list[Row]:
+    """A row for each region, with a point of it and the bounds of its area."""
+    return [
+        {
+            "region": k, "stable": r.stable, "total": r.total, "index": _index(r.index), "admissible": r.admissible,
+            "area_low": _rounded(r.area[0], -inf), "area_high": _rounded(r.area[1], inf), "cells": len(r.cells),
+            **_at(result, r.sample),
+        }
+        for k, r in enumerate(result.regions)
+    ]  # fmt: skip
+
+
+def cell_rows(result: RegionMap) -> list[Row]:
+    """A row for each cell, with its sample point."""
+    return [
+        {
+            "cell": k, "region": c.region, "stable": c.stable, "total": c.total, "index": _index(c.index),
+            "admissible": c.admissible, "stack": c.stack, "level": c.level, **_at(result, c.sample),
+        }
+        for k, c in enumerate(result.cells)
+    ]  # fmt: skip
+
+
+def component_rows(result: RegionMap) -> list[Row]:
+    """A row for each component of the variety, with its polynomial as text."""
+    names = result.slice.axis_names
+    return [
+        {
+            "component": k, "kind": c.kind.value, "separates": c.separates, "left_out": c.left_out,
+            "polynomial": polynomial_text(c.polynomial, names, Style.TEXT),
+        }
+        for k, c in enumerate(result.components)
+    ]  # fmt: skip
+
+
+def boundary_rows(result: RegionMap, boundaries: Sequence[Boundary]) -> Iterator[Row]:
+    """A row for each point of each polyline, and one without numbers between two polylines."""
+    x, y = axis_columns(result)
+    for k, piece in enumerate(boundaries):
+        own = {
+            "piece": k, "component": piece.component, "kind": piece.kind.value if piece.kind else None,
+            "separates": piece.separates, "left": piece.left, "right": piece.right, "distance": piece.distance,
+        }  # fmt: skip
+        if k:
+            yield {**own, x: nan, y: nan}
+        for first, second in piece.points.tolist():
+            yield {**own, x: first, y: second}
+
+
+def grid_columns(result: RegionMap, grid: Grid) -> dict[str, Any]:
+    """Columns for each pixel, row after row from the bottom."""
+    import numpy as np
+
+    x, y = axis_columns(result)
+    rows, columns = grid.region.shape
+    labels = {name: getattr(grid, name).ravel() for name in ("cell", "region", "stable", "total")}
+    return {x: np.tile(grid.x, rows), y: np.repeat(grid.y, columns), **labels}
+
+
+_OPTIONS: dict[str, tuple[str, ...]] = {"boundaries": ("tolerance",), "grid": ("columns", "rows")}
+
+
+def data_frame(result: RegionMap, what: str, options: Mapping[str, Any]) -> DataFrame:
+    """One of the tables as a data frame; whole numbers that may be missing are pandas' own ``Int64``.
+
+    Raises
+    ------
+    ConfigError
+        For another table or option, or when pandas is not installed.
+    """
+    if what not in TABLES:
+        raise ConfigError(f"{what!r} is not among {', '.join(TABLES)}")
+    unknown = [name for name in options if name not in _OPTIONS.get(what, ())]
+    if unknown:
+        known = ", ".join(_OPTIONS.get(what, ())) or "none"
+        raise ConfigError(f"the table {what} has no option {unknown[0]!r}; its options: {known}")
+    try:
+        import pandas as pd
+    except ModuleNotFoundError as error:
+        raise ConfigError("a data frame needs the package pandas: pip install 'ptmcad[data]'") from error
+    if what == "grid":
+        return pd.DataFrame(grid_columns(result, result.grid(**options)))
+    table = pd.DataFrame(list(_rows(result, what, options)))
+    for name in _MAY_BE_MISSING:
+        if name in table:
+            table[name] = table[name].astype("Int64")
+    return table
+
+
+_MAY_BE_MISSING = ("stable", "total", "admissible", "component", "left", "right", "stack")
+
+
+def _rows(result: RegionMap, what: str, options: Mapping[str, Any]) -> Iterable[Row]:
+    if what == "boundaries":
+        return boundary_rows(result, result.boundaries(**options))
+    return {"regions": region_rows, "cells": cell_rows, "components": component_rows}[what](result)
+
+
+def csv_text(rows: Iterable[Row]) -> str:
+    """Comma-separated values with a line of names; truth as 1 and 0, numbers that do not exist are empty or ``nan``."""
+    text = StringIO()
+    writer: Any = None
+    for row in rows:
+        if writer is None:
+            writer = csv.DictWriter(text, list(row), lineterminator="\n")
+            writer.writeheader()
+        writer.writerow({name: int(v) if isinstance(v, bool) else v for name, v in row.items()})
+    return text.getvalue()
+
+
+def npz_bytes(result: RegionMap, boundaries: Sequence[Boundary], grid: Grid) -> bytes:
+    """The map as arrays in NumPy's format, the same bytes for the same map.
+
+    ``boundary`` has shape (n, 2) with rows of nan between polylines, ``piece`` their numbers, ``left`` and ``right``
+    the regions on their two sides (-1: none); ``x``, ``y``, ``cell``, ``region``, ``stable``, ``total`` are the
+    grid's; ``area`` has shape (regions, 2), ``region_stable`` and ``region_total`` shape (regions,); ``axes`` are the
+    names.
+    """
+    import numpy as np
+
+    points, numbers = [], []
+    for k, piece in enumerate(boundaries):
+        points += [np.full((1, 2), nan)] if k else []
+        points.append(piece.points)
+        numbers += [k] * (len(piece.points) + bool(k))
+    data = {
+        "axes": np.array(result.slice.axis_names),
+        "boundary": np.concatenate(points) if points else np.empty((0, 2)),
+        "piece": np.array(numbers, dtype=np.int64),
+        "left": _labels(b.left for b in boundaries),
+        "right": _labels(b.right for b in boundaries),
+        "separates": np.array([b.separates for b in boundaries], dtype=np.bool_),
+        "distance": np.array([b.distance for b in boundaries], dtype=np.float64),
+        "area": np.array(
+            [(_rounded(r.area[0], -inf), _rounded(r.area[1], inf)) for r in result.regions], dtype=np.float64
+        ).reshape(-1, 2),
+        "region_stable": _labels(r.stable for r in result.regions),
+        "region_total": _labels(r.total for r in result.regions),
+        **grid.arrays(),
+    }
+    content = BytesIO()
+    np.savez_compressed(content, **data)
+    return content.getvalue()
+
+
+def _labels(values: Iterator[int | None]) -> Any:
+    import numpy as np
+
+    return np.array([-1 if v is None else v for v in values], dtype=np.int64)
+
+
+def _index(index: MorseIndex | None) -> str | None:
+    return None if index is None else " ".join(map(str, index))
+
+
+def _at(result: RegionMap, sample: Sequence[Fraction]) -> Row:
+    return dict(zip(axis_columns(result), map(float, sample), strict=True))
+
+
+def _rounded(value: Fraction, towards: float) -> float:
+    """The nearest float on one side."""
+    near = float(value)
+    wrong = near > value if towards < 0 else near < value
+    return nextafter(near, towards) if wrong else near
