@@ -75,7 +75,7 @@ def _map_boundaries(self: RegionMap, tolerance: Any = "1/1000") -> tuple[Boundar
     >>> import ptmcad
     >>> curve = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho")).boundaries()[0]
     >>> curve.points.shape, curve.kind.value
-    ((5, 2), 'critical')
+    ((3, 2), 'critical')
     """
     from ptmcad.ask.boundaries import boundaries
 
@@ -92,8 +92,8 @@ def _map_grid(self: RegionMap, columns: int = 200, rows: int | None = None) -> G
 
     >>> import ptmcad
     >>> ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho")).grid(4, 2).stable
-    array([[1, 1, 1, 1],
-           [1, 2, 2, 2]])
+    array([[1, 2, 2, 1],
+           [1, 1, 1, 1]])
     """
     from ptmcad.ask.pixels import grid
 

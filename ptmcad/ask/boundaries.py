@@ -114,11 +114,24 @@ def _lines(result: RegionMap, chained: tuple[tuple[Chain, ...], ...]) -> Iterato
             if list(value.polynomial) not in (own, [-c for c in own]):
                 continue
             at, radius = (spans[k][0] + spans[k][1]) / 2, (spans[k][1] - spans[k][0]) / 2
-            ends = [chain.points[-1][1] for chain in chained[k]], [chain.points[0][1] for chain in chained[k + 1]]
+            ends = [c.points[-1][1] for c in chained[k]], [c.points[0][1] for c in chained[k + 1]]
             cells = [[result.cells[n].region for n in result.stacks[k + j].cells] for j in (0, 1)]
-            for low, high in pairwise(sorted({Fraction(0), *ends[0], *ends[1], Fraction(1)})):
-                sides = [own[sum(h <= low for h in heights)] for own, heights in zip(cells, ends, strict=True)]
+            walls = [(h, c.distance) for j in (0, 1) for h, c in zip(ends[j], chained[k + j], strict=True)]
+            for low, high in pairwise(_apart(walls)):
+                middle = (low + high) / 2
+                sides = [own[sum(h < middle for h in heights)] for own, heights in zip(cells, ends, strict=True)]
                 yield _Piece(((at, low), (at, high)), component, (sides[0], sides[1]), radius, across=True)
+
+
+def _apart(walls: list[tuple[Fraction, Fraction]]) -> list[Fraction]:
+    """The window's edges and the heights at which walls end between them, of those that may be one point only one."""
+    found: list[tuple[Fraction, Fraction]] = [(Fraction(0), Fraction(0))]
+    for height, distance in sorted(walls):
+        if height - found[-1][0] > distance + found[-1][1]:
+            found.append((height, distance))
+    if len(found) > 1 and 1 - found[-1][0] <= found[-1][1]:
+        found.pop()
+    return [*(height for height, _ in found), Fraction(1)]
 
 
 def _drawn(result: RegionMap, piece: _Piece) -> Boundary:

@@ -5,11 +5,13 @@ along the fibre and as a share of the window.
 
 Inside, chords are those of `ptmcad.exact.cad.polyline`. Towards an end, where the wall may turn upright, a last piece
 is level: two heights without a root of p(., v) from there to the end, the end included, shut the wall in, and the piece
-is so short that they are near enough.
+is so short that they are near enough. At the window's edge there is none where the curve's roots over it are simple and
+as many as over the stack, none of them a corner: then each wall runs on to its own.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -17,7 +19,7 @@ from fractions import Fraction
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial, from_fraction
-from ptmcad.algebra.real_roots import RealRoot, halve, refine
+from ptmcad.algebra.real_roots import RealRoot, halve, isolate, refine, sign_at
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.exact.cad.curves import by_component, curves_of
 from ptmcad.exact.cad.polyline import ROUNDING, UNPROVED, Branch, Span, chords, shut_in, to_share
@@ -60,8 +62,32 @@ def chains(
     found = []
     for k, stack in enumerate(result.stacks):
         branches = [Branch(curves[w.component], w.root, base, fibre) for w in stack.walls]
-        found.append(tuple(_chain(b, ends[k], ends[k + 1], tolerance, check) for b in branches))
+        number = Counter(w.component for w in stack.walls)
+        walls = []
+        for b in branches:
+            left, right = (_End(*e, _goes_on(b, e, number[b.curve.component])) for e in (ends[k], ends[k + 1]))
+            walls.append(_chain(b, left, right, tolerance, check))
+        found.append(tuple(walls))
     return tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class _End:
+    """An end of a stack, between two shares of the base; ``regular`` where the wall runs on into it."""
+
+    low: Fraction
+    high: Fraction
+    regular: bool
+
+
+def _goes_on(wall: Branch, end: Span, number: int) -> bool:
+    """Whether so many walls of a curve run to its so many roots over the window's edge, each to its own."""
+    if end[0] != end[1] or end[0] not in (0, 1):
+        return False
+    p = wall.curve.fibre(wall.base[int(end[0])])
+    if any(sign_at(p, v) == 0 for v in wall.fibre) or p.gcd(p.derivative()).degree() > 0:
+        return False
+    return len(isolate(p, *wall.fibre)) == number
 
 
 def critical_shares(result: RegionMap) -> list[Span]:
@@ -82,21 +108,24 @@ def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:
     return refine(root, min(root.low - before, after - root.high) * _END)
 
 
-def _chain(wall: Branch, left: Span, right: Span, tolerance: Fraction, check: Callable[[], None]) -> Chain:
-    width = right[0] - left[1]
+def _chain(wall: Branch, left: _End, right: _End, tolerance: Fraction, check: Callable[[], None]) -> Chain:
+    width = right.low - left.high
     start, first = _level(wall, left, width, tolerance)
     end, last = _level(wall, right, -width, tolerance)
     parts = chords(wall, (start, end), tolerance, _NARROWEST * width, check, (tolerance, Fraction(1)))
-    points = [((left[0] + left[1]) / 2, parts[0].at_left), (start, parts[0].at_left)]
-    points += [(c.right, c.at_right) for c in parts]
-    points.append(((right[0] + right[1]) / 2, parts[-1].at_right))
+    points = [(start, parts[0].at_left), *((c.right, c.at_right) for c in parts)]
+    if not left.regular:
+        points.insert(0, ((left.low + left.high) / 2, parts[0].at_left))
+    if not right.regular:
+        points.append(((right.low + right.high) / 2, parts[-1].at_right))
     return Chain(tuple(points), max(first, last, *(c.distance for c in parts)))
 
 
-def _level(wall: Branch, end: Span, width: Fraction, tolerance: Fraction) -> tuple[Fraction, Fraction]:
+def _level(wall: Branch, end: _End, width: Fraction, tolerance: Fraction) -> tuple[Fraction, Fraction]:
     """Where the level piece at an end of a wall stops, and how far the wall is from it at most."""
-    away = end[1] if width > 0 else end[0]
-    far = end[0] if width > 0 else end[1]
+    if end.regular:
+        return end.low, Fraction(0)
+    away, far = (end.high, end.low) if width > 0 else (end.low, end.high)
     share, best = _FIRST, (away + width * _FIRST, UNPROVED)
     for _ in range(_QUARTERS):
         at = away + width * share
