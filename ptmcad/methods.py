@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from ptmcad.answer.boundaries import Boundary, Grid
+    from ptmcad.answer.field import Field
     from ptmcad.answer.poses import Poses
     from ptmcad.answer.regionmap import Location, RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
@@ -100,6 +101,36 @@ def _map_grid(self: RegionMap, columns: int = 200, rows: int | None = None) -> G
     return grid(self, columns, rows)
 
 
+def _map_field(
+    self: RegionMap, value: str = "energy", pose: str = "stable:1", columns: int = 400, rows: int | None = None
+) -> Field:
+    """A continuous quantity of one equilibrium at the centres of columns x rows pixels, in floating point.
+
+    Every pixel has as many different solutions as the map counts there, and 50 of them are compared with exact poses:
+    `Field.difference` says how well they agree.
+
+    Parameters
+    ----------
+    value : ``energy``, ``stiffness`` (least eigenvalue of the Hessian), ``barrier`` (energy to the lowest pass towards
+        another stable pose), ``force:SPRING``, ``length:SPRING``, ``angle:UNKNOWN`` in degrees, ``x:POINT``,
+        ``y:POINT``, or an expression in unknowns (angles in radians), parameters and axes.
+    pose : ``stable:1``, ``unstable:2``, ``saddle:1``, ``maximum:1`` or ``pose:3``, in the order of `solve`.
+
+    Raises
+    ------
+    ConfigError
+        For a value or pose that has no meaning here, or a map without cells.
+
+    >>> import ptmcad
+    >>> result = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))
+    >>> [round(float(v), 3) for v in result.field("length:k3", "stable:1", 3, 1).values[0]]
+    [0.333, 1.0, 2.0]
+    """
+    from ptmcad.ask.fields.field import field_of
+
+    return field_of(self, value, pose, columns, rows)
+
+
 def _map_to_dataframe(self: RegionMap, what: str = "regions", **options: Any) -> DataFrame:
     """The map as a pandas data frame: its ``regions``, ``cells``, ``components``, ``boundaries`` or ``grid``.
 
@@ -162,6 +193,7 @@ METHODS["RegionMap"] = {
     "table": _map_table,
     "boundaries": _map_boundaries,
     "grid": _map_grid,
+    "field": _map_field,
     "to_dataframe": _map_to_dataframe,
 }
 METHODS["SliceVariety"] = {"text": _variety_text}

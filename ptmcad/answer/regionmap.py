@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from ptmcad.answer.boundaries import Boundary, Grid
+    from ptmcad.answer.field import Field
 
 
 class Status(Enum):
@@ -345,5 +346,9 @@ class RegionMap:
         def boundaries(self, tolerance: Any = "1/1000") -> tuple[Boundary, ...]: ...
 
         def grid(self, columns: int = 200, rows: int | None = None) -> Grid: ...
+
+        def field(
+            self, value: str = "energy", pose: str = "stable:1", columns: int = 400, rows: int | None = None
+        ) -> Field: ...
 
         def to_dataframe(self, what: str = "regions", **options: Any) -> DataFrame: ...

@@ -32,6 +32,7 @@ COMMANDS = {
     "mechanisms": "ptmcad.cli.mechanisms",
     "solve": "ptmcad.cli.solve",
     "locate": "ptmcad.cli.locate",
+    "map": "ptmcad.cli.map",
     "paper": "ptmcad.cli.paper",
     "plot": "ptmcad.cli.plot",
     "range": "ptmcad.cli.range",

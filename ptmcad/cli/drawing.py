@@ -88,7 +88,8 @@ class Drawing:
         path.write_bytes(npz_bytes(result, boundaries(), result.grid(*self.pixels)))
 
 
-def _tolerance(_context: click.Context, parameter: click.Parameter, value: str) -> Fraction:
+def share_of(_context: click.Context, parameter: click.Parameter, value: str) -> Fraction:
+    """A share between 0 and 1."""
     option = parameter.opts[0]
     try:
         share = rational(value)
@@ -99,7 +100,8 @@ def _tolerance(_context: click.Context, parameter: click.Parameter, value: str) 
     return share
 
 
-def _pixels(_context: click.Context, parameter: click.Parameter, value: str) -> tuple[int, int]:
+def pixels_of(_context: click.Context, parameter: click.Parameter, value: str) -> tuple[int, int]:
+    """Columns and rows, such as 400 or 400x300."""
     match = re.fullmatch(r"(\d{1,6})(?:x(\d{1,6}))?", value.strip(), re.ASCII)
     sides = (int(match[1]), int(match[2] or match[1])) if match else (0, 0)
     if not all(1 <= side <= MAX_SIDE for side in sides):
@@ -121,9 +123,9 @@ def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable
     def decorate(command: F) -> F:
         command = gathered(drawing=Drawing)(command)
         for option in (
-            click.option("--pixels", callback=_pixels, default="400x400", show_default=True, metavar="NxM",
+            click.option("--pixels", callback=pixels_of, default="400x400", show_default=True, metavar="NxM",
                          help="Columns and rows of the grid of exact counts in an NPZ."),
-            click.option("--boundary-tolerance", callback=_tolerance, default="1/1000", show_default=True,
+            click.option("--boundary-tolerance", callback=share_of, default="1/1000", show_default=True,
                          metavar="EPS", help="How far boundaries in CSV and NPZ may be from the true curves, as a "
                                              "share of the window's side."),
             click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,

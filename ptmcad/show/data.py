@@ -11,11 +11,12 @@ import csv
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from io import BytesIO, StringIO
-from math import inf, nan, nextafter
+from math import inf, isnan, nan, nextafter
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.boundaries import Boundary, Grid
 from ptmcad.answer.counts import MorseIndex
+from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.polynomial_text import Style, polynomial_text
@@ -180,6 +181,28 @@ def npz_bytes(result: RegionMap, boundaries: Sequence[Boundary], grid: Grid) -> 
     }
     content = BytesIO()
     np.savez_compressed(content, **data)
+    return content.getvalue()
+
+
+def field_csv(field: Field) -> str:
+    """A field with a line for each pixel, row after row from the bottom; empty where there is no value."""
+    x, y = (f"{n}_" if n in ("value", "region") else n for n in field.names)
+    rows = (
+        {x: u, y: v, "value": "" if isnan(value) else value, "region": region}
+        for v, values, regions in zip(field.y.tolist(), field.values.tolist(), field.region.tolist(), strict=True)
+        for u, value, region in zip(field.x.tolist(), values, regions, strict=True)
+    )
+    return csv_text(rows)
+
+
+def field_npz(field: Field) -> bytes:
+    """A field as arrays: ``x``, ``y``, ``values`` and ``region`` of shape (rows, columns), ``axes`` the names."""
+    import numpy as np
+
+    content = BytesIO()
+    np.savez_compressed(
+        content, axes=np.array(field.names), x=field.x, y=field.y, values=field.values, region=field.region
+    )
     return content.getvalue()
 
 

@@ -1,0 +1,50 @@
+"""A continuous quantity of one equilibrium over a map's window, pixel by pixel, in floating point.
+
+Not guaranteed: more than `Field.checked` says. Each pixel shows one of as many different solutions as the exact map
+counts there, found by Newton's method; a share of the pixels was compared with exact poses.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Field:
+    """The values of a quantity at the centres of pixels; nan where there is no such solution, or none was found.
+
+    Attributes
+    ----------
+    quantity, pose : as they were asked for.
+    unit : of the values, in words; empty where it is not known.
+    x, y : shapes (columns,) and (rows,): the centres' coordinates.
+    names : of the two axes.
+    values : shape (rows, columns), from the bottom.
+    region : shape (rows, columns): numbers of the map's regions, -1 where there is none.
+    missed : number of pixels with such a solution that was not found.
+    checked : number of pixels that were compared with exact poses.
+    difference : the largest difference found there, as a share of the largest modulus of a value.
+    """
+
+    quantity: str
+    pose: str
+    unit: str
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    names: tuple[str, str]
+    values: NDArray[np.float64]
+    region: NDArray[np.int64]
+    missed: int
+    checked: int
+    difference: float
+
+    def __repr__(self) -> str:
+        rows, columns = self.values.shape
+        return (
+            f"<Field {self.quantity} of {self.pose}, {columns} x {rows} pixels over {self.names[0]}, {self.names[1]}>"
+        )

@@ -1,0 +1,1 @@
+"""Continuous quantities of equilibria over a map's window, in floating point, from the certified samples onwards."""

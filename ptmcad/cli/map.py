@@ -1,0 +1,153 @@
+"""``ptmcad map``: a continuous quantity of one equilibrium over a slice's window, as pictures and numbers."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ptmcad.answer.field import Field
+from ptmcad.cli.drawing import pixels_of, share_of
+from ptmcad.cli.formats import formats_of
+from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.pictures import picture
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.errors import PtmcadError, shown_path
+from ptmcad.options import Options
+from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+
+PICTURES, DATA = ("png", "svg", "pdf"), ("csv", "npz")
+FORMATS = (*PICTURES, *DATA)
+MAX_DIFFERENCE = 1e-6
+"""From exact poses, as a share of the largest value: more is a fault of the continuation, which is said."""
+
+
+class DifferenceError(PtmcadError):
+    """Values that do not agree with exact poses."""
+
+
+@click.command("map")
+@slice_options
+@click.option("--value", default="energy", show_default=True, metavar="QUANTITY",
+              help="energy, stiffness, barrier, force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT, y:POINT, or an "
+                   "expression in unknowns, parameters and axes.")  # fmt: skip
+@click.option("--pose", default="stable:1", show_default=True, metavar="KIND:N",
+              help="The N-th stable, unstable, saddle, maximum or pose (any), in the order of `ptmcad solve`: stable "
+                   "ones first, then by energy.")  # fmt: skip
+@click.option("--pixels", callback=pixels_of, default="400x400", show_default=True, metavar="NxM",
+              help="Columns and rows.")  # fmt: skip
+@click.option("--contours", type=click.IntRange(0, 50), default=8, show_default=True,
+              help="About so many contour lines; 0 for none.")  # fmt: skip
+@click.option("--checks", type=click.IntRange(0, 100_000), default=50, show_default=True,
+              help="Random pixels that are compared with exact poses.")  # fmt: skip
+@click.option("--tolerance", callback=share_of, default="1/100", show_default=True, metavar="EPS",
+              help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
+@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="png",
+              show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
+@limit_options
+def command(
+    *,
+    asked: Asked,
+    value: str,
+    pose: str,
+    pixels: tuple[int, int],
+    contours: int,
+    checks: int,
+    tolerance: Fraction,
+    out: Path,
+    formats: tuple[str, ...],
+    limits: Limits,
+) -> None:
+    """Colour the window by a quantity of one equilibrium.
+
+    The regions are exact (or certified, with free lengths); within them all equilibria are followed in floating point,
+    every pixel has as many as its region's count, and some are compared with exact poses.
+
+    \b
+    Examples:
+        ptmcad map --slice L2,rho --value stiffness --pixels 100
+        ptmcad map --slice rho,L2 --set F3=-10 --set F4=-10 --value barrier --pose stable:2 --pixels 60
+        ptmcad map --slice L2,rho --value "length:k1" --pose stable:2 --format png,csv --pixels 50
+    """
+    slice = asked.slice()
+    if slice.has_free_lengths and (value.strip() == "barrier" or not pose.strip().startswith("stable")):
+        slice = asked.slice("index")  # the certified engine finds the others when they are counted
+    stem = f"{slice.name}-{_slug(value)}-{_slug(pose)}"
+    names = tuple(f"{stem}.{kind}" for kind in formats)
+    check_writable(out, names)
+    with held(limits), ProgressBar() as progress:
+        from ptmcad.ask.classification import prepare, region_map
+        from ptmcad.ask.fields.field import choice_of, field_of
+        from ptmcad.ask.fields.quantities import quantity_of
+
+        quantity_of(value, slice)  # a name that means nothing is refused before anything is computed
+        choice_of(pose, slice.model)
+        options = Options(areas=False, progress=progress, timeout=limits.timeout)
+        if slice.has_free_lengths:
+            options = replace(options, areas=True, tolerance=tolerance)
+        prepare(slice, options)
+        result = region_map(slice, options)
+        field = field_of(result, value, pose, *pixels, checks=checks)
+        written = write_files(out, _writers(result, field, names, contours))
+    for path in written:
+        click.echo(shown_path(path))
+    click.echo(_summary(field))
+    if field.checked and not field.difference <= MAX_DIFFERENCE:
+        raise DifferenceError(
+            f"{field.checked} pixels were compared with exact poses, and one differs by {field.difference:.2g} of the "
+            "largest value: do not trust this map"
+        )
+
+
+def _slug(text: str) -> str:
+    """A text as a part of a file's name."""
+    return re.sub(r"[^A-Za-z0-9]+", "-", text).strip("-")[:60] or "value"
+
+
+def _writers(result: Any, field: Field, names: tuple[str, ...], contours: int) -> dict[str, Writer]:
+    boundaries = cache(result.boundaries)
+
+    def draw(path: Path) -> None:
+        from ptmcad.show.render.backend import load_matplotlib
+
+        load_matplotlib()
+        from ptmcad.show.render.field import draw_field
+
+        draw_field(result, field, boundaries(), path, contours=contours)
+
+    def tabulate(path: Path) -> None:
+        from ptmcad.show.data import field_csv, field_npz
+
+        if path.suffix == ".csv":
+            text_writer(field_csv(field))(path)
+        else:
+            path.write_bytes(field_npz(field))
+
+    return {name: picture(name, tabulate if name.endswith(DATA) else draw) for name in names}
+
+
+def _summary(field: Field) -> str:
+    import numpy as np
+
+    known = field.values[~np.isnan(field.values)]
+    if not known.size:
+        return f"{field.pose} is nowhere in this window"
+    unit = f" {field.unit}" if field.unit else ""
+    lines = [
+        f"{field.quantity} of {field.pose}: {known.min():.6g} to {known.max():.6g}{unit}, "
+        f"at {100 * known.size / field.values.size:.3g} % of the pixels"
+    ]
+    if field.missed:
+        lines.append(f"{field.missed} pixels are empty because their equilibria were not found")
+    if field.checked:
+        lines.append(
+            f"{field.checked} random pixels agree with exact poses to {field.difference:.1g} of the largest value"
+        )
+    return "\n".join(lines)

@@ -1,0 +1,275 @@
+"""Continuous quantities over maps, against exact poses, roots in closed form, and a landscape flooded on a grid."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from support.maps import CONFIGS, shipped
+
+import ptmcad
+from ptmcad.answer.field import Field
+from ptmcad.answer.poses import Pose
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.ask.fields import equations
+from ptmcad.ask.fields.field import centre, exact_at
+from ptmcad.cli import map as command
+from ptmcad.cli import run
+from ptmcad.errors import ConfigError
+
+
+def of_kind(poses: tuple[Pose, ...], kind: str) -> list[Pose]:
+    index = {"saddle": 1, "maximum": 2}
+    return [
+        p for p in poses
+        if kind == "pose" or (kind == "stable" and p.stable) or (kind == "unstable" and not p.stable)
+        or (kind in index and p.index == index[kind])
+    ]  # fmt: skip
+
+
+QUANTITIES: dict[str, Any] = {
+    "energy": lambda p: p.known_energy.center,
+    "stiffness": lambda p: p.eigenvalues[0].center,
+    "angle:th2": lambda p: p.degrees[1].center,
+    "length:k3": lambda p: p.springs[2].length.center,
+    "force:k1": lambda p: p.springs[0].force.center,
+    "x:A4": lambda p: p.nodes["A4"][0].center,
+    "y:A3": lambda p: p.nodes["A3"][1].center,
+    "sin(th1)*L2/rho + th2^2": None,
+}
+
+
+def compare(result: RegionMap, value: str, pose: str, sides: tuple[int, int], number: int, seed: int) -> None:
+    """Random pixels against `solve`: relative to the largest value, to 9 digits; nan where there is no such pose."""
+    field = result.field(value, pose, *sides)
+    assert (field.missed, field.difference < 1e-9) == (0, True)
+    size = np.abs(field.values[~np.isnan(field.values)]).max(initial=1e-300)
+    kind, _, rank = pose.partition(":")
+    source = random.Random(f"{value} {pose} {seed}")
+    for _ in range(number):
+        row, column = source.randrange(sides[1]), source.randrange(sides[0])
+        x, y = centre(result, result.grid(*sides), row, column)
+        poses = of_kind(exact_at(result, x, y).equilibria, kind)
+        found = field.values[row, column]
+        if len(poses) < int(rank):
+            assert np.isnan(found)
+            continue
+        p = poses[int(rank) - 1]
+        if QUANTITIES[value] is None:
+            a, b = (float(angle.center) for angle in p.angles)
+            at = dict(zip(result.slice.axis_names, (float(x), float(y)), strict=True))
+            expected = np.sin(a) * at["L2"] / at["rho"] + b**2
+        else:
+            expected = float(QUANTITIES[value](p))
+        assert abs(found - expected) <= 1e-9 * size, (row, column)
+
+
+@pytest.mark.parametrize("value", QUANTITIES)
+def test_quantities_are_those_of_exact_poses(value: str) -> None:
+    compare(shipped("fig4"), value, "stable:2" if value == "stiffness" else "stable:1", (24, 18), 10, 0)
+
+
+@pytest.mark.parametrize("pose", ["stable:2", "unstable:1", "saddle:3", "maximum:2", "pose:5"])
+def test_poses_are_those_of_solve(pose: str) -> None:
+    """Of each kind, on both sides of the boundaries."""
+    compare(shipped("fig4"), "angle:th2", pose, (24, 18), 15, 1)
+
+
+def test_mirrored_poses_come_in_the_order_of_solve() -> None:
+    """Without loads the poses th and -th have one energy."""
+    compare(shipped("fig2"), "angle:th2", "stable:2", (15, 15), 15, 2)
+
+
+@pytest.mark.slow
+def test_two_thousand_pixels_of_figure_4() -> None:
+    """Issue: equal to `solve` to 6 digits, none on the wrong branch."""
+    compare(shipped("fig4"), "angle:th2", "stable:1", (400, 400), 1000, 3)
+    compare(shipped("fig4"), "angle:th2", "stable:2", (400, 400), 1000, 4)
+
+
+def flooded(energy: np.ndarray, start: tuple[int, int], others: list[tuple[int, int]]) -> float:
+    """The lowest level at which a pixel of a torus is joined to another one, by pixels added in their order."""
+    n = len(energy)
+    parent = list(range(n * n))
+
+    def root(k: int) -> int:
+        while parent[k] != k:
+            parent[k] = parent[parent[k]]
+            k = parent[k]
+        return k
+
+    in_ = np.zeros(n * n, dtype=bool)
+    flat = energy.ravel()
+    targets = [a * n + b for a, b in others]
+    first = start[0] * n + start[1]
+    for k in np.argsort(flat).tolist():
+        in_[k] = True
+        a, b = divmod(k, n)
+        for c, d in ((a + 1, b), (a - 1, b), (a, b + 1), (a, b - 1)):
+            other = (c % n) * n + d % n
+            if in_[other]:
+                parent[root(k)] = root(other)
+        if in_[first] and any(in_[t] and root(t) == root(first) for t in targets):
+            return float(flat[k])
+    raise AssertionError("the torus is connected")
+
+
+def test_a_barrier_is_the_level_at_which_a_flooded_landscape_joins_two_poses() -> None:
+    """By a way of its own: 240 x 240 points of the torus, added from the lowest upwards."""
+    result = shipped("fig4")
+    sides = (16, 16)
+    one, two = (result.field("barrier", f"stable:{k}", *sides) for k in (1, 2))
+    assert (np.isnan(one.values) == (result.grid(*sides).stable < 2)).all()
+    rows, columns = np.nonzero(~np.isnan(one.values))
+    n = 240
+    angles = -np.pi + 2 * np.pi * (np.arange(n) + 0.5) / n
+    at = np.stack(np.meshgrid(angles, angles, indexing="ij"))
+    source = random.Random(5)
+    for k in source.sample(range(len(rows)), 2):
+        x, y = centre(result, result.grid(*sides), int(rows[k]), int(columns[k]))
+        poses = [p for p in exact_at(result, x, y).equilibria if p.stable]
+        values = {name: float(e.evaluate(x, y)) for name, e in result.slice.parameters.items()}
+        energy = equations.state_at(result.slice.model, values, at).energy
+        assert energy is not None
+        places = [
+            (int((float(p.angles[0].center) + np.pi) * n / 2 / np.pi) % n,
+             int((float(p.angles[1].center) + np.pi) * n / 2 / np.pi) % n) for p in poses
+        ]  # fmt: skip
+        for field, own, others in ((one, 0, places[1:]), (two, 1, places[:1])):
+            level = flooded(energy, places[own], others)
+            barrier = field.values[rows[k], columns[k]]
+            assert barrier == pytest.approx(level - float(poses[own].known_energy.center), abs=0.1)
+
+
+def cubic() -> RegionMap:
+    record = {
+        "name": "cubic", "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
+        "axes": {"a": [-1, 3], "b": [-2, 2]},
+    }  # fmt: skip
+    return ptmcad.classify(ptmcad.slice_from_mapping(record))
+
+
+def test_roots_of_a_cubic() -> None:
+    """x^3 - a x + b by numpy's roots: without an energy the larger one comes first."""
+    result = cubic()
+    fields = [result.field("x", f"pose:{k}", 21, 22) for k in (1, 2, 3)]
+    for row, b in enumerate(fields[0].y):
+        for column, a in enumerate(fields[0].x):
+            roots = np.roots([1, 0, -a, b])
+            real = sorted(roots[np.abs(roots.imag) < 1e-9].real, reverse=True)
+            found = [f.values[row, column] for f in fields]
+            assert [v for v in found if not np.isnan(v)] == pytest.approx(real, abs=1e-6)
+
+
+def test_a_certified_map_and_its_stable_poses() -> None:
+    pytest.importorskip("numba")
+    record = {
+        "name": "short", "mechanism": "ptm", "parameters": {"l0": "1/5", "F3": -10, "F4": -10},
+        "axes": {"rho": ["1", "6/5"], "L2": ["1", "6/5"]},
+    }  # fmt: skip
+    result = ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/10", jobs=1)
+    field = result.field("energy", "stable:1", 12)
+    assert (field.missed, field.checked > 0, field.difference < 1e-9) == (0, True, True)
+    assert (np.isnan(field.values) == (result.grid(12).stable < 1)).all()
+    for value, pose in (("energy", "saddle:1"), ("barrier", "stable:1")):
+        with pytest.raises(ConfigError, match="knows the stable equilibria only"):
+            result.field(value, pose, 12)
+
+
+def test_what_is_nowhere_is_nan_everywhere() -> None:
+    field = shipped("fig4").field("energy", "stable:3", 8)
+    assert np.isnan(field.values).all()
+    assert (field.checked, field.missed) == (0, 0)
+
+
+@pytest.mark.parametrize(
+    ("value", "pose", "message"),
+    [
+        ("force:k9", "stable:1", "ptm has no spring 'k9'"),
+        ("angle:th", "stable:1", "no unknown angle 'th'"),
+        ("torque:k1", "stable:1", "'torque' is not among force, length, angle, x and y"),
+        ("th1 + q", "stable:1", "'q' is neither an unknown nor a parameter"),
+        ("th1 +", "stable:1", "th1 +"),
+        ("energy", "stable", ""),
+        ("energy", "stable:0", "'stable:0' is not a pose such as stable:1"),
+        ("energy", "second", "'second' is not a pose such as stable:1"),
+        ("barrier", "saddle:1", "a barrier is that of a stable pose"),
+    ],
+)
+def test_requests_without_meaning_are_refused(value: str, pose: str, message: str) -> None:
+    if not message:
+        assert shipped("fig2").field(value, pose, 3).pose == "stable:1"
+        return
+    with pytest.raises(ConfigError, match=message):
+        shipped("fig2").field(value, pose, 3)
+
+
+@pytest.mark.parametrize(
+    ("value", "pose", "message"),
+    [
+        ("energy", "pose:1", "solutions of system have no energy"),
+        ("x", "stable:1", "nothing says which solutions of system are stable"),
+        ("x", "saddle:1", "solutions of system have no index"),
+        ("force:k1", "pose:1", "system has no spring 'k1': there are none"),
+    ],
+)
+def test_a_system_has_neither_energy_nor_springs(value: str, pose: str, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        cubic().field(value, pose, 3)
+
+
+def test_the_command_writes_pictures_and_numbers(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["map", str(CONFIGS / "fig2.yaml"), "--value", "barrier", "--pose", "stable:2", "--pixels", "20x15"]
+    assert run([*arguments, "--format", "png,svg,csv,npz", "--out", str(tmp_path), "--checks", "5"]) == 0
+    said = capsys.readouterr().out
+    assert "barrier of stable:2: " in said
+    assert "5 random pixels agree with exact poses" in said
+    stem = "fig2-barrier-stable-2"
+    assert {p.name for p in tmp_path.iterdir()} == {f"{stem}.{kind}" for kind in ("png", "svg", "csv", "npz")}
+    expected = shipped("fig2").field("barrier", "stable:2", 20, 15).values
+    with np.load(tmp_path / f"{stem}.npz") as arrays:
+        assert np.array_equal(arrays["values"], expected, equal_nan=True)
+    table = np.genfromtxt(tmp_path / f"{stem}.csv", delimiter=",", names=True)
+    assert np.array_equal(table["value"].reshape(15, 20), expected, equal_nan=True)
+
+
+@pytest.mark.parametrize("arguments", [["--value", "nothing"], ["--pose", "best"], ["--pixels", "0"]])
+def test_bad_options_leave_nothing(arguments: list[str], tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["map", "--slice", "L2,rho", "--out", str(tmp_path), *arguments]) == 2
+    assert arguments[0] in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_difference_from_exact_poses_is_said(
+    tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def wrong(*_: object, **__: object) -> Field:
+        values = np.ones((2, 2))
+        sides = np.array([0.0, 1.0])
+        return Field("energy", "stable:1", "", sides, sides, ("L2", "rho"), values, values.astype(int), 0, 3, 0.25)
+
+    monkeypatch.setattr("ptmcad.ask.fields.field.field_of", wrong)
+    assert command.MAX_DIFFERENCE < 0.25
+    assert run(["map", "--slice", "L2,rho", "--out", str(tmp_path)]) != 0
+    assert "do not trust this map" in capsys.readouterr().err
+
+
+def test_derivatives_of_the_equations_are_those_of_differences() -> None:
+    """Gradient and Hessian by the chain rule against central differences of the energy."""
+    result = shipped("fig4")
+    values = {n: float(e.evaluate(Fraction(7, 10), Fraction(3, 2))) for n, e in result.slice.parameters.items()}
+    values |= {"l0_1": 0.3, "l0_2": 0.1, "l0_3": 0.7}
+    at = np.random.default_rng(1).uniform(-3, 3, (2, 5))
+    state, step = equations.state_at(result.slice.model, values, at), 1e-5
+    for k in range(2):
+        moved = [at.copy(), at.copy()]
+        moved[0][k] += step
+        moved[1][k] -= step
+        up, down = (equations.state_at(result.slice.model, values, m) for m in moved)
+        assert up.energy is not None
+        assert down.energy is not None
+        assert state.residuals[k] == pytest.approx((up.energy - down.energy) / (2 * step), rel=1e-6, abs=1e-5)
+        assert state.jacobian[k] == pytest.approx((up.residuals - down.residuals) / (2 * step), rel=1e-6, abs=1e-5)
