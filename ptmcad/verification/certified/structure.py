@@ -13,7 +13,7 @@ from itertools import pairwise
 from ptmcad.answer.regionmap import Status
 from ptmcad.mechanism import System
 from ptmcad.question.slice import Count, Slice
-from ptmcad.text.numerals import approximate_text
+from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, shorthands_of
@@ -191,7 +191,7 @@ def check_regions(claims: CertifiedClaims) -> str:
         reach, least = _reach(claims, component), found.areas[component]
         low, high = region.area
         if not (0 <= low <= least * claims.square):
-            raise Violation(f"region {number} is said to have at least the area {approximate_text(low)}, but "
+            raise Violation(f"region {number} is said to have at least the area {text_of(low)}, but "
                             f"only {approximate_text(least * claims.square)} is proved")  # fmt: skip
         if high < reach * claims.square:
             raise Violation(f"region {number} is said to have at most the area {approximate_text(high)}, but with "
