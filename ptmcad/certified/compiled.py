@@ -26,6 +26,11 @@ except ImportError as missing:
     if not isinstance(missing, ModuleNotFoundError):  # it is installed, and does not work
         raise
     raise ConfigError(NUMBA_MISSING) from missing
+except ValueError as error:  # numba reads its variables as it loads
+    raise ConfigError(
+        f"numba, on which the certified engine runs, cannot be loaded: {error} "
+        "Are all variables of the environment right that begin with NUMBA_?"
+    ) from error
 
 
 _CONFIG: Any = config

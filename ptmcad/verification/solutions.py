@@ -22,6 +22,7 @@ from flint import arb, arb_mat, ctx
 
 from ptmcad.answer.regionmap import Cell, Solution
 from ptmcad.mechanism import Model
+from ptmcad.text.numerals import approximate_text
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Configuration, formulas, has_index, parameters_of, rational
 from ptmcad.verification.inertia import bases, leading_minors, negative_eigenvalues
@@ -59,7 +60,7 @@ def _check_signs(claims: Claims, values: Mapping[str, Fraction], solution: Solut
     true = _signs(claims.model, values, solution)
     if true is None:
         raise Violation(f"{where}no solution was found in the box {k} around {_center(solution)}, "
-                        f"radius {float(solution.radius):.1e}")  # fmt: skip
+                        f"radius {approximate_text(solution.radius)}")  # fmt: skip
     if true != solution.signs:
         what = "Hessian" if claims.describes_equilibria else "list of conditions for stability"
         are = "eigenvalues of signs" if claims.describes_equilibria else "the signs"
@@ -88,7 +89,7 @@ def _check_zeros(claims: Claims, n: int, cell: Cell) -> None:
 
 
 def _center(solution: Solution) -> str:
-    return "(" + ", ".join(f"{float(x):.6g}" for x in solution.center) + ")"
+    return "(" + ", ".join(map(approximate_text, solution.center)) + ")"
 
 
 def _check_disjoint(n: int, cell: Cell, model: Model) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
 from fractions import Fraction
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -15,6 +18,7 @@ from ptmcad.studies.stress.case import Case, PointAnswer
 from ptmcad.studies.stress.named import chosen
 from ptmcad.studies.stress.points import point
 
+HAS_NUMBA = find_spec("numba") is not None
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -79,3 +83,19 @@ def test_commands_on_free_lengths_refuse(
     message = capsys.readouterr().err
     assert "runs on the package numba" in message
     assert message.count("\n") == 1
+
+
+@pytest.mark.skipif(not HAS_NUMBA, reason="numba is not installed")
+def test_a_variable_that_numba_refuses() -> None:
+    """It is read as numba is loaded, so this takes a process of its own."""
+    done = subprocess.run(
+        [sys.executable, "-m", "ptmcad", "solve", "--set", "l0=1/5", "--at", "rho=1,L2=3/2"],
+        env={**os.environ, "NUMBA_NUM_THREADS": "0"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2, done.stderr
+    assert "must be > 0" in done.stderr
+    assert "NUMBA_" in done.stderr
+    assert done.stderr.count("\n") == 1

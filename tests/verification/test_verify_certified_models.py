@@ -21,7 +21,7 @@ from ptmcad.answer.regionmap import RegionMap, Solution, Status
 from ptmcad.mechanism import Model
 from ptmcad.mechanism.ptm import RECORD
 from ptmcad.options import Options
-from ptmcad.question.slice import Count
+from ptmcad.question.slice import Count, Point
 from ptmcad.text.expressions import constant
 from ptmcad.text.tree import Chain, Name, Number, Step
 from ptmcad.verification.certified.counted import Counts
@@ -39,6 +39,9 @@ from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
 
 pytest.importorskip("numba")
+
+LONG = Fraction(10) ** 5000
+"""Of more digits than Python writes by itself."""
 
 TRUSS: dict[str, Any] = {
     "mechanism": {
@@ -196,6 +199,11 @@ def with_potential(r: RegionMap, old: str, new: str) -> RegionMap:
     return replace(r, system=replace(r.system, potential=r.system.potential.replace(old, new, 1)))
 
 
+def with_window(r: RegionMap, high: Fraction) -> RegionMap:
+    one, two = r.slice.axes
+    return replace(r, slice=replace(r.slice, axes=(replace(one, high=high), two)))
+
+
 def with_model(r: RegionMap, **changes: Any) -> RegionMap:
     return replace(r, slice=replace(r.slice, model=replace(r.slice.model, **changes)))
 
@@ -253,6 +261,13 @@ SOME: dict[str, tuple[str, Callable[[RegionMap], RegionMap], str]] = {
     "a negative stiffness": ("pendulum", lambda r: with_parameter(r, "c", Fraction(-1)), "signs of parameters"),
     "a spring in the potential": ("truss", lambda r: with_potential(r, "- l0)^2", "- 2*l0)^2"), "equations"),
     "a root that is no length": ("truss", lambda r: with_potential(r, "- f*h", "- f*sqrt(h^2)"), "equations"),
+    "numbers too long to compare": (
+        "truss", lambda r: with_potential(r, "- f*h", "- f*h + 1" + 30 * "*9^60"), "equations",
+    ),
+    "a degree too high to compare": ("truss", lambda r: with_potential(r, "- f*h", "- f*h + f^60*a"), "equations"),
+    "an angle in what is too large": (
+        "chain", lambda r: with_potential(r, "sin(s)", "(1 + a)^60*(1 + a)^9*sin(s)"), "equations",
+    ),
     "an angle outside": ("chain", lambda r: with_potential(r, "sin(s)", "s"), "equations"),
     "no moment": ("pendulum", lambda r: with_potential(r, " - M*th", ""), "equations"),
     "a torsion spring's rest": ("pendulum", lambda r: with_potential(r, "(4/5)*sin", "(3/5)*sin"), "equations"),
@@ -260,6 +275,14 @@ SOME: dict[str, tuple[str, Callable[[RegionMap], RegionMap], str]] = {
     "an equation": (
         "cubic", lambda r: replace(r, system=replace(r.system, gradient=("x^3 - a*x - b",))), "equations",
     ),
+    "a solution beyond what floats have": (
+        "truss", lambda r: with_solution(r, lambda s: replace(s, center=(Fraction(10) ** 400,))), "counts and sol",
+    ),
+    "a sample of too many digits": (
+        "truss", lambda r: replace(r, cells=put(r.cells, 0, sample=Point(("a", "f"), LONG, Fraction(0)))),
+        "components",
+    ),
+    "a window of too many digits": ("truss", lambda r: with_window(r, LONG), "components"),
     "no equation": ("cubic", lambda r: replace(r, system=replace(r.system, gradient=())), "equations"),
     "a potential for equations": (
         "cubic", lambda r: replace(r, system=replace(r.system, potential="x^4")), "equations",
@@ -306,6 +329,17 @@ def test_random_points_find_that_curves_were_left_out(name: str) -> None:
     report = ptmcad.verify(false, boxes=4)
     assert report.violation is not None
     assert report.violation.startswith("random boxes:")
+
+
+def test_a_text_too_large_to_compare_hides_no_other() -> None:
+    """One that has the true values is not checked; a false equation behind it is found nevertheless."""
+    record = {"unknowns": {"x": "real", "y": "real"}, "equations": ["x^3 - a*x + b", "y - x/2"]}
+    slice = ptmcad.slice_from_mapping({"name": "pair", "system": record, "axes": RECORDS["cubic"]["axes"]})
+    true = ptmcad.classify(slice, engine="certified", tolerance="1/4", jobs=1)
+    large = true.system.gradient[0] + " + (1 + a)^60*(1 + a)^9 - (1 + a)^60*(1 + a)^9"
+    for second, passed in ((true.system.gradient[1], None), ("y - x/3", False)):
+        report = ptmcad.verify(replace(true, system=replace(true.system, gradient=(large, second))), boxes=0)
+        assert next(c.passed for c in report.checks if c.name == "equations") is passed, report.table()
 
 
 def test_what_is_not_decided_is_not_called_true(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,6 +7,7 @@ from functools import partial
 from hashlib import sha256
 
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import check_points
 from ptmcad.verification.certified.sampling import check_boxes
@@ -61,5 +62,7 @@ def fingerprint(result: RegionMap) -> str:
     """A hash of the slice's parameters, of the cover and of the counts."""
     names = result.slice.axis_names
     claims = [f"{n}={e.to_text(names)}" for n, e in sorted(result.slice.parameters.items())]
-    claims += [repr(result.slice.axes), repr(result.cover), repr([(c.sample, c.stable, c.total) for c in result.cells])]
+    claims += [f"{axis.name}: {text_of(axis.low)} to {text_of(axis.high)}" for axis in result.slice.axes]
+    claims += [f"{text_of(c.sample[0])}, {text_of(c.sample[1])}: {c.stable} {c.total}" for c in result.cells]
+    claims.append(repr(result.cover))
     return sha256("\n".join(claims).encode()).hexdigest()[:16]

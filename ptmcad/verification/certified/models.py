@@ -36,7 +36,9 @@ BUDGETS = (20_000, 40_000, 60_000)
 BOX_BUDGET_SHARE = 4
 """For a box of parameters so many times fewer."""
 MAX_ANGLE = 8
-"""Of the middle of a stored box."""
+"""Of the middle of a stored box, where an unknown is an angle."""
+MAX_REAL = 2**60
+"""... and where it is a length: far beyond the largest bound that is tried, and a number that floats have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,10 +168,12 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> Counts:
 def _only(field: Field, solution: Solution, k: int, budget: int) -> Zero:
     """The one solution in a stored box."""
     circles = field.form.is_circle
-    if len(solution.center) != len(circles) or not 0 < solution.radius <= (1 if any(circles) else 2**60):
+    if len(solution.center) != len(circles) or not 0 < solution.radius <= (1 if any(circles) else MAX_REAL):
         raise Violation(f"box {k} of the solutions is not a box of {len(circles)} unknowns")
     if any(circle and abs(x) > MAX_ANGLE for circle, x in zip(circles, solution.center, strict=True)):
         raise Violation(f"box {k} of the solutions is too many turns away")
+    if any(abs(x) > MAX_REAL for x in solution.center):
+        raise Violation(f"box {k} of the solutions is beyond all bounds of unknowns")
     center = tuple(float(x) for x in solution.center)
     # floats have the centers and radii of stored boxes exactly, or nearly: then the box is made a little larger
     radii = tuple(float(solution.radius) * (1 + 2.0**-40) + 2.0**-50 * max(1.0, abs(x)) for x in center)

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
+from itertools import combinations
 
 from flint import arb, ctx
 
@@ -19,8 +21,10 @@ from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.counted import MINIMA, Counted, Counting, Counts, Enclosed, differs, stored
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import MIN_HALF_WIDTH, TORUS, Equilibrium, Square, Unproved, equilibria
+from ptmcad.verification.certified.flat import beside, is_flat
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.parameters import Values, energy_at, energy_over, exact, values_at
+from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.vectors import CROSSING, SPRINGS, TURNED, evaluated
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
@@ -33,13 +37,16 @@ BUDGET = 12_000
 HOPELESS = 16
 """Samples or random points that were not decided, after which no more are tried."""
 _BOX_PRECISION = 128
+_PI, _PI_ERROR = Fraction(355, 113), Fraction(1, 10**5)
+"""Near pi; and more than six times its error."""
 _BASE = MECHANISM.first(Kind.BASE)
 
 
-def check_points(claims: Claims) -> str:
+def check_points(claims: CertifiedClaims) -> str:
     """Counts and stored solutions of every cell; and for how many cells nothing was proved.
 
-    Of the paper's mechanism all samples can be decided, so one that cannot is a fault of the map.
+    Of the paper's mechanism all samples can be decided, so one that cannot is a fault of the map; but for flat ones
+    (`ptmcad.verification.certified.flat`), which are decided by the counts beside them unless the whole slice is flat.
     """
     counting, number = counting_of(claims), 0
     undecided: list[str] = []
@@ -48,7 +55,7 @@ def check_points(claims: Claims) -> str:
         try:
             found = _check_cell(claims, counting, cell)
         except Unproved as reason:
-            if counting.is_complete:
+            if counting.is_complete and not _is_all_flat(claims, cell):
                 raise Violation(f"cell {n}: the counts {where} could not be confirmed: {reason}") from None
             undecided.append(f"cell {n} {where}: {reason}")
             if len(undecided) == HOPELESS:
@@ -74,8 +81,13 @@ def _where(claims: Claims, x: Fraction, y: Fraction) -> str:
     return f"at {one}={text_of(x)}, {two}={text_of(y)}"
 
 
-def _check_cell(claims: Claims, counting: Counting, cell: Cell) -> int:
-    there = counting.at(claims, *cell.sample)
+def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell) -> int:
+    try:
+        there = counting.at(claims, *cell.sample)
+    except Unproved as reason:
+        if not (counting.is_complete and is_flat(values_at(claims, *cell.sample))):
+            raise
+        return _check_flat(claims, counting, cell, reason)
     if differs(cell, there.counts):
         raise Violation(f"said to have {stored(cell)}; there are {there.counts}")
     kept = [e for e in there.found if claims.result.slice.count not in MINIMA or "-" not in e.signs]
@@ -93,6 +105,46 @@ def _check_cell(claims: Claims, counting: Counting, cell: Cell) -> int:
             )
         taken.add(match[0])
     return len(kept)
+
+
+def _is_all_flat(claims: CertifiedClaims, cell: Cell) -> bool:
+    """Whether a sample is flat, and what is beside it, too."""
+    return is_flat(values_at(claims, *cell.sample)) and not beside(claims, cell)
+
+
+def _check_flat(claims: CertifiedClaims, counting: Counting, cell: Cell, reason: Unproved) -> int:
+    """The counts are those at a point beside the sample, and there are as many different equilibria in the boxes.
+
+    Raises
+    ------
+    Unproved
+        For the reason given, when nothing beside the sample is decided.
+    """
+    for at in beside(claims, cell):
+        try:
+            there = counting.at(claims, *at)
+        except Unproved:
+            continue
+        if differs(cell, there.counts):
+            raise Violation(f"said to have {stored(cell)}; {_where(claims, *at)}, in the same cell, there are "
+                            f"{there.counts}")  # fmt: skip
+        here = replace(there, values=values_at(claims, *cell.sample))
+        asked = [e.signs for e in there.found if claims.result.slice.count not in MINIMA or "-" not in e.signs]
+        signs = [e.signs for e in counting.within(here, cell.solutions)]
+        if signs != [solution.signs for solution in cell.solutions] or Counter(signs) != Counter(asked):
+            raise Violation(f"equilibria of signs {signs} are in the boxes of solutions, but there are {asked}")
+        if not all(apart(one, two) for one, two in combinations(cell.solutions, 2)):
+            raise Violation("two boxes of solutions meet")
+        return len(signs)
+    raise reason
+
+
+def apart(one: Solution, two: Solution) -> bool:
+    """Whether the boxes of two solutions surely do not meet on the torus."""
+    return any(
+        all(abs(x - y + turns * 2 * _PI) > one.radius + two.radius + _PI_ERROR for turns in range(-3, 4))
+        for x, y in zip(one.center, two.center, strict=True)
+    )
 
 
 class PaperCounting:

@@ -13,7 +13,7 @@ from itertools import pairwise
 from ptmcad.answer.regionmap import Status
 from ptmcad.mechanism import System
 from ptmcad.question.slice import Count, Slice
-from ptmcad.text.numerals import text_of
+from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, shorthands_of
@@ -166,7 +166,8 @@ def check_components(claims: CertifiedClaims) -> str:
     known = sum(found.areas[component] for component in cells)
     true = 1 - Fraction(known, found.steps**2)
     if true != r.undetermined:
-        raise Violation(f"the undetermined share of the window is {float(true):.12g}, not {float(r.undetermined):.12g}")
+        raise Violation(f"the undetermined share of the window is {approximate_text(true)}, not "
+                        f"{approximate_text(r.undetermined)}")  # fmt: skip
     return f"{len(found.areas)} components, {len(found.areas) - len(cells)} of them undetermined"
 
 
@@ -190,11 +191,12 @@ def check_regions(claims: CertifiedClaims) -> str:
         reach, least = _reach(claims, component), found.areas[component]
         low, high = region.area
         if not (0 <= low <= least * claims.square):
-            raise Violation(f"region {number} is said to have at least the area {text_of(low)}, but only "
-                            f"{float(least * claims.square):.9g} is proved")  # fmt: skip
+            raise Violation(f"region {number} is said to have at least the area {text_of(low)}, but "
+                            f"only {approximate_text(least * claims.square)} is proved")  # fmt: skip
         if high < reach * claims.square:
-            raise Violation(f"region {number} is said to have at most the area {float(high):.9g}, but with what is "
-                            f"undetermined beside it, it may have {float(reach * claims.square):.9g}")  # fmt: skip
+            raise Violation(f"region {number} is said to have at most the area {approximate_text(high)}, but with "
+                            f"what is undetermined beside it, it may have "
+                            f"{approximate_text(reach * claims.square)}")  # fmt: skip
     if sorted(n for region in r.regions for n in region.cells) != list(range(len(r.cells))):
         raise Violation("a cell is in no region")
     return f"{len(r.regions)} regions"

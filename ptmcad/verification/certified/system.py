@@ -19,6 +19,7 @@ from typing import Any
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.mechanism import Mechanism, Model
+from ptmcad.verification.certified.refutation import differs_somewhere
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import MECHANISM, Configuration, formulas, work
 from ptmcad.verification.report import Unchecked, Violation
@@ -57,17 +58,34 @@ def check_potential(claims: Claims) -> str:
         if system.potential or len(system.gradient) != len(equations):
             raise Violation(f"there are {len(equations)} equations and no potential")
         pairs = [(f"equation {k}", t, e) for k, (t, e) in enumerate(zip(system.gradient, equations, strict=True))]
-    try:
-        for what, stored, true in pairs:
-            difference = text.reduced(text.value(what, stored) - true)
-            if not difference.is_zero():
-                raise Violation(f"the stored {what} differs from the mechanism's by {text.shown(difference)}")
-    except _TooLarge as large:
-        if model == MECHANISM:
-            raise
-        return Unchecked(str(large))
+    unchecked = [reason for what, stored, true in pairs if (reason := _compared(text, what, stored, true))]
+    if unchecked:
+        return Unchecked(unchecked[0])
     what = "the potential" if model.has_potential else "the equations"
     return f"{what} in {len(unknowns)} unknowns and {len(model.variables)} parameters"
+
+
+def _compared(text: _Text, what: str, stored: str, true: fmpq_mpoly) -> str:
+    """Why a text was not compared with what it has to be; empty when they are equal.
+
+    Raises
+    ------
+    Violation
+        When they differ.
+    """
+    try:
+        difference = text.reduced(text.value(what, stored) - true)
+    except RecursionError:
+        raise Violation(f"the stored {what} has too many parts within each other") from None
+    except _TooLarge as large:
+        if text.model == MECHANISM:
+            raise
+        if text.is_refuted(what, stored, true):
+            raise Violation(f"the stored {what} differs from the mechanism's at random configurations") from None
+        return str(large)
+    if not difference.is_zero():
+        raise Violation(f"the stored {what} differs from the mechanism's by {text.shown(difference)}")
+    return ""
 
 
 class _Text:
@@ -133,11 +151,31 @@ class _Text:
         return self.on_circles(p)
 
     def value(self, what: str, text: str) -> fmpq_mpoly:
-        """What a text stands for."""
+        """What a text stands for.
+
+        Raises
+        ------
+        RecursionError
+            When it has too many parts within each other.
+        """
+        return self._value(_parsed(self.model, what, text))
+
+    def is_refuted(self, what: str, text: str, true: fmpq_mpoly) -> bool:
+        """Whether a text that is too large to compare surely is something else; not if it is too long to read."""
         try:
-            return self._value(_parsed(self.model, what, text))
-        except RecursionError:
-            raise Violation(f"the stored {what} has too many parts within each other") from None
+            node = _parsed(self.model, what, text)
+        except _TooLarge:
+            return False
+        shown = {f"x{name}": str(generator) for name, generator in self.names.items()}
+        shown |= {f"x{function}": function for function in ("sqrt", "cos", "sin")}
+        for part in ast.walk(node):
+            if isinstance(part, ast.Name):
+                part.id = shown.get(part.id, "")
+        squares = {f"x{n}": square for n, square in enumerate(self.squares)}
+        circles = {
+            str(self.names[a]): (str(self._gen[f"cos {a}"]), str(self._gen[f"sin {a}"])) for a in self.model.angles
+        }
+        return differs_somewhere(node, true, squares, circles, text)
 
     def _value(self, node: ast.expr, inside: bool = False) -> fmpq_mpoly:
         """What sums, products, small powers, quotients by numbers, lengths, sines and cosines stand for.

@@ -1,0 +1,145 @@
+"""Samples at which spring 3 has no length with the bars in line, and the forces balance any direction of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+pytest.importorskip("numba")
+
+from forger.consistency import put
+from support.maps import once_per_run
+
+import ptmcad
+from ptmcad.answer.regionmap import RegionMap, Solution
+from ptmcad.cover.rectangles import Cover
+from ptmcad.question.slice import Point
+from ptmcad.verification.certified.flat import beside, is_flat, parameters_at
+from ptmcad.verification.certified.points import apart
+from ptmcad.verification.certified.structure import CertifiedClaims
+from ptmcad.verification.report import Violation
+
+UNLOADED = {"L1": "1", "k": "1", "l0": "1/2"}
+SUM = {"rho": ["11/10", "13/10"], "L2": ["1/10", "3/10"]}
+DIFFERENCE = {"rho": ["49/100", "51/100"], "L2": ["149/100", "151/100"]}
+
+
+def map_of(axes: dict[str, list[str]], **parameters: str) -> RegionMap:
+    def compute() -> RegionMap:
+        given = {name: value for name, value in {**UNLOADED, **parameters}.items() if name not in axes}
+        record = {"name": "flat", "parameters": given, "axes": axes, "count": "stable"}
+        return ptmcad.classify(record, tolerance="1/4", jobs=1)
+
+    return ptmcad.RegionMap.from_json(once_per_run(f"flat {axes} {parameters}", compute).to_json())
+
+
+def counted(r: RegionMap) -> bool | None:
+    report = ptmcad.verify(r, boxes=0)
+    assert report.ok is (report.violation is None)
+    return next(check.passed for check in report.checks if check.name == "counts and solutions")
+
+
+@pytest.fixture(scope="module", name="flat")
+def flat_map() -> RegionMap:
+    """One cell, whose sample has rho = L1 + L2."""
+    true = map_of(SUM)
+    (cell,) = true.cells
+    assert tuple(cell.sample) == (Fraction(6, 5), Fraction(1, 5))
+    assert cell.stable == len(cell.solutions) == 2
+    return true
+
+
+def test_a_true_map_without_loads_is_accepted(flat: RegionMap) -> None:
+    claims = CertifiedClaims(flat)
+    assert is_flat(parameters_at(claims, *flat.cells[0].sample))
+    assert len(beside(claims, flat.cells[0])) == 4
+    assert counted(flat) is True
+
+
+def test_bars_that_point_the_same_way() -> None:
+    """rho = L2 - L1 with equal loads, put into a map whose own sample is elsewhere."""
+    loads = {"F3": "-1/10", "F4": "-1/10"}
+    true = map_of(DIFFERENCE, **loads)
+    at = {"rho": Fraction(1, 2), "L2": Fraction(3, 2)}
+    number = true.locate(**at).cell
+    assert number is not None
+    solutions = tuple(
+        Solution(tuple((angle.low + angle.high) / 2 for angle in pose.angles), Fraction(1, 10**9), "++")
+        for pose in ptmcad.solve(**UNLOADED, **loads, **at).equilibria
+        if pose.stable
+    )
+    sample, region = Point(("rho", "L2"), *at.values()), true.cells[number].region
+    moved = replace(
+        true,
+        cells=put(true.cells, number, sample=sample, solutions=solutions),
+        regions=put(true.regions, region, sample=sample),
+    )
+    assert is_flat(parameters_at(CertifiedClaims(moved), *at.values()))
+    assert counted(moved) is True
+
+
+def one_less(r: RegionMap) -> RegionMap:
+    (cell,) = r.cells
+    cells = put(r.cells, 0, stable=1, solutions=cell.solutions[:1])
+    return replace(r, cells=cells, regions=put(r.regions, 0, stable=1))
+
+
+def with_boxes(change: Callable[[tuple[Solution, ...]], tuple[Solution, ...]]) -> Callable[[RegionMap], RegionMap]:
+    return lambda r: replace(r, cells=put(r.cells, 0, solutions=change(r.cells[0].solutions)))
+
+
+FALSE = {
+    "a count": one_less,
+    "a box twice": with_boxes(lambda s: (s[0], s[0])),
+    "a box less": with_boxes(lambda s: s[:1]),
+    "a box elsewhere": with_boxes(lambda s: (s[0], replace(s[1], center=(s[1].center[0] + 1, s[1].center[1])))),
+    "signs": with_boxes(lambda s: (s[0], replace(s[1], signs="+-"))),
+}
+
+
+@pytest.mark.parametrize("kind", FALSE)
+def test_a_false_map_is_rejected(kind: str, flat: RegionMap) -> None:
+    assert counted(FALSE[kind](flat)) is False
+
+
+def test_a_slice_that_is_flat_everywhere_is_not_decided() -> None:
+    true = map_of({"F": ["15", "19"], "l0": ["11/50", "6/25"]}, L2="1", rho="2", k="100", F3="F", F4="-F")
+    assert not beside(CertifiedClaims(true), true.cells[0])
+    assert counted(true) is None
+
+
+def test_a_sample_too_near_to_a_rectangle_is_not_believed(flat: RegionMap) -> None:
+    """So near that everything beside it would be as good as flat."""
+    steps = 2**40
+    middle = steps // 2
+    near = replace(flat, cover=Cover(steps, ((0, middle - 1, 0, steps),)))
+    assert len(beside(CertifiedClaims(near), near.cells[0])) == 4
+    (first, second), width = (axis.low for axis in flat.slice.axes), Fraction(1, 5)
+    off = width * (Fraction(middle - 1, steps) + Fraction(1, 2**64))
+    cells = put(near.cells, 0, sample=Point(("rho", "L2"), first + off, second + off))
+    with pytest.raises(Violation, match="too near"):
+        beside(CertifiedClaims(replace(near, cells=cells)), cells[0])
+
+
+@pytest.mark.parametrize(
+    ("rho", "free", "flat"),
+    [("1", "1/2", True), ("5", "1/2", True), ("1", "0", False), ("4", "1/2", False), ("0", "1/2", False)],
+)
+def test_what_is_flat(rho: str, free: str, flat: bool) -> None:
+    values = {name: Fraction(1) for name in ("k1", "k2", "k3")} | {"l0_1": Fraction(1), "l0_2": Fraction(1)}
+    bars = {"L1": Fraction(2), "L2": Fraction(3 if rho != "0" else 2)}
+    assert is_flat({**values, **bars, "rho": Fraction(rho), "l0_3": Fraction(free)}) is flat
+
+
+def test_boxes_a_turn_apart_are_the_same() -> None:
+    def box(x: str, y: str) -> Solution:
+        return Solution((Fraction(x), Fraction(y)), Fraction(1, 1000), "++")
+
+    assert apart(box("3.13", "0"), box("-3.13", "0"))
+    assert not apart(box("3.141", "0"), box("-3.141", "0"))
+    assert not apart(box("0", "-6.283"), box("0", "6.283"))
+    assert not apart(box("1", "1"), box("1", "1.0019"))
+    assert apart(box("1", "1"), box("1", "1.003"))
