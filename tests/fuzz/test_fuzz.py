@@ -20,7 +20,7 @@ from fuzz.seeds import records, results
 from fuzz.watch import Tally, watched
 from ptmcad.errors import PtmcadError
 
-FAST = {"record": 400, "options": 300, "points": 150, "small": 10, "result": 80}
+FAST = {"record": 250, "options": 200, "points": 100, "small": 6, "result": 50}
 SLOW = {"record": 5000, "options": 3000, "points": 1500, "small": 200, "result": 2000}
 
 
