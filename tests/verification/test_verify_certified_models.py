@@ -33,7 +33,7 @@ from ptmcad.verification.certified.parameters import exact
 from ptmcad.verification.certified.points import PaperCounting
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import zeros
-from ptmcad.verification.certified.spectrum import inertia
+from ptmcad.verification.certified.spectrum import inertia, is_no_minimum
 from ptmcad.verification.certified.structure import CertifiedClaims
 from ptmcad.verification.certified.waves import form_of
 from ptmcad.verification.claims import Claims
@@ -343,6 +343,15 @@ def counts_at(counting: Any, model: Model, values: Mapping[str, Fraction], count
     claims: Claims = _At(model, values, count)  # type: ignore[assignment]
     found: Counts = counting.at(claims, Fraction(0), Fraction(0)).counts
     return found
+
+
+@pytest.mark.parametrize(("rows", "told"), [
+    ([[-1, 0], [0, 1]], True), ([[1, 2], [2, 1]], True), ([[2, 1], [1, 2]], False),
+    ([[10, 9, 0], [9, 10, 9], [0, 9, 10]], True), ([[2, 1, 0], [1, 2, 1], [0, 1, 2]], False),
+])  # fmt: skip
+def test_a_negative_eigenvalue_is_told_by_entries_minors_and_determinant(rows: list[list[int]], told: bool) -> None:
+    """All principal minors of two rows of the fourth matrix are positive."""
+    assert is_no_minimum([[arb(entry) for entry in row] for row in rows]) is told
 
 
 @pytest.mark.parametrize("seed", [pytest.param(0, marks=pytest.mark.slow), 1, 2])
