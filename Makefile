@@ -69,8 +69,9 @@ demo: $(VENV)/.installed
 	$(BIN)/ptmcad classify configs/fig4.yaml --format json,png,svg --out out
 
 # Tests of one module read the same maps: each process takes them in a row, and from the other's rest when it has none.
+# One process more than there are jobs: some tests wait for a browser or for a process to end.
 test: $(VENV)/.installed-test
-	$(BIN)/python -m pytest --numprocesses $(JOBS) --dist worksteal
+	$(BIN)/python -m pytest --numprocesses $$(($(JOBS) + 1)) --dist worksteal
 
 # The slow tests, and those of the fast ones that draw examples, with all of their examples.
 test-slow: $(VENV)/.installed-test

@@ -45,7 +45,7 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
         return Location(Status.ON_VARIETY)
     base = result.base
     u, v = from_fraction(point[base]), from_fraction(point[1 - base])
-    curves = curves_of(result.components, base)
+    curves = _curves(result)
     stack, on_critical = stack_over(result, u)
     if stack >= len(result.stacks):
         raise ConfigError(f"the map contradicts itself: there is no stack {stack}; check it with ptmcad verify")
@@ -64,6 +64,16 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     # in a map that was stopped before its areas were known, the counts are exact all the same
     status = Status.EXACT if result.status is Status.PARTIAL else result.status
     return Location(status, cell.region, number, cell.total, cell.stable, cell.index)
+
+
+def _curves(result: RegionMap) -> list[Curve]:
+    """The curves over the map's base; kept for the next point of the same map."""
+    if not _latest_curves or _latest_curves[0][0] is not result:
+        _latest_curves[:] = [(result, curves_of(result.components, result.base))]
+    return _latest_curves[0][1]
+
+
+_latest_curves: list[tuple[RegionMap, list[Curve]]] = []
 
 
 def _locate_outside_cover(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) -> Location:

@@ -87,7 +87,8 @@ class Expression:
             raise PoleError(
                 f"division by zero: the denominator of {self} vanishes at x = {text_of(x)}, y = {text_of(y)}"
             )
-        return _value(self.numerator, x, y) / denominator
+        value = _value(self.numerator, x, y)
+        return value if denominator == 1 else value / denominator
 
     def to_text(self, names: tuple[str, str] = ("x", "y")) -> str:
         """The expression as text that `ptmcad.text.parsing.parse` reads back."""
@@ -178,7 +179,13 @@ def _as_expression(value: Expression | Fraction | int) -> Expression:
 
 
 def _value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fraction:
-    return sum((c * x**i * y**j for i, j, c in terms), Fraction(0))
+    total = Fraction(0)
+    for i, j, c in terms:
+        # most parameters are numbers or an axis: powers that are 1 would be most of the work
+        value = c * x**i if i else c
+        value = value * y**j if j else value
+        total = total + value if total else value
+    return total
 
 
 def _sum(left: _Polynomial, right: tuple[Term, ...]) -> _Polynomial:

@@ -43,7 +43,11 @@ class PlanePolynomial:
 
     def __call__(self, x: Fraction, y: Fraction) -> Fraction:
         """The exact value at a rational point."""
-        return sum((c * x**i * y**j for i, j, c in self.terms), Fraction(0))
+        # integers over one denominator: a fraction for each term would be reduced each time
+        degrees = self.degrees
+        across, along = _homogeneous_powers(x, degrees[0]), _homogeneous_powers(y, degrees[1])
+        total = sum(c * across[i] * along[j] for i, j, c in self.terms)
+        return Fraction(total, x.denominator ** degrees[0] * y.denominator ** degrees[1])
 
     def text(self, names: tuple[str, str] = ("x", "y")) -> str:
         """The polynomial as text, such as ``2*x^2*y - 1``."""
@@ -81,6 +85,14 @@ class PlanePolynomial:
         if result.text(names) != text:
             raise ValueError(f"not a primitive polynomial in {names[0]} and {names[1]}: {text[:60]}")
         return result
+
+
+def _homogeneous_powers(x: Fraction, degree: int) -> list[int]:
+    """The numerators of 1, x, x^2, ... over the common denominator that the last one has."""
+    powers = [x.denominator**degree]
+    for _ in range(degree):
+        powers.append(powers[-1] // x.denominator * x.numerator)
+    return powers
 
 
 def _natural(digits: str) -> int:

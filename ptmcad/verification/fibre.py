@@ -117,13 +117,9 @@ class Fibre:
         Their difference is the sum of the weight's signs over the real solutions; their sum is the number of
         different complex solutions where the weight is not zero.
         """
-        powers = [self._monomial(m) for m in self.basis]
-        weighted = [weight * p for p in powers]
+        powers = self._powers
         n = self.dimension
-        form = fmpq_mat(n, n)
-        for i, j in product(range(n), repeat=2):
-            if i <= j:
-                form[i, j] = form[j, i] = _trace_of_product(weighted[i], powers[j])
+        form = _traces_of_products([weight * p for p in powers], powers)
         # all eigenvalues are real, so Descartes' rule of signs is exact
         coefficients = [fmpq(c) for c in form.charpoly().coeffs()]
         zero = next(k for k, c in enumerate(coefficients) if c != 0)
@@ -134,8 +130,12 @@ class Fibre:
     def determinant_of_traces(self, monomials: Sequence[Monomial]) -> fmpq:
         """The determinant of the matrix with entries trace(f g), for all f and g among the monomials."""
         powers = [self._monomial(m) for m in monomials]
-        n = len(powers)
-        return fmpq(fmpq_mat(n, n, [_trace_of_product(f, g) for f in powers for g in powers]).det())
+        return fmpq(_traces_of_products(powers, powers).det())
+
+    @cached_property
+    def _powers(self) -> list[fmpq_mat]:
+        """The matrices of multiplication by the basis."""
+        return [self._monomial(m) for m in self.basis]
 
     def _monomial(self, m: Monomial) -> fmpq_mat:
         result = _identity(self.dimension)
@@ -290,6 +290,12 @@ def _identity(n: int) -> fmpq_mat:
     return fmpq_mat(n, n, [fmpq(int(i == j)) for i in range(n) for j in range(n)])
 
 
-def _trace_of_product(a: fmpq_mat, b: fmpq_mat) -> fmpq:
-    n = a.nrows()
-    return sum((a[i, k] * b[k, i] for i in range(n) for k in range(n)), fmpq(0))
+def _traces_of_products(first: Sequence[fmpq_mat], second: Sequence[fmpq_mat]) -> fmpq_mat:
+    """The traces of f g for all f of the first and g of the second matrices.
+
+    A trace is the sum of the products of the entries of f and of the transposed g, so all of them are one product.
+    """
+    size = sum(len(f.entries()) for f in first[:1])  # there is no matrix where there are no solutions
+    rows = fmpq_mat(len(first), size, [c for f in first for c in f.entries()])
+    columns = fmpq_mat(len(second), size, [c for g in second for c in g.transpose().entries()])
+    return rows * columns.transpose()

@@ -35,33 +35,40 @@ def slice_of(free: str, x: str = "rho", y: str = "L2", **values: str) -> Slice:
 
 
 def derivatives(z: Vector, free: float, load: float) -> tuple[Vector, Vector]:
-    """Gradient and Hessian of the energy in (th1, th2), spring by spring; z = (rho, L2, th1, th2), L1 = k = 1."""
+    """Gradient and Hessian of the energy in (th1, th2), spring by spring; z = (rho, L2, th1, th2), L1 = k = 1.
+
+    At one point, or at as many as z has columns.
+    """
     rho, bar, th1, th2 = z
     a3, da3 = np.array([np.cos(th1), np.sin(th1)]), np.array([-np.sin(th1), np.cos(th1)])
     arm, darm = bar * np.array([-np.cos(th2), np.sin(th2)]), bar * np.array([np.sin(th2), np.cos(th2)])
-    zero, base = np.zeros(2), np.array([rho, 0.0])
-    slope, curvature = -load * np.array([da3[1], darm[1]]), -load * np.diag([-a3[1], -arm[1]])
-    for d, first, second in (
+    zero, base = np.zeros_like(a3), np.array([rho, np.zeros_like(rho)])
+    slope1, slope2 = -load * da3[1], -load * darm[1]
+    h11, h12, h22 = load * a3[1], np.zeros_like(rho), load * arm[1]
+    for d, (first1, first2), (second1, second2) in (
         (base + arm, (zero, darm), (zero, -arm)),
         (base - a3, (-da3, zero), (a3, zero)),
         (base + arm - a3, (-da3, darm), (a3, -arm)),
     ):
-        j, length = np.array(first), np.hypot(*d)
-        part = j @ d
-        slope = slope + (1 - free / length) * part
-        curvature = curvature + (1 - free / length) * (j @ j.T + np.diag([s @ d for s in second]))
-        curvature = curvature + free / length**3 * np.outer(part, part)
-    return slope, curvature
+        length = np.hypot(*d)
+        pull, bend = 1 - free / length, free / length**3
+        part1, part2 = (first1 * d).sum(0), (first2 * d).sum(0)
+        slope1, slope2 = slope1 + pull * part1, slope2 + pull * part2
+        h11 = h11 + pull * (first1 * first1 + second1 * d).sum(0) + bend * part1 * part1
+        h12 = h12 + pull * (first1 * first2).sum(0) + bend * part1 * part2
+        h22 = h22 + pull * (first2 * first2 + second2 * d).sum(0) + bend * part2 * part2
+    return np.array([slope1, slope2]), np.array([[h11, h12], [h12, h22]])
 
 
 def refine(f: Callable[[Vector], Vector], z: Vector) -> Vector | None:
-    """Newton's least change to a zero of f, the Jacobian by differences; None when it does not get there."""
+    """Newton's least change to a zero of f, which takes points as columns; None when it does not get there."""
+    around = np.concatenate([1e-6 * np.eye(len(z)), -1e-6 * np.eye(len(z))], axis=1)
     for _ in range(40):
         value = f(z)
-        columns = [(f(z + e) - f(z - e)) / 2e-6 for e in 1e-6 * np.eye(len(z))]
-        if not np.all(np.isfinite(columns)):
+        ahead, behind = np.split(f(z[:, None] + around), 2, axis=1)
+        if not np.all(np.isfinite(ahead - behind)):
             return None
-        step = np.linalg.lstsq(np.array(columns).T, -value, rcond=None)[0]
+        step = np.linalg.lstsq((ahead - behind) / 2e-6, -value, rcond=None)[0]
         size = float(np.linalg.norm(step))
         z = z + step * min(1.0, 0.2 / max(size, 1e-300))
         if size < 1e-10:
@@ -75,7 +82,7 @@ def fold_points(free: float, load: float, seed: int, number: int) -> list[Vector
 
     def equations(z: Vector) -> Vector:
         slope, curvature = derivatives(z, free, load)
-        return np.array([*slope, np.linalg.det(curvature)])
+        return np.array([*slope, curvature[0, 0] * curvature[1, 1] - curvature[0, 1] ** 2])
 
     found: list[Vector] = []
     while len(found) < number:

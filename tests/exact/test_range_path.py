@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from fractions import Fraction
+from functools import cache
 from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
@@ -36,8 +37,9 @@ class Numbers:
 
     def __init__(self, slice: Slice, along: str, at: dict[str, str]):
         self.line = line_of(slice, along, at)
+        self.values = cache(self._values)  # a descent asks for the same ones at each of its thousands of steps
 
-    def values(self, x: float) -> tuple[float, ...]:
+    def _values(self, x: float) -> tuple[float, ...]:
         at = Fraction(x)
         p = {n: float(e.evaluate(at, Fraction(0))) for n, e in self.line.parameters.items()}
         assert p["k1"] == p["k2"] == p["k3"] and p["F3x"] == p["F4x"] == 0

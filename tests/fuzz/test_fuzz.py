@@ -20,7 +20,7 @@ from fuzz.seeds import records, results
 from fuzz.watch import Tally, watched
 from ptmcad.errors import PtmcadError
 
-FAST = {"record": 400, "options": 300, "points": 150, "small": 10, "result": 80}
+FAST = {"record": 250, "options": 200, "points": 100, "small": 6, "result": 50}
 SLOW = {"record": 5000, "options": 3000, "points": 1500, "small": 200, "result": 2000}
 
 
@@ -99,7 +99,7 @@ BROKEN = {
     "raises": (lambda _: 1 // 0, "ZeroDivisionError"),
     "speaks in control characters": (lambda _: _refuse("\x1b[31m"), ""),
     "fills the memory": (lambda _: "x" * (10 << 30), "MemoryError"),
-    "never ends": (wait, "takes longer than 0.5 s"),
+    "never ends": (wait, "takes longer than 0.1 s"),
     "ends the process": (lambda _: __import__("os")._exit(9), "ended the process with 9"),
 }  # fmt: skip
 
@@ -113,7 +113,7 @@ def test_the_watchdog_sees(name: str, tmp_path: Path, monkeypatch: pytest.Monkey
     """Targets that do what must not happen are reported with their input, and the next case is run all the same."""
     target, what = BROKEN[name]
     monkeypatch.setitem(targets.KINDS, name, (lambda seed: b"input %d" % seed, target))
-    tally = watched(name, range(2), tmp_path, limit=0.5, start_method="fork")
+    tally = watched(name, range(2), tmp_path, limit=0.1 if target is wait else 0.5, start_method="fork")
     assert tally.cases == 2
     if not what:  # `PtmcadError` makes its messages printable
         assert not tally.findings

@@ -61,6 +61,9 @@ def arrived():
     (here / "pid").rename(here / "arrived")
 def for_long_in_c():
     flint.fmpz(10**999 + 7).is_prime()
+def time_is_up():
+    from ptmcad.process.handover import Topic, send
+    send(Topic.DEADLINE, repr(time.monotonic()), "1000 s")
 def engine(progress, partial):
     pass
 def draw(result, path, **how):
@@ -78,7 +81,13 @@ from ptmcad.__main__ import main
 main()
 """
 
-IN_C = "def engine(progress, partial):\n    arrived()\n    for_long_in_c()\n"
+NEVER = (
+    "import ptmcad.process.watch\n"
+    "ptmcad.process.watch.GRACE_SECONDS = ptmcad.process.watch.OVERRUN_SECONDS = 0.01\n"
+)  # fmt: skip
+"""Before work that never returns to the interpreter: whatever time it gets to do so is waited for in vain."""
+IN_C = f"{NEVER}def engine(progress, partial):\n    arrived()\n    for_long_in_c()\n"
+OUT_OF_TIME = f"{NEVER}def engine(progress, partial):\n    time_is_up()\n    for_long_in_c()\n"
 FILLING = """
 def engine(progress, partial):
     with open(here / "out" / "filler", "wb", buffering=0) as file:
@@ -86,6 +95,7 @@ def engine(progress, partial):
             while file.write(bytes(4096)):
                 pass
         except OSError:
+            time_is_up()
             for_long_in_c()
 """
 DRAWING = "def draw(result, path, **how):\n    path.write_text('half')\n    arrived()\n"
@@ -181,7 +191,8 @@ def test_a_signal_saves_a_map_that_can_be_gone_on_from(
     tmp_path: Path, number: signal.Signals, status: int, stay: str
 ) -> None:
     old = put(tmp_path, json='{"status": "certified"}', png="old picture")
-    work = f"{CERTIFIED}def engine(progress, partial):\n    arrived()\n    {stay}\n"
+    hasty = NEVER if stay == "for_long_in_c()" else ""
+    work = f"{hasty}{CERTIFIED}def engine(progress, partial):\n    arrived()\n    {stay}\n"
     running = Running(tmp_path, work, "--engine", "certified", formats="png,json")
     running.arrive()
     running.process.send_signal(number)
@@ -221,7 +232,8 @@ def test_the_map_saved_by_a_signal_replaces_the_one_it_went_on_from(tmp_path: Pa
 @pytest.mark.parametrize("stay", ["    for_long_in_c()\n", "    time.sleep(3600)\n"], ids=["in C code", "in Python"])
 def test_a_signal_stops_drawing(tmp_path: Path, stay: str) -> None:
     old = put(tmp_path, json="old", png="old picture")
-    running = Running(tmp_path, DRAWING + stay, formats="png,json")
+    hasty = NEVER if "for_long_in_c" in stay else ""
+    running = Running(tmp_path, hasty + DRAWING + stay, formats="png,json")
     computing = running.arrive()
     assert len(running.files()) == 3
     running.process.send_signal(signal.SIGTERM)
@@ -355,7 +367,9 @@ def test_waiting_for_the_folder(tmp_path: Path, ended: str, certified: bool, old
     """Nothing is put into place without the lock; what was computed goes to a new name."""
     before = put(tmp_path, **old)
     held = os.open(tmp_path / "out", os.O_RDONLY)
-    work = "import fcntl, stat\n" + WAITING + (CERTIFIED if certified else "")
+    # the lock is held to the end: however long it is waited for, the outcome is the same
+    hasty = "import ptmcad.process.output\nptmcad.process.output.LOCK_PATIENCE = 0.1\n"
+    work = f"import fcntl, stat\n{hasty}{WAITING}{CERTIFIED if certified else ''}"
     options = [
         *(["--timeout", "1"] if ended == "time limit" else []),
         *(["--engine", "certified"] if certified else []),
@@ -570,7 +584,8 @@ def test_a_live_writer_keeps_its_file(tmp_path: Path) -> None:
 
 @linux
 def test_a_time_limit_stops_c_code(tmp_path: Path) -> None:
-    running = Running(tmp_path, IN_C, "--timeout", "0.2")
+    work = "def engine(progress, partial):\n    for_long_in_c()\n"
+    running = Running(tmp_path, work, "--timeout", "0.2")
     status, errors = running.end()
     assert status == 3
     assert errors == (
@@ -581,8 +596,8 @@ def test_a_time_limit_stops_c_code(tmp_path: Path) -> None:
 
 @linux
 def test_a_time_limit_while_drawing_loses_no_result(tmp_path: Path) -> None:
-    work = f"{DRAWING}    for_long_in_c()\n"
-    running = Running(tmp_path, work, "--timeout", "0.2", formats="png,json")
+    work = f"{NEVER}{DRAWING}    time_is_up()\n    for_long_in_c()\n"
+    running = Running(tmp_path, work, "--timeout", "1000", formats="png,json")
     status, errors = running.end()
     assert (status, errors.count("\n")) == (3, 1)
     assert "the complete result is in" in errors
@@ -597,7 +612,7 @@ def test_a_time_limit_while_drawing_loses_no_result(tmp_path: Path) -> None:
 )
 def test_a_stopped_run_replaces_no_whole_result(tmp_path: Path, old: str, place: str) -> None:
     put(tmp_path, json=old)
-    running = Running(tmp_path, IN_C, "--timeout", "0.2")
+    running = Running(tmp_path, OUT_OF_TIME, "--timeout", "1000")
     status, errors = running.end()
     assert status == 3
     assert str(tmp_path / "out" / place) in errors
@@ -782,7 +797,7 @@ def test_a_full_disk(full_disk: Path, left: int) -> None:
 def test_a_full_disk_for_a_stopped_result(full_disk: Path, tmp_path: Path) -> None:
     (full_disk / "fig2.json").unlink()
     (tmp_path / "out").symlink_to(full_disk)
-    running = Running(tmp_path, FILLING, "--timeout", "0.2")
+    running = Running(tmp_path, NEVER + FILLING, "--timeout", "1000")
     status, errors = running.end()
     assert (status, errors.count("\n")) == (2, 1)
     assert "No space left on device" in errors

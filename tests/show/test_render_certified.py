@@ -55,8 +55,11 @@ def test_what_is_undetermined_looks_like_no_count() -> None:
         assert np.abs(np.array(to_rgb(face)) - grey).max() > 0.1
 
 
-@pytest.mark.parametrize("result", [circle(7), crossing(7)], ids=["circle", "crossing"])
-@pytest.mark.parametrize("dpi", [100, 300])
+@pytest.mark.parametrize(("result", "dpi"), [
+    pytest.param(circle(7), 100, id="100-circle"), pytest.param(circle(7), 300, id="300-circle"),
+    pytest.param(crossing(7), 100, id="100-crossing"),
+    pytest.param(crossing(7), 300, id="300-crossing", marks=pytest.mark.slow),
+])  # fmt: skip
 def test_a_picture_shows_counts_where_they_are_and_grey_elsewhere(result: RegionMap, dpi: int, tmp_path: Path) -> None:
     image = map_pixels(result, tmp_path, dpi)
     n = len(image)

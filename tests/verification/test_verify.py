@@ -35,9 +35,13 @@ def stored_shipped(shipped: Callable[..., RegionMap], name: str) -> RegionMap:
     return stored(shipped(name))
 
 
-@pytest.mark.parametrize("name", CONFIGS)
-def test_shipped_results_are_accepted(name: str, shipped: Callable[..., RegionMap]) -> None:
-    report = ptmcad.verify(stored(shipped(name)))
+@pytest.mark.parametrize(("name", "tolerance"), [
+    *((name, "1e-4") for name in CONFIGS if name != "stiffness"),
+    ("stiffness", "1/10"),
+    pytest.param("stiffness", "1e-4", marks=pytest.mark.slow),  # its narrow areas take longer than all else of it
+])  # fmt: skip
+def test_shipped_results_are_accepted(name: str, tolerance: str, shipped: Callable[..., RegionMap]) -> None:
+    report = ptmcad.verify(stored(shipped(name, area_tolerance=tolerance) if tolerance != "1e-4" else shipped(name)))
     assert report.ok, report.violation
     assert report.violation is None
     assert {c.name for c in report.checks if not c.passed} == {"plan without trace", "provenance"}
@@ -152,13 +156,13 @@ def test_any_changed_entry_of_the_file_is_rejected(name: str, number: int, shipp
 
 
 def test_a_tiny_change_of_an_area_is_rejected(shipped: Callable[..., RegionMap]) -> None:
-    true = stored(shipped("fig4", area_tolerance="1e-9"))
+    true = stored(shipped("fig3", area_tolerance="1e-9"))
     check_areas(Claims(true))
     low, high = true.regions[1].area
     shift = Fraction(2, 10**9)
     first = replace(true.regions[0], area=(true.regions[0].area[0] - shift, true.regions[0].area[1] - shift))
     second = replace(true.regions[1], area=(low + shift, high + shift))
-    found = violation(replace(true, regions=(first, second)), "areas")
+    found = violation(replace(true, regions=(first, second, *true.regions[2:])), "areas")
     assert found is not None
     assert found[0] == "areas"
 

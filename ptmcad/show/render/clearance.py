@@ -139,8 +139,12 @@ def crosses(stroke: Stroke, box: Box) -> bool:
             if not near < origin < far:
                 return False
             continue
-        first, last = sorted(((near - origin) / step, (far - origin) / step))
+        first, last = (near - origin) / step, (far - origin) / step
+        if step < 0:
+            first, last = last, first
         low, high = max(low, first), min(high, last)
+        if not low < high:
+            return False  # nearly always: most strokes are far from a label
     return low < high
 
 

@@ -1,0 +1,87 @@
+"""Results as a notebook shows them: a picture and a small table in HTML.
+
+Guarantee: everything from a record is escaped; nothing is loaded from elsewhere.
+"""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from ptmcad.answer.poses import Poses
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.show.table import certified_digits, count_text, index_heading
+from ptmcad.text.enclosure import Enclosure
+
+if TYPE_CHECKING:
+    from ptmcad.answer.regionmap import Region
+
+DIGITS = 6
+MAX_ROWS = 20
+
+
+def picture(result: RegionMap, kind: str) -> bytes | None:
+    """The map's picture as the content of a PNG or SVG; None where there is nothing to draw yet."""
+    if not result.cells:
+        return None
+    from ptmcad.show.render import draw
+
+    with TemporaryDirectory(prefix="ptmcad-") as folder:
+        path = Path(folder) / f"map.{kind}"
+        draw(result, path)
+        return path.read_bytes()
+
+
+def map_html(result: RegionMap) -> str:
+    """The picture, and the regions with their counts and areas."""
+    image = picture(result, "png")
+    shown = "" if image is None else (
+        f'<img alt="{escape(result.slice.heading)}" style="max-width:100%" '
+        f'src="data:image/png;base64,{b64encode(image).decode()}">'
+    )  # fmt: skip
+    rows = [_region_row(result, k, r) for k, r in enumerate(result.regions[:MAX_ROWS])]
+    if len(result.regions) > MAX_ROWS:
+        rows.append(("…", f"{len(result.regions) - MAX_ROWS} more", "", "", ""))
+    head = ("region", result.slice.count.value, "in all", index_heading(result.slice.model), "area")
+    return f"<div><b>{escape(result.slice.heading)}</b>, {result.status.value}</div>{shown}{_table(head, rows)}"
+
+
+def _region_row(result: RegionMap, number: int, region: Region) -> tuple[str, ...]:
+    index = " ".join(map(str, region.index)) if region.index else "varies"
+    total = "varies" if region.total is None else str(region.total)
+    return str(number), count_text(region, result.slice.count), total, index, certified_digits(region.area, DIGITS)
+
+
+def poses_html(poses: Poses) -> str:
+    """Every solution with its unknowns, energy and stability; angles in degrees."""
+    model = poses.model
+    head = ("", "stable", *(f"{n} (°)" for n in model.angles), *model.reals, "energy", "index")
+    rows = [
+        (
+            str(k), {True: "yes", False: "no", None: "–"}[p.stable], *map(_text, p.degrees), *map(_text, p.reals),
+            "–" if p.energy is None else _text(p.energy), "–" if p.index is None else str(p.index),
+        )
+        for k, p in enumerate(poses.equilibria, 1)
+    ]  # fmt: skip
+    given = ", ".join(f"{name} = {value}" for name, value in poses.parameters.items())
+    note = f"<div>{escape(poses.remark)}</div>" if poses.remark else ""
+    return f"<div><b>{escape(model.name)}</b>: {escape(given)}, {poses.status.value}</div>{_table(head, rows)}{note}"
+
+
+def text_html(text: str) -> str:
+    """Text as a terminal shows it."""
+    return f"<pre>{escape(text)}</pre>"
+
+
+def _text(value: Enclosure) -> str:
+    return value.text(DIGITS)
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    columns = "".join(f"<th>{escape(h)}</th>" for h in head)
+    body = "".join("<tr>" + "".join(f"<td>{escape(v)}</td>" for v in row) + "</tr>" for row in rows)
+    return f"<table><thead><tr>{columns}</tr></thead><tbody>{body}</tbody></table>"
