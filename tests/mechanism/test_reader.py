@@ -16,7 +16,7 @@ from ptmcad.errors import MAX_FAULTS, ConfigError, Faults
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models.potential import potential, system_from
 from ptmcad.exact.signatures import count_by_signature
-from ptmcad.mechanism import Mechanism, described, described_system, ptm, recognised
+from ptmcad.mechanism import Mechanism, described, described_system, ptm, recognised, work
 from ptmcad.mechanism.proofs import check_bars, check_unknowns
 from ptmcad.mechanism.ptm import RECORD
 
@@ -106,13 +106,30 @@ def test_a_pendulum_holds_a_moment_up_to_its_weight(count: Any) -> None:
     assert count(system, {"W": fmpq(1), "M": fmpq(3, 2)}).index == (0, 0)
 
 
-def test_a_moment_that_depends_on_an_unknown_has_no_potential() -> None:
-    """W cos th = M sin th cos th: cos th = 0 or sin th = W/M, so four where M > W; nothing says which are stable."""
+def test_a_moment_that_depends_on_its_own_unknown_has_a_potential() -> None:
+    """W cos th = M sin th cos th: cos th = 0 or sin th = W/M, so four where M > W; those of cos th = 0 are stable."""
     m = described({**PENDULUM, "moments": {"th": "M*sin(th)*cos(th)"}})
+    assert m.tells_stability
+    system = system_from(m)
+    found = [count(system, {"W": fmpq(1), "M": fmpq(2)}) for count in (count_by_isolation, count_by_signature)]
+    assert [(c.total, c.stable, c.index) for c in found] == [(4, 2, (2, 2))] * 2
+
+
+def test_a_moment_that_depends_on_another_unknown_has_no_potential() -> None:
+    """The same at th, and at another angle s that its spring holds at 0 or pi: nothing says which are stable."""
+    further = {"unknowns": {"th": "angle", "s": "angle"}, "torsion": [{"angle": "s", "k": 1}]}
+    m = described({**PENDULUM, **further, "moments": {"th": "M*sin(th)*cos(th)*cos(s)"}})
     assert not m.tells_stability
     system = system_from(m)
     found = [count(system, {"W": fmpq(1), "M": fmpq(2)}) for count in (count_by_isolation, count_by_signature)]
-    assert [(c.total, c.stable, c.index) for c in found] == [(4, None, None)] * 2
+    assert [(c.total, c.stable, c.index) for c in found] == [(8, None, None)] * 2
+
+
+def test_a_moment_that_is_too_large_to_be_integrated_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(work, "MAX_WORK", 10)
+    moment = "*".join(f"(M + W*cos(th) + {n}*sin({n}*th))" for n in range(1, 4))
+    with pytest.raises(ConfigError, match="moments: they have no energy: the expressions are too large"):
+        described({**PENDULUM, "moments": {"th": moment}})
 
 
 @pytest.mark.parametrize(
