@@ -188,7 +188,7 @@ class _Parts:
         return tuple(springs.values())
 
     def _spring(self, entry: object, key: str, points: Mapping[str, object]) -> Spring:
-        fields = mapping(entry, key)
+        fields = mapping(entry, key, like="{between: [A, B], k: 1}")
         check_keys(fields, SPRING_KEYS, key, self.faults)
         for needed in ("between", "k"):
             if needed not in fields:

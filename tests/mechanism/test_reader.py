@@ -266,3 +266,20 @@ def test_a_stored_result_keeps_the_description() -> None:
     assert again.slice.model.source == {"name": "mechanism", **result.slice.model.source}
     assert again.to_json(timings=False) == text
     assert {(region.total, region.stable) for region in result.regions} == {(0, 0), (2, 1)}
+
+
+NEWCOMERS: dict[str, tuple[dict[str, Any], str]] = {
+    "a parameter as a number": ({"parameters": {"c": 1}}, "such as {kind: length, default: 1}"),
+    "unknowns as a list": ({"unknowns": ["x"]}, "such as {th: angle, x: real}"),
+    "an equation as a text": ({"equations": "x^2 - 1"}, 'expected a list, such as ["x^3 - a*x + b"]'),
+    "an equation with its sign": ({"equations": ["x^2 = 2"]}, "write the left side less the right side"),
+    "an inequality with its sign": ({"positive": ["x > 0"]}, "write what has to be positive alone"),
+}
+
+
+@pytest.mark.parametrize("name", NEWCOMERS)
+def test_what_newcomers_write_is_refused_with_what_to_write(name: str) -> None:
+    change, remedy = NEWCOMERS[name]
+    with pytest.raises(ConfigError) as caught:
+        described_system({"unknowns": {"x": "real"}, "equations": ["x^2 - 2"], **change})
+    assert any(remedy in str(fault) for fault in caught.value.faults)
