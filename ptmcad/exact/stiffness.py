@@ -7,15 +7,16 @@ certified eigenvalues of a matrix of balls.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import combinations
 from math import isqrt
 from typing import NamedTuple, TypeVar
 
-from flint import acb_mat, arb, fmpq, fmpq_poly, nmod, nmod_poly
+from flint import acb_mat, arb, fmpq, nmod
 
 from ptmcad.algebra.number_field import Element
+from ptmcad.algebra.rational_roots import rational_roots
 from ptmcad.text.balls import ball_of, enclosed
 from ptmcad.text.enclosure import Enclosure
 
@@ -78,41 +79,7 @@ def stiffness_of(matrix: Matrix, symmetric: bool) -> Stiffness:
             total = total + minor
         sums.append(total if order % 2 == 0 else total.times(fmpq(-1)))
     nullity = next((k for k, total in enumerate(sums) if not total.is_zero), size)
-    return Stiffness(matrix, nullity, rationals=tuple(_rational_roots(sums[nullity:])))
-
-
-def _rational_roots(lower: Sequence[Element]) -> Iterator[tuple[Fraction, int]]:
-    """The rational roots of a polynomial with leading coefficient 1, with multiplicities.
-
-    With coefficients in powers of the field's generator, a rational root is one of each power's polynomial, so of their
-    greatest common divisor. Where that is constant modulo a prime it is so over Q; most often this settles the matter.
-
-    Parameters
-    ----------
-    lower : the other coefficients, from the constant one on, which is not zero.
-    """
-    images = [total.image_coefficients() for total in lower]
-    known = [image for image in images if image is not None]
-    if len(known) == len(images) and known:
-        p = known[0][0].modulus()
-        columns = [nmod_poly([int(image[j]) for image in known] + [int(j == 0)], p) for j in range(len(known[0]))]
-        if _common(columns).degree() < 1:
-            return
-    rows = [total.coefficients() for total in lower]
-    exact = [fmpq_poly([row[j] for row in rows] + [fmpq(int(j == 0))]) for j in range(len(rows[0]))]
-    for factor, multiplicity in _common(exact).numer().factor()[1]:
-        if factor.degree() == 1:
-            yield Fraction(-int(factor[0]), int(factor[1])), multiplicity
-
-
-_Polynomial = TypeVar("_Polynomial", fmpq_poly, nmod_poly)
-
-
-def _common(polynomials: Sequence[_Polynomial]) -> _Polynomial:
-    total = polynomials[0]
-    for p in polynomials[1:]:
-        total = total.gcd(p)
-    return total
+    return Stiffness(matrix, nullity, rationals=tuple(rational_roots(sums[nullity:])))
 
 
 def eigenvalues(stiffness: Stiffness, number: Callable[[Element], Number]) -> tuple[Number, ...]:
