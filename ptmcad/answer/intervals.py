@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
+from itertools import groupby
 
 from ptmcad.answer.counts import Counts, MorseIndex
 from ptmcad.answer.regionmap import Kind
@@ -86,17 +87,27 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class CountInterval:
+class Span:
+    """An interval of the line by its ends; a Fraction is the window's edge."""
+
+    low: End
+    high: End
+
+    @property
+    def width(self) -> Enclosure:
+        """Its length, as narrowly as the ends are isolated."""
+        return Enclosure(lower(self.high) - upper(self.low), upper(self.high) - lower(self.low))
+
+
+@dataclass(frozen=True, slots=True)
+class CountInterval(Span):
     """A maximal open interval of constant count.
 
     Attributes
     ----------
-    low, high : its ends; a Fraction is the window's edge.
     sample : a rational number in it that is no critical value.
     """
 
-    low: End
-    high: End
     counts: Counts
     sample: Fraction
 
@@ -112,10 +123,12 @@ class CountInterval:
     def index(self) -> MorseIndex | None:
         return self.counts.index
 
-    @property
-    def width(self) -> Enclosure:
-        """Its length, as narrowly as the ends are isolated."""
-        return Enclosure(lower(self.high) - upper(self.low), upper(self.high) - lower(self.low))
+
+@dataclass(frozen=True, slots=True)
+class OperationSpan(Span):
+    """A part of the operation range: neighbours that differ in unstable solutions only."""
+
+    parts: tuple[CountInterval, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,9 +161,11 @@ class CountIntervals:
         return self.model.name
 
     @property
-    def operation(self) -> tuple[CountInterval, ...]:
-        """The operation range: the intervals with so many stable solutions; of the paper's mechanism two."""
-        return tuple(i for i in self.intervals if i.counts.working == self.working)
+    def operation(self) -> tuple[OperationSpan, ...]:
+        """The operation range: where there are so many stable solutions; of the paper's mechanism two."""
+        groups = groupby(self.intervals, lambda i: i.counts.working == self.working)
+        members = [list(group) for inside, group in groups if inside]
+        return tuple(OperationSpan(group[0].low, group[-1].high, tuple(group)) for group in members)
 
 
 def lower(end: End) -> Fraction:

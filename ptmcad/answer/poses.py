@@ -43,8 +43,8 @@ class Pose:
     cosines_sines : cosine and sine of each.
     reals : the unknowns on the line.
     nodes : the mechanism's points to their coordinates, in the unit of the lengths; none of another system.
-    energy : of springs and loads, in force times length, without the work of moments; or a system's potential. None
-        where there is none: of equations, and where a moment depends on an unknown.
+    energy : of springs and loads, in force times length, without the work of constant moments; or a system's potential.
+        None where there is none: of equations, and where a moment depends on another unknown.
     eigenvalues : of the Hessian by the unknowns, the smallest first; none without a potential.
     multiplicity : of the solution in its fibre; 1 exactly when the Jacobian is nonsingular.
     index : number of negative eigenvalues when the Hessian is nonsingular, else None.
@@ -73,7 +73,7 @@ class Pose:
     def known_energy(self) -> Enclosure:
         """The energy of a pose that has one; raises `ValueError` for others."""
         if self.energy is None:
-            raise ValueError("solutions of equations, or under a moment that depends on an unknown, have no energy")
+            raise ValueError("equations, and moments that depend on other unknowns, leave solutions without an energy")
         return self.energy
 
 

@@ -1,7 +1,7 @@
 """The discriminant variety of a slice as a result of its own, without a decomposition of the window.
 
 Guarantee: the components are those that the region map of the slice has; the elimination system has integer
-coefficients and, over every point that is not on a BOUNDARY component, its solutions are the singular equilibria.
+coefficients and, its solutions are the singular equilibria over every point at which its equations have a meaning.
 """
 
 from __future__ import annotations
@@ -25,10 +25,11 @@ class EliminationSystem:
 
     Attributes
     ----------
-    unknowns : cosine and sine of each angle, such as ``"cos_th1"``.
+    unknowns : cosine and sine of each angle, such as ``"cos_th1"``, the unknowns on the line, and inverses of what is
+        not zero: of inequalities that exclude too many solutions, and of what vanishes on BOUNDARY components.
     axes : the two axes' names.
-    polynomials : the equilibrium equations, cos^2 + sin^2 - 1 for each angle, and last the determinant of the Hessian;
-        each a tuple of terms.
+    polynomials : the equilibrium equations, cos^2 + sin^2 - 1 for each angle, each inverse times what it is the inverse
+        of less 1, and last the determinant of the Hessian; each a tuple of terms.
     """
 
     unknowns: tuple[str, ...]

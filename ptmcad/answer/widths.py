@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
-from ptmcad.answer.intervals import CountInterval, End
+from ptmcad.answer.intervals import End, OperationSpan
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
@@ -49,7 +49,7 @@ class WidthRow:
     """The operation ranges at one value of the other axis; ``remark`` says why there is no answer."""
 
     value: Fraction
-    operation: tuple[CountInterval, ...]
+    operation: tuple[OperationSpan, ...]
     remark: str = ""
 
 

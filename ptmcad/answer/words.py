@@ -7,8 +7,9 @@ from fractions import Fraction
 
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.moments import moments_at
+from ptmcad.mechanism.work import split_moments
 
-UNTOLD = "nothing says which are stable, as a moment depends on an unknown"
+UNTOLD = "nothing says which are stable, as a moment depends on another unknown"
 
 
 def noun(model: Model, number: int = 2) -> str:
@@ -51,5 +52,16 @@ def of_what(model: Model, parameters: Mapping[str, Fraction]) -> str:
     model : one that has a potential.
     """
     moments = moments_at(model, parameters)
-    whose = "moments'" if len(moments) > 1 else "moment's"
-    return f"of springs and loads, without the {whose} work" if moments else ""
+    return f"of springs and loads, without the {moments_work(model, len(moments))}" if moments else ""
+
+
+def moments_work(model: Model, number: int) -> str:
+    """What so many moments do that is in no energy.
+
+    Parameters
+    ----------
+    model : a mechanism; the work of what varies in a moment is in its energy.
+    """
+    if isinstance(model, Mechanism) and split_moments(model).energies:
+        return f"work of the constant part{'s' * (number > 1)} of the moment{'s' * (number > 1)}"
+    return "moments' work" if number > 1 else "moment's work"

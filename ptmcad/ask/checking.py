@@ -14,7 +14,8 @@ from fractions import Fraction
 
 from ptmcad.ask.classification import check_taken
 from ptmcad.ask.engines import is_certified
-from ptmcad.mechanism import Mechanism
+from ptmcad.errors import ConfigError, GeometryError
+from ptmcad.mechanism import Mechanism, ptm
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
 
@@ -29,6 +30,9 @@ _CLASSES = (
     (20, "minutes to hours: try --timeout, and counts along lines by ptmcad range"),
 )
 _BEYOND = "hours or more: ask for counts at points or along lines instead"
+_LONG = 16
+"""Complex solutions: with more of them the exact map takes so long that whoever asks for it is told."""
+_BY_INTERVALS = "; --engine certified encloses the map"
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +98,27 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:
     found = solutions_at(problem.system, values)[0] or solutions_at(problem.system, values, saturated=True)[0]
     if not found:
         return Check(slice, sample, None, "exact", "none: there are infinitely many solutions, or none, at the sample")
-    return Check(slice, sample, found, "exact", next((cost for most, cost in _CLASSES if found <= most), _BEYOND))
+    cost = next((cost for most, cost in _CLASSES if found <= most), _BEYOND)
+    return Check(slice, sample, found, "exact", cost + (_BY_INTERVALS if found > _LONG and _encloses(slice) else ""))
+
+
+def _encloses(slice: Slice) -> bool:
+    """Whether the certified engine takes a slice that the exact one takes too."""
+    try:
+        check_taken(slice)
+    except (ConfigError, GeometryError):
+        return False
+    return True
+
+
+def warning(slice: Slice) -> str:
+    """What to say before an exact map that will take long; empty where it will not, or nobody knows."""
+    if slice.model == ptm():
+        return ""
+    found = check(slice)
+    if found.engine != "exact" or (found.complex_solutions or 0) <= _LONG:
+        return ""
+    return f"the equations have {found.complex_solutions} complex solutions, and the exact map takes {found.cost}"
 
 
 def check_text(found: Check) -> Iterator[str]:

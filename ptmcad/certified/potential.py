@@ -13,6 +13,7 @@ from fractions import Fraction
 from ptmcad.certified.formula import Formula, Graph, length
 from ptmcad.mechanism import Mechanism
 from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.mechanism.work import split_moments
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +24,7 @@ class Potential:
     ----------
     points : coordinates, by name.
     lengths, forces : of the springs, in the description's order; a force is positive where the spring pulls.
-    energy : of the springs, torsion springs too, minus the loads' work.
+    energy : of the springs, torsion springs too, minus the loads' work, and that of moments as far as it has one value.
     """
 
     points: Mapping[str, tuple[Formula, Formula]]
@@ -46,8 +47,8 @@ def potential(mechanism: Mechanism, values: Mapping[str, Formula], unknowns: Map
         forces.append(k * (extent - free))
         squared = dx.squared() + dy.squared() if free.value == 0 else (extent - free).squared()
         energy = energy + k * squared / 2
-    for torsion in mechanism.torsion:
-        energy = energy + evaluate(torsion.energy, ring)
+    for tree in (*(torsion.energy for torsion in mechanism.torsion), *split_moments(mechanism).energies):
+        energy = energy + evaluate(tree, ring)
     for load in mechanism.loads:
         for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
             energy = energy - evaluate(force, ring) * coordinate

@@ -13,6 +13,7 @@ from ptmcad.certified.curve import Curve
 from ptmcad.certified.plan import beforehand
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism import System as ParametricSystem
+from ptmcad.mechanism.work import split_moments
 from ptmcad.question.slice import Slice
 from ptmcad.text.tree import Chain, Negative, Number, Step, Tree, to_text
 
@@ -43,12 +44,14 @@ def _energy(mechanism: Mechanism) -> str:
             if value
         )
         energy.append(f"{_factor(torsion.stiffness)}*(1{turned})")
+    moments = split_moments(mechanism)
+    energy += [_factor(tree) for tree in moments.energies]
     work = [
         f" - {_factor(force)}*{_factor(coordinate)}"
         for load in mechanism.loads
         for force, coordinate in zip((load.x, load.y), mechanism.points[load.point], strict=True)
     ]
-    work += [f" - {_factor(moment.value)}*{moment.unknown}" for moment in mechanism.moments]
+    work += [f" - {_factor(moment.value)}*{moment.unknown}" for moment in moments.steady]
     return (" + ".join(energy) or "0") + "".join(work)
 
 

@@ -18,6 +18,7 @@ from ptmcad.cli.pictures import write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.errors import ConfigError, ExpressionError, LimitReached
+from ptmcad.mechanism import ptm
 from ptmcad.options import Options
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.output import (
@@ -192,6 +193,18 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
     return steps
 
 
+def warn(slice: Slice, options: Options) -> None:
+    """Say at once where the exact engine will take long."""
+    from ptmcad.ask.engines import is_certified
+
+    if is_certified(slice, options.engine) or slice.has_free_lengths or slice.model == ptm():
+        return
+    from ptmcad.ask.checking import warning
+
+    if text := warning(slice):
+        click.echo(f"note: {text}", err=True)
+
+
 def _share(_context: click.Context, parameter: click.Parameter, value: str | None) -> Fraction | None:
     if value is None:
         return None
@@ -299,6 +312,7 @@ def command(
             earlier = _resumed(slice, resume)  # of many rectangles that takes a while, which is part of the limit
             options, spent = replace(options, resume=earlier), time.monotonic() - begun
         steps = announced(slice, options) if output.explain else ()
+        warn(slice, options)
         result = classify_to_files(slice, options, output, spent)
     further = [step for step in result.plan if step not in steps]
     if output.explain and further:

@@ -34,9 +34,9 @@ def command(
     equations lose their meaning, or an inequality or condition of a system becomes zero at a solution).
 
     sympy, maple and mathematica are programs that define the list "variety". qepcad is a session that decomposes the
-    window by the curves. msolve is the system from which they follow: "msolve -e 4 -g 2 -f FILE" eliminates its
-    four unknowns (as many as -e says), and the critical curves are factors of what is left. Solutions that inequalities
-    exclude are in it; where they are infinitely many, nothing is left.
+    window by the curves. msolve is the system from which they follow: "msolve -e 5 -g 2 -f FILE" eliminates its
+    first five unknowns (all but the two axes), and the critical curves are the factors of what is left. Some of them
+    may be inverses, which leave out solutions that do not count.
 
     \b
     Examples:

@@ -21,6 +21,7 @@ from ptmcad.exact.stages import (
     areas_of,
     counts_of,
     crossings_of,
+    domain_limits,
     neighbours_of,
     problem_of,
     projection_of,
@@ -145,6 +146,12 @@ def slice_variety(slice: Slice, without: frozenset[str] = frozenset()) -> SliceV
         slice,
         variety.components,
         variety.complex_solutions,
-        elimination_system(problem.system, problem.parameters, slice.axis_names),
+        elimination_system(
+            problem.system,
+            problem.parameters,
+            slice.axis_names,
+            domain_limits(problem.system, problem.parameters),
+            variety.excludes,
+        ),
         versions(),
     )

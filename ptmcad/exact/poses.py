@@ -7,7 +7,7 @@ the energy in the quotient algebra.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -26,7 +26,9 @@ from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, pol
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.statics import PointModel, State, is_positive, pose_of, state_at
 from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism.description import System
 from ptmcad.mechanism.evaluate import value_at
+from ptmcad.text.tree import to_text as text_of
 
 
 def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int) -> Poses:
@@ -68,8 +70,19 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int) -
         Status.ON_VARIETY if degenerate else Status.EXACT,
         digits,
         max((bits for _, bits in results), default=0),
-        "" if degenerate else _remark(found),
+        "; ".join([*filter(None, ["" if degenerate else _remark(found)]), *_vanishing(given, model, states, order)]),
     )
+
+
+def _vanishing(given: Model, model: PointModel, states: Sequence[State], order: Sequence[int]) -> Iterator[str]:
+    """The conditions for stability that are zero at a solution, which counts as unstable, in words."""
+    if not isinstance(given, System):
+        return
+    for k, condition in enumerate(given.stability, len(model.inequalities)):
+        if numbers := [n for n, s in enumerate(order, 1) if states[s].conditions[k].is_zero]:
+            what = f"solution{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))}"
+            counted = "count" if len(numbers) > 1 else "counts"
+            yield f"{text_of(condition)} is zero at {what}, which {counted} as unstable"
 
 
 def _remark(found: Points) -> str:

@@ -90,6 +90,7 @@ class Variety(NamedTuple):
     curves : the components that are used, but for lines across the base.
     lines : these, by the components' numbers.
     costs : predicted for each of the two base axes.
+    excludes : whether solutions at which an inequality's polynomial is zero were left out, as they are in the way.
     """
 
     components: tuple[Component, ...]
@@ -98,6 +99,7 @@ class Variety(NamedTuple):
     curves: Sequence[Curve]
     lines: dict[int, UnivariatePolynomial]
     costs: tuple[int, int]
+    excludes: bool = False
 
 
 class Stacks(NamedTuple):
@@ -178,7 +180,7 @@ def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset(), base: 
     if base is None:
         base = 1 if costs[1] < costs[0] and "axis-order" not in keep else 0
     lines = lines_of(found.components, base)
-    return Variety(found.components, found.complex_solutions, base, views[base], lines, costs)
+    return Variety(found.components, found.complex_solutions, base, views[base], lines, costs, found.excludes)
 
 
 def domain_limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coefficient]:

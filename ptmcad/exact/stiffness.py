@@ -1,7 +1,8 @@
 """The eigenvalues of a Hessian whose entries are numbers of one real field.
 
-Guarantee: how many of them are zero is known by algebra. With two unknowns a rational eigenvalue is given exactly; in
-other cases one that is not zero is enclosed by certified eigenvalues of a matrix of balls.
+Guarantee: how many of them are zero is known by algebra, and rational ones are given exactly: of two unknowns by the
+trace and the determinant, of more by the characteristic polynomial. Others are enclosed, with more than two unknowns by
+certified eigenvalues of a matrix of balls.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import NamedTuple, TypeVar
 from flint import acb_mat, arb, fmpq, nmod
 
 from ptmcad.algebra.number_field import Element
+from ptmcad.algebra.rational_roots import rational_roots
 from ptmcad.text.balls import ball_of, enclosed
 from ptmcad.text.enclosure import Enclosure
 
@@ -43,6 +45,7 @@ class Stiffness(NamedTuple):
     trace, spread : of a 2 x 2 Hessian; the latter is the squared difference of its eigenvalues.
     eigenvalue : a rational one of a 2 x 2 Hessian, when there is one and the other is irrational, or both are equal.
     nullity : the number of eigenvalues that are zero; of a Jacobian that is no Hessian only whether it is singular.
+    rationals : of a larger Hessian the other rational eigenvalues, each with its multiplicity.
     """
 
     matrix: Matrix
@@ -50,6 +53,7 @@ class Stiffness(NamedTuple):
     trace: Element | None = None
     spread: Element | None = None
     eigenvalue: Fraction | None = None
+    rationals: tuple[tuple[Fraction, int], ...] = ()
 
 
 def stiffness_of(matrix: Matrix, symmetric: bool) -> Stiffness:
@@ -64,17 +68,18 @@ def stiffness_of(matrix: Matrix, symmetric: bool) -> Stiffness:
         spread = difference * difference + (h12 * h12).times(fmpq(4))
         nullity = int(determinant.is_zero) + int(determinant.is_zero and trace.is_zero)
         return Stiffness(matrix, nullity, trace, spread, _rational_eigenvalue(trace, determinant))
-    nullity = 0
-    # the characteristic polynomial's coefficients from the constant one on are sums of principal minors
+    if size == 1:
+        return Stiffness(matrix, int(matrix[0][0].is_zero))
+    # the characteristic polynomial's coefficients from the constant one on are sums of principal minors, but for signs
+    sums = []
     for order in range(size, 0, -1):
         minors = (_minor(matrix, chosen, chosen) for chosen in combinations(range(size), order))
         total = next(minors)
         for minor in minors:
             total = total + minor
-        if not total.is_zero:
-            break
-        nullity += 1
-    return Stiffness(matrix, nullity)
+        sums.append(total if order % 2 == 0 else total.times(fmpq(-1)))
+    nullity = next((k for k, total in enumerate(sums) if not total.is_zero), size)
+    return Stiffness(matrix, nullity, rationals=tuple(rational_roots(sums[nullity:])))
 
 
 def eigenvalues(stiffness: Stiffness, number: Callable[[Element], Number]) -> tuple[Number, ...]:
@@ -98,7 +103,14 @@ def eigenvalues(stiffness: Stiffness, number: Callable[[Element], Number]) -> tu
     near_zero = [ball for ball in balls if ball.contains(0)]
     if len(near_zero) != stiffness.nullity:
         return (Number(None, arb.nan()),) * size
-    return tuple(Number(Fraction(0), arb(0)) if ball.contains(0) else Number(None, ball) for ball in balls)
+    values = [Number(Fraction(0), arb(0)) if ball.contains(0) else Number(None, ball) for ball in balls]
+    for root, multiplicity in stiffness.rationals:
+        near = [k for k, ball in enumerate(balls) if ball.overlaps(ball_of(root))]
+        if len(near) != multiplicity:
+            return (Number(None, arb.nan()),) * size
+        for k in near:
+            values[k] = Number(root, ball_of(root))
+    return tuple(values)
 
 
 def square_root(square: Number) -> Number:

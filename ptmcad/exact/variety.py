@@ -55,10 +55,16 @@ from ptmcad.text.plane import PlanePolynomial
 
 @dataclass(frozen=True, slots=True)
 class DiscriminantVariety:
-    """The variety's components and the number of complex solutions at a generic point."""
+    """The variety's components and the number of complex solutions at a generic point.
+
+    Attributes
+    ----------
+    excludes : whether solutions at which an inequality's polynomial is zero were left out, as they are in the way.
+    """
 
     components: tuple[Component, ...]
     complex_solutions: int
+    excludes: bool
 
 
 def discriminant_variety(
@@ -84,7 +90,8 @@ def discriminant_variety(
     """
     if system.turns is not None:
         system = system.turns.system  # with the same solutions, and the same determinant but for its sign
-    equations, algebra, rows, jacobian_norm = _nondegenerate(on_slice(system, parameters))
+    given = on_slice(system, parameters)
+    equations, algebra, rows, jacobian_norm = _nondegenerate(given)
     seen = _Components(window, without)
     for polynomial in (*equations.boundary, *limits):
         seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
@@ -113,7 +120,7 @@ def discriminant_variety(
     if "hermite-matrix" in without:
         for part in determinant(trace_form(algebra)):
             seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
-    return DiscriminantVariety(seen.in_order(), algebra.dimension)
+    return DiscriminantVariety(seen.in_order(), algebra.dimension, equations.unknowns > given.unknowns)
 
 
 class _Components:

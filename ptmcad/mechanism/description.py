@@ -266,8 +266,8 @@ class Mechanism(Model):
 
     @property
     def has_potential(self) -> bool:
-        """A moment that no unknown is in has one, though of several values on a circle."""
-        return not any(self.unknowns.keys() & set(names_of(moment.value)) for moment in self.moments)
+        """A moment that depends on no unknown but its own has one, though of several values on a circle."""
+        return all(self.unknowns.keys() & set(names_of(moment.value)) <= {moment.unknown} for moment in self.moments)
 
     @cached_property
     def moving(self) -> tuple[str, ...]:

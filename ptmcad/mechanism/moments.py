@@ -1,7 +1,8 @@
 """Moments where the parameters have values: which unknowns they work on, and how strongly.
 
-A moment M on an angle does the work M times the angle, another one after each turn: the energy less that work has many
-values on the circle, so that whatever is said of an energy's descent has to ask for moments first.
+Of a moment that depends on its own unknown that is its constant part: the rest is the slope of an energy (`work`). A
+constant moment M on an angle does the work M times the angle, another one after each turn: the energy less that work
+has many values on the circle, so that whatever is said of an energy's descent has to ask for moments first.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from fractions import Fraction
 
 from ptmcad.mechanism.description import Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
+from ptmcad.mechanism.work import split_moments
 
 
 def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fraction]:
@@ -18,16 +20,16 @@ def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fr
 
     Parameters
     ----------
-    model : one that has a potential: no moment depends on an unknown.
+    model : one that has a potential: no moment depends on another unknown than its own.
     parameters : all of the model's; free lengths are zero where they are not among them.
 
     Raises
     ------
     ExpressionError
-        When a moment depends on an unknown.
+        When a moment depends on another unknown.
     """
     if not isinstance(model, Mechanism):
         return {}
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
-    found = {unknown: value_at(tree, known) for unknown, tree in model.moments}
+    found = {unknown: value_at(tree, known) for unknown, tree in split_moments(model).steady}
     return {unknown: value for unknown, value in found.items() if value}

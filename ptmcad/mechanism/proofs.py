@@ -76,10 +76,11 @@ class Polynomial:
 
 
 class Ring:
-    """Q[parameters, lengths][cos, sin], as a ring in which trees have values; it stops after `MAX_WORK`."""
+    """Q[parameters, lengths][cos, sin], as a ring in which trees have values; it stops after so much work."""
 
-    def __init__(self) -> None:
+    def __init__(self, most: int = MAX_WORK) -> None:
         self.work = 0
+        self.most = most
 
     def spend(self, work: int) -> None:
         """Note work.
@@ -90,7 +91,7 @@ class Ring:
             When it is too much.
         """
         self.work += work
-        if self.work > MAX_WORK:
+        if self.work > self.most:
             raise ExpressionError("the expressions are too large to be multiplied out")
 
     def constant(self, value: Fraction) -> Polynomial:

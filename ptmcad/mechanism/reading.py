@@ -36,18 +36,23 @@ _T = TypeVar("_T")
 # ------------------------------------------------------------------------------------------------------------ shapes
 
 
-def mapping(value: object, key: str, most: int = MAX_ENTRIES) -> Mapping[str, Any]:
-    """A mapping of at most so many entries."""
+def mapping(value: object, key: str, most: int = MAX_ENTRIES, like: str = "") -> Mapping[str, Any]:
+    """A mapping of at most so many entries.
+
+    Parameters
+    ----------
+    like : an example for the message.
+    """
     if not isinstance(value, Mapping):
-        raise ConfigError("expected a mapping", key=key)
+        raise ConfigError(f"expected a mapping{like and f', such as {like}'}", key=key)
     _check_size(len(value), key, most)
     return value
 
 
-def listed(value: object, key: str) -> Sequence[Any]:
-    """A list of at most `MAX_ENTRIES` entries."""
+def listed(value: object, key: str, like: str = "") -> Sequence[Any]:
+    """A list of at most `MAX_ENTRIES` entries; ``like`` is an example for the message."""
     if not isinstance(value, list | tuple):
-        raise ConfigError("expected a list", key=key)
+        raise ConfigError(f"expected a list{like and f', such as {like}'}", key=key)
     _check_size(len(value), key, MAX_ENTRIES)
     return value
 
@@ -119,7 +124,7 @@ def parameters_of(entries: Mapping[str, Any], faults: Faults) -> dict[str, Param
         with faults:
             new_name(name, key, found)
             found[name] = Parameter(name, Kind.NUMBER, "", None)
-            fields = mapping(entry, key)
+            fields = mapping(entry, key, like="{kind: length, default: 1}, or {} for a number")
             check_keys(fields, PARAMETER_KEYS, key, faults)
             kind = member(Kind, fields.get("kind", Kind.NUMBER.value), f"{key}.kind")
             default = "0" if kind in _UNSET else ""
@@ -146,7 +151,7 @@ def _window(fields: Mapping[str, Any], key: str) -> tuple[str, str] | None:
 def unknowns_of(value: object, taken: Mapping[str, object], faults: Faults) -> dict[str, UnknownKind]:
     """The unknowns of a record."""
     found: dict[str, UnknownKind] = {}
-    entries = mapping(value, "unknowns", MAX_UNKNOWNS)
+    entries = mapping(value, "unknowns", MAX_UNKNOWNS, "{th: angle, x: real}")
     if not entries:
         raise ConfigError("there is none", key="unknowns")
     for name, kind in entries.items():

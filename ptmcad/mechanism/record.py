@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.errors import ConfigError, Faults
+from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.bodies import add_bodies
 from ptmcad.mechanism.description import Load, Mechanism, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
@@ -29,6 +29,7 @@ from ptmcad.mechanism.reading import (
     point_name,
     unknowns_of,
 )
+from ptmcad.mechanism.work import split_moments
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Name, Negative, Number, Tree
 
@@ -105,10 +106,19 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
         source=record,
     )
     faults.check()
-    for check in (check_use,) if proved else (check_bars, check_unknowns, check_symmetries, check_use):
+    for check in (check_use,) if proved else (check_bars, check_unknowns, check_symmetries, check_moments, check_use):
         check(found, faults)
     faults.check()
     return found
+
+
+def check_moments(mechanism: Mechanism, faults: Faults) -> None:
+    """Note moments that depend on their own unknown and are too large to be integrated."""
+    with faults:
+        try:
+            split_moments(mechanism)
+        except ExpressionError as error:
+            raise ConfigError(f"they have no energy: {error.message}", key="moments") from None
 
 
 def check_use(mechanism: Mechanism, faults: Faults) -> None:
@@ -178,7 +188,7 @@ class _Parts:
         return tuple(springs.values())
 
     def _spring(self, entry: object, key: str, points: Mapping[str, object]) -> Spring:
-        fields = mapping(entry, key)
+        fields = mapping(entry, key, like="{between: [A, B], k: 1}")
         check_keys(fields, SPRING_KEYS, key, self.faults)
         for needed in ("between", "k"):
             if needed not in fields:

@@ -27,6 +27,8 @@ from ptmcad.text.tree import Tree, names_of
 SYSTEM_KEYS = ("name", "parameters", "unknowns", "equations", "potential", "positive", "stable")
 DEFAULT_NAME = "system"
 _LISTS = ("equations", "positive", "stable")
+_LIKE = {"equations": '["x^3 - a*x + b"]', "positive": "[x]", "stable": '["3*x^2 - a"]'}
+"""Examples for messages."""
 
 
 def described_system(record: Mapping[str, Any]) -> System:
@@ -89,7 +91,7 @@ def _texts(record: Mapping[str, Any], faults: Faults) -> dict[str, object]:
     texts: dict[str, object] = {}
     for key in _LISTS:
         with faults:
-            texts |= {f"{key}.{n}": text for n, text in enumerate(listed(record.get(key, ()), key), 1)}
+            texts |= {f"{key}.{n}": text for n, text in enumerate(listed(record.get(key, ()), key, _LIKE[key]), 1)}
     if "potential" in record:
         texts["potential"] = record["potential"]
     return texts

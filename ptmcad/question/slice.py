@@ -16,6 +16,7 @@ from unicodedata import category
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.mechanism.work import split_moments
 from ptmcad.text.expressions import Expression, constant
 
 
@@ -135,12 +136,13 @@ def have_free_lengths(model: Model, parameters: Mapping[str, Expression]) -> boo
 
 
 def have_moments(model: Model, parameters: Mapping[str, Expression]) -> bool:
-    """Whether some moment, or force on an unknown length, is not zero everywhere: its work is in no stored energy."""
+    """Whether some moment, or force on an unknown length, does work that is in no stored energy."""
     if not isinstance(model, Mechanism):
         return False
     known = _Expressions(parameters)
-    # a moment that depends on an unknown is none of the axes alone
-    return not model.has_potential or any(bool(evaluate(m.value, known).numerator) for m in model.moments)
+    # a moment that depends on another unknown is none of the axes alone
+    steady = split_moments(model).steady
+    return not model.has_potential or any(bool(evaluate(m.value, known).numerator) for m in steady)
 
 
 class _Expressions:

@@ -153,6 +153,18 @@ def table(result: RegionMap) -> str:
             f"counts    {counts or 'none yet'}",
             f"areas     {areas or 'none yet'}",
             _curves(result) if result.cover is None else _covered(result.cover),
+            *_vanishing(result),
             f"time      {time}; {wrong}; {bound}",
         ]
     )
+
+
+def _vanishing(result: RegionMap) -> list[str]:
+    """Where a condition for stability is zero all over a cell, as a solution is not stable there."""
+    if result.slice.model.has_potential:
+        return []
+    cells = sum(any("0" in e.signs for e in cell.solutions) for cell in result.cells)
+    if not cells:
+        return []
+    where = f"{cells} cell{'s' * (cells > 1)}"
+    return [f"zero      in {where} a condition for stability is 0 at a solution, which counts as unstable"]

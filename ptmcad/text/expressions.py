@@ -92,10 +92,15 @@ class Expression:
 
     def to_text(self, names: tuple[str, str] = ("x", "y")) -> str:
         """The expression as text that `ptmcad.text.parsing.parse` reads back."""
-        numerator = _terms_text(self.numerator, names)
         if self.is_polynomial:
-            return numerator
-        return f"({numerator})/({_terms_text(self.denominator, names)})"
+            return _terms_text(self.numerator, names)
+        # the normal form's sign may put a minus first in both, as in (-x)/(-1 + x)
+        sign = -1 if self.denominator[0][2] < 0 else 1
+        above, below = (
+            _terms_text(tuple((i, j, sign * c) for i, j, c in terms), names)
+            for terms in (self.numerator, self.denominator)
+        )
+        return f"{above if len(self.numerator) == 1 else f'({above})'}/({below})"
 
     def __str__(self) -> str:
         return self.to_text()

@@ -131,6 +131,10 @@ def _bad_character(text: str, position: int) -> ExpressionError:
         remedy = f": write {_WRITE_INSTEAD[character]}"
     elif character == "_":
         remedy = ": a name starts with a letter, and digits are not grouped"
+    elif character == "=":
+        remedy = ": write the left side less the right side, which is zero then"
+    elif character in "<>":
+        remedy = ": write what has to be positive alone"
     else:
         remedy = ": an expression has numbers, names, + - * / ^ and parentheses"
     shown = repr(character) if character.isascii() else f"'{character}' (U+{ord(character):04X})"

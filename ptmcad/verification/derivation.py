@@ -70,14 +70,14 @@ class Formulas(NamedTuple):
 def has_index(model: Model) -> bool:
     """Whether solutions are critical points, near each of a function, so that the matrix of derivatives is a Hessian.
 
-    A moment that no unknown is in is the slope of such a function; with one that depends on an unknown, even on its own
-    alone, nothing may be stored of indices and of what is stable.
+    A moment that no unknown but its own is in is the slope of such a function; with one that depends on another unknown
+    nothing may be stored of indices and of what is stable.
     """
     if isinstance(model, System):
         return model.potential is not None
     assert isinstance(model, Mechanism)
     unknowns = {*model.angles, *model.reals}
-    return not any(unknowns.intersection(names_of(tree)) for _, tree in model.moments)
+    return all(unknowns.intersection(names_of(tree)) <= {unknown} for unknown, tree in model.moments)
 
 
 def tells_stability(model: Model) -> bool:

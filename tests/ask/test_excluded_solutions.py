@@ -74,14 +74,15 @@ def test_an_inequality_that_is_zero_at_every_solution_leaves_nothing_to_count() 
 def test_check_refuses_what_the_certified_engine_refuses() -> None:
     mechanism = {
         "parameters": {"M": {}, "F": {"kind": "force"}},
-        "unknowns": {"th": "angle"},
+        "unknowns": {"th": "angle", "s": "angle"},
         "points": {"A": [2, 0], "P": ["cos(th)", "sin(th)"]},
         "springs": [{"between": ["A", "P"], "k": 1, "free": "1/2"}],
-        "moments": {"th": "M*cos(th)"},
+        "torsion": [{"angle": "s", "k": 1}],
+        "moments": {"th": "M*cos(s)"},
         "loads": {"P": [0, "F"]},
     }
     slice = slice_from({"mechanism": mechanism, "axes": {"M": [-3, 3], "F": [-3, 3]}})
-    with pytest.raises(ConfigError, match="takes constant moments") as checked:
+    with pytest.raises(ConfigError, match="no moments without a potential") as checked:
         check(slice)
     with pytest.raises(ConfigError) as classified:
         ptmcad.classify(slice)

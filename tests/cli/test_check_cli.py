@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
 
+from ptmcad.ask import classification
+from ptmcad.ask.checking import check, warning
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, slice_from_mapping
@@ -102,3 +106,37 @@ def test_loading_knows_all_faults(tmp_path: Path) -> None:
     with pytest.raises(ConfigError) as caught:
         load(path)
     assert [(fault.line, fault.key) for fault in caught.value.faults] == FAULTS
+
+
+def chain(**further: Any) -> dict[str, Any]:
+    record = yaml.safe_load((CONFIGS / "mechanisms" / "three-bar-chain.yaml").read_text(encoding="utf-8"))
+    return {**record, "mechanism": record["mechanism"] | further}
+
+
+@pytest.mark.parametrize("record", [chain(), chain(moments={"th1": "1/3"})], ids=["loaded", "turned"])
+def test_an_exact_map_that_takes_long_is_foretold(record: dict[str, Any]) -> None:
+    """Three bars have 20 complex solutions, with a constant moment too; the certified engine takes both."""
+    slice = slice_from_mapping(record)
+    text = warning(slice)
+    assert text.startswith("the equations have 20 complex solutions") and "--engine certified" in text
+    assert text.endswith(check(slice).cost)
+
+
+def test_what_is_soon_done_is_not_warned_of() -> None:
+    for name in ("fig4", "free02", "systems/duffing", "mechanisms/two-bar-chain"):
+        assert not warning(load(CONFIGS / f"{name}.yaml"))
+
+
+def test_classify_says_at_once_that_it_will_take_long(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def unreached(*_: object) -> None:
+        raise ConfigError("nothing is computed here")
+
+    monkeypatch.setattr(classification, "region_map", unreached)
+    asked = ["classify", str(CONFIGS / "mechanisms" / "three-bar-chain.yaml"), "--out", str(tmp_path)]
+    assert run(asked) == 2
+    first, *_, last = capsys.readouterr().err.splitlines()
+    assert first.startswith("note: the equations have 20 complex solutions") and "nothing is computed" in last
+    assert run([*asked, "--engine", "certified"]) == 2
+    assert "note" not in capsys.readouterr().err

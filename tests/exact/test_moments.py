@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
+from types import MappingProxyType
 from typing import Any
 
 import pytest
+from flint import fmpq
 
 import ptmcad
 from ptmcad.ask.ranges import Fate, pose_paths
+from ptmcad.ask.solving import poses_at
 from ptmcad.exact.models import system_from
+from ptmcad.exact.models.system import polynomial_at
 from ptmcad.mechanism import ptm
 from ptmcad.mechanism.moments import moments_at
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.table import path_table
 
 
-def arm(moment: object, **axes: Any) -> Slice:
+def arm(moment: object, others: Mapping[str, str] = MappingProxyType({}), **axes: Any) -> Slice:
     """A bar with two resting angles, 0 and 180 degrees, pushed by F and G and turned by a moment."""
     parameters: dict[str, Any] = {"M": {}, "F": {"kind": "force", "default": "1/2"}, "G": {"kind": "force"}}
     return ptmcad.slice_from_mapping(
@@ -24,10 +29,10 @@ def arm(moment: object, **axes: Any) -> Slice:
             "name": "arm",
             "mechanism": {
                 "parameters": parameters,
-                "unknowns": {"th": "angle"},
+                "unknowns": {"th": "angle", **others},
                 "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
                 "bars": [["O", "P"]],
-                "torsion": [{"angle": "2*th", "k": 1}],
+                "torsion": [{"angle": "2*th", "k": 1}, *({"angle": name, "k": 2} for name in others)],
                 "moments": {"th": moment},
                 "loads": {"P": ["F", "G"]},
             },
@@ -85,15 +90,18 @@ def test_a_pair_of_bars_under_a_moment_is_not_said_to_rest() -> None:
     assert Fate.VANISH in ends and Fate.SNAP not in ends and Fate.MERGE not in ends
 
 
-@pytest.mark.parametrize(("moment", "known"), [("M*sin(th)", False), ("M + sin(th) - sin(th)", False), ("M/2", True)])
+KNOWN = {"M*cos(s)": False, "M + sin(s) - sin(s)": False, "M*sin(th)": True, "M/2": True}
+
+
+@pytest.mark.parametrize(("moment", "known"), KNOWN.items())
 def test_description_and_equations_agree_on_what_has_a_potential(moment: str, known: bool) -> None:
-    """By the names in the description, whether or not the unknown cancels out."""
-    model = arm(moment).model
+    """By the names in the description, whether or not the other unknown cancels out."""
+    model = arm(moment, {"s": "angle"}).model
     assert (model.has_potential, system_from(model).has_index) == (known, known)
 
 
 def test_solutions_without_a_potential_are_not_called_minima() -> None:
-    found = pose_paths(arm("M*cos(th)"), "G", {"M": 1}, "1/2")
+    found = pose_paths(arm("M*cos(s)", {"s": "angle"}), "G", {"M": 1}, "1/2")
     text = path_table(found)
     assert "equilibrium" in text and "minimum" not in text and "maximum" not in text
 
@@ -103,3 +111,44 @@ def test_moments_at_a_point() -> None:
     assert moments_at(model, {"M": Fraction("1/4")}) == {"th": Fraction("1/2")}
     assert not moments_at(model, {"M": Fraction(0)})
     assert not moments_at(ptm(), {})
+
+
+WORKS = {
+    "M*sin(th)": ({}, "M*(1 - cos(th))"),
+    "M*sin(2*th) + 1/3": ({"th": Fraction(1, 3)}, "M*sin(th)^2"),
+    "M*cos(th)^2": ({"th": Fraction(1, 2)}, "M*sin(th)*cos(th)/2"),
+    "M*sin(th)^4 - 3/8*M": ({}, "-M*cos(th)*sin(th)^3/4 - 3/8*M*cos(th)*sin(th)"),
+    "M*cos(th)*sin(th)^2*G": ({}, "M*G*sin(th)^3/3"),
+}
+"""Moments, to their constant parts at M = 1 and the work of the rest, integrated by hand."""
+
+
+@pytest.mark.parametrize("moment", WORKS)
+def test_a_moment_of_its_own_angle_has_a_constant_part_and_an_energy(moment: str) -> None:
+    steady, work = WORKS[moment]
+    model = arm(moment).model
+    assert moments_at(model, {"M": Fraction(1), "G": Fraction(2), "F": Fraction(0)}) == steady
+    by_hand = ptmcad.System(
+        parameters={"M": {}, "G": {}},
+        unknowns={"th": "angle"},
+        potential=f"cos(2*th)*0 + 1 - cos(2*th) - G*sin(th) - ({work}) + 0*M",
+    )
+    values = {"M": fmpq(3, 7), "G": fmpq(2, 5), "F": fmpq(0)}
+    (found, system), (expected, other) = (
+        (polynomial_at(system, system.potential, values), system) for system in map(system_from, (model, by_hand))
+    )
+    assert found == expected and system.has_index and other.has_index
+
+
+def test_under_a_moment_of_mean_zero_a_pose_snaps() -> None:
+    """Its energy has one value for each pose: a moment M sin(th) is a load of -M along x, but for a constant."""
+    (path,) = pose_paths(arm("M*sin(th)"), "G", {"M": "1/5"}, "1/2", 2).paths
+    assert path.high.fate is Fate.SNAP and path.high.target is not None
+    moved, loaded = (
+        poses_at(arm(moment).model, {"M": Fraction(1, 5), "G": Fraction(1, 2), "F": force}, 12).equilibria
+        for moment, force in (("M*sin(th)", Fraction(1, 2)), ("0*M", Fraction(3, 10)))
+    )
+    assert [pose.index for pose in moved] == [pose.index for pose in loaded]
+    for one, other in zip(moved, loaded, strict=True):
+        assert one.known_energy.low + Fraction(1, 5) < other.known_energy.high
+        assert other.known_energy.low < one.known_energy.high + Fraction(1, 5)

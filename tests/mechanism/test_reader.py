@@ -16,7 +16,7 @@ from ptmcad.errors import MAX_FAULTS, ConfigError, Faults
 from ptmcad.exact.counting import count_by_isolation
 from ptmcad.exact.models.potential import potential, system_from
 from ptmcad.exact.signatures import count_by_signature
-from ptmcad.mechanism import Mechanism, described, described_system, ptm, recognised
+from ptmcad.mechanism import Mechanism, described, described_system, ptm, recognised, work
 from ptmcad.mechanism.proofs import check_bars, check_unknowns
 from ptmcad.mechanism.ptm import RECORD
 
@@ -106,13 +106,30 @@ def test_a_pendulum_holds_a_moment_up_to_its_weight(count: Any) -> None:
     assert count(system, {"W": fmpq(1), "M": fmpq(3, 2)}).index == (0, 0)
 
 
-def test_a_moment_that_depends_on_an_unknown_has_no_potential() -> None:
-    """W cos th = M sin th cos th: cos th = 0 or sin th = W/M, so four where M > W; nothing says which are stable."""
+def test_a_moment_that_depends_on_its_own_unknown_has_a_potential() -> None:
+    """W cos th = M sin th cos th: cos th = 0 or sin th = W/M, so four where M > W; those of cos th = 0 are stable."""
     m = described({**PENDULUM, "moments": {"th": "M*sin(th)*cos(th)"}})
+    assert m.tells_stability
+    system = system_from(m)
+    found = [count(system, {"W": fmpq(1), "M": fmpq(2)}) for count in (count_by_isolation, count_by_signature)]
+    assert [(c.total, c.stable, c.index) for c in found] == [(4, 2, (2, 2))] * 2
+
+
+def test_a_moment_that_depends_on_another_unknown_has_no_potential() -> None:
+    """The same at th, and at another angle s that its spring holds at 0 or pi: nothing says which are stable."""
+    further = {"unknowns": {"th": "angle", "s": "angle"}, "torsion": [{"angle": "s", "k": 1}]}
+    m = described({**PENDULUM, **further, "moments": {"th": "M*sin(th)*cos(th)*cos(s)"}})
     assert not m.tells_stability
     system = system_from(m)
     found = [count(system, {"W": fmpq(1), "M": fmpq(2)}) for count in (count_by_isolation, count_by_signature)]
-    assert [(c.total, c.stable, c.index) for c in found] == [(4, None, None)] * 2
+    assert [(c.total, c.stable, c.index) for c in found] == [(8, None, None)] * 2
+
+
+def test_a_moment_that_is_too_large_to_be_integrated_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(work, "MAX_WORK", 10)
+    moment = "*".join(f"(M + W*cos(th) + {n}*sin({n}*th))" for n in range(1, 4))
+    with pytest.raises(ConfigError, match="moments: they have no energy: the expressions are too large"):
+        described({**PENDULUM, "moments": {"th": moment}})
 
 
 @pytest.mark.parametrize(
@@ -249,3 +266,20 @@ def test_a_stored_result_keeps_the_description() -> None:
     assert again.slice.model.source == {"name": "mechanism", **result.slice.model.source}
     assert again.to_json(timings=False) == text
     assert {(region.total, region.stable) for region in result.regions} == {(0, 0), (2, 1)}
+
+
+NEWCOMERS: dict[str, tuple[dict[str, Any], str]] = {
+    "a parameter as a number": ({"parameters": {"c": 1}}, "such as {kind: length, default: 1}"),
+    "unknowns as a list": ({"unknowns": ["x"]}, "such as {th: angle, x: real}"),
+    "an equation as a text": ({"equations": "x^2 - 1"}, 'expected a list, such as ["x^3 - a*x + b"]'),
+    "an equation with its sign": ({"equations": ["x^2 = 2"]}, "write the left side less the right side"),
+    "an inequality with its sign": ({"positive": ["x > 0"]}, "write what has to be positive alone"),
+}
+
+
+@pytest.mark.parametrize("name", NEWCOMERS)
+def test_what_newcomers_write_is_refused_with_what_to_write(name: str) -> None:
+    change, remedy = NEWCOMERS[name]
+    with pytest.raises(ConfigError) as caught:
+        described_system({"unknowns": {"x": "real"}, "equations": ["x^2 - 2"], **change})
+    assert any(remedy in str(fault) for fault in caught.value.faults)

@@ -59,7 +59,13 @@ MIXED = bar(
     springs=[{"between": ["A", "P"], "k": 1}, {"between": ["O", "A"], "k": 2}],
 )
 FREE = bar({"th": "M"}, springs=[{"between": ["A", "P"], "k": 1, "free": "1/2"}])
-UNTOLD = bar({"th": "M*sin(2*th) + 1/3"})
+WAVE = bar({"th": "M*(1 + sin(2*th))"})
+UNTOLD = bar(
+    {"th": "M*sin(2*th) + s/3"},
+    unknowns={"th": "angle", "s": "length"},
+    points={"O": [0, 0], "A": ["s", 0], "P": ["cos(th)", "sin(th)"], "Q": [2, 0]},
+    springs=[{"between": ["A", "P"], "k": 1}, {"between": ["Q", "A"], "k": 2}],
+)
 
 
 def solved(record: dict[str, Any], **at: str) -> Poses:
@@ -72,7 +78,7 @@ def words(figure: Figure) -> str:
     return "\n".join(text.get_text() for text in figure.findobj(Text))
 
 
-@pytest.mark.parametrize("record", [ANGLE, TWO, MIXED, FREE])
+@pytest.mark.parametrize("record", [ANGLE, TWO, MIXED, FREE, WAVE])
 def test_what_is_drawn_is_level_at_the_equilibria(record: dict[str, Any]) -> None:
     """The derivatives by differences: without the moments' work they would be the moments."""
     found = solved(record, M="1/2", F="1/3")
@@ -86,14 +92,14 @@ def test_what_is_drawn_is_level_at_the_equilibria(record: dict[str, Any]) -> Non
             assert abs(rise) / 2e-5 * float(energy.unit) < 1e-5
 
 
-@pytest.mark.parametrize("record", [ANGLE, TWO, MIXED, FREE])
+@pytest.mark.parametrize("record", [ANGLE, TWO, MIXED, FREE, WAVE])
 def test_a_landscape_says_what_it_is_of(record: dict[str, Any]) -> None:
     figure = draw_landscape(solved(record, M="1/2", F="1/3"))
     title = words(figure).replace("\n", " ")
     assert "V = U − 0.0" in title or "V = U − 0.5" in title
     assert "cut at ±180°, not periodic" in title
     assert "V (force · length)" in title and "U (force · length)" not in title
-    assert "less the moment" in figure.get_label()
+    assert "less the" in figure.get_label() and "moment" in figure.get_label()
     without = draw_landscape(solved(record, M="0", F="1/3"))
     assert "periodic" not in words(without) and "U (force · length)" in words(without)
 
@@ -136,6 +142,7 @@ def test_the_table_says_what_the_energy_leaves_out() -> None:
     assert "without the moments' work" in solved(TWO, M="1/2", F="1").table()
     assert note not in solved(ANGLE, M="0", F="1").table()
     assert note in solved(FREE, M="1/2", F="1").table()
+    assert "without the work of the constant part of the moment" in solved(WAVE, M="1/2", F="1").table()
     untold = solved(UNTOLD, M="1/2", F="1").table()
     assert "energy  none, and nothing says which are stable" in untold and "solution" not in untold
 
@@ -159,7 +166,9 @@ def test_poses_without_an_energy_are_drawn() -> None:
 def test_a_landscape_that_there_is_not_is_refused_beside_the_other_files(tmp_path: Path) -> None:
     (tmp_path / "untold.yaml").write_text(yaml.safe_dump(UNTOLD), encoding="utf-8")
     asked = [str(tmp_path / "untold.yaml"), "--at", "M=1/2,F=1/5", "--landscape", "--out", str(tmp_path)]
-    with pytest.raises(ConfigError, match=r"--landscape: .* depends on an unknown: .* poses\.svg, poses\.json are wri"):
+    with pytest.raises(
+        ConfigError, match=r"--landscape: .* depends on another unknown: .* poses\.svg, poses\.json are"
+    ):
         CliRunner().invoke(solve_command, [*asked, "--format", "svg,json"], catch_exceptions=False)
     assert {path.name for path in tmp_path.iterdir()} == {"untold.yaml", "poses.svg", "poses.json"}
 

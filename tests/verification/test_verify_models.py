@@ -134,7 +134,7 @@ RECORDS: dict[str, dict[str, Any]] = {
         "axes": {"a": [-2, -1], "b": [1, 2]},
         "count": "index",
     },
-    # a moment that depends on its own angle: nothing is said of what is stable
+    # a moment that depends on its own angle: but for its constant part it has an energy
     "moment": turned("M*sin(2*th) + c"),
     "constant moment": turned("M + c/2"),
     # two moments, each of which depends on the other's unknown: the matrix of derivatives is not symmetric
@@ -223,7 +223,7 @@ def test_every_alteration_is_tried_on_some_map() -> None:
 # ------------------------------------------------------------------------------------------ what is false about a model
 
 
-@pytest.mark.parametrize("name", ["moment", "moments"])
+@pytest.mark.parametrize("name", ["moments", "moments of three unknowns"])
 def test_what_a_moment_alters_is_rejected(name: str) -> None:
     """Its part in the equations and their derivatives, a potential, what is stable and an index, which it has not."""
     true = map_of(name)
@@ -245,6 +245,15 @@ def test_what_a_moment_alters_is_rejected(name: str) -> None:
     ):
         found = violation(false, check)
         assert found is not None and found[0] == check
+
+
+@pytest.mark.parametrize("less", ["M", "M*cos_th", "1/2*M*cos_th^2", "c*sin_th"])
+def test_the_work_of_a_moment_is_in_the_potential(less: str) -> None:
+    """With another constant or another wave it is another potential."""
+    true = map_of("moment")
+    potential = f"{true.system.potential} - {less}"
+    found = violation(replace(true, system=replace(true.system, potential=potential)), "equations")
+    assert found is not None and found[0] == "equations"
 
 
 def test_derivatives_under_moments_are_no_symmetric_matrix() -> None:
@@ -336,7 +345,7 @@ def other_system(change: Callable[[dict[str, Any]], Any], name: str) -> RegionMa
         ("pendulum", lambda m: m.update(loads={"P": ["1/9", "W"]}), "the stored potential differs"),
         ("torque", lambda m: m["torsion"][0].update(rest={"cos": "4/5", "sin": "3/5"}), "the stored potential differs"),
         ("torque", lambda m: m.update(moments={"th": "-M"}), "the stored gradient's entry 0 differs"),
-        ("torque", lambda m: m.update(moments={"th": "M*cos(th)"}), "a moment depends on an unknown"),
+        ("torque", lambda m: m.update(moments={"th": "M*cos(th)"}), "differs from the mechanism's in its slope by th"),
     ],
 )
 def test_claims_of_another_model(name: str, change: Callable[[dict[str, Any]], Any], what: str) -> None:

@@ -14,6 +14,7 @@ from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynom
 from ptmcad.errors import ConfigError, GeometryError
 from ptmcad.mechanism import Mechanism, System
 from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.mechanism.work import split_moments
 from ptmcad.question.positivity import Need, Proved, decide
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
@@ -110,10 +111,11 @@ def problem_of(slice: Slice) -> Problem:
                 "window: narrow the window"
             )
     gradient = list(_gradient(smooth, ring))
-    for unknown, tree in model.moments:
-        if set(names_of(tree)) & set(model.unknowns):
+    for unknown, tree in split_moments(model).steady:
+        if others := sorted(set(names_of(tree)) & set(model.unknowns) - {unknown}):
             raise ConfigError(
-                f"the certified engine takes constant moments, and that on {unknown} depends on an unknown",
+                f"the certified engine takes no moments without a potential, and that on {unknown} depends on "
+                f"{others[0]}",
                 key="engine",
             )
         k = ring.unknowns.index(unknown)
@@ -136,8 +138,8 @@ def _energy(mechanism: Mechanism, ring: Harmonics) -> tuple[TrigonometricPolynom
         pull = constant_of(k * free)
         if pull.numerator and (dx.terms or dy.terms):
             cones.append(Cone(spring.name, pull, (dx, dy)))
-    for torsion in mechanism.torsion:
-        smooth = smooth + evaluate(torsion.energy, ring)
+    for tree in (*(torsion.energy for torsion in mechanism.torsion), *split_moments(mechanism).energies):
+        smooth = smooth + evaluate(tree, ring)
     for load in mechanism.loads:
         for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
             smooth = smooth - evaluate(force, ring) * coordinate

@@ -1,31 +1,61 @@
 """The elimination system of a slice: equilibria with a singular Hessian, as polynomials with integer coefficients.
 
-Guarantee: the ideal that they generate, cut with Q[x, y], vanishes on every CRITICAL component of the slice.
+Guarantee: the ideal that they generate, cut with Q[x, y], vanishes on every CRITICAL component of the slice. It has no
+solution where the slice's equations lose their meaning, nor one that an inequality excludes all over the slice if the
+variety leaves these out: one more unknown is the inverse of what is not zero.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import count
 
-from ptmcad.algebra.polynomials import Ratio, UnknownPolynomial
+from ptmcad.algebra.polynomials import ONE, Coefficient, Ratio, UnknownPolynomial, irreducible_factors
 from ptmcad.answer.slicevariety import EliminationSystem, Term
-from ptmcad.exact.models.system import ParametricSystem, on_slice
+from ptmcad.exact.models.system import ParametricSystem, on_slice, saturated
 from ptmcad.exact.models.text import system_text
+
+INVERSE = "inverse"
+"""The name of the unknown that is one, with a number where the name is taken."""
 
 
 def elimination_system(
-    system: ParametricSystem, parameters: Mapping[str, Ratio], axes: tuple[str, str]
+    system: ParametricSystem,
+    parameters: Mapping[str, Ratio],
+    axes: tuple[str, str],
+    limits: Sequence[Coefficient],
+    excludes: bool,
 ) -> EliminationSystem:
-    """The equations of a slice, the circles, and the Hessian's determinant.
+    """The equations of a slice, the circles, what is not zero times its inverse less 1, and the Hessian's determinant.
 
     Parameters
     ----------
     parameters : every parameter of the system's ring as numerator and denominator in Z[x, y].
     axes : the names of x and y.
+    limits : further polynomials whose zeros bound the slice's domain (lengths and stiffnesses that vanish).
+    excludes : whether solutions at which an inequality's polynomial is zero are left out.
     """
     on = on_slice(system, parameters)
+    conditions = list(on.inequalities) if excludes else []
+    if (nowhere := _product((*on.boundary, *limits))) != ONE:
+        conditions.append({(0,) * on.unknowns: nowhere})
+    width = on.unknowns
+    for condition in conditions:
+        on = saturated(on, {(*m, *(0,) * (on.unknowns - width)): c for m, c in condition.items()})
+    unknowns = system_text(system).unknowns
+    for _ in conditions:
+        names = (f"{INVERSE}{n or ''}" for n in count())
+        unknowns += (next(name for name in names if name not in (*unknowns, *axes)),)
     polynomials = tuple(_terms(p) for p in (*on.equations, on.jacobian))
-    return EliminationSystem(system_text(system).unknowns, axes, polynomials)
+    return EliminationSystem(unknowns, axes, polynomials)
+
+
+def _product(polynomials: Iterable[Coefficient]) -> Coefficient:
+    """That of the distinct irreducible factors."""
+    total = ONE
+    for factor in {str(f): f for p in polynomials for f in irreducible_factors(p)}.values():
+        total = total * factor
+    return total
 
 
 def _terms(p: UnknownPolynomial) -> tuple[Term, ...]:

@@ -20,6 +20,7 @@ from ptmcad.exact.models.system import ParametricSystem, from_equations, from_po
 from ptmcad.exact.models.turns import with_turns
 from ptmcad.mechanism import Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.mechanism.work import split_moments
 from ptmcad.text.tree import Tree
 
 Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
@@ -82,7 +83,7 @@ def squared_lengths(mechanism: Mechanism) -> tuple[TrigonometricPolynomial, ...]
 def potential(mechanism: Mechanism) -> TrigonometricPolynomial:
     """Elastic energy of the springs minus the work of the loads; for ``ptm`` this is (1) of Wenger & Chablat.
 
-    The work of moments, which has several values on a circle or none, is not in it.
+    Of moments it has the work that is of one value for each pose (`split_moments`): none of constant ones.
     """
     geometry = geometry_of(mechanism)
     energy = geometry.ring.context.constant(0)
@@ -90,8 +91,8 @@ def potential(mechanism: Mechanism) -> TrigonometricPolynomial:
         energy += stiffness * _squared(geometry, spring.start, spring.end) * fmpq(1, 2)
     for node, (horizontal, vertical) in geometry.loads:
         energy -= horizontal * geometry.nodes[node][0] + vertical * geometry.nodes[node][1]
-    for torsion in mechanism.torsion:
-        energy += evaluate(torsion.energy, _Evaluation(geometry.ring))
+    for tree in (*(torsion.energy for torsion in mechanism.torsion), *split_moments(mechanism).energies):
+        energy += evaluate(tree, _Evaluation(geometry.ring))
     return geometry.ring.reduce(energy)
 
 
@@ -130,9 +131,9 @@ def _equilibria_of(mechanism: Mechanism) -> ParametricSystem:
         potential(mechanism),
         positive=tuple(name for name in mechanism.positive if name in kept),
         nonnegative=tuple(name for name in mechanism.nonnegative if name in kept),
-        moments={m.unknown: ring.reduce(evaluate(m.value, _Evaluation(ring))) for m in mechanism.moments},
+        moments={m.unknown: ring.reduce(evaluate(m.value, _Evaluation(ring))) for m in split_moments(mechanism).steady},
     )
-    # an unknown that cancels out of a moment counts as the description says, to which the question was put
+    # another unknown that cancels out of a moment counts as the description says, to which the question was put
     return system if mechanism.has_potential else replace(system, potential=None)
 
 

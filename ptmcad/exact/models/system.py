@@ -41,8 +41,8 @@ class ParametricSystem:
     equations : each is zero at a solution; of a potential its gradient, in the order of the ring's unknowns.
     jacobian : their derivatives by the unknowns, row by row; of a potential its Hessian.
     equation_terms, jacobian_terms : the same, sorted for evaluation at many points.
-    potential : U, in units of force times length, without the work of moments, which are in the equations alone; None
-        where equations are given, or a moment depends on an unknown.
+    potential : U, in units of force times length, without the work of constant moments, which are in the equations
+        alone; None where equations are given, or a moment depends on another unknown than its own.
     inequalities : a solution counts where all of them are positive.
     stability : where there is no potential a solution is stable where all of these are positive.
     positive : parameters that must be positive (rod lengths and stiffnesses).

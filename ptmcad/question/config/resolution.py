@@ -126,7 +126,9 @@ def _count(record: Record) -> Count:
     if count is Count.STABLE and not model.tells_stability:
         problem = "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"
         if not isinstance(model, System):
-            problem = "a moment that depends on an unknown has no potential, which says what is stable: count total"
+            problem = (
+                "a moment that depends on another unknown has no potential, which says what is stable: count total"
+            )
     if count is Count.INDEX and not model.has_potential:
         problem = "solutions of equations have no index, which is that of a potential's Hessian: count total"
     if count is Count.ADMISSIBLE and isinstance(model, System):

@@ -58,8 +58,8 @@ def _edge(axis: int, end: Fraction) -> PlanePolynomial:
 def msolve(variety: SliceVariety) -> str:
     """The elimination system with the unknowns before the axes, over Q.
 
-    With n unknowns, ``msolve -e n -g 2`` prints the ideal of the polynomials in the two axes alone that vanish where an
-    equilibrium is singular; the CRITICAL components are factors of its generator.
+    With n unknowns, inverses among them, ``msolve -e n -g 2`` prints the ideal of the polynomials in the two axes alone
+    that vanish where an equilibrium is singular; the CRITICAL components are the factors of its generator.
     """
     names = symbols((*variety.system.unknowns, *variety.system.axes), Style.MSOLVE)
     polynomials = (text.replace(" ", "") for text in variety.system.texts(names))

@@ -41,7 +41,7 @@ def line_data(found: CountIntervals, digits: int) -> dict[str, Any]:
             }
             for c in found.changes
         ],
-        "operation": [n for n, i in enumerate(found.intervals) if i in found.operation],
+        "operation": [n for n, i in enumerate(found.intervals) if i.counts.working == found.working],
     }
 
 
@@ -107,7 +107,7 @@ def over_data(found: OperationWidths, digits: int) -> dict[str, Any]:
         "rows": [
             {
                 "value": text_of(row.value),
-                "operation": [_interval(i, digits) for i in row.operation],
+                "operation": [_interval(i, digits) for span in row.operation for i in span.parts],
                 "remark": row.remark,
             }
             for row in found.rows

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.algebra.numbers import refined
-from ptmcad.answer.intervals import CountInterval, End
+from ptmcad.answer.intervals import End, Span
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.numerals import integer_text, magnitude, text_of
 
@@ -48,7 +48,7 @@ def known(enclosure: Enclosure, digits: int) -> str:
     return Enclosure(value, value).text(digits)
 
 
-def width_text(interval: CountInterval, digits: int) -> str:
+def width_text(interval: Span, digits: int) -> str:
     """The width of an interval as a decimal.
 
     A width that is a short decimal or lies nearer to one than 10^-1000 is shown with as many digits as are certain.
@@ -84,7 +84,7 @@ def enclosure_data(enclosure: Enclosure) -> list[str]:
     return [text_of(enclosure.low), text_of(enclosure.high)]
 
 
-def finer(interval: CountInterval, width: Fraction) -> CountInterval:
+def finer(interval: Span, width: Fraction) -> Span:
     """The same interval with its ends isolated within ``width`` > 0."""
     low, high = (e if isinstance(e, Fraction) else refined(e, width) for e in (interval.low, interval.high))
-    return CountInterval(low, high, interval.counts, interval.sample)
+    return Span(low, high)

@@ -11,7 +11,7 @@ from fractions import Fraction
 from flint import arb, ctx
 
 from ptmcad.algebra.polynomials import from_fraction
-from ptmcad.answer.intervals import CountInterval, CountIntervals, CriticalFreeLength, End
+from ptmcad.answer.intervals import CountIntervals, CriticalFreeLength, End, Span
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.widths import Maximum, OperationWidths
 from ptmcad.answer.words import kind_name, noun
@@ -48,17 +48,22 @@ def table(found: CountIntervals, digits: int = 10) -> str:
         changes += [[end_text(c.at, digits), c.text, formula(c.at, name)] for c in found.changes]
         lines += aligned(changes)
     lines.append("")
+    range_name = operation_name(found.model, found.working)
     if not found.operation:
-        lines.append(f"operation range: none, {nowhere(found.model, found.working)}")
-    if found.operation and not isinstance(found.model, Mechanism):
-        verb = "is" if found.working == 1 else "are"
-        lines.append(f"operation range: where there {verb} {working_text(found.model, found.working)}")
-    lines += [f"operation range: {_range_text(i, digits)}" for i in found.operation]
+        lines.append(f"{range_name}: none, {nowhere(found.model, found.working)}")
+    lines += [f"{range_name}: {_range_text(i, digits)}" for i in found.operation]
     return "\n".join(lines)
 
 
 _INDEX_HEADS = {2: "min-max", 3: "min-saddle-max"}
 _WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+
+
+def operation_name(model: Model, number: int) -> str:
+    """What the range of so many stable solutions is called: only a mechanism operates."""
+    if not isinstance(model, Mechanism):
+        return f"range with {working_text(model, number)}"
+    return "operation range" if number == 2 else f"operation range ({working_text(model, number)})"
 
 
 def working_text(model: Model, number: int) -> str:
@@ -72,7 +77,7 @@ def nowhere(model: Model, number: int) -> str:
     return f"there {'is' if number == 1 else 'are'} nowhere {working_text(model, number)}"
 
 
-def _range_text(interval: CountInterval, digits: int) -> str:
+def _range_text(interval: Span, digits: int) -> str:
     edges = [side for side, end in (("lower", interval.low), ("upper", interval.high)) if isinstance(end, Fraction)]
     note = ""
     if edges:
@@ -97,7 +102,8 @@ def aligned(rows: list[list[str]]) -> list[str]:
 
 def width_table(found: OperationWidths, digits: int = 10) -> str:
     """The operation ranges at the tabulated values, and where they are widest."""
-    rows = [[found.over.name, "operation range from", "to", "width"]]
+    range_name = operation_name(found.model, found.working)
+    rows = [[found.over.name, f"{range_name} from", "to", "width"]]
     for row in found.rows:
         value = shortest_text(row.value)
         if row.remark or not row.operation:
@@ -111,9 +117,9 @@ def width_table(found: OperationWidths, digits: int = 10) -> str:
         lines.append(f"* the edge of the window of {found.along.name}")
     lines.append("")
     if not found.maxima:
-        lines.append(f"widest operation range: none, {nowhere(found.model, found.working)}")
+        lines.append(f"widest {range_name}: none, {nowhere(found.model, found.working)}")
     for m in found.maxima:
-        lines.append(f"widest operation range: {maximum_text(m, found.over.name, digits)}")
+        lines.append(f"widest {range_name}: {maximum_text(m, found.over.name, digits)}")
     return "\n".join(lines)
 
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.answer.poses import Pose, Poses
+from ptmcad.answer.words import moments_work
 from ptmcad.exact.models.potential import squared_lengths, system_from
 from ptmcad.exact.models.system import polynomial_at
 from ptmcad.mechanism import Mechanism, Model
@@ -106,8 +107,7 @@ def drawn(poses: Poses) -> str:
     if not moments:
         return "Energy"
     cut = ", cut at ±180°, not periodic," if is_cut(poses) else ""
-    whose = "moments'" if len(moments) > 1 else "moment's"
-    return f"Energy less the {whose} work{cut}"
+    return f"Energy less the {moments_work(poses.model, len(moments))}{cut}"
 
 
 def is_cut(poses: Poses) -> bool:

@@ -55,6 +55,7 @@ _MARKERS = {
     "degenerate": ("*", 13.0, "#e9a7c4"),
 }
 
+_PLURALS = {"stable (minimum)": "stable (minima)", "saddle": "saddles", "maximum": "maxima"}
 _COLUMNS = 90
 """Characters of a line of the title."""
 _SPACE = "\N{NO-BREAK SPACE}"
@@ -351,12 +352,10 @@ def _legend(poses: Poses, shown: Sequence[Pose]) -> Iterator[Entry]:
     kinds = [_kind(pose) for pose in shown]
     for name, (marker, size, face) in _MARKERS.items():
         if name in kinds:
-            several = "s" if kinds.count(name) > 1 else ""
-            count = {"stable (minimum)": f"{kinds.count(name)} stable (minimum)"}.get(
-                name, f"{kinds.count(name)} {name}{several if name == 'saddle' else ''}"
-            )
+            several = kinds.count(name) > 1
+            count = f"{kinds.count(name)} {_PLURALS.get(name, name) if several else name}"
             numbers = ", ".join(str(k) for k, other in enumerate(kinds, 1) if other == name)
-            lines = [count, f"number {numbers}" if not several else f"numbers {numbers}"]
+            lines = [count, f"{'numbers' if several else 'number'} {numbers}"]
             if name == "degenerate":
                 lines += [f"multiplicity {p.multiplicity}" for p in shown if p.index is None]
             yield Entry(tuple(lines), _marker_mark(marker, size, face))

@@ -26,7 +26,7 @@ from ptmcad.answer.words import counted, noun
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.ranges.numbers import end_text, width_text
-from ptmcad.show.ranges.table import maximum_text, working_text
+from ptmcad.show.ranges.table import maximum_text, operation_name, working_text
 from ptmcad.show.render.axes import scale_of, symbol, unit
 from ptmcad.show.render.colours import fill_of_counts, fill_of_index
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
@@ -66,8 +66,9 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
             if (high - low) * WIDE * 72 > 4 * SIZE:
                 axes.text((low + high) / 2, 0.5, str(i.counts.working), ha="center", va="center", fontsize=SIZE + 3,
                           bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5, "alpha": 0.85})  # fmt: skip
-            if i in found.operation:
-                axes.plot([low, high], [1.2, 1.2], color=INK, linewidth=1.6, clip_on=False, marker="|", markersize=6)
+        for span in found.operation:
+            ends = [_place(end, found.along) for end in (span.low, span.high)]
+            axes.plot(ends, [1.2, 1.2], color=INK, linewidth=1.6, clip_on=False, marker="|", markersize=6)
         axes.set_xlim(0, 1)
         axes.set_ylim(0, 1)
         axes.set_yticks([])
@@ -93,8 +94,9 @@ def _bar_legend(found: CountIntervals) -> list[Entry]:
             seen.append(i.counts)
             head = str(i.total) if i.stable is None else f"{i.stable}   of {counted(model, i.total)}"
             entries.append(Entry((head, *_unstable(i.index)), fill_of_counts(i.counts)))
-    for i in found.operation:
-        entries.append(Entry(("operation range (bracket)", f"width {width_text(i, _DIGITS)}")))
+    for span in found.operation:
+        what = operation_name(model, found.working)
+        entries.append(Entry((what, f"(bracket), width {width_text(span, _DIGITS)}")))
     if any(c.before == c.after for c in found.changes):
         entries.append(Entry(("a label within one colour:", f"{noun(model)} touch, counts unchanged")))
     return entries
@@ -142,7 +144,8 @@ def spread(places: Sequence[float], half: float) -> list[float]:
 def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
     """The operation ranges at the tabulated values, and their width with its largest value."""
     title = textwrap.wrap(slice.heading, _COLUMNS)[:3]
-    lines = [maximum_text(m, found.over.name, _DIGITS) for m in found.maxima] or ["there is no operation range"]
+    none = f"there is no {operation_name(found.model, found.working)}"
+    lines = [maximum_text(m, found.over.name, _DIGITS) for m in found.maxima] or [none]
     texts = [f"above: {_where(found)}; below: how wide that is; diamond: the widest"]
     texts += [part for line in lines for part in textwrap.wrap(f"widest: {line}", _COLUMNS)]
     foot = 0.55 + 0.2 * len(texts)
@@ -171,7 +174,8 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
             lower.plot(ends, [float(m.width)] * 2, "-D", color="#b45f06", markersize=6, fillstyle="none", clip_on=False)
         upper.set_ylim(fibre.low, fibre.high)
         upper.set_ylabel(_axis_name(slice, along), fontsize=SIZE + 2)
-        lower.set_ylabel("width of the\noperation range", fontsize=SIZE + 1)
+        range_name = "operation range" if isinstance(found.model, Mechanism) else "range"
+        lower.set_ylabel(f"width of the\n{range_name}", fontsize=SIZE + 1)
         lower.set_ylim(bottom=0)
         lower.margins(y=0.12)
         for axes in (upper, lower):

@@ -162,7 +162,7 @@ function legendOfParts() {
   if (slides.length) held.push(`${points(slides)} ${slides.length > 1 ? "sit on sliders" : "sits on the slider"}`);
   const text = parts.join("; ");
   return `${text.charAt(0).toUpperCase()}${text.slice(1)}. ${held.length ? `${held.join(", ")}. ` : ""}`
-    + `All poses are drawn to one scale; ${DATA.told ? "a strong frame means stable" : "nothing says which are stable, as a moment depends on an unknown"}.`;
+    + `All poses are drawn to one scale; ${DATA.told ? "a strong frame means stable" : "nothing says which are stable, as a moment depends on another unknown"}.`;
 }
 theme.changed.push(() => { if (cells.redraw) cells.redraw(); });
 

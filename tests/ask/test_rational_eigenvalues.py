@@ -1,0 +1,62 @@
+"""Rational eigenvalues of Hessians of three unknowns at irrational solutions, whose digits no ball settles."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+import ptmcad
+from ptmcad.answer.poses import Poses
+from ptmcad.ask.solving import poses_at
+from ptmcad.question.config import point_from_mapping
+
+PLATE: dict[str, Any] = {
+    "mechanism": {
+        "parameters": {"h": {"kind": "length", "default": 1}, "W": {"kind": "force"}},
+        "unknowns": {"x": "length", "y": "length", "t": "angle"},
+        "points": {"A": [-1, 0], "B": [1, 0], "P": ["x", "y"]},
+        "bodies": {"plate": {"at": "P", "angle": "t", "points": {"Q": ["-1/2", "h"], "R": ["1/2", "h"]}}},
+        "springs": [{"between": [a, b], "k": 1} for a, b in ("AQ", "BR", "AP")],
+        "loads": {"P": {"weight": "W"}},
+    },
+    "axes": {"h": ["1/4", 2], "W": [0, 4]},
+}
+"""The Hessian is 3 on the diagonal of x and y and couples both to t alone: 3 is an eigenvalue at every solution."""
+
+
+def solved(record: dict[str, Any], **at: str) -> Poses:
+    model = ptmcad.slice_from_mapping(record).model
+    return poses_at(model, point_from_mapping(at, model), 12)
+
+
+def potential(text: str) -> dict[str, Any]:
+    unknowns = {name: "real" for name in "xyz"}
+    return {"system": {"unknowns": unknowns, "potential": text}, "axes": {"a": [0, 3], "b": [0, 3]}}
+
+
+def test_an_eigenvalue_that_is_three_at_irrational_poses() -> None:
+    found = solved(PLATE, h="1", W="20/11").equilibria
+    assert [pose.index for pose in found] == [0, 1]
+    for pose in found:
+        assert [value.low for value in pose.eigenvalues if value.low == value.high] == [3]
+
+
+@pytest.mark.parametrize(
+    ("text", "rational"),
+    [
+        ("x^3/3 - a*x + y^2 + z^2 + 0*b", [2, 2]),
+        ("x^3/3 - a*x - y^2/6 + 5*z^2 + 0*b", [Fraction(-1, 3), 10]),
+        ("x^3/3 - a*x + y^3/3 - b*y + z^2/2", [1]),
+        ("x^3/3 - a*x + y^2/2 + x*y*z - b*z^2", []),
+    ],
+)
+def test_rational_eigenvalues_are_exact_with_their_multiplicity(text: str, rational: list[Any]) -> None:
+    found = solved(potential(text), a="2", b="3").equilibria
+    assert len(found) >= 2
+    for pose in found:
+        exact = [value.low for value in pose.eigenvalues if value.low == value.high]
+        assert exact == rational and len(pose.eigenvalues) == 3
+        assert all(one.low <= other.high for one, other in pairwise(pose.eigenvalues))
