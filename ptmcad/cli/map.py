@@ -74,7 +74,7 @@ def command(
     Examples:
         ptmcad map --slice L2,rho --value stiffness --pixels 100
         ptmcad map --slice rho,L2 --set F3=-10 --set F4=-10 --value barrier --pose stable:2 --pixels 60
-        ptmcad map --slice L2,rho --value "length:k1" --pose stable:2 --format png,csv --pixels 50
+        ptmcad map --slice L2,rho --value length:k1 --pose stable:2 --format png,csv --pixels 50
     """
     slice = asked.slice()
     if slice.has_free_lengths and (value.strip() == "barrier" or not pose.strip().startswith("stable")):
