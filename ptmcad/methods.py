@@ -146,6 +146,37 @@ def _map_to_dataframe(self: RegionMap, what: str = "regions", **options: Any) ->
     return data_frame(self, what, options)
 
 
+def _map_repr_html(self: RegionMap) -> str:
+    from ptmcad.show.notebook import map_html
+
+    return map_html(self)
+
+
+def _map_repr_svg(self: RegionMap) -> str | None:
+    from ptmcad.show.notebook import picture
+
+    image = picture(self, "svg")
+    return None if image is None else image.decode()
+
+
+def _map_repr_png(self: RegionMap) -> bytes | None:
+    from ptmcad.show.notebook import picture
+
+    return picture(self, "png")
+
+
+def _poses_repr_html(self: Poses) -> str:
+    from ptmcad.show.notebook import poses_html
+
+    return poses_html(self)
+
+
+def _variety_repr_html(self: SliceVariety) -> str:
+    from ptmcad.show.notebook import text_html
+
+    return text_html(self.text())
+
+
 def _variety_text(self: SliceVariety, format: str = "text") -> str:
     """The variety in one of the formats of `ptmcad.show.export.FORMATS`.
 
@@ -195,10 +226,14 @@ METHODS["RegionMap"] = {
     "grid": _map_grid,
     "field": _map_field,
     "to_dataframe": _map_to_dataframe,
+    "_repr_html_": _map_repr_html,
+    "_repr_svg_": _map_repr_svg,
+    "_repr_png_": _map_repr_png,
 }
-METHODS["SliceVariety"] = {"text": _variety_text}
+METHODS["SliceVariety"] = {"text": _variety_text, "_repr_html_": _variety_repr_html}
 METHODS["Poses"] = {
     "table": _poses_table,
     "to_json": _poses_to_json,
     "from_json": classmethod(_poses_from_json),
+    "_repr_html_": _poses_repr_html,
 }

@@ -160,6 +160,10 @@ class CountIntervals:
         """The model's name."""
         return self.model.name
 
+    def __repr__(self) -> str:
+        found = ", ".join(str(i.counts.working) for i in self.intervals)
+        return f"<CountIntervals of {self.name} along {self.along.name}: {found} in turn>"
+
     @property
     def operation(self) -> tuple[OperationSpan, ...]:
         """The operation range: where there are so many stable solutions; of the paper's mechanism two."""

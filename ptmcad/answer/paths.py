@@ -102,3 +102,6 @@ class PosePaths:
     start: Fraction
     paths: tuple[PosePath, ...]
     has_moments: bool = False
+
+    def __repr__(self) -> str:
+        return f"<PosePaths of {self.name} along {self.along.name}: {len(self.paths)} from {self.start}>"

@@ -69,6 +69,13 @@ class Pose:
     admissible: bool | None = None
     reals: tuple[Enclosure, ...] = ()
 
+    def __repr__(self) -> str:
+        kind = {True: "stable", False: "unstable", None: "degenerate, or not told"}[self.stable]
+        angles = ", ".join(f"{d.text(6)}°" for d in self.degrees)
+        reals = ", ".join(r.text(6) for r in self.reals)
+        energy = "" if self.energy is None else f", energy {self.energy.text(6)}"
+        return f"<Pose {kind}: {', '.join(filter(None, (angles, reals)))}{energy}>"
+
     @property
     def known_energy(self) -> Enclosure:
         """The energy of a pose that has one; raises `ValueError` for others."""
@@ -114,6 +121,9 @@ class Poses:
     def __str__(self) -> str:
         return self.table()
 
+    def __repr__(self) -> str:
+        return f"<Poses of {self.mechanism}: {len(self.equilibria)}, {self.stable} stable, {self.status.value}>"
+
     if TYPE_CHECKING:  # `ptmcad.methods` has them
 
         def table(self, digits: int | None = None) -> str: ...
@@ -122,6 +132,8 @@ class Poses:
 
         @classmethod
         def from_json(cls, text: str) -> Poses: ...
+
+        def _repr_html_(self) -> str: ...
 
 
 DIGITS = 12

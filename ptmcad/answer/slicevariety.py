@@ -74,5 +74,11 @@ class SliceVariety:
 
         def text(self, format: str = "text") -> str: ...
 
+        def _repr_html_(self) -> str: ...
+
     def __str__(self) -> str:
         return self.text()
+
+    def __repr__(self) -> str:
+        degrees = ", ".join(f"{c.kind.value} of degree {c.polynomial.total_degree}" for c in self.components[:8])
+        return f"<SliceVariety {self.slice.name}: {degrees}{', …' if len(self.components) > 8 else ''}>"

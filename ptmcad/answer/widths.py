@@ -65,3 +65,6 @@ class OperationWidths:
     maxima: tuple[Maximum, ...]
     model: Model
     working: int
+
+    def __repr__(self) -> str:
+        return f"<OperationWidths of {self.name} along {self.along.name} over {self.over.name}: {len(self.rows)} rows>"

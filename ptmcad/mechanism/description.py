@@ -165,6 +165,9 @@ class Model:
     def __hash__(self) -> int:
         return hash((type(self).__name__, self.name, *self.parameters, *self.unknowns))
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name}: unknowns {', '.join(self.unknowns)}; {', '.join(self.parameters)}>"
+
     @cached_property
     def angles(self) -> tuple[str, ...]:
         """The unknowns on the circle."""
@@ -263,6 +266,7 @@ class Mechanism(Model):
     torsion: tuple[TorsionSpring, ...] = ()
 
     __hash__ = Model.__hash__
+    __repr__ = Model.__repr__
 
     @property
     def has_potential(self) -> bool:
@@ -321,6 +325,7 @@ class System(Model):
     stability: tuple[Tree, ...] = ()
 
     __hash__ = Model.__hash__
+    __repr__ = Model.__repr__
 
     @property
     def has_potential(self) -> bool:

@@ -90,6 +90,10 @@ class Slice:
         """The model's name, ``"ptm"`` for the paper's mechanism."""
         return self.model.name
 
+    def __repr__(self) -> str:
+        window = ", ".join(f"{a.name} in [{a.low}, {a.high}]" for a in self.axes)
+        return f"<Slice {self.name} of {self.mechanism}: {window}, counted by {self.count.value}>"
+
     @property
     def has_free_lengths(self) -> bool:
         """Whether some spring has a free length that is not zero everywhere; algebra cannot answer then."""

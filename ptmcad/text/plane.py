@@ -32,6 +32,10 @@ class PlanePolynomial:
             content = -content
         return cls(tuple((i, j, c // content) for i, j, c in ordered))
 
+    def __repr__(self) -> str:
+        terms = ", ".join(map(str, self.terms[:2]))
+        return f"<PlanePolynomial {terms}{', …' if len(self.terms) > 2 else ''}: {len(self.terms)} terms>"
+
     @property
     def degrees(self) -> tuple[int, int]:
         """The degree in each axis."""

@@ -59,6 +59,9 @@ class VerifyReport:
     def __str__(self) -> str:
         return self.table()
 
+    def __repr__(self) -> str:
+        return f"<VerifyReport: {self.violation or f'{sum(c.passed is True for c in self.checks)} checks passed'}>"
+
     def table(self) -> str:
         """One line for each check: the answer, the claim, the method and the detail."""
         words = {True: "ok", False: "FALSE", None: "not checked"}
