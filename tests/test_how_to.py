@@ -1,0 +1,73 @@
+"""The pages of questions and of numbers: commands and Python say what the pages show; figures are drawn again."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import doctest
+import io
+import re
+import shlex
+import shutil
+from pathlib import Path
+
+import pytest
+from support.maps import CONFIGS
+
+from ptmcad.cli import run
+
+DOCS = Path(__file__).parent.parent / "docs"
+HOW_TO, DATA = ((DOCS / f"{name}.md").read_text(encoding="utf-8") for name in ("how-to", "data"))
+CHANGING = re.compile(r"^time .*|\d+ random pixels agree .*|\d+ points of \d+ bits, seed \w+", re.MULTILINE)
+"""What is another time in each run, or rounding of another machine."""
+
+
+def without_what_changes(text: str) -> str:
+    lines = (line.rstrip() for line in CHANGING.sub("…", text).rstrip().splitlines())
+    return "\n".join(lines)
+
+
+def test_commands_and_python_say_what_the_page_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In their order, in a folder with the record alone."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(CONFIGS / "fig4.yaml", tmp_path)
+    names: dict[str, object] = {}
+    commands = examples = 0
+    for language, block in re.findall(r"^```(console|pycon)\n(.*?)^```$", HOW_TO, re.DOTALL | re.MULTILINE):
+        if language == "console":
+            for command, shown in re.findall(r"^\$ ptmcad (.*)\n((?:(?!\$ ).*\n)*)", block, re.MULTILINE):
+                assert run(shlex.split(command)) == 0, command
+                assert without_what_changes(capsys.readouterr().out) == without_what_changes(shown), command
+                commands += 1
+            continue
+        for example in doctest.DocTestParser().get_examples(block):
+            said = io.StringIO()
+            with contextlib.redirect_stdout(said):
+                exec(compile(example.source, "how-to.md", "single"), names)
+            assert said.getvalue() == example.want, example.source
+            examples += 1
+    assert commands >= 8
+    assert examples >= 7
+
+
+def test_numbers_are_drawn_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """matplotlib's lines run; the columns that the others name are there."""
+    monkeypatch.chdir(tmp_path)
+    assert run(["classify", str(CONFIGS / "fig4.yaml"), "--format", "csv,npz", "--pixels", "40"]) == 0
+    (python,) = re.findall(r"^```python\n(.*?)^```$", DATA, re.DOTALL | re.MULTILINE)
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    exec(python, {})
+    assert Path("again.png").read_bytes().startswith(b"\x89PNG")
+    with Path("fig4-boundaries.csv").open() as boundaries, Path("fig4-regions.csv").open() as regions:
+        columns = set(next(csv.reader(boundaries))), set(next(csv.reader(regions)))
+    (latex,), (matlab,) = (
+        re.findall(rf"^```{name}\n(.*?)^```$", DATA, re.DOTALL | re.MULTILINE) for name in ("latex", "matlab")
+    )
+    assert {*re.findall(r"\b[xy]=([A-Za-z]\w*)[,\]]", latex), *re.findall(r"thisrow\{(\w+)\}", latex)} <= columns[0]
+    assert set(re.findall(r"\bt\.(\w+)", matlab)) <= columns[0]
+    assert set(re.findall(r"\br\.(\w+)", matlab)) <= columns[1]
+    for table, shown in re.findall(r"^\| `NAME-(\w+)\.csv` \|[^|]*\| (.*) \|$", DATA, re.MULTILINE):
+        header = Path(f"fig4-{table}.csv").read_text().splitlines()[0].split(",")
+        assert {name for name in re.findall(r"`(\w+)`", shown)} <= set(header)
