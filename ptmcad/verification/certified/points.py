@@ -21,7 +21,7 @@ from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.counted import MINIMA, Counted, Counting, Counts, Enclosed, differs, stored
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import MIN_HALF_WIDTH, TORUS, Equilibrium, Square, Unproved, equilibria
-from ptmcad.verification.certified.flat import beside, is_flat
+from ptmcad.verification.certified.flat import beside, is_flat, is_nearly_flat
 from ptmcad.verification.certified.models import ModelCounting
 from ptmcad.verification.certified.parameters import Values, energy_at, energy_over, exact, values_at
 from ptmcad.verification.certified.structure import CertifiedClaims
@@ -45,8 +45,8 @@ _BASE = MECHANISM.first(Kind.BASE)
 def check_points(claims: CertifiedClaims) -> str:
     """Counts and stored solutions of every cell; and for how many cells nothing was proved.
 
-    Of the paper's mechanism all samples can be decided, so one that cannot is a fault of the map; but for flat ones
-    (`ptmcad.verification.certified.flat`), which are decided by the counts beside them unless the whole slice is flat.
+    Of the paper's mechanism all cells can be decided, so one that cannot is a fault of the map. Samples that are flat
+    or nearly so (`ptmcad.verification.certified.flat`) are by the counts beside them, unless the whole slice is flat.
     """
     counting, number = counting_of(claims), 0
     undecided: list[str] = []
@@ -85,9 +85,9 @@ def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell) -> int:
     try:
         there = counting.at(claims, *cell.sample)
     except Unproved as reason:
-        if not (counting.is_complete and is_flat(values_at(claims, *cell.sample))):
+        if not (counting.is_complete and is_nearly_flat(values_at(claims, *cell.sample))):
             raise
-        return _check_flat(claims, counting, cell, reason)
+        return _check_beside(claims, counting, cell, reason)
     if differs(cell, there.counts):
         raise Violation(f"said to have {stored(cell)}; there are {there.counts}")
     kept = [e for e in there.found if claims.result.slice.count not in MINIMA or "-" not in e.signs]
@@ -112,7 +112,7 @@ def _is_all_flat(claims: CertifiedClaims, cell: Cell) -> bool:
     return is_flat(values_at(claims, *cell.sample)) and not beside(claims, cell)
 
 
-def _check_flat(claims: CertifiedClaims, counting: Counting, cell: Cell, reason: Unproved) -> int:
+def _check_beside(claims: CertifiedClaims, counting: Counting, cell: Cell, reason: Unproved) -> int:
     """The counts are those at a point beside the sample, and there are as many different equilibria in the boxes.
 
     Raises
