@@ -47,6 +47,8 @@ class Kind(Enum):
     AUXILIARY = "auxiliary"
 
 
+COMPILATION = "compilation"
+"""The timing, beside the total, of what was compiled before the computation: once on a machine."""
 NO_POINT = "no point in the window"
 HARMLESS = "real solutions stay bounded and regular there"
 """Why a component is left out of the decomposition."""

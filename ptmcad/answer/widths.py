@@ -18,7 +18,7 @@ from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 class Place(Enum):
     """What is proved about the place of the largest width."""
 
-    CRITICAL = "a critical value of the other axis, and at no other place"
+    CRITICAL = "attained only at a critical value of the other axis"
     SMOOTH = "where the derivative vanishes, once in the enclosure"
     EDGE = "approached at the edge of the window, not attained in it"
     PLATEAU = "on a whole interval, where the width is constant"

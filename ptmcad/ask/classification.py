@@ -63,7 +63,8 @@ def classify(
     partial : called with the map after each stage that improves it.
     resume : a certified map of the same slice and count, stopped or not, from which to go on. Its cover is taken as
         it stands: what `ptmcad.verify` says of the result rests on it.
-    areas : False leaves the regions' areas out (exact engine): of each is then known that it is at most the window's.
+    areas : False leaves the regions' areas out: of each is then known that it is at most the window's. The certified
+        engine gets them at no extra cost, and gives them in any case.
     keep : the older name of ``without``.
 
     Raises
@@ -121,7 +122,7 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
     _check_count(slice)
     certified = is_certified(slice, options.engine)
     if not options.areas:
-        _check_no_areas(certified, options)
+        _check_no_areas(options)
     options = replace(options, without=switched_off(options.without, certified))
     if certified:
         _check_certified(slice, options)
@@ -145,9 +146,7 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
     return exact_map(slice, options)
 
 
-def _check_no_areas(certified: bool, options: Options) -> None:
-    if certified:
-        raise ConfigError("the certified engine has areas for nothing: it cannot leave them out", key="areas")
+def _check_no_areas(options: Options) -> None:
     if options.area_tolerance is not None:
         raise ConfigError("areas are not asked for, but a tolerance for them is given: leave one out", key="areas")
 

@@ -11,8 +11,10 @@ from typing import Any, NamedTuple
 
 import click
 
+from ptmcad.answer.plan import own_steps
 from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of
 from ptmcad.cli.gathering import gathered
+from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.pictures import write_result
 from ptmcad.cli.progress import ProgressBar
@@ -118,7 +120,7 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
                 raise
             text = _hand_over(output, stopped.partial)  # first: if this process is ended now, the other one has it
             place = save_stopped(target, text, beside=beside)
-            where = f"the partial result is in {place}{where_saved(target, place, beside)}"
+            where = f"partial map{_open_share(stopped.partial)} saved to {place}{where_saved(target, place, beside)}"
             further = "" if getattr(stopped.partial, "cover", None) is None else how_to_go_on(place)
             raise LimitReached(f"{stopped}; {where}{further}") from stopped
         _save(result, slice.name, output)
@@ -139,13 +141,13 @@ def _hand_over(output: Output, result: Any) -> str:
     text = output.text(result)
     if "json" in output.formats:
         state = "partial" if result.status.value == "partial" else "complete"
-        open_share = "" if result.cover is None else f", {_percent(result.undetermined)} of it undetermined,"
-        send(Topic.RESULT, state, text, open_share)
+        send(Topic.RESULT, state, text, _open_share(result))
     return text
 
 
-def _percent(share: Fraction) -> str:
-    return f"{float(100 * share):.2g} %"
+def _open_share(result: Any) -> str:
+    """How much of a certified map is undetermined, in brackets."""
+    return "" if result.cover is None else f" ({float(100 * result.undetermined):.2g} % undetermined)"
 
 
 def _save(result: Any, name: str, output: Output) -> None:
@@ -161,8 +163,8 @@ def _save(result: Any, name: str, output: Output) -> None:
 
 
 def explanation(steps: Iterable[Any]) -> str:
-    """Steps of a plan as text, one a line."""
-    return "\n".join(str(step) for step in steps)
+    """The slice's own steps of a plan as text, one a line."""
+    return "\n".join(map(str, own_steps(steps)))
 
 
 def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
@@ -211,6 +213,18 @@ def _names_of_savings(_context: click.Context, parameter: click.Parameter, names
     except ConfigError as error:
         raise ConfigError(error.message, key=parameter.opts[0]) from error
     return names
+
+
+def _idle(slice: Slice, options: Options) -> tuple[Idle, ...]:
+    """The options that the slice's engine does not need."""
+    from ptmcad.ask.engines import is_certified
+
+    certified = is_certified(slice, options.engine)
+    return (
+        Idle("no_areas", certified, "this engine gets areas at no extra cost"),
+        Idle("tolerance", not certified, "the exact engine leaves nothing undetermined"),
+        Idle("jobs", not certified, "the exact engine uses one thread"),
+    )
 
 
 def _resumed(slice: Slice, path: Path) -> Any:
@@ -290,6 +304,7 @@ def command(
     """
     slice = asked.slice(count)
     options = replace(options, timeout=limits.timeout)
+    report_idle((*_idle(slice, options), *idle_drawing(output.formats)))
     spent = 0.0
     with held(limits):
         if resume is not None:
@@ -300,7 +315,7 @@ def command(
             options, spent = replace(options, resume=earlier), time.monotonic() - begun
         steps = announced(slice, options) if output.explain else ()
         result = classify_to_files(slice, options, output, spent)
-    further = [step for step in result.plan if step not in steps]
-    if output.explain and further:
+    further = [step for step in own_steps(result.plan) if step not in steps] if output.explain else []
+    if further:
         click.echo(f"decided on the way:\n{explanation(further)}")
     click.echo(result.table())

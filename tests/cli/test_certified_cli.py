@@ -121,12 +121,19 @@ def test_a_result_to_files_and_on_from_it(
     assert "left out: terms of F3x, F4x (they are zero on this slice)" in lines[:at]
     assert lines[at + 1].startswith("computed: fold of a stable equilibrium")
     assert lines[at + 2] == "regions   3 of 3 cells, certified"
-    assert lines[-1].endswith("error 0.28, the undetermined share; area bounds at most 1.1e+00 apart")
+    assert lines[-1].endswith("28 % undetermined; area bounds at most 1.1e+00 apart")
     stored = RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8"))
     assert stored == replace(certified_map(), slice=stored.slice)
     assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED), "--jobs", "1"]) == 0
     assert engine["options"].resume.cover == certified_map().cover
     assert engine["options"].jobs == 1
+
+
+def test_areas_cost_nothing(engine: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["classify", *HAND, "--out", str(tmp_path), "--no-areas"]) == 0
+    said = capsys.readouterr()
+    assert said.err == "note: --no-areas has no effect here: this engine gets areas at no extra cost\n"
+    assert "\nareas     1: " in said.out
 
 
 def test_the_time_limit_saves_the_map_so_far(
@@ -135,7 +142,10 @@ def test_the_time_limit_saves_the_map_so_far(
     engine["stop"] = True
     assert run(["classify", *HAND, "--out", str(tmp_path), "--timeout", "5"]) == 3
     place = tmp_path / SAVED
-    said = f"stopped: the time limit was reached; the partial result is in {place}; --resume {place} goes on from there"
+    said = (
+        f"stopped: the time limit was reached; partial map (28 % undetermined) saved to {place}; "
+        f"go on with --resume {place}"
+    )
     assert capsys.readouterr().err == f"{said}\n"
     assert RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8")).status is Status.PARTIAL
     del engine["stop"]
@@ -233,6 +243,11 @@ def _stand_in(folder: Path, work: str, *options: str, stop: signal.Signals | Non
     return running.returncode, errors.decode()
 
 
+HOW_ENDED = {
+    signal.SIGINT: "interrupted",
+    signal.SIGTERM: "terminated (SIGTERM)",
+    signal.SIGHUP: "the terminal was closed (SIGHUP)",
+}
 forked = pytest.mark.skipif(not hasattr(os, "fork"), reason="without fork the command line is not watched")
 
 
@@ -243,8 +258,7 @@ def test_a_signal_saves_the_best_map_and_says_how_to_go_on(tmp_path: Path, stop:
     place = tmp_path / "out" / SAVED
     assert status == 128 + stop
     assert said == (
-        f"stopped: by {stop.name}; the partial result, 28 % of it undetermined, is in {place}; "
-        f"--resume {place} goes on from there\n"
+        f"{HOW_ENDED[stop]}; partial map (28 % undetermined) saved to {place}; go on with --resume {place}\n"
     )
     assert RegionMap.from_json(place.read_text(encoding="utf-8")).status is Status.PARTIAL
 
@@ -253,7 +267,7 @@ def test_a_signal_saves_the_best_map_and_says_how_to_go_on(tmp_path: Path, stop:
 def test_a_signal_before_the_first_map_says_that_there_is_none(tmp_path: Path) -> None:
     status, said = _stand_in(tmp_path, "def load(progress):\n    arrived()", stop=signal.SIGTERM)
     why = "the engine was still being loaded or compiled"
-    assert (status, said) == (143, f"stopped: by SIGTERM; there was no partial result to save yet: {why}\n")
+    assert (status, said) == (143, f"terminated (SIGTERM); there was no partial map to save yet: {why}\n")
     assert not list((tmp_path / "out").iterdir())
 
 
@@ -301,7 +315,7 @@ def test_a_complete_map_is_not_lost_while_its_pictures_are_drawn(tmp_path: Path,
     stop = None if options else signal.SIGINT
     status, said = _stand_in(tmp_path, work, "--format", "json,png", *options, stop=stop)
     assert status == (3 if options else 130)
-    assert "the complete result, 28 % of it undetermined, is in" in said
+    assert "complete map (28 % undetermined) saved to" in said
     assert "--resume" not in said
     text = (tmp_path / "out" / SAVED).read_text(encoding="utf-8")
     assert RegionMap.from_json(text).status is Status.CERTIFIED
@@ -396,7 +410,7 @@ def test_the_engine_stopped_by_ctrl_c_and_gone_on_with(tmp_path: Path) -> None:
         stopped.send_signal(signal.SIGINT)
         _, errors = stopped.communicate()
     assert stopped.returncode == 130
-    assert re.match(r"stopped: by SIGINT; the partial result, [0-9.e-]+ % of it undetermined, is in ", errors.decode())
+    assert re.match(r"interrupted; partial map \([0-9.e-]+ % undetermined\) saved to ", errors.decode())
     assert "--resume" in errors.decode()
     partial = RegionMap.from_json((tmp_path / "slice-rho-L2.partial.json").read_text(encoding="utf-8"))
     assert partial.status is Status.PARTIAL
