@@ -17,7 +17,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.regionmap import COMPILATION, RegionMap, Status
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import ptm
@@ -127,12 +127,13 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
     if certified:
         _check_certified(slice, options)
         check_taken(slice)
-        prepare(slice, options)
+        compiling = prepare(slice, options)
     started = perf_counter()
     options = replace(options, deadline=None if options.timeout is None else started + options.timeout)
     if certified:
         result = _certified(slice, options)
-        return replace(result, timings={**result.timings, "total": perf_counter() - started})
+        timed = replace(result, timings={**result.timings, "total": perf_counter() - started})
+        return with_compilation(timed, compiling)
     try:
         without_free_lengths(slice.model, slice.parameters, "an exact map is")
     except ConfigError as error:
@@ -151,8 +152,12 @@ def _check_no_areas(options: Options) -> None:
         raise ConfigError("areas are not asked for, but a tolerance for them is given: leave one out", key="areas")
 
 
-def prepare(slice: Slice, options: Options) -> None:
+def prepare(slice: Slice, options: Options) -> float:
     """Load what an engine needs, and compile it where this machine has not done so: no part of any time limit.
+
+    Returns
+    -------
+    The seconds that compiling took.
 
     Raises
     ------
@@ -163,11 +168,12 @@ def prepare(slice: Slice, options: Options) -> None:
         if "imports" in options.without:
             with loading("all that there is"):
                 load_all()
-        load_certified(options.progress)
+        return load_certified(options.progress)
+    return 0.0
 
 
-def load_certified(progress: Progress | None = None) -> None:
-    """Load the certified engine, and compile it where this machine has not done so.
+def load_certified(progress: Progress | None = None) -> float:
+    """Load the certified engine, and compile it where this machine has not done so; the seconds that this took.
 
     Raises
     ------
@@ -178,7 +184,12 @@ def load_certified(progress: Progress | None = None) -> None:
         import_module("ptmcad.certified.compiled")  # first: where numba is missing, it says so
         from ptmcad.certified.loading import load
     check_room("the certified engine")
-    load(progress)
+    return load(progress)
+
+
+def with_compilation(result: RegionMap, seconds: float) -> RegionMap:
+    """The map with the seconds that its run has spent compiling, if any, beside its own."""
+    return replace(result, timings={**result.timings, COMPILATION: seconds}) if seconds else result
 
 
 def _check_certified(slice: Slice, options: Options) -> None:

@@ -39,6 +39,7 @@ COMMANDS = {
     "stress": "ptmcad.cli.stress",
     "variety": "ptmcad.cli.variety",
     "verify": "ptmcad.cli.verify",
+    "warm-up": "ptmcad.cli.warm_up",
 }
 MAX_ARGUMENTS = 10_000
 """The parser's time is quadratic in their number."""

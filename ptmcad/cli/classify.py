@@ -107,14 +107,14 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
     with ProgressBar() as progress:
         options = replace(options, progress=progress, partial=handed_over if watched() else None)
         with clock_stopped(options.timeout, spent):  # the time that the import takes is not the computation's
-            from ptmcad.ask.classification import prepare, region_map
+            from ptmcad.ask.classification import prepare, region_map, with_compilation
 
             _report_why_none(slice, options, output, "the engine was still being loaded or compiled")
-            prepare(slice, options)
+            compiling = prepare(slice, options)
         _report_why_none(slice, options, output, "the first level of the search was not done")
         left = None if options.timeout is None else max(options.timeout - spent, MIN_SECONDS)
         try:
-            result = region_map(slice, replace(options, timeout=left))
+            result = with_compilation(region_map(slice, replace(options, timeout=left)), compiling)
         except LimitReached as stopped:
             if stopped.partial is None or "json" not in output.formats:
                 raise
@@ -293,7 +293,7 @@ def command(
     Springs with a free length (--set l0=1/5) are the certified engine's: it leaves a part of the window undetermined,
     which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the best map so far, from the first level of the
     search on, and says how much of it is undetermined; --resume goes on from there. In its first run on a machine it
-    compiles its inner loops, 10 to 40 seconds that --timeout does not count.
+    compiles its inner loops, some 10 to 30 seconds that --timeout does not count; `ptmcad warm-up` does so beforehand.
 
     \b
     Examples:

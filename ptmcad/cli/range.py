@@ -17,6 +17,7 @@ from ptmcad.cli.gathering import gathered
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import ptm
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -296,8 +297,9 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
         if enclosed and not request.over and request.start is None and not request.critical:
             from ptmcad.ask.classification import load_certified
 
-            with clock_stopped(limits.timeout):  # the time that compiling takes is not the computation's
-                load_certified()
+            # the time that compiling takes is not the computation's
+            with clock_stopped(limits.timeout), ProgressBar() as progress:
+                load_certified(progress)
         found = answer(slice, request)
         click.echo(found.text)
         if names:

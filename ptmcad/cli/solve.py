@@ -12,6 +12,7 @@ from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, write_result
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -130,9 +131,10 @@ def command(
         from ptmcad.ask.classification import load_certified
         from ptmcad.ask.solving import needs_intervals, poses_at
 
-        with clock_stopped(limits.timeout):  # the time that imports and compiling take is not the computation's
+        # the time that imports and compiling take is not the computation's
+        with clock_stopped(limits.timeout), ProgressBar() as progress:
             if needs_intervals(model, parameters):
-                load_certified()
+                load_certified(progress)
         poses = poses_at(model, parameters, digits)
         if names:
             save(poses, out, start, names)

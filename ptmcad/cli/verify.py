@@ -6,7 +6,9 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import read_result
 
 
@@ -30,9 +32,11 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
     """
     with held(limits):
         stored = read_result(result)
+        report_idle([Idle("boxes", stored.cover is None, "an exact map is checked whole")])
         from ptmcad.verification import verify
 
-        report = verify(stored, seed=seed, boxes=boxes)
+        with ProgressBar() as progress:
+            report = verify(stored, seed=seed, boxes=boxes, progress=progress)
     click.echo(report.table())
     if report.ok:
         return 0

@@ -58,7 +58,7 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     monkeypatch.setitem(sys.modules, "ptmcad.certified.compiled", compiled)
     monkeypatch.setitem(sys.modules, "ptmcad.certified.engine", module)
     loading = ModuleType("ptmcad.certified.loading")
-    loading.load = lambda progress: None  # type: ignore[attr-defined]
+    loading.load = lambda progress: 0.0  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "ptmcad.certified.loading", loading)
     # the map made by hand has more counts than its question needs, which a stored map must not have
     monkeypatch.setattr("ptmcad.verification.certified.checks.contradiction", lambda result: "")
@@ -129,6 +129,29 @@ def test_a_result_to_files_and_on_from_it(
     assert engine["options"].jobs == 1
 
 
+def test_compilation_is_told_apart(
+    engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    taken = [38.0, 0.0, 0.0, 0.0]
+    monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", lambda progress: taken.pop(0))
+    assert run(["classify", *HAND, "--out", str(tmp_path)]) == 0
+    assert " s, of which 38 s compilation (once); 28 % undetermined;" in capsys.readouterr().out
+    timings = json.loads((tmp_path / SAVED).read_text(encoding="utf-8"))["timings"]
+    assert timings["compilation"] == 38 and timings["total"] < 38
+    assert run(["classify", *HAND, "--out", str(tmp_path)]) == 0
+    assert "compilation" not in capsys.readouterr().out
+
+
+def test_the_engine_is_compiled_beforehand(
+    engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    taken = [12.34, 0.0]
+    monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", lambda progress: taken.pop(0))
+    assert run(["warm-up"]) == run(["warm-up"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said == ["the certified engine is compiled (12.3 s)", "the certified engine was compiled already"]
+
+
 def test_areas_cost_nothing(engine: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["classify", *HAND, "--out", str(tmp_path), "--no-areas"]) == 0
     said = capsys.readouterr()
@@ -178,7 +201,7 @@ def test_tolerances_are_checked_by_name(tmp_path: Path, capsys: pytest.CaptureFi
 
 
 @pytest.mark.parametrize(
-    ("stage", "shown"), [("undetermined 1.3 %", "] undetermined 1.3 %, "), ("counts", "] counts 6/24, ")]
+    ("stage", "shown"), [("undetermined 1.3 %", "] undetermined 1.3 %, "), ("counts", "] counts 6 of 24, ")]
 )
 def test_the_progress_bar_shows_the_undetermined_share(stage: str, shown: str, monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = io.StringIO()
@@ -208,7 +231,7 @@ def arrived():
     (here / "arrived").touch()
     time.sleep(60)
 def load(progress):
-    pass
+    return 0.0
 def search():
     pass
 def draw(result, path, **how):
@@ -280,8 +303,9 @@ def test_compiling_is_no_part_of_the_time_limit(
     monkeypatch.setattr(time, "monotonic", lambda: monotonic() + clock["ahead"])
     monkeypatch.setattr("ptmcad.ask.classification.perf_counter", lambda: counter() + clock["ahead"])
 
-    def load(progress: object) -> None:
+    def load(progress: object) -> float:
         clock["ahead"] += 1000
+        return 1000.0
 
     monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", load)
     begun, counted = monotonic(), counter()
@@ -343,7 +367,7 @@ def _resumed_and_stopped(earlier: RegionMap, found: RegionMap) -> None:
         raise LimitReached("the time limit was reached", partial=found)
 
     loading, module = ModuleType("ptmcad.certified.loading"), ModuleType("ptmcad.certified.engine")
-    loading.load = lambda progress: None  # type: ignore[attr-defined]
+    loading.load = lambda progress: 0.0  # type: ignore[attr-defined]
     module.certified_map = stand_in  # type: ignore[attr-defined]
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(sys.modules, "ptmcad.certified.compiled", ModuleType("ptmcad.certified.compiled"))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import json
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +14,8 @@ import pytest
 from ptmcad.answer.regionmap import COMPILATION, RegionMap
 from ptmcad.cli import run
 from ptmcad.show.table import table
+from ptmcad.verification import verify
+from ptmcad.verification.report import Headway
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FIG2 = str(CONFIGS / "fig2.yaml")
@@ -90,6 +94,30 @@ def test_the_time_line(shipped: Shipped) -> None:
 
 def test_no_curve_changes_the_count(shipped: Shipped) -> None:
     assert "curves    no curve changes the count" in table(replace(shipped("fig2"), components=()))
+
+
+def test_verify_shows_progress_on_a_terminal(shipped: Shipped, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "fig2.json"
+    path.write_text(shipped("fig2").to_json(), encoding="utf-8")
+    monkeypatch.setattr("ptmcad.cli.progress.PATIENCE", 0)
+    monkeypatch.setattr("ptmcad.cli.progress._INTERVAL", 0)
+    for watched in (True, False):
+        terminal = io.StringIO()
+        monkeypatch.setattr(terminal, "isatty", lambda watched=watched: watched)
+        monkeypatch.setattr(sys, "stderr", terminal)
+        assert run(["verify", str(path)]) == 0
+        assert ("] check 21 of 21: areas ..., " in terminal.getvalue()) == watched
+
+
+def test_the_bar_of_a_verification_only_grows(shipped: Shipped) -> None:
+    told: list[tuple[str, int, int]] = []
+    verify(shipped("fig2"), progress=lambda *what: told.append(what))
+    assert [done for _, done, _ in told] == [100 * k for k in range(21)]
+    assert told[0] == ("check 1 of 21: shape ...", 0, 2100)
+    headway = Headway(lambda *what: told.append(what), 8)
+    headway.begins("form")
+    headway.within(1, 3)
+    assert told[-1] == ("check 1 of 8: form, 33 %", 33, 800)
 
 
 def test_ranges_in_words(capsys: pytest.CaptureFixture[str]) -> None:
