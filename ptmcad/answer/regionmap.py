@@ -6,7 +6,7 @@ Guarantee: every number in it is exact or an enclosure; `RegionMap.from_json(res
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -349,3 +349,8 @@ class RegionMap:
         def grid(self, columns: int = 200, rows: int | None = None) -> Grid: ...
 
         def to_dataframe(self, what: str = "regions", **options: Any) -> DataFrame: ...
+
+
+def with_compilation(result: RegionMap, seconds: float) -> RegionMap:
+    """The map with the seconds that its run has spent compiling, if any, beside its own."""
+    return replace(result, timings={**result.timings, COMPILATION: seconds}) if seconds else result

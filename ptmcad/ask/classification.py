@@ -17,7 +17,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from ptmcad.answer.regionmap import COMPILATION, RegionMap, Status
+from ptmcad.answer.regionmap import RegionMap, Status, with_compilation
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import ptm
@@ -185,11 +185,6 @@ def load_certified(progress: Progress | None = None) -> float:
         from ptmcad.certified.loading import load
     check_room("the certified engine")
     return load(progress)
-
-
-def with_compilation(result: RegionMap, seconds: float) -> RegionMap:
-    """The map with the seconds that its run has spent compiling, if any, beside its own."""
-    return replace(result, timings={**result.timings, COMPILATION: seconds}) if seconds else result
 
 
 def _check_certified(slice: Slice, options: Options) -> None:

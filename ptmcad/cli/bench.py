@@ -8,7 +8,8 @@ from pathlib import Path
 
 import click
 
-from ptmcad.errors import ConfigError, shown_path
+from ptmcad.cli.pictures import report_written
+from ptmcad.errors import ConfigError
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import load
 from ptmcad.question.slice import Slice
@@ -86,9 +87,11 @@ def command(
     for number, (slice, path) in enumerate(slices):
         study = measure(slice, path, lambda m: verify(m).ok, settings, warm_up=number == 0, report=report)
         save(study, out)
-        click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}\n")
+        click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}")
+        report_written(out, (f"{slice.name}.{suffix}" for suffix in SUFFIXES))
+        click.echo()
     if page:
-        click.echo(f"written {shown_path(save_page(out))}")
+        report_written(out, (save_page(out).name,))
     return 0
 
 

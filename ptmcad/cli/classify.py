@@ -12,11 +12,12 @@ from typing import Any, NamedTuple
 import click
 
 from ptmcad.answer.plan import own_steps
+from ptmcad.answer.regionmap import with_compilation
 from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
-from ptmcad.cli.pictures import write_result
+from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.errors import ConfigError, ExpressionError, LimitReached
@@ -107,7 +108,7 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
     with ProgressBar() as progress:
         options = replace(options, progress=progress, partial=handed_over if watched() else None)
         with clock_stopped(options.timeout, spent):  # the time that the import takes is not the computation's
-            from ptmcad.ask.classification import prepare, region_map, with_compilation
+            from ptmcad.ask.classification import prepare, region_map
 
             _report_why_none(slice, options, output, "the engine was still being loaded or compiled")
             compiling = prepare(slice, options)
@@ -319,3 +320,4 @@ def command(
     if further:
         click.echo(f"decided on the way:\n{explanation(further)}")
     click.echo(result.table())
+    report_written(output.out, names_of(slice.name, output.formats))

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of
+from ptmcad.cli.idle import idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.stored import read_result
 from ptmcad.errors import ConfigError, PictureError, shown_path
@@ -28,6 +29,7 @@ def command(*, result: Path, out: Path | None, formats: tuple[str, ...], drawing
         ptmcad plot slice-L2-rho.json --format png,svg --dpi 300
         ptmcad plot slice-L2-rho.json --format csv
     """
+    report_idle(idle_drawing(formats))
     with held(limits):
         stored = read_result(result)
         folder = result.parent if out is None else out

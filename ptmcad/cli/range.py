@@ -14,9 +14,10 @@ from click.core import ParameterSource
 
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.gathering import gathered
+from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.pictures import picture, write_result
+from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import ptm
@@ -294,6 +295,8 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
         names += [f"{stem}.json"] * ("json" in output.formats)
         if names:
             check_writable(output.out, tuple(names))
+        why = "no file is written, see --format"
+        report_idle((Idle("out", not names, why), Idle("name", not names, why)))
         if enclosed and not request.over and request.start is None and not request.critical:
             from ptmcad.ask.classification import load_certified
 
@@ -304,6 +307,7 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
         click.echo(found.text)
         if names:
             _save(slice, found, stem, output)
+            report_written(output.out, names)
 
 
 def _varies_free_lengths(slice: Slice, request: Request) -> bool:

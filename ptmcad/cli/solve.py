@@ -9,9 +9,10 @@ import click
 
 from ptmcad.answer.poses import MAX_DIGITS, Poses
 from ptmcad.cli.formats import formats_of
+from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.pictures import picture, write_result
+from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
@@ -128,6 +129,12 @@ def command(
         names = drawable(model, names, start, landscape)
         if names:
             check_writable(out, names)
+        report_idle(
+            (
+                Idle("out", not names, "no file is written, see --format"),
+                Idle("name", not names, "no file is written, see --format"),
+            )
+        )
         from ptmcad.ask.classification import load_certified
         from ptmcad.ask.solving import needs_intervals, poses_at
 
@@ -140,6 +147,6 @@ def command(
             save(poses, out, start, names)
     if "table" in formats:
         click.echo(poses.table())
+    report_written(out, names)
     if landscape and (reason := no_landscape(model)):
-        written = f"; {', '.join(names)} {'are' if len(names) > 1 else 'is'} written" if names else ""
-        raise ConfigError(f"{reason}{written}", key="--landscape")
+        raise ConfigError(reason, key="--landscape")

@@ -11,7 +11,7 @@ import click
 
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
-from ptmcad.cli.pictures import picture, write_result
+from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -26,8 +26,8 @@ GRACE_SECONDS = 60.0
 """Seconds after the time limit for the case that is being run, before the process is ended from outside."""
 
 
-def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> None:
-    """Write the files of these formats, all or none.
+def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> tuple[str, ...]:
+    """Write the files of these formats, all or none, and return their names.
 
     Raises
     ------
@@ -51,6 +51,7 @@ def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> None:
         write_result(folder, writers, f"{name}.json", text)
     elif writers:
         write_files(folder, writers)
+    return tuple(writers)
 
 
 def _draw(found: Campaign, path: Path) -> None:
@@ -126,8 +127,9 @@ def command(
         deadline = None if timeout is None else perf_counter() + timeout
         with ProgressBar() as progress:
             found = campaign(cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress)
-        save(found, out, formats)
+        written = save(found, out, formats)
         click.echo(table(found) if "table" in formats else "\n".join(summary(found)))
+        report_written(out, written)
     if not found.complete:
         raise LimitReached(f"the time limit was reached after {len(found.outcomes)} of {found.wanted} cases")
     return 1 if found.wrong else 0

@@ -69,6 +69,12 @@ def test_a_file_that_is_no_result(
     assert capsys.readouterr().err.startswith(f"error: {path}: {said}")
 
 
+@pytest.mark.parametrize("command", [["solve", "--at", "rho=1"], ["range", "--along", "rho", "--at", "L2=3/2"]])
+def test_a_folder_for_no_files(tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]) -> None:
+    assert run([*command, "--out", str(tmp_path)]) == 0
+    assert capsys.readouterr().err == "note: --out has no effect here: no file is written, see --format\n"
+
+
 def test_an_unknown_axis(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["classify", "--slice", "foo,rho"]) == 2
     said = "error: --slice: unknown axis 'foo'; to introduce a new variable add --range foo=LO:HI\n"
