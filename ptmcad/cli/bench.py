@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.pictures import report_written
+from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import load
@@ -25,7 +26,9 @@ def _seconds(_context: click.Context, parameter: click.Parameter, value: float) 
 
 
 @click.command("bench")
-@click.argument("configs", nargs=-1, type=click.Path(path_type=Path), metavar="[CONFIG]...")
+@click.argument(
+    "configs", nargs=-1, type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"), metavar="[CONFIG]..."
+)
 @click.option("--compare", nargs=2, type=click.Path(path_type=Path), metavar="OLD NEW",
               help="Compare two JSON files of earlier runs; measure nothing.")  # fmt: skip
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")

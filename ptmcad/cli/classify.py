@@ -20,6 +20,7 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, ExpressionError, LimitReached
 from ptmcad.options import Options
 from ptmcad.process.handover import Topic, send, watched
@@ -272,6 +273,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @click.option(
     "--resume",
     type=click.Path(path_type=Path),
+    shell_complete=files(".json"),
     metavar="RESULT",
     help="Go on from a stored certified map of the same slice.",
 )

@@ -10,13 +10,14 @@ from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_o
 from ptmcad.cli.idle import idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.stored import read_result
+from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, PictureError, shown_path
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import portable_file
 
 
 @click.command("plot")
-@click.argument("result", type=click.Path(path_type=Path))
+@click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the files.  [default: that of RESULT]")
 @drawing_options((*PICTURES, *DATA), "png", "What to make")
 @limit_options

@@ -19,6 +19,8 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.values import files, names, pair_of_names, point, settings
+from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import ptm
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -248,18 +250,41 @@ def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
 
 
 @click.command("range")
-@click.argument("config", required=False, type=click.Path(path_type=Path))
-@click.option("--along", required=True, metavar="NAME", help="The parameter or axis that varies.")
-@click.option("--at", "at", metavar="NAME=VALUE,...", help="What is fixed: the slice's other axis, any parameters.")
-@click.option("--slice", "axes", metavar="X,Y", help="The slice's two axes, where a name is no parameter.")
-@click.option("--set", "sets", multiple=True, metavar="NAME=VALUE", help="Fix a parameter: a number or an expression.")
-@click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", help="The range of an axis.")
+@click.argument("config", required=False, type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@click.option("--along", required=True, metavar="NAME", shell_complete=names, help="The parameter or axis that varies.")
+@click.option(
+    "--at",
+    "at",
+    metavar="NAME=VALUE,...",
+    shell_complete=point,
+    help="What is fixed: the slice's other axis, any parameters.",
+)
+@click.option(
+    "--slice",
+    "axes",
+    metavar="X,Y",
+    shell_complete=pair_of_names,
+    help="The slice's two axes, where a name is no parameter.",
+)
+@click.option(
+    "--set",
+    "sets",
+    multiple=True,
+    metavar="NAME=VALUE",
+    shell_complete=settings,
+    help="Fix a parameter: a number or an expression.",
+)
+@click.option(
+    "--range", "ranges", multiple=True, metavar="NAME=LO:HI", shell_complete=settings, help="The range of an axis."
+)
 @click.option("--digits", type=click.IntRange(1, 1000), default=10, show_default=True, help="Digits of decimals.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-range]")
-@click.option("--format", "formats", callback=_formats, metavar="LIST",
+@click.option("--format", "formats", callback=_formats, shell_complete=formats_known(FORMATS), metavar="LIST",
               help=f"Files to write, of {', '.join(FORMATS)}.  [default: none]")  # fmt: skip
-@click.option("--over", metavar="NAME", help="The axis over which to tabulate the operation range's width.")
+@click.option(
+    "--over", metavar="NAME", shell_complete=names, help="The axis over which to tabulate the operation range's width."
+)
 @click.option("--rows", type=click.IntRange(1, 1000), default=41, show_default=True, help="Rows of that table.")
 @click.option("--path", "start", metavar="VALUE", help="Follow stable poses from this value until they snap.")
 @click.option("--pose", type=click.IntRange(min=1), metavar="N",

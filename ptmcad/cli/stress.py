@@ -13,6 +13,7 @@ from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 
@@ -72,7 +73,8 @@ def _draw(found: Campaign, path: Path) -> None:
               help="Of the random cases.")  # fmt: skip
 @click.option("--repeats", type=click.IntRange(1, 1000), default=5, show_default=True, metavar="N",
               help="Timed runs of each case and of its tame sibling; slow cases have one.")  # fmt: skip
-@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="table,json,csv,png,svg",
+@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS),
+              shell_complete=formats_known(FORMATS), default="table,json,csv,png,svg",
               show_default=True, metavar="LIST", help="What to make; the table is printed.")  # fmt: skip
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
 @click.option("--list", "only_list", is_flag=True, help="Print the cases with their sources, and run none.")

@@ -10,10 +10,11 @@ from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import read_result
+from ptmcad.cli.values import files
 
 
 @click.command("verify")
-@click.argument("result", type=click.Path(path_type=Path))
+@click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
 @click.option("--seed", type=click.IntRange(min=0), metavar="N",
               help="Seed of the random points and of the random boxes.  [default: a hash of the claims]")  # fmt: skip
 @click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
