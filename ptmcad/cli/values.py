@@ -126,13 +126,13 @@ def _axes_of_result(path: Path) -> tuple[str, ...]:
 def _names_of_question(config: Path | None, mechanism: str | None) -> tuple[str, ...]:
     from ptmcad.mechanism import ptm
     from ptmcad.question.config import load
-    from ptmcad.question.config.starters import NAMES
+    from ptmcad.question.config.model import model_of
+    from ptmcad.question.config.starters import NAMES, starter_text
+    from ptmcad.text.yamltree import read_text
 
     if config is not None:
         asked = load(config)
         return tuple(dict.fromkeys((*asked.axis_names, *asked.model.parameters)))
     if mechanism in NAMES:
-        from ptmcad.cli.mechanisms import starter_model
-
-        return tuple(starter_model(mechanism).parameters)
+        return tuple(model_of(read_text(starter_text(mechanism))).parameters)
     return tuple(ptm().parameters) if mechanism is None else ()

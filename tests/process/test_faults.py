@@ -176,7 +176,7 @@ HOW_ENDED = {
     signal.SIGTERM: "terminated (SIGTERM)",
     signal.SIGHUP: "the terminal was closed (SIGHUP)",
 }
-ENDS = tuple(words.encode() for words in HOW_ENDED.values())
+FIRST_WORDS = tuple(words.encode() for words in HOW_ENDED.values())
 CERTIFIED = "Result.cover, Result.undetermined = 'of a certified map', 0.25\n"
 
 
@@ -300,7 +300,7 @@ def test_signals_at_any_moment_of_the_start(tmp_path: Path) -> None:
         _, errors = process.communicate(timeout=60)
         assert process.returncode in (0, 128 + number)
         # what was computed by then, and is not yet in place, is saved
-        assert errors == b"" or (process.returncode and errors.startswith(ENDS)), errors
+        assert errors == b"" or (process.returncode and errors.startswith(FIRST_WORDS)), errors
         assert not [name for name in os.listdir(tmp_path) if name.startswith(".")]
 
 
