@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
-from typing import Any
 
 import click
 from click.core import ParameterSource
@@ -19,7 +17,8 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.values import files, names, pair_of_names, point, settings
+from ptmcad.cli.range_answers import Answer, Request, answer
+from ptmcad.cli.values import files, names, pair_of_names, point, quantity_names, settings
 from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import ptm
@@ -98,28 +97,6 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str | No
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
-    """What is asked for beside the slice.
-
-    Attributes
-    ----------
-    at : the value of the slice's other axis, empty when only ``over`` is asked for.
-    over : whether to tabulate the widths over the other axis, in so many rows.
-    critical : whether to find the critical free lengths by elimination instead.
-    start, pose : of the paths; ``start`` None for none.
-    """
-
-    along: str
-    at: Mapping[str, str]
-    over: bool
-    rows: int
-    start: Fraction | None
-    pose: int | None
-    digits: int
-    critical: bool
-
-
-@dataclass(frozen=True, slots=True)
 class Wanted:
     """What is asked for beside the line, as it was typed; see `Request`."""
 
@@ -128,6 +105,7 @@ class Wanted:
     pose: int | None
     digits: int
     critical: bool
+    quantities: tuple[str, ...]
 
     def request(self, asked: AskedLine, at: Mapping[str, str]) -> Request:
         """The same, checked.
@@ -138,7 +116,10 @@ class Wanted:
             For an option that needs another one.
         """
         over, start = asked.over is not None, _start(self.start, at)
-        request = Request(asked.along, at, over, self.rows, start, self.pose, self.digits, self.critical)
+        quantities = tuple(dict.fromkeys(self.quantities))
+        request = Request(asked.along, at, over, self.rows, start, self.pose, self.digits, self.critical, quantities)
+        if quantities and not at:
+            raise ConfigError(f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--quantity")
         if not over and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
             raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
         if self.pose is not None and self.start is None:
@@ -162,91 +143,6 @@ class Output:
     def stem(self, slice: Slice) -> str:
         """The start of the files' names."""
         return f"{slice.name}-range" if self.name is None else file_name(self.name, "--name")
-
-
-@dataclass(frozen=True, slots=True)
-class Answer:
-    """What was found, for the terminal, the JSON and the pictures."""
-
-    text: str
-    parts: Mapping[str, Any]
-    pictures: Mapping[str, Callable[[Path], None]]
-
-
-def answer(slice: Slice, request: Request) -> Answer:
-    """Compute all that is asked for.
-
-    Raises
-    ------
-    PtmcadError
-        Of any kind.
-    """
-    from ptmcad.ask import ranges
-    from ptmcad.exact.ranges.strips import refuse_free_lengths
-    from ptmcad.question.line import has_free_lengths
-    from ptmcad.show.ranges import document, table
-
-    only_line = not request.over and request.start is None
-    if only_line and has_free_lengths(slice, request.along, request.at):
-        return _enclosed(slice, request)
-    if request.critical:
-        raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
-    if request.over:
-        refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
-    texts, parts = [slice.heading], {}
-    pictures: dict[str, Callable[[Path], None]] = {}
-    if request.at:
-        found = ranges.intervals(slice, request.along, request.at)
-        texts.append(table.table(found, request.digits))
-        parts["line"] = document.line_data(found, request.digits)
-        pictures[""] = partial(_picture, "line", slice, found)
-    if request.over:
-        widths = ranges.operation_widths(slice, request.along, request.rows)
-        texts.append(table.width_table(widths, request.digits))
-        parts["over"] = document.over_data(widths, request.digits)
-        pictures["-over"] = partial(_picture, "over", slice, widths)
-    if request.start is not None:
-        paths = ranges.pose_paths(slice, request.along, request.at, request.start, request.pose)
-        texts.append(table.path_table(paths, min(request.digits, 10)))
-        parts["path"] = document.path_data(paths)
-        pictures["-path"] = partial(_picture, "path", slice, paths)
-    return Answer("\n\n".join(texts), parts, pictures)
-
-
-def _enclosed(slice: Slice, request: Request) -> Answer:
-    """The answer where springs have free lengths."""
-    from ptmcad.show.ranges import certified, document, table
-
-    texts, parts = [slice.heading], dict[str, Any]()
-    if request.critical:
-        from ptmcad.exact.ranges.free_lengths import critical_on_line
-
-        critical = critical_on_line(slice, request.along, request.at)
-        texts.append(table.critical_table(critical, request.digits))
-        parts["critical"] = document.critical_data(critical, request.digits)
-    else:
-        from ptmcad.certified.intervals import certified_intervals
-
-        line = certified_intervals(slice, request.along, request.at, request.digits)
-        texts.append(certified.table(line, request.digits))
-        parts["enclosed"] = document.enclosed_data(line, request.digits)
-    return Answer("\n\n".join(texts), parts, {})
-
-
-def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
-    from ptmcad.show.render import ranges as pictures
-    from ptmcad.show.render.printing import save
-
-    if kind == "line":
-        figure = pictures.draw_range(slice, found)
-    elif kind == "over":
-        figure = pictures.draw_widths(slice, found)
-    else:
-        figure = pictures.draw_paths(slice, found)
-    save(figure, path)
 
 
 @click.command("range")
@@ -289,6 +185,9 @@ def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
 @click.option("--path", "start", metavar="VALUE", help="Follow stable poses from this value until they snap.")
 @click.option("--pose", type=click.IntRange(min=1), metavar="N",
               help="Which pose, as ptmcad solve numbers them.  [default: every stable one]")  # fmt: skip
+@click.option("--quantity", "quantities", multiple=True, metavar="NAME", shell_complete=quantity_names,
+              help="Draw all branches, stable and unstable, of a quantity: an unknown, energy, stiffness (the least "
+                   "eigenvalue), force:A1A4, length:A1A4, x:A3, y:A3 and the like. Repeatable.")  # fmt: skip
 @click.option("--critical", is_flag=True,
               help="Along the springs' free length: all critical values by elimination, with msolve.")  # fmt: skip
 @limit_options
@@ -308,15 +207,20 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
         ptmcad range --along rho --at L2=3/2
         ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --path 7/10 --format json,svg
         ptmcad range --along rho --over L2 --range L2=0:2 --at F3=-10,F4=-10
+        ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --quantity th1 --quantity energy --format png
     """
     slice, at = slice_and_line(asked)
     request = wanted.request(asked, at)
     stem = output.stem(slice)
     with held(limits):
         enclosed = slice.has_free_lengths and _varies_free_lengths(slice, request)
-        if enclosed and set(output.formats) - {"json"}:
-            raise ConfigError("with a free length there is the table and JSON, no picture", key="--format")
-        names = [f"{stem}{part}.{suffix}" for part in _parts(request) for suffix in output.pictures]
+        if enclosed and set(output.formats) - {"json"} and not request.quantities:
+            raise ConfigError(
+                "with a free length there is the table and JSON, and a picture of branches only: add --quantity NAME",
+                key="--format",
+            )
+        parts = _parts(request, enclosed=enclosed)
+        names = [f"{stem}{part}.{suffix}" for part in parts for suffix in output.pictures]
         names += [f"{stem}.json"] * ("json" in output.formats)
         if names:
             check_writable(output.out, tuple(names))
@@ -358,9 +262,11 @@ def _save(slice: Slice, found: Answer, stem: str, output: Output) -> None:
         write_files(output.out, writers)
 
 
-def _parts(request: Request) -> list[str]:
+def _parts(request: Request, *, enclosed: bool) -> list[str]:
     """What is added to the pictures' names."""
-    return [""] * bool(request.at) + ["-over"] * request.over + ["-path"] * (request.start is not None)
+    line = bool(request.at) and not enclosed
+    parts = [""] * line + ["-over"] * request.over + ["-path"] * (request.start is not None)
+    return parts + ["-branches"] * bool(request.quantities)
 
 
 def _start(text: str | None, other: Mapping[str, str]) -> Fraction | None:

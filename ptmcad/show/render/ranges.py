@@ -11,6 +11,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import groupby
 from math import degrees
 from typing import Any
 
@@ -143,7 +144,7 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
     """The operation ranges at the tabulated values, and their width with its largest value."""
     title = textwrap.wrap(slice.heading, _COLUMNS)[:3]
     lines = [maximum_text(m, found.over.name, _DIGITS) for m in found.maxima] or ["there is no operation range"]
-    texts = [f"above: {_where(found)}; below: how wide that is; diamond: the widest"]
+    texts = [f"above: {_where(found)}; below: how wide that is at the tabulated values; diamond: the widest"]
     texts += [part for line in lines for part in textwrap.wrap(f"widest: {line}", _COLUMNS)]
     foot = 0.55 + 0.2 * len(texts)
     tall = 2.3 + 1.9 + 0.35 + foot + 0.1
@@ -153,17 +154,10 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
         lower = _axes(figure, (LEFT, foot, WIDE, 1.9))
         over, along = found.over, found.along
         scale, fibre = scale_of(over.low, over.high), scale_of(along.low, along.high)
-        unit_width = WIDE * 72 / (len(found.rows) + 1)
-        face = fill_of_index((2, 3, 1)).face
         points = []
         for row in found.rows:
-            x = _scaled(row.value, over)
-            for i in row.operation:
-                low, high = (_scaled_end(e, along) for e in (i.low, i.high))
-                upper.plot([x, x], [low, high], color=face, linewidth=max(1.0, 0.7 * unit_width),
-                           solid_capstyle="butt")  # fmt: skip
-                upper.plot([x, x], [low, high], "_", color=INK, markersize=max(2.0, 0.7 * unit_width))
-                points.append((x, float(i.width)))
+            points += [(_scaled(row.value, over), float(i.width)) for i in row.operation]
+        _draw_band(upper, found)
         lower.plot([p[0] for p in points], [p[1] for p in points], "o", color=INK, markersize=2.5)
         for m in found.maxima:
             ends = [_scaled(v, over) for v in (m.at.low, m.at.high)]
@@ -182,6 +176,24 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
         for k, line in enumerate(texts):
             figure.text(LEFT, foot - 0.55 - 0.2 * k, line, transform=figure.dpi_scale_trans, fontsize=SIZE, va="center")
     return figure
+
+
+def _draw_band(axes: Any, found: OperationWidths) -> None:
+    """The operation ranges as bands over neighbouring rows that have as many of them, as bars over a row alone."""
+    face = fill_of_index((2, 3, 1)).face
+    for number, group in groupby(found.rows, key=lambda row: len(row.operation)):
+        rows = list(group)
+        xs = [_scaled(row.value, found.over) for row in rows]
+        for k in range(number):
+            lows, highs = ([_scaled_end(end, found.along) for end in ends]
+                           for ends in zip(*((r.operation[k].low, r.operation[k].high) for r in rows),
+                                           strict=True))  # fmt: skip
+            if len(rows) == 1:
+                axes.plot(xs * 2, [lows[0], highs[0]], color=face, linewidth=3.0, solid_capstyle="butt")
+            else:
+                axes.fill_between(xs, lows, highs, facecolor=face, linewidth=0)
+            for ends in (lows, highs):
+                axes.plot(xs, ends, color=INK, linewidth=1.2, marker="_" if len(rows) == 1 else "", markersize=4)
 
 
 def _where(found: OperationWidths) -> str:
