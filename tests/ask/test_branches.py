@@ -69,7 +69,7 @@ def test_branches_are_smooth_and_meet_at_the_folds(fig4: Branches) -> None:
 
 
 def test_the_cubic() -> None:
-    """x^3 - a x + b: at b = 1/2 one solution, then three of which two meet at a = 3/4^(1/3) * ..., where 4 a^3 = 27/4."""
+    """x^3 - a x + 1/2 has one solution, or three where 4 a^3 > 27/4."""
     found = branch_diagram(load(CONFIGS / "systems" / "cubic.yaml"), "a", {"b": Fraction(1, 2)}, ["x"])
     fold = (27 / 16) ** (1 / 3)
     assert [len(found.branches), sum(float(b.points[-1].value) < fold for b in found.branches)] == [4, 1]
@@ -83,10 +83,8 @@ def test_free_lengths() -> None:
     pytest.importorskip("numba")
     slice = ptmcad.slice_from_options(CONFIGS / "free02.yaml", ranges=["rho=3/10:3/5"])
     found = branch_diagram(slice, "rho", {"L2": "3/2"}, ["th1", "force:A3A4"])
-    assert [sum(bool(b.stable) for b in found.branches if float(b.points[0].value) < 0.4), len(found.branches)] == [
-        1,
-        10,
-    ]
+    assert len(found.branches) == 10
+    assert sum(bool(b.stable) for b in found.branches if float(b.points[0].value) < 0.4) == 1
     for branch in found.branches:
         assert len(branch.points) >= 24
 
@@ -96,7 +94,7 @@ def test_quantities_that_there_are_not() -> None:
     assert len(quantities(model)) == 14
     with pytest.raises(ConfigError, match="did you mean 'energy'"):
         quantity(model, "enrgy")
-    with pytest.raises(ConfigError, match="there are x$"):
+    with pytest.raises(ConfigError, match="there are x"):
         quantity(load(CONFIGS / "systems" / "cubic.yaml").model, "energy")
 
 

@@ -122,7 +122,7 @@ def test_a_line_with_free_lengths_as_json(tmp_path: Path, capsys: pytest.Capture
     assert intervals[0]["high"] == intervals[1]["low"] == data["enclosed"]["changes"][0]["at"]
     assert intervals[0]["high"]["decimal"] == "0.4634527060"
     assert run(["range", *arguments[:-1], "json,svg", "--out", str(tmp_path), "--name", "y"]) == 2
-    assert "no picture" in capsys.readouterr().err
+    assert "a picture of branches only" in capsys.readouterr().err
     assert not (tmp_path / "y.json").exists()
 
 
