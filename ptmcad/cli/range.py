@@ -17,7 +17,7 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.range_answers import Answer, Request, answer
+from ptmcad.cli.range_answers import Answer, Request, answer, is_enclosed
 from ptmcad.cli.values import files, names, pair_of_names, point, quantity_names, settings
 from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, ExpressionError
@@ -199,7 +199,8 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
 
     Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. With free lengths
     they are enclosed by interval arithmetic, and what could not be decided is reported. All digits of the
-    tables are right. With --over the widest operation range is found and proved; with --path stable poses are followed
+    tables are right. With --over the widest operation range is found and proved (with free lengths it is tabulated);
+    with --path stable poses are followed
     until they vanish, and the pose to which the mechanism snaps is reported.
 
     \b
@@ -213,10 +214,11 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
     request = wanted.request(asked, at)
     stem = output.stem(slice)
     with held(limits):
-        enclosed = slice.has_free_lengths and _varies_free_lengths(slice, request)
-        if enclosed and set(output.formats) - {"json"} and not request.quantities:
+        enclosed = is_enclosed(slice, request)
+        if enclosed and set(output.formats) - {"json"} and not (request.quantities or request.over):
             raise ConfigError(
-                "with a free length there is the table and JSON, and a picture of branches only: add --quantity NAME",
+                "with a free length there is the table and JSON, and a picture of branches (--quantity NAME) or of a "
+                "band (--over NAME) only",
                 key="--format",
             )
         parts = _parts(request, enclosed=enclosed)
@@ -226,7 +228,7 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
             check_writable(output.out, tuple(names))
         why = "no file is written, see --format"
         report_idle((Idle("out", not names, why), Idle("name", not names, why)))
-        if enclosed and not request.over and request.start is None and not request.critical:
+        if enclosed and request.start is None and not request.critical:
             from ptmcad.ask.classification import load_certified
 
             # the time that compiling takes is not the computation's
@@ -237,12 +239,6 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
         if names:
             _save(slice, found, stem, output)
             report_written(output.out, names)
-
-
-def _varies_free_lengths(slice: Slice, request: Request) -> bool:
-    from ptmcad.question.line import has_free_lengths
-
-    return has_free_lengths(slice, request.along, request.at)
 
 
 def _save(slice: Slice, found: Answer, stem: str, output: Output) -> None:

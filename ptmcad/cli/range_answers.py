@@ -60,11 +60,11 @@ def answer(slice: Slice, request: Request) -> Answer:
     """
     from ptmcad.ask import ranges
     from ptmcad.exact.ranges.strips import refuse_free_lengths
-    from ptmcad.question.line import has_free_lengths
     from ptmcad.show.ranges import document, table
 
-    if not request.over and request.start is None and has_free_lengths(slice, request.along, request.at):
-        return _with_branches(_enclosed(slice, request), slice, request)
+    if request.start is None and is_enclosed(slice, request):
+        known = _enclosed(slice, request) if request.at else Answer(slice.heading, {}, {})
+        return _with_branches(_with_bands(known, slice, request) if request.over else known, slice, request)
     if request.critical:
         raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
     if request.over:
@@ -87,6 +87,29 @@ def answer(slice: Slice, request: Request) -> Answer:
         parts["path"] = document.path_data(paths)
         pictures["-path"] = partial(_picture, "path", slice, paths)
     return _with_branches(Answer("\n\n".join(texts), parts, pictures), slice, request)
+
+
+def is_enclosed(slice: Slice, request: Request) -> bool:
+    """Whether the certified engine answers, as springs have free lengths."""
+    from ptmcad.question.line import has_free_lengths
+
+    if not request.at:
+        return request.over and slice.has_free_lengths
+    return has_free_lengths(slice, request.along, request.at)
+
+
+def _with_bands(found: Answer, slice: Slice, request: Request) -> Answer:
+    """The answer with the operation ranges over the other axis, where springs have free lengths."""
+    from ptmcad.ask.bands import certified_widths
+    from ptmcad.show.ranges import certified, document
+
+    with ProgressBar() as progress:
+        widths = certified_widths(slice, request.along, request.rows, request.digits, progress)
+    return Answer(
+        f"{found.text}\n\n{certified.width_table(widths, request.digits)}",
+        {**found.parts, "bands": document.bands_data(widths, request.digits)},
+        {**found.pictures, "-over": partial(_picture, "over", slice, widths)},
+    )
 
 
 def _with_branches(found: Answer, slice: Slice, request: Request) -> Answer:

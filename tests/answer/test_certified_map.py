@@ -255,10 +255,9 @@ def test_the_exact_engine_does_not_resume() -> None:
     ("words", "what"),
     [
         (["variety"], "the discriminant variety is"),
-        (["range", "--along", "rho", "--over", "L2"], "widths over a second axis (--over) are"),
         (["range", "--along", "rho", "--at", "L2=1", "--path", "1"], "exact ends and paths of poses are"),
     ],
-    ids=["variety", "widths", "path"],
+    ids=["variety", "path"],
 )
 def test_what_algebra_alone_answers_is_refused_in_one_line(
     words: list[str], what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
