@@ -164,5 +164,21 @@ def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
 
         figure = draw_branches(slice, found)
     else:
-        figure = pictures.draw_paths(slice, found)
+        figure = _paths_and_branches(slice, found)
     save(figure, path)
+
+
+MAX_UNKNOWNS = 2
+"""Of a model of which a picture of paths shows the unstable branches unasked: of others they take minutes."""
+
+
+def _paths_and_branches(slice: Slice, found: Any) -> Any:
+    from ptmcad.ask.branches import branch_diagram
+    from ptmcad.show.render.branches import draw_paths_and_branches
+    from ptmcad.show.render.ranges import draw_paths
+
+    model = found.model
+    if len(model.unknowns) > MAX_UNKNOWNS or not model.tells_stability:
+        return draw_paths(slice, found)
+    unknowns = (*model.angles, *model.reals)
+    return draw_paths_and_branches(slice, found, branch_diagram(slice, found.along.name, found.at, unknowns))

@@ -120,3 +120,15 @@ def test_a_picture_of_branches_with_free_lengths(tmp_path: Path) -> None:
     common = ["range", str(CONFIGS / "free02.yaml"), "--along", "rho", "--at", "L2=3/2", "--range", "rho=3/10:2/5"]
     assert run([*common, "--quantity", "energy", "--format", "svg", "--out", str(tmp_path), "--name", "x"]) == 0
     assert [path.name for path in tmp_path.iterdir()] == ["x-branches.svg"]
+
+
+def test_a_picture_of_paths_shows_what_is_not_stable(tmp_path: Path) -> None:
+    """... behind the paths; not of what nothing tells to be stable."""
+    cubic = str(CONFIGS / "systems" / "cubic.yaml")
+    for name, record, words in (("a", FIG4, ["rho", "L2=3/2", "7/10"]), ("b", cubic, ["a", "b=1/2", "0"])):
+        along, at, start = words
+        asked = ["--along", along, "--at", at, "--path", start, "--format", "svg", "--name", name]
+        assert run(["range", record, *asked, "--out", str(tmp_path)]) == 0
+    behind = (tmp_path / "a-path.svg").read_text(encoding="utf-8")
+    assert "saddle, not followed" in behind and "maximum, not followed" in behind
+    assert "not followed" not in (tmp_path / "b-path.svg").read_text(encoding="utf-8")

@@ -246,8 +246,11 @@ def _where(found: OperationWidths | CertifiedWidths) -> str:
     return f"where there {'is' if found.working == 1 else 'are'} {working_text(found.model, found.working)}"
 
 
-def draw_paths(slice: Slice, found: PosePaths) -> Figure:
-    """The unknowns of each followed pose along the axis, a panel for each; an arrow shows each snap."""
+def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) -> Figure:
+    """The unknowns of each followed pose along the axis, a panel for each; an arrow shows each snap.
+
+    ``further`` are the legend's last entries, of what is going to be added.
+    """
     fixed = ", ".join(f"{symbol(n)} = {_short(v)}" for n, v in found.at.items())
     title = textwrap.wrap(f"{slice.heading}; {fixed}", _COLUMNS)[:3]
     model = found.model
@@ -264,6 +267,7 @@ def draw_paths(slice: Slice, found: PosePaths) -> Figure:
         entries.append(Entry(("poses merge into one (square),", "without a snap"), _merge_mark))
     if any(e.fate in _LOST for p in found.paths for e in (p.low, p.high)):
         entries.append(Entry((f"a {what} ends (cross)",), _loss_mark))
+    entries += further
     panel, foot = 2.0, 0.55
     names = (*model.angles, *model.reals)
     last = len(names) - 1
