@@ -319,7 +319,7 @@ def test_the_progress_bar_leaves_no_half_line(tmp_path: Path) -> None:
     assert running.end()[0] == 130
     shown = os.read(terminal, 10_000)
     os.close(terminal)
-    assert b"counts 1/2" in shown
+    assert b"counts 1 of 2" in shown
     assert shown.endswith(b"\r\x1b[K")
 
 
