@@ -34,6 +34,7 @@ help:
 $(VENV)/.installed: pyproject.toml scripts/setup-venv
 	scripts/setup-venv $(VENV)
 	$(PIP) --editable '.[certified]'
+	$(BIN)/ptmcad warm-up
 	@touch $@
 
 $(VENV)/.installed-test: $(VENV)/.installed

@@ -17,7 +17,7 @@ from ptmcad.text.syntax import did_you_mean
 ENGINES = ("auto", "exact", "certified")
 
 Progress = Callable[[str, int, int], None]
-"""Called as progress(stage, done, total); a stage that ends with "%" says itself how far the work is."""
+"""Called as progress(stage, done, total); a stage that ends with "%" or "..." says itself how far the work is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

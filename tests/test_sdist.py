@@ -1,17 +1,23 @@
-"""The source distribution has all that its tests read."""
+"""The source distribution has all that its tests read, and a wheel what it needs where there is no source."""
 
 from __future__ import annotations
 
+import email
 import os
+import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from zipfile import ZipFile
+
+import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("configs", "docs", "ptmcad", "scripts", "tests")
 FILES = (".gitignore", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "MANIFEST.in", "Makefile",
-         "README.md", "pyproject.toml")  # fmt: skip
+         "README.md", "pyproject.toml", "setup.py")  # fmt: skip
 MADE = {"__pycache__", "generated", "findings", ".hypothesis", ".mypy_cache", ".ruff_cache", ".pytest_cache"}
 """Folders that running the program, its tests or its manual's build makes."""
 
@@ -26,10 +32,57 @@ def wanted() -> Iterator[str]:
 
 def test_the_source_distribution_has_every_file(tmp_path: Path) -> None:
     """By the file list that setuptools makes before it packs."""
-    code = f"from setuptools import setup; setup(script_args=['-q', 'egg_info', '--egg-base', {str(tmp_path)!r}])"
-    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True)
+    command = [sys.executable, "setup.py", "-q", "egg_info", "--egg-base", str(tmp_path)]
+    subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
     (listing,) = tmp_path.glob("*.egg-info/SOURCES.txt")
     listed = {name.removeprefix("./") for name in listing.read_text(encoding="utf-8").splitlines()}
     assert set(wanted()) - listed == set()
     foreign = {name for name in listed - set(wanted()) if ".egg-info/" not in name and name != "setup.cfg"}
     assert foreign == set()
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What a wheel of the present tree holds, unpacked."""
+    folder = tmp_path_factory.mktemp("wheel")
+    script = f"""
+from setuptools import build_meta
+settings = {{"--build-option": ["--bdist-dir", {str(folder / "bdist")!r}]}}
+build_meta.build_wheel({str(folder)!r}, settings)
+"""
+    copy = folder / "source"
+    shutil.copytree(
+        ROOT, copy, ignore=shutil.ignore_patterns(*MADE, ".*", "build", "out", "dist", "*.egg-info", "tests")
+    )
+    subprocess.run([sys.executable, "-c", script], cwd=copy, check=True, capture_output=True)
+    (made,) = folder.glob("*.whl")
+    with ZipFile(made) as archive:
+        archive.extractall(folder / "unpacked")
+    return folder / "unpacked"
+
+
+def test_a_wheel_has_the_records(wheel: Path) -> None:
+    shipped = {path.relative_to(ROOT).as_posix() for path in (ROOT / "configs").rglob("*.yaml")}
+    packed = {path.relative_to(wheel / "ptmcad").as_posix() for path in (wheel / "ptmcad" / "configs").rglob("*.yaml")}
+    assert packed == shipped
+    (record,) = wheel.glob("*.dist-info/RECORD")
+    assert "ptmcad/configs/fig4.yaml," in record.read_text(encoding="utf-8")
+    assert not (wheel / "configs").exists()
+
+
+def test_bench_needs_no_record_where_a_wheel_is_installed(wheel: Path, tmp_path: Path) -> None:
+    code = "from ptmcad.question.examples import shipped_record; print(shipped_record('fig4'))"
+    environment = os.environ | {"PYTHONPATH": str(wheel)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, env=environment, check=True, capture_output=True, text=True
+    )
+    assert done.stdout == f"{wheel / 'ptmcad' / 'configs' / 'fig4.yaml'}\n"
+
+
+def test_what_a_wheel_says_of_itself(wheel: Path) -> None:
+    (metadata,) = wheel.glob("*.dist-info/METADATA")
+    said = email.message_from_string(metadata.read_text(encoding="utf-8"))
+    assert said["Author"] == "The ptmcad authors" and "tensegrity mechanism" in said["Keywords"]
+    assert "Typing :: Typed" in said.get_all("Classifier", [])
+    text = str(said.get_payload())
+    assert text.startswith("# ptmcad") and "](" not in re.sub(r"\]\(https?:", "", text)

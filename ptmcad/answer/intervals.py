@@ -83,7 +83,7 @@ class Change:
             names = [kind_name(k, len(self.before.index) - 1) for k in (first, first + 1)]
             what = " and ".join(f"one {'stable equilibrium' if name == 'minimum' else name}" for name in names)
             what = "two saddles" if names == ["saddle", "saddle"] else what
-        return f"{what} {'more' if self.after.total > self.before.total else 'less'}"
+        return f"{'gains' if self.after.total > self.before.total else 'loses'} {what}"
 
 
 @dataclass(frozen=True, slots=True)

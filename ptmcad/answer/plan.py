@@ -5,10 +5,10 @@ Guarantee: each saving that is named is made in the computation that the plan ac
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from ptmcad.answer.regionmap import PlanStep
-from ptmcad.question.savings import BY_NAME
+from ptmcad.question.savings import BY_NAME, GENERAL_SAVING
 from ptmcad.question.slice import Slice
 
 KEPT = "kept, as asked for"
@@ -24,6 +24,15 @@ def saving_step(name: str, without: frozenset[str], what: str = "", why: str = "
     """
     saving = BY_NAME[name]
     return PlanStep(what or saving.what, name in without, KEPT if name in without else why or saving.why, name)
+
+
+def own_steps(steps: Iterable[PlanStep]) -> list[PlanStep]:
+    """The steps that say something about a slice: what is spared on every slice alike is no news.
+
+    >>> own_steps([PlanStep("imports of numpy", False, "nothing needs them before it asks", GENERAL_SAVING)])
+    []
+    """
+    return [step for step in steps if step.done or step.saving != GENERAL_SAVING]
 
 
 def zero_parameters(slice: Slice) -> list[str]:

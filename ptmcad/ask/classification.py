@@ -17,7 +17,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.regionmap import RegionMap, Status, with_compilation
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import ptm
@@ -63,7 +63,8 @@ def classify(
     partial : called with the map after each stage that improves it.
     resume : a certified map of the same slice and count, stopped or not, from which to go on. Its cover is taken as
         it stands: what `ptmcad.verify` says of the result rests on it.
-    areas : False leaves the regions' areas out (exact engine): of each is then known that it is at most the window's.
+    areas : False leaves the regions' areas out: of each is then known that it is at most the window's. The certified
+        engine gets them at no extra cost, and gives them in any case.
     keep : the older name of ``without``.
 
     Raises
@@ -121,17 +122,18 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
     _check_count(slice)
     certified = is_certified(slice, options.engine)
     if not options.areas:
-        _check_no_areas(certified, options)
+        _check_no_areas(options)
     options = replace(options, without=switched_off(options.without, certified))
     if certified:
         _check_certified(slice, options)
         check_taken(slice)
-        prepare(slice, options)
+        compiling = prepare(slice, options)
     started = perf_counter()
     options = replace(options, deadline=None if options.timeout is None else started + options.timeout)
     if certified:
         result = _certified(slice, options)
-        return replace(result, timings={**result.timings, "total": perf_counter() - started})
+        timed = replace(result, timings={**result.timings, "total": perf_counter() - started})
+        return with_compilation(timed, compiling)
     try:
         without_free_lengths(slice.model, slice.parameters, "an exact map is")
     except ConfigError as error:
@@ -145,15 +147,17 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
     return exact_map(slice, options)
 
 
-def _check_no_areas(certified: bool, options: Options) -> None:
-    if certified:
-        raise ConfigError("the certified engine has areas for nothing: it cannot leave them out", key="areas")
+def _check_no_areas(options: Options) -> None:
     if options.area_tolerance is not None:
         raise ConfigError("areas are not asked for, but a tolerance for them is given: leave one out", key="areas")
 
 
-def prepare(slice: Slice, options: Options) -> None:
+def prepare(slice: Slice, options: Options) -> float:
     """Load what an engine needs, and compile it where this machine has not done so: no part of any time limit.
+
+    Returns
+    -------
+    The seconds that compiling took.
 
     Raises
     ------
@@ -164,11 +168,12 @@ def prepare(slice: Slice, options: Options) -> None:
         if "imports" in options.without:
             with loading("all that there is"):
                 load_all()
-        load_certified(options.progress)
+        return load_certified(options.progress)
+    return 0.0
 
 
-def load_certified(progress: Progress | None = None) -> None:
-    """Load the certified engine, and compile it where this machine has not done so.
+def load_certified(progress: Progress | None = None) -> float:
+    """Load the certified engine, and compile it where this machine has not done so; the seconds that this took.
 
     Raises
     ------
@@ -179,7 +184,7 @@ def load_certified(progress: Progress | None = None) -> None:
         import_module("ptmcad.certified.compiled")  # first: where numba is missing, it says so
         from ptmcad.certified.loading import load
     check_room("the certified engine")
-    load(progress)
+    return load(progress)
 
 
 def _check_certified(slice: Slice, options: Options) -> None:

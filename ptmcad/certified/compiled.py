@@ -14,6 +14,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+import numpy as np
+
 from ptmcad.errors import ConfigError
 from ptmcad.process.extras import NUMBA_MISSING
 
@@ -54,8 +56,20 @@ def _folder() -> Path:
 _FOLDER = _folder()
 
 
+ZERO, ONE = cast("int", np.int64(0)), cast("int", np.int64(1))
+"""Numbers that numba takes for integers like any other: what takes a literal is compiled for that one besides."""
+FUNCTIONS: list[Any] = []
+"""All that is compiled and kept, as numba's dispatchers."""
+
+
 def compiled(function: F) -> F:
-    """Compile for the machine; the global interpreter lock is released while the function runs."""
+    """Compile for the machine; the global interpreter lock is released while the function runs.
+
+    Each function is optimised once more with every one that calls it, and for each type that it is called with, for
+    which a literal counts as one of its own. So what has one caller is better `inlined`, and a literal argument is
+    written as `ZERO` or `ONE`. Assigning one array to a slice of another compiles numba's broadcasting, with the texts
+    of its errors: a loop takes a twentieth of the time.
+    """
     usual = _CONFIG.CACHE_DIR
     # numba asks for the folder when it decorates
     _CONFIG.CACHE_DIR = str(_FOLDER)
@@ -63,6 +77,7 @@ def compiled(function: F) -> F:
         decorated = njit(cache=True, nogil=True, error_model="numpy", fastmath=False)(function)
     finally:
         _CONFIG.CACHE_DIR = usual
+    FUNCTIONS.append(decorated)
     return cast("F", decorated)
 
 

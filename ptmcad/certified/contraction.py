@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ptmcad.certified.arithmetic import down, magnitude, multiply, reciprocal, up
-from ptmcad.certified.compiled import compiled
+from ptmcad.certified.compiled import ZERO, compiled, inlined
 from ptmcad.certified.evaluation import Floats, Indices, run
 from ptmcad.certified.system import Arguments
 
@@ -63,7 +63,7 @@ def workspace(system: Arguments, variables: int) -> Workspace:
     )  # fmt: skip
 
 
-@compiled
+@inlined
 def discarded(low: Floats, high: Floats, vanishing: Indices) -> bool:
     """Whether one of the formulas that vanish at solutions has no zero."""
     for place in vanishing:
@@ -149,17 +149,17 @@ def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
     program, stages, unknowns, equations, jacobian, cheap, rest, costly, nonnegative = system
     low, high, low_at, high_at, middle_low, middle_high, radius, j_low, j_high, matrix, _ = work
     m, n = jacobian.shape
-    if not run(program, box_low, box_high, low, high, 0, stages[0]) or discarded(low, high, cheap):
-        return -1
-    if not run(program, box_low, box_high, low, high, stages[0], stages[1]) or discarded(low, high, rest):
-        return -1
-    if not run(program, box_low, box_high, low, high, stages[1], stages[2]) or discarded(low, high, costly):
-        return -1
-    for place in nonnegative:
-        if high[place] < 0:
+    begin = ZERO
+    for stage in range(4):
+        if not run(program, box_low, box_high, low, high, begin, stages[stage]):
             return -1
-    if not run(program, box_low, box_high, low, high, stages[2], stages[3]):
-        return -1
+        begin = stages[stage]
+        if stage < 3 and discarded(low, high, cheap if stage == 0 else rest if stage == 1 else costly):
+            return -1
+        if stage == 2:
+            for place in nonnegative:
+                if high[place] < 0:
+                    return -1
     for k in range(box_low.shape[0]):
         middle_low[k], middle_high[k] = box_low[k], box_high[k]
     for j in range(n):
@@ -168,7 +168,7 @@ def linearise(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
         middle_low[k] = middle_high[k] = middle
         radius[j] = up(max(box_high[k] - middle, middle - box_low[k]))
     # only the equations: at a middle that is no solution, the two formulas of a `meet` may differ
-    run(program, middle_low, middle_high, low_at, high_at, 0, stages[1])
+    run(program, middle_low, middle_high, low_at, high_at, ZERO, stages[1])
     usable = True
     for i in range(m):
         u, v = low_at[equations[i]], high_at[equations[i]]
@@ -209,7 +209,7 @@ def row_coefficient(i: int, j: int, work: Workspace) -> tuple[float, float]:
     return u, v
 
 
-@compiled
+@inlined
 def solve_row(system: Arguments, i: int, pivot: int, box_low: Floats, box_high: Floats, work: Workspace) -> int:
     """Row i of the preconditioned linear equations, solved for its pivot: -1 no solution, 1 much narrower, 0 else."""
     unknowns, equations = system.unknowns, system.equations

@@ -21,6 +21,7 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified.assembly import Assembler
 from ptmcad.certified.covering import Lattice, Thinning, box_rectangles, thinning
 from ptmcad.certified.formulation import curves, distance_from_degeneracy, point_counter
+from ptmcad.certified.headway import PARTS, Headway
 from ptmcad.certified.loading import load
 from ptmcad.certified.pace import SAFETY, Pace
 from ptmcad.certified.refinement import Enclosure, begin, refine
@@ -99,6 +100,7 @@ class _Run:
         load(options.progress)
         self.pace = Pace(options.deadline)
         self.clock = self.pace.clock
+        self.headway = Headway(float(options.tolerance or TOLERANCE))
         self.slice, self.options = slice, options
         self.tolerance = options.tolerance or TOLERANCE
         self.jobs = options.jobs or os.cpu_count() or 1
@@ -130,7 +132,7 @@ class _Run:
                 return result
         for level in range(FIRST_LEVEL, LAST_LEVEL):
             start, regions = self.clock(), self.seconds["regions"]
-            report = self._report(level, undetermined)
+            report = self._report(undetermined)
             self._thinned = None
             in_time = refine(self.enclosures, self.area * 4.0**-level, self.jobs, report, self._late)
             self.seconds["curves"] += self.clock() - start - (self.seconds["regions"] - regions)
@@ -276,12 +278,18 @@ class _Run:
             partial=so_far,
         )
 
-    def _report(self, level: int, undetermined: Fraction) -> Callable[[int, int], None] | None:
+    def _report(self, undetermined: Fraction) -> Callable[[int, int], None] | None:
         progress = self.options.progress
         if progress is None:
             return None
-        what = f"undetermined {_percent(undetermined)}"
-        return lambda treated, waiting: progress(what, treated, treated + 8 * waiting)
+        best = min(undetermined, Fraction(1) if self.best is None else self.best.undetermined)
+        what, share = f"undetermined {_percent(best)}", float(best)
+
+        def report(treated: int, waiting: int) -> None:
+            level = treated / max(treated + 8 * waiting, 1)  # most of those that wait are cut again
+            progress(what, self.headway.at(share, level), PARTS)
+
+        return report
 
 
 def _rectangles(slice: Slice, resume: Cover | None) -> Boxes:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.certified.arithmetic import direction, down, length, magnitude, mignitude, multiply, reciprocal, sine, up
-from ptmcad.certified.compiled import compiled
+from ptmcad.certified.compiled import ONE, ZERO, compiled
 from ptmcad.certified.formula import Operation
 from ptmcad.certified.tape import Tape
 
@@ -68,9 +68,9 @@ def run(program: Program, box_low: Floats, box_high: Floats, low: Floats, high: 
         elif operation == _DIRECTION:
             u, v = direction(low[a], high[a], low[b], high[b])
         elif operation == _SINE:
-            u, v = sine(low[a], high[a], 0)
+            u, v = sine(low[a], high[a], ZERO)
         elif operation == _COSINE:
-            u, v = sine(low[a], high[a], 1)
+            u, v = sine(low[a], high[a], ONE)
         elif operation == _MEET:
             u, v = low[a], high[a]
             u = max(u, low[b])

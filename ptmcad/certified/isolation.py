@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from ptmcad.certified.arithmetic import down, mignitude, multiply, up
-from ptmcad.certified.compiled import compiled
+from ptmcad.certified.compiled import ZERO, compiled, inlined
 from ptmcad.certified.contraction import Workspace, precondition, row_constant
 from ptmcad.certified.evaluation import Floats, run
 from ptmcad.certified.system import Arguments
@@ -50,7 +50,7 @@ def inflated(equations: Arguments, box: Floats, weights: Floats, work: Workspace
     return np.empty(0)
 
 
-@compiled
+@inlined
 def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Workspace) -> bool:
     """Whether it is proved that the equations have exactly one zero in the box, and that it is an inner point.
 
@@ -61,7 +61,7 @@ def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
     program, stages, unknowns, equations, jacobian, _, _, _, _ = system
     low, high, low_at, high_at, middle_low, middle_high, radius, _, _, matrix, inverse = work
     m, n = jacobian.shape
-    if not run(program, box_low, box_high, low, high, 0, stages[3]):
+    if not run(program, box_low, box_high, low, high, ZERO, stages[3]):
         return False
     for k in range(box_low.shape[0]):
         middle_low[k], middle_high[k] = box_low[k], box_high[k]
@@ -72,7 +72,7 @@ def holds_one(system: Arguments, box_low: Floats, box_high: Floats, work: Worksp
         radius[j] = min(down(box_high[k] - middle), down(middle - box_low[k]))
         if not radius[j] > 0:
             return False
-    run(program, middle_low, middle_high, low_at, high_at, 0, stages[1])
+    run(program, middle_low, middle_high, low_at, high_at, ZERO, stages[1])
     for i in range(m):
         for j in range(n):
             place = jacobian[i, j]

@@ -7,9 +7,12 @@ the time that a limit allows.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from time import perf_counter
 
 import numpy as np
+from numba.core.event import Event, Listener, install_listener
 
+from ptmcad.certified.compiled import FUNCTIONS
 from ptmcad.certified.distinct import distinct
 from ptmcad.certified.evaluation import program, run
 from ptmcad.certified.formula import Graph
@@ -20,28 +23,60 @@ from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 
-STEPS = 6
+STAGE = "compiling the certified engine, once on this machine:"
+Progress = Callable[[str, int, int], None]
 _done: list[bool] = []
 
 
-def load(progress: Callable[[str, int, int], None] | None = None) -> None:
+def load(progress: Progress | None = None) -> float:
     """Use each compiled function once, on the line x = y, its point (1/2, 1/2) and a cover of one square.
 
     Parameters
     ----------
-    progress : called as progress("compiling", done, total): with the first functions done after a second or so where
-        they have to be compiled.
+    progress : called as progress(STAGE, done, total) with numbers of functions, as long as some have to be compiled.
+
+    Returns
+    -------
+    The seconds that compiling took now; 0 where all was read from disk, or had been loaded before.
     """
     if _done:
-        return
-    for step, _ in enumerate(_functions(), start=1):
-        if progress is not None:
-            progress("compiling", step, STEPS)
+        return 0.0
+    compiling = _Compiling(progress)
+    with install_listener("numba:compile", compiling):
+        for _ in _functions():
+            pass
     _done.append(True)
+    return compiling.seconds
+
+
+class _Compiling(Listener):
+    """Follows numba while it compiles, and reports how many of the functions are there."""
+
+    def __init__(self, progress: Progress | None) -> None:
+        self.progress = progress
+        self.seconds = 0.0
+        self._depth = 0
+        self._begun = 0.0
+
+    def on_start(self, _event: Event) -> None:
+        if self._depth == 0:
+            self._begun = perf_counter()
+        self._depth += 1
+        self._report()
+
+    def on_end(self, _event: Event) -> None:
+        self._depth -= 1
+        if self._depth == 0:
+            self.seconds += perf_counter() - self._begun
+        self._report()
+
+    def _report(self) -> None:
+        if self.progress is not None:
+            self.progress(STAGE, sum(bool(function.overloads) for function in FUNCTIONS), len(FUNCTIONS))
 
 
 def _functions() -> Iterator[None]:
-    """Those that compile fast come first, so that there is soon something to report."""
+    """One by one all that Python calls, the fastest to compile first, so that there is soon something to report."""
     weights = np.ones(2)
     square = np.array([[0.0, 0.0, 1.0, 1.0]])
     distinct(square, square, 0)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ptmcad.certified.compiled import compiled
+from ptmcad.certified.compiled import ZERO, compiled
 from ptmcad.certified.contraction import contract, workspace
 from ptmcad.certified.evaluation import Floats
 from ptmcad.certified.isolation import inflated
@@ -106,13 +106,14 @@ def branch_and_prune(system: Arguments, equations: Arguments, start: Boxes, limi
     stack, small = start.copy(), np.empty((64, 2 * variables))
     unique, narrow = np.empty((4, 2 * variables)), np.empty((4, 2 * variables))
     top = start.shape[0]
-    proved = finished = used = 0
+    proved = finished = used = ZERO
     box = np.empty(2 * variables)
     low, high = box[:variables], box[variables:]
     while top > 0 and used < limits.budget and finished <= limits.allowed:
         top -= 1
         used += 1
-        box[:] = stack[top]
+        for k in range(len(box)):
+            box[k] = stack[top, k]
         if not contract(system, low, high, work):
             continue
         widest, width = -1, 0.0
@@ -149,7 +150,10 @@ def _with(store: Boxes, count: int, box: Floats) -> Boxes:
     """The store of so many boxes with one more; a larger one where it is full."""
     if count == store.shape[0]:
         larger = np.empty((2 * count, store.shape[1]))
-        larger[:count] = store
+        for i in range(count):
+            for k in range(store.shape[1]):
+                larger[i, k] = store[i, k]
         store = larger
-    store[count] = box
+    for k in range(store.shape[1]):
+        store[count, k] = box[k]
     return store

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.certified.arithmetic import down, multiply, reciprocal, up
-from ptmcad.certified.compiled import compiled
+from ptmcad.certified.compiled import compiled, inlined
 from ptmcad.certified.contraction import (
     Workspace,
     linearise,
@@ -51,24 +51,27 @@ def strips(system: Arguments, boxes: Boxes) -> Strips:
     m, n = system.jacobian.shape
     work = workspace(system, variables)
     radius, matrix, inverse = work.radius, work.matrix, work.inverse
-    widths, pivots = np.zeros(n), np.empty(m, np.int64)
-    result = np.zeros((boxes.shape[0], 11))
+    widths, pivots = np.empty(n), np.empty(m, np.int64)
+    result = np.empty((boxes.shape[0], 11))
     found = 0
     low, high = np.empty(variables), np.empty(variables)
     for k in range(boxes.shape[0]):
-        low[:] = boxes[k, :variables]
-        high[:] = boxes[k, variables:]
+        for i in range(variables):
+            low[i], high[i] = boxes[k, i], boxes[k, variables + i]
         usable = linearise(system, low, high, work)
         if usable < 0:
             continue
         strip = result[found]
         found += 1
+        for i in range(len(strip)):
+            strip[i] = 0.0
         strip[0], strip[1], strip[2], strip[3] = low[0], low[1], high[0], high[1]
         strip[_V] = -1
         if usable == 0:
             continue
         # eliminate all unknowns but the plane's: columns without width are not chosen
-        widths[2:] = radius[2:]
+        for j in range(n):
+            widths[j] = radius[j] if j > 1 else 0.0
         precondition(matrix, inverse, widths, pivots)
         thinnest = inf
         for i in range(m):
@@ -77,20 +80,24 @@ def strips(system: Arguments, boxes: Boxes) -> Strips:
     return result[:found].copy()
 
 
-@compiled
+@inlined
 def _solved(
     system: Arguments, i: int, low: Floats, high: Floats, work: Workspace, strip: Floats, thinnest: float
 ) -> float:
     """Row i as a strip, if that is thinner than the thinnest so far; its thickness."""
     unknowns, middle, radius = system.unknowns, work.middle_low, work.radius
     c_low, c_high = row_constant(i, system.equations, work)
-    for j in range(2, len(unknowns)):
+    a_low = a_high = b_low = b_high = 0.0
+    for j in range(len(unknowns)):
         u, v = row_coefficient(i, j, work)
-        x = unknowns[j]
-        u, v = multiply(u, v, down(low[x] - middle[x]), up(high[x] - middle[x]))
-        c_low, c_high = down(c_low + u), up(c_high + v)
-    a_low, a_high = row_coefficient(i, 0, work)
-    b_low, b_high = row_coefficient(i, 1, work)
+        if j == 0:
+            a_low, a_high = u, v
+        elif j == 1:
+            b_low, b_high = u, v
+        else:
+            x = unknowns[j]
+            u, v = multiply(u, v, down(low[x] - middle[x]), up(high[x] - middle[x]))
+            c_low, c_high = down(c_low + u), up(c_high + v)
     dependent = 1
     if abs(a_low + a_high) * radius[0] > abs(b_low + b_high) * radius[1]:
         dependent = 0
@@ -156,13 +163,17 @@ def areas_of_pieces(strips: Strips, area: float) -> NDArray[np.float64]:
 def pieces(strips: Strips, area: float) -> Boxes:
     """Rectangles (left, bottom, right, top) that cover the strips, each of about ``area`` more than the strip."""
     numbers = numbers_of_pieces(strips, area)
-    result = np.empty((numbers.sum(), 4))
+    room = 0
+    for k in range(len(numbers)):
+        room += numbers[k]
+    result = np.empty((room, 4))
     found = 0
     for k in range(strips.shape[0]):
         strip = strips[k]
         number = numbers[k]
         if strip[_V] < 0:
-            result[found] = strip[:4]
+            for i in range(4):
+                result[found, i] = strip[i]
             found += 1
             continue
         v = int(strip[_V])

@@ -20,6 +20,7 @@ from typing import NoReturn
 
 import click
 
+from ptmcad.cli.completion import VARIABLE, answer
 from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.version import __version__
@@ -40,6 +41,7 @@ COMMANDS = {
     "stress": "ptmcad.cli.stress",
     "variety": "ptmcad.cli.variety",
     "verify": "ptmcad.cli.verify",
+    "warm-up": "ptmcad.cli.warm_up",
 }
 MAX_ARGUMENTS = 10_000
 """The parser's time is quadratic in their number."""
@@ -102,6 +104,8 @@ def run(arguments: Sequence[str] | None = None) -> int:
         click.echo(f"error: {given} arguments are given, more than {MAX_ARGUMENTS}: write a problem record", err=True)
         return 2
     try:
+        if VARIABLE in os.environ:
+            return answer(group, os.environ[VARIABLE], "ptmcad")
         status = group.main(args=arguments, prog_name="ptmcad", standalone_mode=False)
         if sys.stdout is not None:  # None when it was closed by the caller
             sys.stdout.flush()

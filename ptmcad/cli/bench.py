@@ -8,13 +8,16 @@ from pathlib import Path
 
 import click
 
-from ptmcad.errors import ConfigError, shown_path
+from ptmcad.cli.pictures import report_written
+from ptmcad.cli.values import files
+from ptmcad.errors import ConfigError
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import load
+from ptmcad.question.examples import shipped_record
 from ptmcad.question.slice import Slice
 
 METHODS = ("exact", "certified", "companion", "multistart", "qepcad", "gcad")
-DEFAULT = Path("configs") / "fig4.yaml"
+DEFAULT = "fig4"
 
 
 def _seconds(_context: click.Context, parameter: click.Parameter, value: float) -> float:
@@ -24,7 +27,9 @@ def _seconds(_context: click.Context, parameter: click.Parameter, value: float) 
 
 
 @click.command("bench")
-@click.argument("configs", nargs=-1, type=click.Path(path_type=Path), metavar="[CONFIG]...")
+@click.argument(
+    "configs", nargs=-1, type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"), metavar="[CONFIG]..."
+)
 @click.option("--compare", nargs=2, type=click.Path(path_type=Path), metavar="OLD NEW",
               help="Compare two JSON files of earlier runs; measure nothing.")  # fmt: skip
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
@@ -53,9 +58,10 @@ def command(
 ) -> int:
     """Error against run time of several methods on the slice of each CONFIG, side by side.
 
-    Without CONFIG: configs/fig4.yaml. Methods are the exact engine at several area tolerances, the certified engine at
-    falling tolerances, grids of companion matrices and of scipy's root finder, and QEPCAD and gcad where they are
-    installed. Each runs as a process of its own; methods take turns. Errors are measured exactly against the exact map.
+    Without CONFIG: configs/fig4.yaml, which is installed with ptmcad. Methods are the exact engine at several area
+    tolerances, the certified engine at falling tolerances, grids of companion matrices and of scipy's root finder,
+    and QEPCAD and gcad where they are installed. Each runs as a process of its own; methods take turns. Errors are
+    measured exactly against the exact map.
 
     Writes NAME.bench.json, .csv, .svg and .png, and NAME.error-time.json for `ptmcad report`, and prints a table. With
     --compare the exit status is 1 when something became slower or worse beyond noise.
@@ -72,7 +78,7 @@ def command(
         return _compare(*compare)
     slices = _slices(configs)
     if find_spec("scipy") is None:
-        raise ConfigError("measuring distances needs scipy: pip install 'ptmcad[bench]'", key="bench")
+        raise ConfigError("measuring distances needs scipy: pip install scipy", key="bench")
     from ptmcad.studies.bench.files import PAGE, SUFFIXES, save, save_page
     from ptmcad.studies.bench.measuring import Settings, measure
     from ptmcad.studies.bench.methods import Method
@@ -86,17 +92,17 @@ def command(
     for number, (slice, path) in enumerate(slices):
         study = measure(slice, path, lambda m: verify(m).ok, settings, warm_up=number == 0, report=report)
         save(study, out)
-        click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}\n")
+        click.echo(f"{study.slice}: {study.heading}\n{terminal(study)}")
+        report_written(out, (f"{slice.name}.{suffix}" for suffix in SUFFIXES))
+        click.echo()
     if page:
-        click.echo(f"written {shown_path(save_page(out))}")
+        report_written(out, (save_page(out).name,))
     return 0
 
 
 def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
     """The slices of the records, whose names differ, or that of `DEFAULT`."""
-    if not configs and not DEFAULT.is_file():
-        raise ConfigError(f"there is no {DEFAULT} here: name a problem record", key="CONFIG")
-    slices = [(load(path), path) for path in configs or (DEFAULT,)]
+    slices = [(load(path), path) for path in configs or (shipped_record(DEFAULT),)]
     names = [slice.name for slice, _ in slices]
     if len(set(names)) < len(names):
         raise ConfigError(f"two records have the name {next(n for n in names if names.count(n) > 1)}", key="CONFIG")

@@ -7,12 +7,13 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.values import files
 from ptmcad.errors import MAX_FAULTS, ConfigError
 from ptmcad.question.config import load
 
 
 @click.command("check")
-@click.argument("record", type=click.Path(path_type=Path))
+@click.argument("record", type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
 @limit_options
 def command(*, record: Path, limits: Limits) -> int:
     """Say everything that is wrong with a problem record, or what it asks.

@@ -11,12 +11,16 @@ from typing import Any, NamedTuple
 
 import click
 
+from ptmcad.answer.plan import own_steps
+from ptmcad.answer.regionmap import with_compilation
 from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of
 from ptmcad.cli.gathering import gathered
+from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
-from ptmcad.cli.pictures import write_result
+from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, ExpressionError, LimitReached
 from ptmcad.mechanism import ptm
 from ptmcad.options import Options
@@ -109,17 +113,17 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
             from ptmcad.ask.classification import prepare, region_map
 
             _report_why_none(slice, options, output, "the engine was still being loaded or compiled")
-            prepare(slice, options)
+            compiling = prepare(slice, options)
         _report_why_none(slice, options, output, "the first level of the search was not done")
         left = None if options.timeout is None else max(options.timeout - spent, MIN_SECONDS)
         try:
-            result = region_map(slice, replace(options, timeout=left))
+            result = with_compilation(region_map(slice, replace(options, timeout=left)), compiling)
         except LimitReached as stopped:
             if stopped.partial is None or "json" not in output.formats:
                 raise
             text = _hand_over(output, stopped.partial)  # first: if this process is ended now, the other one has it
             place = save_stopped(target, text, beside=beside)
-            where = f"the partial result is in {place}{where_saved(target, place, beside)}"
+            where = f"partial map{_open_share(stopped.partial)} saved to {place}{where_saved(target, place, beside)}"
             further = "" if getattr(stopped.partial, "cover", None) is None else how_to_go_on(place)
             raise LimitReached(f"{stopped}; {where}{further}") from stopped
         _save(result, slice.name, output)
@@ -140,13 +144,13 @@ def _hand_over(output: Output, result: Any) -> str:
     text = output.text(result)
     if "json" in output.formats:
         state = "partial" if result.status.value == "partial" else "complete"
-        open_share = "" if result.cover is None else f", {_percent(result.undetermined)} of it undetermined,"
-        send(Topic.RESULT, state, text, open_share)
+        send(Topic.RESULT, state, text, _open_share(result))
     return text
 
 
-def _percent(share: Fraction) -> str:
-    return f"{float(100 * share):.2g} %"
+def _open_share(result: Any) -> str:
+    """How much of a certified map is undetermined, in brackets."""
+    return "" if result.cover is None else f" ({float(100 * result.undetermined):.2g} % undetermined)"
 
 
 def _save(result: Any, name: str, output: Output) -> None:
@@ -162,8 +166,8 @@ def _save(result: Any, name: str, output: Output) -> None:
 
 
 def explanation(steps: Iterable[Any]) -> str:
-    """Steps of a plan as text, one a line."""
-    return "\n".join(str(step) for step in steps)
+    """The slice's own steps of a plan as text, one a line."""
+    return "\n".join(map(str, own_steps(steps)))
 
 
 def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
@@ -226,6 +230,18 @@ def _names_of_savings(_context: click.Context, parameter: click.Parameter, names
     return names
 
 
+def _idle(slice: Slice, options: Options) -> tuple[Idle, ...]:
+    """The options that the slice's engine does not need."""
+    from ptmcad.ask.engines import is_certified
+
+    certified = is_certified(slice, options.engine)
+    return (
+        Idle("no_areas", certified, "this engine gets areas at no extra cost"),
+        Idle("tolerance", not certified, "the exact engine leaves nothing undetermined"),
+        Idle("jobs", not certified, "the exact engine uses one thread"),
+    )
+
+
 def _resumed(slice: Slice, path: Path) -> Any:
     """The stored map from which to go on."""
     from ptmcad.ask.classification import check_resumable
@@ -270,6 +286,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @click.option(
     "--resume",
     type=click.Path(path_type=Path),
+    shell_complete=files(".json"),
     metavar="RESULT",
     help="Go on from a stored certified map of the same slice.",
 )
@@ -292,7 +309,7 @@ def command(
     Springs with a free length (--set l0=1/5) are the certified engine's: it leaves a part of the window undetermined,
     which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the best map so far, from the first level of the
     search on, and says how much of it is undetermined; --resume goes on from there. In its first run on a machine it
-    compiles its inner loops, 10 to 40 seconds that --timeout does not count.
+    compiles its inner loops, some 10 to 30 seconds that --timeout does not count; `ptmcad warm-up` does so beforehand.
 
     \b
     Examples:
@@ -303,6 +320,7 @@ def command(
     """
     slice = asked.slice(count)
     options = replace(options, timeout=limits.timeout)
+    report_idle((*_idle(slice, options), *idle_drawing(output.formats)))
     spent = 0.0
     with held(limits):
         if resume is not None:
@@ -314,7 +332,8 @@ def command(
         steps = announced(slice, options) if output.explain else ()
         warn(slice, options)
         result = classify_to_files(slice, options, output, spent)
-    further = [step for step in result.plan if step not in steps]
-    if output.explain and further:
+    further = [step for step in own_steps(result.plan) if step not in steps] if output.explain else []
+    if further:
         click.echo(f"decided on the way:\n{explanation(further)}")
     click.echo(result.table())
+    report_written(output.out, names_of(slice.name, output.formats))

@@ -18,6 +18,7 @@ import click
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.pictures import picture
+from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.process.output import Writer, text_writer
 from ptmcad.text.parsing import rational
@@ -131,7 +132,8 @@ def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable
             click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
                          help="Resolution of a PNG; regions that it hides are shown zoomed, in every format."),
             click.option("--samples", is_flag=True, help="Draw the cells' sample points."),
-            click.option("--format", "formats", callback=partial(formats_of, known=known), default=default,
+            click.option("--format", "formats", callback=partial(formats_of, known=known),
+                         shell_complete=formats_known(known), default=default,
                          show_default=True, metavar="LIST", help=f"{what}, of {', '.join(known)}."),
         ):  # fmt: skip
             command = option(command)

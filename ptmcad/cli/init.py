@@ -8,12 +8,13 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.mechanisms import known_starter
+from ptmcad.cli.values import mechanisms
 from ptmcad.errors import ConfigError, OutputError
 from ptmcad.question.config.starters import starter_text
 
 
 @click.command("init")
-@click.argument("mechanism", default="pendulum")
+@click.argument("mechanism", default="pendulum", shell_complete=mechanisms)
 @click.option("--out", type=click.Path(path_type=Path), metavar="FILE",
               help="The file to write; never one that is there.  [default: standard output]")  # fmt: skip
 def command(*, mechanism: str, out: Path | None) -> None:

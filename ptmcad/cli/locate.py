@@ -13,6 +13,8 @@ from ptmcad.answer.regionmap import Location, RegionMap
 from ptmcad.answer.words import index_words
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.stored import read_result
+from ptmcad.cli.values import files
+from ptmcad.cli.values import point as propose_point
 from ptmcad.errors import ConfigError, shown
 from ptmcad.process.streams import reader_left
 from ptmcad.question.examples import POINT
@@ -138,8 +140,14 @@ def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str]) 
 
 
 @click.command("locate")
-@click.argument("result", type=click.Path(path_type=Path))
-@click.option("--at", "at", metavar="NAME=VALUE,NAME=VALUE", help="A point: both axes, exact numbers.")
+@click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
+@click.option(
+    "--at",
+    "at",
+    metavar="NAME=VALUE,NAME=VALUE",
+    shell_complete=propose_point,
+    help="A point: both axes, exact numbers.",
+)
 @click.option("--csv", "table", type=click.Path(path_type=Path), metavar="FILE",
               help="A CSV file whose first row names the axes; prints a CSV row for each of its points.")  # fmt: skip
 @limit_options

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.values import mechanisms as known_mechanisms
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.process.output import check_writable, text_writer, write_files
@@ -51,7 +52,7 @@ def description(model: Model) -> str:
 
 
 @click.command("mechanisms")
-@click.argument("names", nargs=-1)
+@click.argument("names", nargs=-1, shell_complete=known_mechanisms)
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for drawings, NAME.svg for each mechanism.")
 def command(*, names: tuple[str, ...], out: Path | None) -> None:
     """List the built-in mechanisms, with parameters and a drawing; or those of NAMES.

@@ -1,4 +1,4 @@
-"""Pictures beside the JSON of a result.
+"""Pictures beside the JSON of a result, and the names of what was written.
 
 Guarantee: whatever a picture fails of, its result is saved as JSON, where that is asked for; the message names the
 picture and where the result is, and the exit status is 2.
@@ -6,11 +6,20 @@ picture and where the result is, and the exit status is 2.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from ptmcad.errors import PictureError, PtmcadError
+import click
+
+from ptmcad.errors import PictureError, PtmcadError, shown_path
 from ptmcad.process.output import Writer, save_stopped, where_saved, write_files
+
+
+def report_written(folder: Path, names: Iterable[str]) -> None:
+    """Name the files that are there now, where there are any."""
+    paths = [shown_path(folder / name) for name in names]
+    if paths:
+        click.echo(f"written   {', '.join(paths)}")
 
 
 def picture(name: str, draw: Callable[[Path], None]) -> Writer:

@@ -7,15 +7,17 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of
+from ptmcad.cli.idle import idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.stored import read_result
+from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, PictureError, shown_path
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import portable_file
 
 
 @click.command("plot")
-@click.argument("result", type=click.Path(path_type=Path))
+@click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the files.  [default: that of RESULT]")
 @drawing_options((*PICTURES, *DATA), "png", "What to make")
 @limit_options
@@ -28,6 +30,7 @@ def command(*, result: Path, out: Path | None, formats: tuple[str, ...], drawing
         ptmcad plot slice-L2-rho.json --format png,svg --dpi 300
         ptmcad plot slice-L2-rho.json --format csv
     """
+    report_idle(idle_drawing(formats))
     with held(limits):
         stored = read_result(result)
         folder = result.parent if out is None else out

@@ -18,7 +18,7 @@ _WIDTH = 24
 
 
 class ProgressBar:
-    """A context manager; call it with (stage, done, total); a stage that ends with "%" says itself how far it is."""
+    """A context manager to call with (stage, done, total); a stage that ends with "%" or "..." says how far it is."""
 
     def __init__(self) -> None:
         self.watched = sys.stderr is not None and sys.stderr.isatty()  # None when the caller has closed it
@@ -36,7 +36,7 @@ class ProgressBar:
         bar = "#" * filled + "." * (_WIDTH - filled)
         if not self.shown:
             send(Topic.PROGRESS)  # this process may not live to clear the line
-        where = stage if stage.endswith("%") else f"{stage} {done}/{total}"
+        where = stage if stage.endswith(("%", "...")) else f"{stage} {done} of {total}"
         sys.stderr.write(f"\r\x1b[K[{bar}] {where}, {now - self.start:.0f} s")
         sys.stderr.flush()
         self.shown, self.last = True, now

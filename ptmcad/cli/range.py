@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
-from typing import Any
 
 import click
 from click.core import ParameterSource
 
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.gathering import gathered
+from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.pictures import picture, write_result
+from ptmcad.cli.pictures import picture, report_written, write_result
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.range_answers import Answer, Request, answer, is_enclosed
+from ptmcad.cli.values import files, names, pair_of_names, point, quantity_names, settings
+from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import ptm
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -94,28 +97,6 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str | No
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
-    """What is asked for beside the slice.
-
-    Attributes
-    ----------
-    at : the value of the slice's other axis, empty when only ``over`` is asked for.
-    over : whether to tabulate the widths over the other axis, in so many rows.
-    critical : whether to find the critical free lengths by elimination instead.
-    start, pose : of the paths; ``start`` None for none.
-    """
-
-    along: str
-    at: Mapping[str, str]
-    over: bool
-    rows: int
-    start: Fraction | None
-    pose: int | None
-    digits: int
-    critical: bool
-
-
-@dataclass(frozen=True, slots=True)
 class Wanted:
     """What is asked for beside the line, as it was typed; see `Request`."""
 
@@ -124,6 +105,7 @@ class Wanted:
     pose: int | None
     digits: int
     critical: bool
+    quantities: tuple[str, ...]
 
     def request(self, asked: AskedLine, at: Mapping[str, str]) -> Request:
         """The same, checked.
@@ -134,7 +116,10 @@ class Wanted:
             For an option that needs another one.
         """
         over, start = asked.over is not None, _start(self.start, at)
-        request = Request(asked.along, at, over, self.rows, start, self.pose, self.digits, self.critical)
+        quantities = tuple(dict.fromkeys(self.quantities))
+        request = Request(asked.along, at, over, self.rows, start, self.pose, self.digits, self.critical, quantities)
+        if quantities and not at:
+            raise ConfigError(f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--quantity")
         if not over and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT:
             raise ConfigError("is for the table over the other axis: give --over NAME too", key="--rows")
         if self.pose is not None and self.start is None:
@@ -160,108 +145,49 @@ class Output:
         return f"{slice.name}-range" if self.name is None else file_name(self.name, "--name")
 
 
-@dataclass(frozen=True, slots=True)
-class Answer:
-    """What was found, for the terminal, the JSON and the pictures."""
-
-    text: str
-    parts: Mapping[str, Any]
-    pictures: Mapping[str, Callable[[Path], None]]
-
-
-def answer(slice: Slice, request: Request) -> Answer:
-    """Compute all that is asked for.
-
-    Raises
-    ------
-    PtmcadError
-        Of any kind.
-    """
-    from ptmcad.ask import ranges
-    from ptmcad.exact.ranges.strips import refuse_free_lengths
-    from ptmcad.question.line import has_free_lengths
-    from ptmcad.show.ranges import document, table
-
-    only_line = not request.over and request.start is None
-    if only_line and has_free_lengths(slice, request.along, request.at):
-        return _enclosed(slice, request)
-    if request.critical:
-        raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
-    if request.over:
-        refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
-    texts, parts = [slice.heading], {}
-    pictures: dict[str, Callable[[Path], None]] = {}
-    if request.at:
-        found = ranges.intervals(slice, request.along, request.at)
-        texts.append(table.table(found, request.digits))
-        parts["line"] = document.line_data(found, request.digits)
-        pictures[""] = partial(_picture, "line", slice, found)
-    if request.over:
-        widths = ranges.operation_widths(slice, request.along, request.rows)
-        texts.append(table.width_table(widths, request.digits))
-        parts["over"] = document.over_data(widths, request.digits)
-        pictures["-over"] = partial(_picture, "over", slice, widths)
-    if request.start is not None:
-        paths = ranges.pose_paths(slice, request.along, request.at, request.start, request.pose)
-        texts.append(table.path_table(paths, min(request.digits, 10)))
-        parts["path"] = document.path_data(paths)
-        pictures["-path"] = partial(_picture, "path", slice, paths)
-    return Answer("\n\n".join(texts), parts, pictures)
-
-
-def _enclosed(slice: Slice, request: Request) -> Answer:
-    """The answer where springs have free lengths."""
-    from ptmcad.show.ranges import certified, document, table
-
-    texts, parts = [slice.heading], dict[str, Any]()
-    if request.critical:
-        from ptmcad.exact.ranges.free_lengths import critical_on_line
-
-        critical = critical_on_line(slice, request.along, request.at)
-        texts.append(table.critical_table(critical, request.digits))
-        parts["critical"] = document.critical_data(critical, request.digits)
-    else:
-        from ptmcad.certified.intervals import certified_intervals
-
-        line = certified_intervals(slice, request.along, request.at, request.digits)
-        texts.append(certified.table(line, request.digits))
-        parts["enclosed"] = document.enclosed_data(line, request.digits)
-    return Answer("\n\n".join(texts), parts, {})
-
-
-def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
-    from ptmcad.show.render import ranges as pictures
-    from ptmcad.show.render.printing import save
-
-    if kind == "line":
-        figure = pictures.draw_range(slice, found)
-    elif kind == "over":
-        figure = pictures.draw_widths(slice, found)
-    else:
-        figure = pictures.draw_paths(slice, found)
-    save(figure, path)
-
-
 @click.command("range")
-@click.argument("config", required=False, type=click.Path(path_type=Path))
-@click.option("--along", required=True, metavar="NAME", help="The parameter or axis that varies.")
-@click.option("--at", "at", metavar="NAME=VALUE,...", help="What is fixed: the slice's other axis, any parameters.")
-@click.option("--slice", "axes", metavar="X,Y", help="The slice's two axes, where a name is no parameter.")
-@click.option("--set", "sets", multiple=True, metavar="NAME=VALUE", help="Fix a parameter: a number or an expression.")
-@click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", help="The range of an axis.")
+@click.argument("config", required=False, type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@click.option("--along", required=True, metavar="NAME", shell_complete=names, help="The parameter or axis that varies.")
+@click.option(
+    "--at",
+    "at",
+    metavar="NAME=VALUE,...",
+    shell_complete=point,
+    help="What is fixed: the slice's other axis, any parameters.",
+)
+@click.option(
+    "--slice",
+    "axes",
+    metavar="X,Y",
+    shell_complete=pair_of_names,
+    help="The slice's two axes, where a name is no parameter.",
+)
+@click.option(
+    "--set",
+    "sets",
+    multiple=True,
+    metavar="NAME=VALUE",
+    shell_complete=settings,
+    help="Fix a parameter: a number or an expression.",
+)
+@click.option(
+    "--range", "ranges", multiple=True, metavar="NAME=LO:HI", shell_complete=settings, help="The range of an axis."
+)
 @click.option("--digits", type=click.IntRange(1, 1000), default=10, show_default=True, help="Digits of decimals.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-range]")
-@click.option("--format", "formats", callback=_formats, metavar="LIST",
+@click.option("--format", "formats", callback=_formats, shell_complete=formats_known(FORMATS), metavar="LIST",
               help=f"Files to write, of {', '.join(FORMATS)}.  [default: none]")  # fmt: skip
-@click.option("--over", metavar="NAME", help="The axis over which to tabulate the operation range's width.")
+@click.option(
+    "--over", metavar="NAME", shell_complete=names, help="The axis over which to tabulate the operation range's width."
+)
 @click.option("--rows", type=click.IntRange(1, 1000), default=41, show_default=True, help="Rows of that table.")
 @click.option("--path", "start", metavar="VALUE", help="Follow stable poses from this value until they snap.")
 @click.option("--pose", type=click.IntRange(min=1), metavar="N",
               help="Which pose, as ptmcad solve numbers them.  [default: every stable one]")  # fmt: skip
+@click.option("--quantity", "quantities", multiple=True, metavar="NAME", shell_complete=quantity_names,
+              help="Draw all branches, stable and unstable, of a quantity: an unknown, energy, stiffness (the least "
+                   "eigenvalue), force:A1A4, length:A1A4, x:A3, y:A3 and the like. Repeatable.")  # fmt: skip
 @click.option("--critical", is_flag=True,
               help="Along the springs' free length: all critical values by elimination, with msolve.")  # fmt: skip
 @limit_options
@@ -273,7 +199,8 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
 
     Ends are exact algebraic numbers: the JSON has the polynomial and an isolating interval of each. With free lengths
     they are enclosed by interval arithmetic, and what could not be decided is reported. All digits of the
-    tables are right. With --over the widest operation range is found and proved; with --path stable poses are followed
+    tables are right. With --over the widest operation range is found and proved (with free lengths it is tabulated);
+    with --path stable poses are followed
     until they vanish, and the pose to which the mechanism snaps is reported.
 
     \b
@@ -281,33 +208,37 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
         ptmcad range --along rho --at L2=3/2
         ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --path 7/10 --format json,svg
         ptmcad range --along rho --over L2 --range L2=0:2 --at F3=-10,F4=-10
+        ptmcad range --along rho --at L2=3/2,F3=-10,F4=-10 --quantity th1 --quantity energy --format png
     """
     slice, at = slice_and_line(asked)
     request = wanted.request(asked, at)
     stem = output.stem(slice)
     with held(limits):
-        enclosed = slice.has_free_lengths and _varies_free_lengths(slice, request)
-        if enclosed and set(output.formats) - {"json"}:
-            raise ConfigError("with a free length there is the table and JSON, no picture", key="--format")
-        names = [f"{stem}{part}.{suffix}" for part in _parts(request) for suffix in output.pictures]
+        enclosed = is_enclosed(slice, request)
+        if enclosed and set(output.formats) - {"json"} and not (request.quantities or request.over):
+            raise ConfigError(
+                "with a free length there is the table and JSON, and a picture of branches (--quantity NAME) or of a "
+                "band (--over NAME) only",
+                key="--format",
+            )
+        parts = _parts(request, enclosed=enclosed)
+        names = [f"{stem}{part}.{suffix}" for part in parts for suffix in output.pictures]
         names += [f"{stem}.json"] * ("json" in output.formats)
         if names:
             check_writable(output.out, tuple(names))
-        if enclosed and not request.over and request.start is None and not request.critical:
+        why = "no file is written, see --format"
+        report_idle((Idle("out", not names, why), Idle("name", not names, why)))
+        if enclosed and request.start is None and not request.critical:
             from ptmcad.ask.classification import load_certified
 
-            with clock_stopped(limits.timeout):  # the time that compiling takes is not the computation's
-                load_certified()
+            # the time that compiling takes is not the computation's
+            with clock_stopped(limits.timeout), ProgressBar() as progress:
+                load_certified(progress)
         found = answer(slice, request)
         click.echo(found.text)
         if names:
             _save(slice, found, stem, output)
-
-
-def _varies_free_lengths(slice: Slice, request: Request) -> bool:
-    from ptmcad.question.line import has_free_lengths
-
-    return has_free_lengths(slice, request.along, request.at)
+            report_written(output.out, names)
 
 
 def _save(slice: Slice, found: Answer, stem: str, output: Output) -> None:
@@ -327,9 +258,11 @@ def _save(slice: Slice, found: Answer, stem: str, output: Output) -> None:
         write_files(output.out, writers)
 
 
-def _parts(request: Request) -> list[str]:
+def _parts(request: Request, *, enclosed: bool) -> list[str]:
     """What is added to the pictures' names."""
-    return [""] * bool(request.at) + ["-over"] * request.over + ["-path"] * (request.start is not None)
+    line = bool(request.at) and not enclosed
+    parts = [""] * line + ["-over"] * request.over + ["-path"] * (request.start is not None)
+    return parts + ["-branches"] * bool(request.quantities)
 
 
 def _start(text: str | None, other: Mapping[str, str]) -> Fraction | None:

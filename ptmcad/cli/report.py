@@ -8,6 +8,7 @@ import click
 
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.stored import read_result
+from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, portable_file
@@ -18,7 +19,7 @@ def _file_name(_context: click.Context, _parameter: click.Parameter, value: str 
 
 
 @click.command("report")
-@click.argument("result", type=click.Path(path_type=Path))
+@click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the page.  [default: that of RESULT]")
 @click.option("--name", callback=_file_name, metavar="NAME", help="Name of the page.  [default: that of RESULT]")
 @click.option("--bench", type=click.Path(path_type=Path), metavar="FILE",

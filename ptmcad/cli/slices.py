@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, TypeVar
 import click
 
 from ptmcad.cli.gathering import gathered
+from ptmcad.cli.values import files, mechanisms, pair_of_names, settings
 from ptmcad.question.config import slice_from_options
 from ptmcad.question.slice import Slice
 
@@ -42,12 +43,16 @@ def slice_options(command: F) -> F:
     """Add CONFIG, ``--mechanism``, ``--slice``, ``--set`` and ``--range``, which the command gets as ``asked``."""
     command = gathered(asked=Asked)(command)
     for add in (
-        click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", help="The range of an axis."),
-        click.option("--set", "sets", multiple=True, metavar="NAME=VALUE",
+        click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", shell_complete=settings,
+                     help="The range of an axis."),
+        click.option("--set", "sets", multiple=True, metavar="NAME=VALUE", shell_complete=settings,
                      help="Fix a parameter: a number or an expression."),
-        click.option("--slice", "axes", metavar="X,Y", help="The two axes, the horizontal one first."),
-        click.option("--mechanism", metavar="NAME|FILE", help="Without CONFIG: the mechanism.  [default: ptm]"),
-        click.argument("config", required=False, type=click.Path(path_type=Path)),
+        click.option("--slice", "axes", metavar="X,Y", shell_complete=pair_of_names,
+                     help="The two axes, the horizontal one first."),
+        click.option("--mechanism", metavar="NAME|FILE", shell_complete=mechanisms,
+                     help="Without CONFIG: the mechanism.  [default: ptm]"),
+        click.argument("config", required=False, type=click.Path(path_type=Path),
+                       shell_complete=files(".yaml", ".yml")),
     ):  # fmt: skip
         command = add(command)
     return command

@@ -9,9 +9,13 @@ import click
 
 from ptmcad.answer.poses import MAX_DIGITS, Poses
 from ptmcad.cli.formats import formats_of
+from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
-from ptmcad.cli.pictures import picture, write_result
+from ptmcad.cli.pictures import picture, report_written, write_result
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.values import files, point, settings
+from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -83,12 +87,21 @@ def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
 
 
 @click.command("solve")
-@click.argument("config", required=False, type=click.Path(path_type=Path))
-@click.option("--at", "at", metavar="NAME=VALUE,...", help="The point: parameters, or axes of CONFIG, exact numbers.")
-@click.option("--set", "sets", multiple=True, metavar="NAME=VALUE", help="Fix one more parameter.")
+@click.argument("config", required=False, type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@click.option(
+    "--at",
+    "at",
+    metavar="NAME=VALUE,...",
+    shell_complete=point,
+    help="The point: parameters, or axes of CONFIG, exact numbers.",
+)
+@click.option(
+    "--set", "sets", multiple=True, metavar="NAME=VALUE", shell_complete=settings, help="Fix one more parameter."
+)
 @click.option("--digits", type=click.IntRange(1, MAX_DIGITS), default=DIGITS, show_default=True, metavar="N",
               help="Significant digits, all of them right.")  # fmt: skip
-@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="table", show_default=True,
+@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS),
+              shell_complete=formats_known(FORMATS), default="table", show_default=True,
               metavar="LIST", help=f"What to make, of {', '.join(FORMATS)}; the table is printed.")  # fmt: skip
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: poses]")
@@ -127,17 +140,24 @@ def command(
         names = drawable(model, names, start, landscape)
         if names:
             check_writable(out, names)
+        report_idle(
+            (
+                Idle("out", not names, "no file is written, see --format"),
+                Idle("name", not names, "no file is written, see --format"),
+            )
+        )
         from ptmcad.ask.classification import load_certified
         from ptmcad.ask.solving import needs_intervals, poses_at
 
-        with clock_stopped(limits.timeout):  # the time that imports and compiling take is not the computation's
+        # the time that imports and compiling take is not the computation's
+        with clock_stopped(limits.timeout), ProgressBar() as progress:
             if needs_intervals(model, parameters):
-                load_certified()
+                load_certified(progress)
         poses = poses_at(model, parameters, digits)
         if names:
             save(poses, out, start, names)
     if "table" in formats:
         click.echo(poses.table())
+    report_written(out, names)
     if landscape and (reason := no_landscape(model)):
-        written = f"; {', '.join(names)} {'are' if len(names) > 1 else 'is'} written" if names else ""
-        raise ConfigError(f"{reason}{written}", key="--landscape")
+        raise ConfigError(reason, key="--landscape")

@@ -1,11 +1,13 @@
 """Reading a stored result for the commands that ask something of it.
 
-Guarantee: a file that is missing, unreadable, too large or damaged gives one `ConfigError` with the file's name. Where
-a killed run has not put all of its files into place, that is done first, if this user may.
+Guarantee: a file that is missing, unreadable, too large, damaged or of another kind gives one `ConfigError` with the
+file's name and what to do. Where a killed run has not put all of its files into place, that is done first, if this user
+may.
 """
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from ptmcad.answer.regionmap import RegionMap
@@ -16,6 +18,8 @@ from ptmcad.text.textfile import read_text
 
 MAX_BYTES = 60_000_000
 """Twice what a certified map with a million rectangles takes."""
+_OF_A_RECORD = frozenset(("mechanism", "system", "axes"))
+"""Keys of which a problem record has one at least, and no result has any at its top."""
 
 
 def read_result(path: Path) -> RegionMap:
@@ -32,4 +36,35 @@ def read_result(path: Path) -> RegionMap:
         return RegionMap.from_json(text)
     except (ValueError, PtmcadError, ZeroDivisionError, RecursionError) as error:
         reason = shown(" ".join(str(error).split()), 300)
-        raise ConfigError(f"is damaged or not a {FORMAT} file: {reason}", file=str(path)) from error
+        what = _other_kind(text) or f"is damaged or not a {FORMAT} file: {reason}"
+        raise ConfigError(what, file=str(path)) from error
+
+
+def _other_kind(text: str) -> str:
+    """What the text is if it is a file of ptmcad of another kind, as a message; empty if it is none."""
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError):
+        data = None
+    kind = data.get("format") if isinstance(data, dict) else None
+    if kind is None and _is_record(text):  # which may be written as JSON
+        return "this is a problem record, not a result: run `ptmcad classify` on it first"
+    own, _, version = FORMAT.partition("/")
+    if not isinstance(kind, str) or not kind.startswith("ptmcad-") or kind == FORMAT:
+        return ""
+    if kind.partition("/")[0] == own:
+        return f"this is a {shown(kind, 40)} file, and this program reads version {version}: make it anew"
+    return f"this is a {shown(kind, 40)} file, not a region map: `ptmcad classify` makes one"
+
+
+def _is_record(text: str) -> bool:
+    from ptmcad.text.yamltree import MAX_BYTES as MOST
+    from ptmcad.text.yamltree import read_text as read_yaml
+
+    if len(text) > MOST:
+        return False
+    try:
+        tree = read_yaml(text)
+    except PtmcadError:
+        return False
+    return not _OF_A_RECORD.isdisjoint(tree.entries)

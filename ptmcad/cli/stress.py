@@ -11,8 +11,9 @@ import click
 
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
-from ptmcad.cli.pictures import picture, write_result
+from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 
@@ -26,8 +27,8 @@ GRACE_SECONDS = 60.0
 """Seconds after the time limit for the case that is being run, before the process is ended from outside."""
 
 
-def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> None:
-    """Write the files of these formats, all or none.
+def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> tuple[str, ...]:
+    """Write the files of these formats, all or none, and return their names.
 
     Raises
     ------
@@ -51,6 +52,7 @@ def save(found: Campaign, folder: Path, formats: tuple[str, ...]) -> None:
         write_result(folder, writers, f"{name}.json", text)
     elif writers:
         write_files(folder, writers)
+    return tuple(writers)
 
 
 def _draw(found: Campaign, path: Path) -> None:
@@ -71,7 +73,8 @@ def _draw(found: Campaign, path: Path) -> None:
               help="Of the random cases.")  # fmt: skip
 @click.option("--repeats", type=click.IntRange(1, 1000), default=5, show_default=True, metavar="N",
               help="Timed runs of each case and of its tame sibling; slow cases have one.")  # fmt: skip
-@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="table,json,csv,png,svg",
+@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS),
+              shell_complete=formats_known(FORMATS), default="table,json,csv,png,svg",
               show_default=True, metavar="LIST", help="What to make; the table is printed.")  # fmt: skip
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
 @click.option("--list", "only_list", is_flag=True, help="Print the cases with their sources, and run none.")
@@ -121,13 +124,14 @@ def command(
         if any(case.has_free_lengths for case in cases):
             from ptmcad.ask.classification import load_certified
 
-            with clock_stopped(limit):  # the time that compiling takes is not the cases'
-                load_certified()
+            with clock_stopped(limit), ProgressBar() as progress:  # the time that compiling takes is not the cases'
+                load_certified(progress)
         deadline = None if timeout is None else perf_counter() + timeout
         with ProgressBar() as progress:
             found = campaign(cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress)
-        save(found, out, formats)
+        written = save(found, out, formats)
         click.echo(table(found) if "table" in formats else "\n".join(summary(found)))
+        report_written(out, written)
     if not found.complete:
         raise LimitReached(f"the time limit was reached after {len(found.outcomes)} of {found.wanted} cases")
     return 1 if found.wrong else 0

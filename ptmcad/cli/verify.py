@@ -6,12 +6,15 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import read_result
+from ptmcad.cli.values import files
 
 
 @click.command("verify")
-@click.argument("result", type=click.Path(path_type=Path))
+@click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
 @click.option("--seed", type=click.IntRange(min=0), metavar="N",
               help="Seed of the random points and of the random boxes.  [default: a hash of the claims]")  # fmt: skip
 @click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
@@ -30,9 +33,11 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
     """
     with held(limits):
         stored = read_result(result)
+        report_idle([Idle("boxes", stored.cover is None, "an exact map is checked whole")])
         from ptmcad.verification import verify
 
-        report = verify(stored, seed=seed, boxes=boxes)
+        with ProgressBar() as progress:
+            report = verify(stored, seed=seed, boxes=boxes, progress=progress)
     click.echo(report.table())
     if report.ok:
         return 0

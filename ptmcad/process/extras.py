@@ -11,7 +11,7 @@ from ptmcad.errors import ConfigError
 
 NUMBA_MISSING = (
     "the certified engine, which springs with a free length need, runs on the package numba, "
-    "which is not installed: pip install 'ptmcad[certified]'"
+    "which is not installed: pip install numba"
 )
 
 

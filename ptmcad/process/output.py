@@ -254,7 +254,7 @@ def _stored(path: Path) -> dict[str, Any] | None:
 
 def how_to_go_on(place: Path) -> str:
     """What goes on from a stopped result that can be gone on from, as the end of a sentence."""
-    return f"; --resume {shlex.quote(str(place))} goes on from there"
+    return f"; go on with --resume {shlex.quote(str(place))}"
 
 
 def _replaceable(target: Path, text: str | None = None) -> bool:

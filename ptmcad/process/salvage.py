@@ -47,14 +47,14 @@ def save_last(reports: Reports, why: str) -> int:
 
     Parameters
     ----------
-    why : it was stopped.
+    why : it was stopped, as the start of a sentence.
     """
     if Topic.TARGET not in reports:
-        report(f"stopped: {why}\n")
+        report(f"{why}\n")
         return 3
     if Topic.RESULT not in reports:
         reason = f": {reports[Topic.RESUMABLE][0]}" if Topic.RESUMABLE in reports else ""
-        report(f"stopped: {why}; there was no partial result to save yet{reason}\n")
+        report(f"{why}; there was no partial map to save yet{reason}\n")
         return 3
     from pathlib import Path  # not before it is needed: every start would pay for it
 
@@ -71,9 +71,9 @@ def save_last(reports: Reports, why: str) -> int:
         else:
             place = save_stopped(target, text, whole=state == "complete", beside=beside)
     except OutputError as error:
-        report(f"error: {why}, and the {state} result was lost: {error}\n")
+        report(f"error: {why}, and the {state} map was lost: {error}\n")
         return 2
     further = how_to_go_on(place) if Topic.RESUMABLE in reports and state == "partial" else ""
     where = f"{place}{where_saved(target, place, beside)}{further}"
-    report(f"stopped: {why}; the {state} result{remark} is in {where}\n")
+    report(f"{why}; {state} map{remark} saved to {where}\n")
     return 3

@@ -31,6 +31,15 @@ OVERRUN_SECONDS = 0.25
 POLL_SECONDS = 0.25
 """Seconds between two looks at the child's memory."""
 
+_HOW_ENDED = {
+    getattr(signal, name): words
+    for name, words in (
+        ("SIGINT", "interrupted"),
+        ("SIGTERM", "terminated (SIGTERM)"),
+        ("SIGHUP", "the terminal was closed (SIGHUP)"),
+    )
+    if hasattr(signal, name)
+}
 _CHUNK = 1 << 16
 
 
@@ -157,12 +166,12 @@ class Watch:
             clean_up(self.reports, self.temporaries, GRACE_SECONDS)
         if self.caught:
             if Topic.RESUMABLE in self.reports or self.reports.get(Topic.RESULT, [""])[0] == "complete":
-                save_last(self.reports, f"by {signal.Signals(self.caught[0]).name}")
+                save_last(self.reports, _HOW_ENDED.get(self.caught[0], f"stopped by signal {self.caught[0]}"))
             return 128 + self.caught[0]
         text = self.text.decode(errors="replace")
         why = self._why_stopped(ended, deserted, text)
         if why:
-            return save_last(self.reports, why)
+            return save_last(self.reports, f"stopped: {why}")
         report(text)
         if deserted:
             report(f"error: the computation ended by itself with status {ended}; this is a bug, please report it\n")

@@ -18,6 +18,8 @@ from ptmcad.text.syntax import did_you_mean
 
 ALL = "all"
 """Stands for every saving."""
+GENERAL_SAVING = "imports"
+"""The saving that is made on every slice alike: results state it, and what explains a slice leaves it out."""
 IMPORTED = ("numpy", "matplotlib.figure", "sympy", "numba")
 """What the saving "imports" leaves out where nothing needs it."""
 

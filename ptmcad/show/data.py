@@ -118,7 +118,7 @@ def data_frame(result: RegionMap, what: str, options: Mapping[str, Any]) -> Data
     try:
         import pandas as pd
     except ModuleNotFoundError as error:
-        raise ConfigError("a data frame needs the package pandas: pip install 'ptmcad[data]'") from error
+        raise ConfigError("a data frame needs the package pandas: pip install pandas") from error
     if what == "grid":
         return pd.DataFrame(grid_columns(result, result.grid(**options)))
     table = pd.DataFrame(list(_rows(result, what, options)))

@@ -7,6 +7,7 @@ from functools import partial
 from hashlib import sha256
 
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.options import Progress
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
 from ptmcad.verification.auxiliary import check_auxiliary
@@ -18,7 +19,7 @@ from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.model import check_system
 from ptmcad.verification.parameters import check_boundary, check_text
 from ptmcad.verification.plan import check_plan
-from ptmcad.verification.report import Check, VerifyReport, checked
+from ptmcad.verification.report import Check, Headway, VerifyReport, checked
 from ptmcad.verification.solutions import check_solutions
 from ptmcad.verification.structure import check_critical_values, check_stacks
 from ptmcad.verification.variety import check_conditions, check_irreducible, check_norm
@@ -46,7 +47,9 @@ _SINCE_VARIETY: tuple[CheckOf, ...] = (
 )
 
 
-def verify(result: RegionMap, seed: int | None = None, boxes: int | None = None) -> VerifyReport:
+def verify(
+    result: RegionMap, seed: int | None = None, boxes: int | None = None, progress: Progress | None = None
+) -> VerifyReport:
     """Check a result without the code that made it.
 
     Parameters
@@ -54,6 +57,7 @@ def verify(result: RegionMap, seed: int | None = None, boxes: int | None = None)
     seed : of the random points at which the variety is compared with the norm of det H, or of the random boxes of a
         certified map; drawn from a hash of the claims when None, so that nobody can fit claims to the points.
     boxes : number of random boxes of a certified map, `ptmcad.verification.certified.checks.BOXES` when None.
+    progress : called as progress(what, done, total), with numbers that never fall.
 
     Guarantee
     ---------
@@ -65,12 +69,12 @@ def verify(result: RegionMap, seed: int | None = None, boxes: int | None = None)
     What the table lists as not checked.
     """
     if result.cover is not None or result.status is Status.CERTIFIED:
-        return verify_certified(result, seed, boxes)
+        return verify_certified(result, seed, boxes, progress)
     steps = checks_of(result, seed)
     missing: set[str] = set()
     if result.status is Status.PARTIAL:
         missing = set() if result.stacks else {name for name, _, _ in _SINCE_VARIETY}
-    checks = checked(Claims(result), steps, missing)
+    checks = checked(Claims(result), steps, missing, Headway(progress))
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
     return VerifyReport(tuple(checks))
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from ptmcad.errors import shown
+from ptmcad.options import Progress
 
 C = TypeVar("C")
 
@@ -71,13 +72,46 @@ class VerifyReport:
         return "\n".join("  ".join([*(row[k].ljust(widths[k]) for k in range(3)), row[3]]).rstrip() for row in rows)
 
 
+PARTS = 100
+"""Of each check, for a bar that shows how far a verification is."""
+
+
+@dataclass(slots=True)
+class Headway:
+    """How far a verification is, for whoever watches: told as progress(words, done, total), which only grows."""
+
+    progress: Progress | None
+    number: int = 0
+    now: str = ""
+    before: int = -1
+
+    def begins(self, name: str) -> None:
+        """The next of the checks begins."""
+        self.before += 1
+        self.now = f"check {self.before + 1} of {self.number}: {name}"
+        if self.progress is not None:
+            self.progress(f"{self.now} ...", PARTS * self.before, PARTS * self.number)
+
+    def within(self, done: int, total: int) -> None:
+        """Of the check that runs so many parts are done, of so many."""
+        if self.progress is not None and total > 0:
+            part = PARTS * done // total
+            self.progress(f"{self.now}, {part} %", PARTS * self.before + part, PARTS * self.number)
+
+
 def checked(
-    claims: C, steps: Sequence[tuple[str, str, Callable[[C], str]]], missing: Collection[str] = ()
+    claims: C,
+    steps: Sequence[tuple[str, str, Callable[[C], str]]],
+    missing: Collection[str] = (),
+    headway: Headway | None = None,
 ) -> list[Check]:
     """Run checks, given as name, method and function, in their order; none after a failed one, none of the missing."""
     checks: list[Check] = []
     failed = False
+    headway = headway or Headway(None)
+    headway.number = len(steps)
     for name, method, check in steps:
+        headway.begins(name)
         if failed or name in missing:
             checks.append(Check(name, method, None, "not reached" if failed else "not complete in this partial result"))
             continue

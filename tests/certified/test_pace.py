@@ -6,13 +6,19 @@ import pytest
 
 pytest.importorskip("numba")
 
+import re
 from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
+from numba import njit
+from numba.core.event import install_listener
+
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified import assembly, engine, loading, refinement
+from ptmcad.certified.compiled import FUNCTIONS
+from ptmcad.certified.headway import PARTS
 from ptmcad.certified.pace import ALLOWANCE, MAP_TIME_SHARE, MIN_RESERVE, SAFETY, Pace
 from ptmcad.errors import LimitReached
 from ptmcad.options import Options
@@ -174,6 +180,26 @@ def test_before_anything_is_decided_the_message_says_that_there_is_no_map(monkey
     with pytest.raises(LimitReached, match="before anything was decided: there is no map to save yet") as limit:
         engine.certified_map(window(), Options(deadline=clock() + MIN_RESERVE / 2, jobs=1))
     assert limit.value.partial is None
+
+
+def test_the_bar_of_a_search_only_grows() -> None:
+    told: list[tuple[str, int, int]] = []
+    ptmcad.classify(window(), tolerance="1/5", jobs=1, progress=lambda *what: told.append(what))
+    done = [done for _, done, _ in told]
+    assert done == sorted(done) and 0 < done[-1] < PARTS and {total for _, _, total in told} == {PARTS}
+    assert all(re.fullmatch(r"undetermined [0-9.]+ %", stage) for stage, _, _ in told)
+
+
+def test_what_is_compiled_is_counted_and_timed() -> None:
+    told: list[tuple[str, int, int]] = []
+    compiling = loading._Compiling(lambda *what: told.append(what))
+    with install_listener("numba:compile", compiling):
+        assert njit(lambda x: x + 1)(1) == 2
+    ready = sum(bool(function.overloads) for function in FUNCTIONS)
+    assert told == [("compiling the certified engine, once on this machine:", ready, len(FUNCTIONS))] * 2
+    assert compiling.seconds > 0
+    loading.load()
+    assert loading.load() == 0
 
 
 def test_nothing_is_compiled_after_loading() -> None:

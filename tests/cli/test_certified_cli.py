@@ -58,7 +58,7 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     monkeypatch.setitem(sys.modules, "ptmcad.certified.compiled", compiled)
     monkeypatch.setitem(sys.modules, "ptmcad.certified.engine", module)
     loading = ModuleType("ptmcad.certified.loading")
-    loading.load = lambda progress: None  # type: ignore[attr-defined]
+    loading.load = lambda progress: 0.0  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "ptmcad.certified.loading", loading)
     # the map made by hand has more counts than its question needs, which a stored map must not have
     monkeypatch.setattr("ptmcad.verification.certified.checks.contradiction", lambda result: "")
@@ -121,12 +121,43 @@ def test_a_result_to_files_and_on_from_it(
     assert "left out: terms of F3x, F4x (they are zero on this slice)" in lines[:at]
     assert lines[at + 1].startswith("computed: fold of a stable equilibrium")
     assert lines[at + 2] == "regions   3 of 3 cells, certified"
-    assert lines[-1].endswith("error 0.28, the undetermined share; area bounds at most 1.1e+00 apart")
+    assert lines[-2].endswith("28 % undetermined; area bounds at most 1.1e+00 apart")
+    assert lines[-1] == f"written   {tmp_path / SAVED}"
     stored = RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8"))
     assert stored == replace(certified_map(), slice=stored.slice)
     assert run(["classify", *HAND, "--out", str(tmp_path), "--resume", str(tmp_path / SAVED), "--jobs", "1"]) == 0
     assert engine["options"].resume.cover == certified_map().cover
     assert engine["options"].jobs == 1
+
+
+def test_compilation_is_told_apart(
+    engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    taken = [38.0, 0.0, 0.0, 0.0]
+    monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", lambda progress: taken.pop(0))
+    assert run(["classify", *HAND, "--out", str(tmp_path)]) == 0
+    assert " s, of which 38 s compilation (once); 28 % undetermined;" in capsys.readouterr().out
+    timings = json.loads((tmp_path / SAVED).read_text(encoding="utf-8"))["timings"]
+    assert timings["compilation"] == 38 and timings["total"] < 38
+    assert run(["classify", *HAND, "--out", str(tmp_path)]) == 0
+    assert "s compilation" not in capsys.readouterr().out
+
+
+def test_the_engine_is_compiled_beforehand(
+    engine: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    taken = [12.34, 0.0]
+    monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", lambda progress: taken.pop(0))
+    assert run(["warm-up"]) == run(["warm-up"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said == ["the certified engine is compiled (12.3 s)", "the certified engine was compiled already"]
+
+
+def test_areas_cost_nothing(engine: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["classify", *HAND, "--out", str(tmp_path), "--no-areas"]) == 0
+    said = capsys.readouterr()
+    assert said.err == "note: --no-areas has no effect here: this engine gets areas at no extra cost\n"
+    assert "\nareas     1: " in said.out
 
 
 def test_the_time_limit_saves_the_map_so_far(
@@ -135,7 +166,10 @@ def test_the_time_limit_saves_the_map_so_far(
     engine["stop"] = True
     assert run(["classify", *HAND, "--out", str(tmp_path), "--timeout", "5"]) == 3
     place = tmp_path / SAVED
-    said = f"stopped: the time limit was reached; the partial result is in {place}; --resume {place} goes on from there"
+    said = (
+        f"stopped: the time limit was reached; partial map (28 % undetermined) saved to {place}; "
+        f"go on with --resume {place}"
+    )
     assert capsys.readouterr().err == f"{said}\n"
     assert RegionMap.from_json((tmp_path / SAVED).read_text(encoding="utf-8")).status is Status.PARTIAL
     del engine["stop"]
@@ -168,7 +202,7 @@ def test_tolerances_are_checked_by_name(tmp_path: Path, capsys: pytest.CaptureFi
 
 
 @pytest.mark.parametrize(
-    ("stage", "shown"), [("undetermined 1.3 %", "] undetermined 1.3 %, "), ("counts", "] counts 6/24, ")]
+    ("stage", "shown"), [("undetermined 1.3 %", "] undetermined 1.3 %, "), ("counts", "] counts 6 of 24, ")]
 )
 def test_the_progress_bar_shows_the_undetermined_share(stage: str, shown: str, monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = io.StringIO()
@@ -198,7 +232,7 @@ def arrived():
     (here / "arrived").touch()
     time.sleep(60)
 def load(progress):
-    pass
+    return 0.0
 def search():
     pass
 def draw(result, path, **how):
@@ -233,6 +267,11 @@ def _stand_in(folder: Path, work: str, *options: str, stop: signal.Signals | Non
     return running.returncode, errors.decode()
 
 
+HOW_ENDED = {
+    signal.SIGINT: "interrupted",
+    signal.SIGTERM: "terminated (SIGTERM)",
+    signal.SIGHUP: "the terminal was closed (SIGHUP)",
+}
 forked = pytest.mark.skipif(not hasattr(os, "fork"), reason="without fork the command line is not watched")
 
 
@@ -243,8 +282,7 @@ def test_a_signal_saves_the_best_map_and_says_how_to_go_on(tmp_path: Path, stop:
     place = tmp_path / "out" / SAVED
     assert status == 128 + stop
     assert said == (
-        f"stopped: by {stop.name}; the partial result, 28 % of it undetermined, is in {place}; "
-        f"--resume {place} goes on from there\n"
+        f"{HOW_ENDED[stop]}; partial map (28 % undetermined) saved to {place}; go on with --resume {place}\n"
     )
     assert RegionMap.from_json(place.read_text(encoding="utf-8")).status is Status.PARTIAL
 
@@ -253,7 +291,7 @@ def test_a_signal_saves_the_best_map_and_says_how_to_go_on(tmp_path: Path, stop:
 def test_a_signal_before_the_first_map_says_that_there_is_none(tmp_path: Path) -> None:
     status, said = _stand_in(tmp_path, "def load(progress):\n    arrived()", stop=signal.SIGTERM)
     why = "the engine was still being loaded or compiled"
-    assert (status, said) == (143, f"stopped: by SIGTERM; there was no partial result to save yet: {why}\n")
+    assert (status, said) == (143, f"terminated (SIGTERM); there was no partial map to save yet: {why}\n")
     assert not list((tmp_path / "out").iterdir())
 
 
@@ -266,8 +304,9 @@ def test_compiling_is_no_part_of_the_time_limit(
     monkeypatch.setattr(time, "monotonic", lambda: monotonic() + clock["ahead"])
     monkeypatch.setattr("ptmcad.ask.classification.perf_counter", lambda: counter() + clock["ahead"])
 
-    def load(progress: object) -> None:
+    def load(progress: object) -> float:
         clock["ahead"] += 1000
+        return 1000.0
 
     monkeypatch.setattr(sys.modules["ptmcad.certified.loading"], "load", load)
     begun, counted = monotonic(), counter()
@@ -302,7 +341,7 @@ def test_a_complete_map_is_not_lost_while_its_pictures_are_drawn(tmp_path: Path,
     stop = None if options else signal.SIGINT
     status, said = _stand_in(tmp_path, work, "--format", "json,png", *options, stop=stop)
     assert status == (3 if options else 130)
-    assert "the complete result, 28 % of it undetermined, is in" in said
+    assert "complete map (28 % undetermined) saved to" in said
     assert "--resume" not in said
     text = (tmp_path / "out" / SAVED).read_text(encoding="utf-8")
     assert RegionMap.from_json(text).status is Status.CERTIFIED
@@ -330,7 +369,7 @@ def _resumed_and_stopped(earlier: RegionMap, found: RegionMap) -> None:
         raise LimitReached("the time limit was reached", partial=found)
 
     loading, module = ModuleType("ptmcad.certified.loading"), ModuleType("ptmcad.certified.engine")
-    loading.load = lambda progress: None  # type: ignore[attr-defined]
+    loading.load = lambda progress: 0.0  # type: ignore[attr-defined]
     module.certified_map = stand_in  # type: ignore[attr-defined]
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(sys.modules, "ptmcad.certified.compiled", ModuleType("ptmcad.certified.compiled"))
@@ -397,7 +436,7 @@ def test_the_engine_stopped_by_ctrl_c_and_gone_on_with(tmp_path: Path) -> None:
         stopped.send_signal(signal.SIGINT)
         _, errors = stopped.communicate()
     assert stopped.returncode == 130
-    assert re.match(r"stopped: by SIGINT; the partial result, [0-9.e-]+ % of it undetermined, is in ", errors.decode())
+    assert re.match(r"interrupted; partial map \([0-9.e-]+ % undetermined\) saved to ", errors.decode())
     assert "--resume" in errors.decode()
     partial = RegionMap.from_json((tmp_path / "slice-rho-L2.partial.json").read_text(encoding="utf-8"))
     assert partial.status is Status.PARTIAL

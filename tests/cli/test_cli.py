@@ -19,7 +19,7 @@ from typing import Any
 
 import pytest
 
-from ptmcad.answer.regionmap import Status
+from ptmcad.answer.regionmap import PlanStep, Status
 from ptmcad.cli import COMMANDS, group, run
 from ptmcad.errors import ConfigError, LimitReached, OutputError
 from ptmcad.options import Options
@@ -33,7 +33,7 @@ needs_engine = pytest.mark.skipif(find_spec("ptmcad.ask.classification") is None
 class StandIn:
     """What the command line uses of a region map."""
 
-    plan = ("exact: no free lengths", "infinity: left out, the unknowns are bounded")
+    plan = (PlanStep("curves at infinity", False, "the unknowns are bounded", "infinity"),)
 
     cover = None
     status = Status.EXACT
@@ -96,8 +96,9 @@ def test_files_and_table(engine: dict[str, Any], tmp_path: Path, capfd: pytest.C
     assert names(out) == ["fig4.json", "fig4.png", "fig4.svg"]
     assert json.loads((out / "fig4.json").read_text()) == {"name": "fig4", "timings": True}
     captured = capfd.readouterr()
-    assert captured.out == "table of fig4\n"
-    assert captured.err == ""
+    written = ", ".join(str(out / f"fig4.{suffix}") for suffix in ("json", "png", "svg"))
+    assert captured.out == f"table of fig4\nwritten   {written}\n"
+    assert captured.err == "note: --jobs has no effect here: the exact engine uses one thread\n"
     options = engine["options"]
     assert (options.engine, options.jobs, options.timeout, engine["samples"]) == ("exact", 2, 5.0, True)
     assert options.area_tolerance == Fraction(1, 10**9)
@@ -113,7 +114,7 @@ def test_slice_options_formats_and_explain(
     assert json.loads((tmp_path / "slice-L2-rho.json").read_text())["timings"] is False
     lines = capfd.readouterr().out.splitlines()
     assert lines[0] == "plan of slice-L2-rho, exact engine, before it starts:"
-    assert lines[-4:] == ["decided on the way:", *StandIn.plan, "table of slice-L2-rho"]
+    assert lines[-4:-1] == ["decided on the way:", *map(str, StandIn.plan), "table of slice-L2-rho"]
 
 
 @pytest.mark.parametrize(
@@ -199,7 +200,7 @@ def test_a_limit_saves_the_partial_result(
     assert names(tmp_path) == ["fig4.json"]
     assert json.loads((tmp_path / "fig4.json").read_text())["name"] == "partial"
     place = tmp_path / "fig4.json"
-    assert capfd.readouterr().err == f"stopped: 5 s are over; the partial result is in {place}\n"
+    assert capfd.readouterr().err == f"stopped: 5 s are over; partial map saved to {place}\n"
     engine["raise"] = LimitReached("at once")
     assert run(["classify", str(FIG4), "--out", str(tmp_path / "empty")]) == 3
     assert names(tmp_path / "empty") == []

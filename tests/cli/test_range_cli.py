@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from itertools import pairwise
 from pathlib import Path
 
@@ -58,7 +59,8 @@ def test_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert data["over"]["maxima"][0]["at"]["decimal"] == "1"
     assert "Intervals of rho: 0 to 0.4981307: 1 stable of 4" in (tmp_path / "x.svg").read_text(encoding="utf-8")
     out = capsys.readouterr().out
-    assert "widest operation range: width 0.5885498309 at L2 = 1" in out
+    assert "widest operation range: width 0.5885498309, attained only at L2 = 1, a critical value of L2" in out
+    assert out.endswith(f", {tmp_path / 'x-path.svg'}, {tmp_path / 'x.json'}\n")
     assert "pose 1 at rho = 0.7" in out and "pose 2" not in out
 
 
@@ -121,7 +123,7 @@ def test_a_line_with_free_lengths_as_json(tmp_path: Path, capsys: pytest.Capture
     assert intervals[0]["high"] == intervals[1]["low"] == data["enclosed"]["changes"][0]["at"]
     assert intervals[0]["high"]["decimal"] == "0.4634527060"
     assert run(["range", *arguments[:-1], "json,svg", "--out", str(tmp_path), "--name", "y"]) == 2
-    assert "no picture" in capsys.readouterr().err
+    assert "and a picture of branches (--quantity NAME)" in capsys.readouterr().err
     assert not (tmp_path / "y.json").exists()
 
 
@@ -144,11 +146,25 @@ def test_what_elimination_can_not_do_is_told(
 
 
 @pytest.mark.parametrize("at", [[], ["--at", "L2=3/2"]], ids=["over alone", "with a line"])
-def test_widths_with_free_lengths_are_refused_and_the_line_is_named(
-    at: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Ranges along one axis are computed, so it is not said that none are."""
-    assert run(["range", FIG4, "--along", "rho", "--over", "L2", *at, "--set", "l0=1/5"]) == 2
-    message = capsys.readouterr().err
-    assert "widths over a second axis (--over) are not computed for springs with a free length" in message
-    assert "is enclosed where the other has a value (--at)" in message
+def test_a_band_with_free_lengths(at: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """At L2 = 3/2 the row's ends are those that `ptmcad range --at` gives."""
+    pytest.importorskip("numba")
+    asked = ["--along", "rho", "--over", "L2", *at, "--rows", "3", "--range", "rho=3/10:7/5", "--digits", "6"]
+    files = ["--format", "json,svg", "--out", str(tmp_path), "--name", "x"]
+    assert run(["range", FREE02, *asked, *files]) == 0
+    out = capsys.readouterr().out
+    assert "operation range: where there are at least two stable equilibria" in out
+    assert re.search(r"^1\.5 +0\.463453 +1\.23166 +0\.768210$", out, re.MULTILINE), out
+    assert "; nothing is proved of the values between them" in out
+    data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
+    jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
+    assert [row["value"] for row in data["bands"]["rows"]] == ["1/2", "1", "3/2"]
+    assert ("enclosed" in data) == bool(at)
+    picture = (tmp_path / "x-over.svg").read_text(encoding="utf-8")
+    assert "above: where there are at least two stable equilibria" in picture
+
+
+def test_paths_with_free_lengths_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["--along", "rho", "--over", "L2", "--at", "L2=3/2", "--path", "1", "--set", "l0=1/5"]
+    assert run(["range", FIG4, *arguments]) == 2
+    assert "not computed for springs with a free length" in capsys.readouterr().err

@@ -39,7 +39,7 @@ def test_an_axis_that_is_no_parameter_is_part_of_the_point(capsys: pytest.Captur
 def test_json_is_written_with_the_digits_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["solve", "--at", "rho=1,L2=3/2", "--digits", "30", "--format", "json", "--out", str(tmp_path / "new")]
     assert run(arguments) == 0
-    assert capsys.readouterr().out == ""
+    assert capsys.readouterr().out == f"written   {tmp_path / 'new' / 'poses.json'}\n"
     written = (tmp_path / "new" / "poses.json").read_text(encoding="utf-8")
     assert Poses.from_json(written) == solve(digits=30, rho=1, L2="3/2")
     assert run([*arguments, "--name", "other"]) == 0

@@ -183,7 +183,8 @@ def test_text_and_document() -> None:
     found = pose_paths(record("fig4"), "rho", {"L2": "3/2"}, Fraction(7, 10), 2)
     text = path_table(found)
     assert "pose 2 at rho = 0.7: th1 = 75.907444" in text and "y3 > 0 and y4 > 0 on the path" in text
-    assert "up: rho = 1.041432630: a minimum + a saddle meet and leave nothing; snaps to th1 = -47.52" in text
+    fold = "fold: the stable pose merges with a saddle and both vanish; the mechanism snaps to th1 = -47.52"
+    assert f"up: rho = 1.041432630: {fold}" in text
     assert "(reverse: y3 < 0, y4 < 0)" in text
     data = json.loads(document("x", "ptm", {"path": path_data(found)}))
     jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
@@ -223,7 +224,8 @@ def test_solutions_of_equations_are_followed_to_their_fold() -> None:
     for end, sign in ((middle.low, -1), (middle.high, 1)):
         assert end.fate is Fate.VANISH and end.at.polynomial == (-4, 0, 27)  # type: ignore[union-attr]
         assert abs(float(end.last.reals[0]) - sign / 3**0.5) < 0.01 and end.energy is None
-    assert "a solution + a solution meet and leave nothing" in path_table(found) and "x = 1" in path_table(found)
+    shown = path_table(found)
+    assert "fold: the solution merges with a solution and both vanish" in shown and "x = 1" in shown
     jsonschema.validate(
         json.loads(document("s", "s", {"path": path_data(found)})),
         json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8")),

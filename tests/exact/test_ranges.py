@@ -271,7 +271,7 @@ def test_the_document_follows_its_schema_and_repeats() -> None:
 def test_the_table_names_what_happens() -> None:
     text = table(intervals(record("fig3"), "rho", {"F": -10}))
     assert "0.2149411958    0.8034910267    6      2" in text
-    assert "one saddle and one maximum less" in text
+    assert "loses one saddle and one maximum" in text
     assert "operation range: 0.2149411958 to 0.8034910267, width 0.5885498309" in text
 
 

@@ -51,7 +51,7 @@ def test_the_limit_that_was_reached_is_named(tmp_path: Path, which: int, option:
     assert running.end() == (
         3,
         f"stopped: the memory limit of 300M that the caller has set (ulimit {option}) was reached; "
-        f"the partial result is in {place}\n",
+        f"partial map saved to {place}\n",
     )
     assert running.files() == {"fig2.json": PARTIAL}
 
@@ -77,8 +77,7 @@ def test_a_crash_with_little_memory_left(tmp_path: Path, end: str, how: str) -> 
     status, errors = running.end()
     place = tmp_path / "out" / "fig2.json"
     assert (
-        errors
-        == f"stopped: most likely the memory limit of 150M was reached ({how}); the partial result is in {place}\n"
+        errors == f"stopped: most likely the memory limit of 150M was reached ({how}); partial map saved to {place}\n"
     )
     assert status == 3
 

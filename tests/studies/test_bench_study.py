@@ -18,6 +18,8 @@ from hypothesis import strategies as st
 
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
+from ptmcad.question.config import load
+from ptmcad.question.examples import shipped_record
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.studies.bench import measuring
 from ptmcad.studies.bench.compare import BAD, Change, Verdict, compare, comparison_table
@@ -214,6 +216,14 @@ def test_comparing_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert run(["bench", "--compare", str(new), str(old)]) == 0
 
 
+def test_a_record_is_there_in_any_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What ``ptmcad bench`` measures without CONFIG."""
+    monkeypatch.chdir(tmp_path)
+    assert load(shipped_record("fig4")).name == "fig4"
+    with pytest.raises(ConfigError, match="there is no record fig6 in configs/"):
+        shipped_record("fig6")
+
+
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
@@ -221,7 +231,6 @@ def test_comparing_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
         (["--method", "maple"], "maple"),
         (["--rounds", "0"], "--rounds"),
         (["--time-limit", "0"], "--time-limit: 0.0 is not a positive number"),
-        ([], "there is no configs/fig4.yaml here"),
         (["--compare", "a.json", "b.json"], "a.json"),
         (["--compare", "a.json", "b.json", "fig4.yaml"], "takes no CONFIG"),
         ([str(CONFIGS / "fig3.yaml"), str(CONFIGS / "fig3.yaml")], "two records have the name fig3"),

@@ -72,7 +72,9 @@ def with_axes(record: Record, slice: str, sets: Mapping[str, Scalar], ranges: Ma
             axes[name] = Window(Scalar(low, place), Scalar(high, place), place)
         else:
             hint = did_you_mean(name, parameters)
-            raise place.error(f"'{name}' is no parameter{hint}; any new name needs --range {name}=LO:HI")
+            raise place.error(
+                f"unknown axis '{name[:40]}'{hint}; to introduce a new variable add --range {name[:40]}=LO:HI"
+            )
     for name in record.axes:
         if name in parameters and name not in axes and name not in sets and name not in record.values:
             raise place.error(f"{name} was an axis of {record.place.file} and has no value now: add --set {name}=VALUE")

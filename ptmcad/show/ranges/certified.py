@@ -1,4 +1,4 @@
-"""The certified engine's intervals along a line as a table.
+"""The certified engine's intervals along a line, and operation ranges over the other axis, as tables.
 
 Guarantee: every digit is right; what was not decided is called undecided and has no counts.
 """
@@ -8,7 +8,9 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ptmcad.answer.intervals import CertifiedIntervals
-from ptmcad.show.ranges.table import aligned
+from ptmcad.answer.widths import CertifiedWidths
+from ptmcad.show.ranges.numbers import known
+from ptmcad.show.ranges.table import aligned, nowhere, working_text
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
 
@@ -16,12 +18,12 @@ from ptmcad.text.numerals import shortest_text
 def table(found: CertifiedIntervals, digits: int) -> str:
     """One row for each interval, then what lies between them."""
     fixed = ", ".join(f"{n} = {shortest_text(v)}" for n, v in found.at.items())
-    known = any(i.cones is not None for i in found.intervals)  # of the paper's mechanism only
-    rows = [["from", "to", "total", "stable", "min-saddle-max" if known else "index", *["peaks"] * known, "sample"]]
+    peaks = any(i.cones is not None for i in found.intervals)  # of the paper's mechanism only
+    rows = [["from", "to", "total", "stable", "min-saddle-max" if peaks else "index", *["peaks"] * peaks, "sample"]]
     for i in found.intervals:
-        counts = ["undecided", "", "", *[""] * known]
+        counts = ["undecided", "", "", *[""] * peaks]
         if i.index is not None:
-            counts = [str(sum(i.index)), str(i.index[0]), "-".join(map(str, i.index)), *[str(i.cones)] * known]
+            counts = [str(sum(i.index)), str(i.index[0]), "-".join(map(str, i.index)), *[str(i.cones)] * peaks]
         rows.append([_text(i.low, digits, up=True), _text(i.high, digits), *counts, shortest_text(i.sample)])
     lines = [f"{found.along.name} in ({shortest_text(found.along.low)}, {shortest_text(found.along.high)}) at {fixed}"]
     lines += ["", *aligned(rows)]
@@ -34,9 +36,38 @@ def table(found: CertifiedIntervals, digits: int) -> str:
             note = "" if change.proved else "undecided whether there is a "
             changes.append([place, note + " and a ".join(change.names)])
         lines += ["", *aligned(changes)]
-    if known:
+    if peaks:
         lines += ["", "peaks: configurations without length of spring A3A4 in which the energy has a peak"]
     return "\n".join(lines)
+
+
+def width_table(found: CertifiedWidths, digits: int) -> str:
+    """The operation ranges at the tabulated values, and the widest of them."""
+    rows = [[found.over.name, "operation range from", "to", "width"]]
+    for row in found.rows:
+        value = shortest_text(row.value)
+        note = "degenerate" if row.remark else "undecided" if row.undecided else "none"
+        if not row.operation:
+            rows.append([value, note, "", ""])
+        for one in row.operation:
+            marks = [" *" if end.low == end.high else "" for end in (one.low, one.high)]
+            ends = [_text(one.low, digits, up=True) + marks[0], _text(one.high, digits) + marks[1]]
+            open_part = ", a part of the window undecided" if row.undecided else ""
+            rows.append([value, *ends, f"{known(one.width, min(digits, 6))}{open_part}"])
+    ranges = f"operation range: where there are at least {working_text(found.model, found.working)}"
+    lines = [ranges, "", *aligned(rows)]
+    if any("*" in cell for row in rows for cell in row):
+        lines.append(f"* the edge of the window of {found.along.name}")
+    return "\n".join([*lines, "", widest_text(found)])
+
+
+def widest_text(found: CertifiedWidths) -> str:
+    """The widest range of the table."""
+    if found.widest is None:
+        return f"widest operation range: none, {nowhere(found.model, found.working)} in these rows"
+    row, one = found.widest
+    at = f"{found.over.name} = {shortest_text(row.value)}"
+    return f"widest of these rows: width {known(one.width, 6)} at {at}; nothing is proved of the values between them"
 
 
 def _text(end: Enclosure, digits: int, up: bool = False) -> str:

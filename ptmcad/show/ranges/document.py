@@ -13,7 +13,7 @@ from typing import Any
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.intervals import CertifiedIntervals, CountInterval, CountIntervals, CriticalFreeLength
 from ptmcad.answer.paths import PathEnd, PathPoint, PosePaths
-from ptmcad.answer.widths import OperationWidths
+from ptmcad.answer.widths import CertifiedWidths, OperationWidths
 from ptmcad.question.slice import Axis
 from ptmcad.show.ranges.numbers import enclosure_data, end_data, known, number_data, settled, width_text
 from ptmcad.text.enclosure import Enclosure
@@ -122,6 +122,24 @@ def over_data(found: OperationWidths, digits: int) -> dict[str, Any]:
                 "ends": None if m.ends is None else [end_data(e, digits) for e in m.ends],
             }
             for m in found.maxima
+        ],
+    }
+
+
+def bands_data(found: CertifiedWidths, digits: int) -> dict[str, Any]:
+    """The operation ranges over the other axis with free lengths as JSON data."""
+    return {
+        "along": _axis(found.along),
+        "over": _axis(found.over),
+        "stable": found.working,
+        "rows": [
+            {
+                "value": text_of(row.value),
+                "operation": [{"low": _place(i.low, digits), "high": _place(i.high, digits)} for i in row.operation],
+                "undecided": row.undecided,
+                "remark": row.remark,
+            }
+            for row in found.rows
         ],
     }
 

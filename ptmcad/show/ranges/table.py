@@ -13,7 +13,7 @@ from flint import arb, ctx
 from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.intervals import CountIntervals, CriticalFreeLength, End, Span
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
-from ptmcad.answer.widths import Maximum, OperationWidths
+from ptmcad.answer.widths import Maximum, OperationWidths, Place
 from ptmcad.answer.words import kind_name, noun
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.show.ranges.numbers import end_text, known, settled, width_text
@@ -44,7 +44,7 @@ def table(found: CountIntervals, digits: int = 10) -> str:
     lines += aligned(rows)
     if found.changes:
         lines.append("")
-        changes = [["at", "what happens as it grows", "root of"]]
+        changes = [["at", f"as {name} increases", "root of"]]
         changes += [[end_text(c.at, digits), c.text, formula(c.at, name)] for c in found.changes]
         lines += aligned(changes)
     lines.append("")
@@ -134,7 +134,10 @@ def maximum_text(found: Maximum, over: str, digits: int) -> str:
     near = ""
     if found.critical is not None and found.critical.exact is None:
         near = f", which holds one critical value, a root of a polynomial of degree {found.critical.degree}"
-    return f"width {settled(found.width, digits) or 'enclosed'} at {at}: {found.place.value}{near}"
+    width = f"width {settled(found.width, digits) or 'enclosed'}"
+    if found.place is Place.CRITICAL:
+        return f"{width}, attained only at {at}{near or f', a critical value of {over}'}"
+    return f"{width} at {at}: {found.place.value}{near}"
 
 
 def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
@@ -174,10 +177,7 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
         return f"{at}: {end.fate.value}"
     if end.fate is Fate.UNDECIDED:
         return f"could not be followed beyond {name} = {shortest_text(end.last.value)}, before {at}"
-    met, left = (" + ".join(_kind(k, model) for k in indices) or "nothing" for indices in (end.meeting, end.leaving))
-    what = f"{at}: {met} meet and leave {left}"
-    if len(end.meeting) == 1:
-        what = f"{at}: {met} vanishes alone" if not end.leaving else f"{at}: {met} goes on as {left}"
+    what = f"{at}: {_event(end, model)}"
     if end.target is None:
         rests = "under the moment it may never come to rest: " if found.has_moments else ""
         return f"{what}; {rests}where it goes from there is not decided" if model.tells_stability else what
@@ -188,7 +188,26 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
     if end.energy is not None and end.target_energy is not None:
         drop = settled(Enclosure(end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low), 5)
     kind = f" ({posture(end.target, model)})" if isinstance(model, Mechanism) and model.moving else ""
-    return f"{what}; snaps to {target}{kind}, where the energy is lower by {drop or 'an undecided amount'}"
+    whose = "the mechanism" if isinstance(model, Mechanism) else "the state"
+    return f"{what}; {whose} snaps to {target}{kind}, where the energy is lower by {drop or 'an undecided amount'}"
+
+
+def _event(end: PathEnd, model: Model) -> str:
+    """What becomes of the pose that was followed, and of those that it meets."""
+    followed = f"the {'stable ' * model.tells_stability}{'pose' if isinstance(model, Mechanism) else 'solution'}"
+    others = [_kind(k, model) for k in end.meeting[1:]]
+    left = _listed([_kind(k, model) for k in end.leaving])
+    if not others:
+        return f"{followed} goes on as {left}" if end.leaving else f"{followed} vanishes alone"
+    merges = f"{followed} merges with {_listed(others)}"
+    if not end.leaving:
+        return f"fold: {merges} and both vanish" if len(others) == 1 else f"{merges} and all vanish"
+    return f"{merges}, which leaves {left}"
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Names in a row, such as a saddle, a saddle and a maximum."""
+    return " and ".join(part for part in (", ".join(names[:-1]), names[-1]) if part) if names else "nothing"
 
 
 def _kind(negative: int, model: Model) -> str:

@@ -19,18 +19,20 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from ptmcad.answer.counts import Counts, MorseIndex
-from ptmcad.answer.intervals import CountIntervals, End
+from ptmcad.answer.intervals import CountIntervals, End, OperationSpan
 from ptmcad.answer.paths import Fate, PathPoint, PosePaths
-from ptmcad.answer.widths import OperationWidths
+from ptmcad.answer.widths import CertifiedRange, CertifiedWidths, OperationWidths
 from ptmcad.answer.words import counted, noun
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Axis, Slice
+from ptmcad.show.ranges.certified import widest_text
 from ptmcad.show.ranges.numbers import end_text, width_text
 from ptmcad.show.ranges.table import maximum_text, operation_name, working_text
 from ptmcad.show.render.axes import scale_of, symbol, unit
 from ptmcad.show.render.colours import fill_of_counts, fill_of_index
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.printing import settings
+from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
 
 WIDE, LEFT, RIGHT, KEY, LINE, MARGIN = 6.2, 0.85, 0.3, 2.6, 0.22, 0.15
@@ -141,13 +143,20 @@ def spread(places: Sequence[float], half: float) -> list[float]:
     return centers
 
 
-def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
+def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figure:
     """The operation ranges at the tabulated values, and their width with its largest value."""
     title = textwrap.wrap(slice.heading, _COLUMNS)[:3]
-    none = f"there is no {operation_name(found.model, found.working)}"
-    lines = [maximum_text(m, found.over.name, _DIGITS) for m in found.maxima] or [none]
-    texts = [f"above: {_where(found)}; below: how wide that is; diamond: the widest"]
-    texts += [part for line in lines for part in textwrap.wrap(f"widest: {line}", _COLUMNS)]
+    maxima = found.maxima if isinstance(found, OperationWidths) else ()
+    if isinstance(found, OperationWidths):
+        said = [maximum_text(m, found.over.name, _DIGITS) for m in maxima] or [
+            f"there is no {operation_name(found.model, found.working)}"
+        ]
+        lines = [f"widest: {line}" for line in said]
+    else:
+        lines = [widest_text(found)]
+    mark = "; diamond: the widest" if maxima else ""
+    texts = [f"above: {_where(found)}; below: how wide that is at the tabulated values{mark}"]
+    texts += [part for line in lines for part in textwrap.wrap(line, _COLUMNS)]
     foot = 0.55 + 0.2 * len(texts)
     tall = 2.3 + 1.9 + 0.35 + foot + 0.1
     with settings():
@@ -156,19 +165,12 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
         lower = _axes(figure, (LEFT, foot, WIDE, 1.9))
         over, along = found.over, found.along
         scale, fibre = scale_of(over.low, over.high), scale_of(along.low, along.high)
-        unit_width = WIDE * 72 / (len(found.rows) + 1)
-        face = fill_of_index((2, 3, 1)).face
         points = []
         for row in found.rows:
-            x = _scaled(row.value, over)
-            for i in row.operation:
-                low, high = (_scaled_end(e, along) for e in (i.low, i.high))
-                upper.plot([x, x], [low, high], color=face, linewidth=max(1.0, 0.7 * unit_width),
-                           solid_capstyle="butt")  # fmt: skip
-                upper.plot([x, x], [low, high], "_", color=INK, markersize=max(2.0, 0.7 * unit_width))
-                points.append((x, float(i.width)))
+            points += [(_scaled(row.value, over), float(i.width)) for i in row.operation]
+        _draw_band(upper, found)
         lower.plot([p[0] for p in points], [p[1] for p in points], "o", color=INK, markersize=2.5)
-        for m in found.maxima:
+        for m in maxima:
             ends = [_scaled(v, over) for v in (m.at.low, m.at.high)]
             # a maximum at the window's edge would be cut in half
             lower.plot(ends, [float(m.width)] * 2, "-D", color="#b45f06", markersize=6, fillstyle="none", clip_on=False)
@@ -188,15 +190,72 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
     return figure
 
 
-def _where(found: OperationWidths) -> str:
+def _draw_band(axes: Any, found: OperationWidths | CertifiedWidths) -> None:
+    """The operation ranges as bands from row to row, as bars where a range has none in the rows beside it."""
+    face = fill_of_index((2, 3, 1)).face
+    rows = [(_scaled(row.value, found.over), [_ends_of(i, found.along) for i in row.operation]) for row in found.rows]
+    for chain in chains(rows):
+        xs, lows, highs = ([float(part[k]) for part in chain] for k in range(3))
+        if len(chain) == 1:
+            axes.plot(xs * 2, [lows[0], highs[0]], color=face, linewidth=3.0, solid_capstyle="butt")
+        else:
+            axes.fill_between(xs, lows, highs, facecolor=face, linewidth=0)
+        for ends in (lows, highs):
+            axes.plot(xs, ends, color=INK, linewidth=1.2, marker="_" if len(chain) == 1 else "", markersize=4)
+
+
+def _ends_of(interval: OperationSpan | CertifiedRange, along: Axis) -> tuple[float, float]:
+    return _scaled_end(interval.low, along), _scaled_end(interval.high, along)
+
+
+Interval = tuple[float, float]
+
+
+def chains(rows: Sequence[tuple[float, Sequence[Interval]]]) -> list[list[tuple[float, float, float]]]:
+    """Intervals of neighbouring rows that go together, as (place of the row, low, high).
+
+    Those of two rows that have as many go together in their order; else two that meet each other and no other ones.
+
+    >>> chains([(0, [(0, 1), (5, 6)]), (1, [(0, 2)]), (2, [(1, 3)])])
+    [[(0, 0, 1), (1, 0, 2), (2, 1, 3)], [(0, 5, 6)]]
+    """
+    done: list[list[tuple[float, float, float]]] = []
+    before: dict[Interval, list[tuple[float, float, float]]] = {}
+    last: Sequence[Interval] = ()
+    for place, here in rows:
+        if len(here) == len(last):
+            pairs = dict(zip(here, last, strict=True))
+        else:
+            meeting = [(b, a) for b in here for a in last if a[0] < b[1] and b[0] < a[1]]
+            pairs = {
+                b: a for b, a in meeting
+                if sum(other[0] == b for other in meeting) == sum(other[1] == a for other in meeting) == 1
+            }  # fmt: skip
+        now = {}
+        for interval in here:
+            chain = before[pairs[interval]] if interval in pairs else []
+            if not chain:
+                done.append(chain)
+            chain.append((place, *interval))
+            now[interval] = chain
+        before, last = now, here
+    return done
+
+
+def _where(found: OperationWidths | CertifiedWidths) -> str:
     """What the operation range is."""
+    if isinstance(found, CertifiedWidths):
+        return f"where there are at least {working_text(found.model, found.working)}"
     if found.working == 2 and isinstance(found.model, Mechanism):
         return "where two equilibria are stable"
     return f"where there {'is' if found.working == 1 else 'are'} {working_text(found.model, found.working)}"
 
 
-def draw_paths(slice: Slice, found: PosePaths) -> Figure:
-    """The unknowns of each followed pose along the axis, a panel for each; an arrow shows each snap."""
+def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) -> Figure:
+    """The unknowns of each followed pose along the axis, a panel for each; an arrow shows each snap.
+
+    ``further`` are the legend's last entries, of what is going to be added.
+    """
     fixed = ", ".join(f"{symbol(n)} = {_short(v)}" for n, v in found.at.items())
     title = textwrap.wrap(f"{slice.heading}; {fixed}", _COLUMNS)[:3]
     model = found.model
@@ -213,6 +272,7 @@ def draw_paths(slice: Slice, found: PosePaths) -> Figure:
         entries.append(Entry(("poses merge into one (square),", "without a snap"), _merge_mark))
     if any(e.fate in _LOST for p in found.paths for e in (p.low, p.high)):
         entries.append(Entry((f"a {what} ends (cross)",), _loss_mark))
+    entries += further
     panel, foot = 2.0, 0.55
     names = (*model.angles, *model.reals)
     last = len(names) - 1
@@ -304,7 +364,7 @@ def _scaled(value: Fraction, axis: Axis) -> float:
     return float((value - scale.offset) / Fraction(10) ** scale.exponent)
 
 
-def _scaled_end(end: End, axis: Axis) -> float:
+def _scaled_end(end: End | Enclosure, axis: Axis) -> float:
     return _scaled(end if isinstance(end, Fraction) else (end.low + end.high) / 2, axis)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from html import escape
 
+from ptmcad.answer.plan import own_steps
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.words import index_words, noun
 from ptmcad.mechanism import Mechanism
@@ -180,8 +181,9 @@ def regions(result: RegionMap) -> str:
 
 def left_out(result: RegionMap) -> str:
     """The plan: what was done and what was not, and why."""
-    done = [s for s in result.plan if s.done]
-    saved = [s for s in result.plan if not s.done]
+    steps = own_steps(result.plan)
+    done = [s for s in steps if s.done]
+    saved = [s for s in steps if not s.done]
 
     def listed(steps: Iterable[tuple[str, str]]) -> str:
         return "<ul>" + "".join(f"<li>{escape(a)} <small>({escape(b)})</small></li>" for a, b in steps) + "</ul>"

@@ -7,6 +7,7 @@ from functools import partial
 from hashlib import sha256
 
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.options import Progress
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.certified.parameters import check_domain
 from ptmcad.verification.certified.points import check_points
@@ -14,7 +15,7 @@ from ptmcad.verification.certified.sampling import check_boxes
 from ptmcad.verification.certified.structure import CertifiedClaims, check_components, check_form, check_regions
 from ptmcad.verification.certified.system import check_potential
 from ptmcad.verification.parameters import check_text
-from ptmcad.verification.report import Check, VerifyReport, Violation, checked
+from ptmcad.verification.report import Check, Headway, VerifyReport, Violation, checked
 
 BOXES = 40
 NOT_CHECKED = (
@@ -24,11 +25,15 @@ NOT_CHECKED = (
 )
 
 
-def verify_certified(result: RegionMap, seed: int | None, boxes: int | None) -> VerifyReport:
+def verify_certified(
+    result: RegionMap, seed: int | None, boxes: int | None, progress: Progress | None = None
+) -> VerifyReport:
     """Check a map with a cover; see `ptmcad.verification.verify`."""
     claims = CertifiedClaims(result)
     drawn = fingerprint(result) if seed is None else str(seed)
     number = BOXES if boxes is None else boxes
+    headway = Headway(progress)
+    within = headway.within
     steps: tuple[tuple[str, str, Callable[[CertifiedClaims], str]], ...] = (
         ("form", "comparison", check_form),
         ("parameters as written", "expressions compared", check_text),
@@ -36,10 +41,11 @@ def verify_certified(result: RegionMap, seed: int | None, boxes: int | None) -> 
         ("equations", "potential from the nodes", check_potential),
         ("components", "sweep over the rectangles", check_components),
         ("regions and areas", "sweep, breadth-first search", check_regions),
-        ("counts and solutions", "Krawczyk's test and exclusion in balls", check_points),
-        ("random boxes", "Krawczyk's test over boxes of parameters", partial(check_boxes, seed=drawn, number=number)),
-    )
-    checks = checked(claims, steps)
+        ("counts and solutions", "Krawczyk's test and exclusion in balls", partial(check_points, report=within)),
+        ("random boxes", "Krawczyk's test over boxes of parameters",
+         partial(check_boxes, seed=drawn, number=number, report=within)),
+    )  # fmt: skip
+    checks = checked(claims, steps, headway=headway)
     checks += [Check(name, "", None, reason) for name, reason in NOT_CHECKED]
     return VerifyReport(tuple(checks))
 

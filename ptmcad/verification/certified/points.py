@@ -7,7 +7,7 @@ Guarantee: exact at the samples. That the counts hold in the whole cells rests o
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
@@ -42,7 +42,7 @@ _PI, _PI_ERROR = Fraction(355, 113), Fraction(1, 10**5)
 _BASE = MECHANISM.first(Kind.BASE)
 
 
-def check_points(claims: CertifiedClaims) -> str:
+def check_points(claims: CertifiedClaims, report: Callable[[int, int], None] = lambda _done, _total: None) -> str:
     """Counts and stored solutions of every cell; and for how many cells nothing was proved.
 
     Of the paper's mechanism all cells can be decided, so one that cannot is a fault of the map. Samples that are flat
@@ -51,6 +51,7 @@ def check_points(claims: CertifiedClaims) -> str:
     counting, number = counting_of(claims), 0
     undecided: list[str] = []
     for n, cell in enumerate(claims.result.cells):
+        report(n, len(claims.result.cells))
         where = _where(claims, *cell.sample)
         try:
             found = _check_cell(claims, counting, cell)

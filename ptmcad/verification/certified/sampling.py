@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import random
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate
@@ -65,8 +65,15 @@ class GridSquare:
     width: Fraction
 
 
-def check_boxes(claims: CertifiedClaims, seed: str, number: int) -> str:
-    """Try so many random boxes, and more points; what was found, and for how many points nothing was proved."""
+def check_boxes(
+    claims: CertifiedClaims, seed: str, number: int, report: Callable[[int, int], None] = lambda _done, _total: None
+) -> str:
+    """Try so many random boxes, and more points; what was found, and for how many points nothing was proved.
+
+    Parameters
+    ----------
+    report : called with the numbers of points that are done, and of all.
+    """
     if not claims.result.cells:
         return "there are no cells"
     if number <= 0:
@@ -80,7 +87,8 @@ def check_boxes(claims: CertifiedClaims, seed: str, number: int) -> str:
     proved = points = missing = 0
     area = Fraction(0)
     tried = [(box, k < far) for k, box in enumerate(by_area)] + [(p, k < near) for k, p in enumerate(beside)]
-    for box, with_box in tried:
+    for k, (box, with_box) in enumerate(tried):
+        report(k, len(tried))
         if not points and missing == HOPELESS:
             return Unchecked(f"none of the first {missing} points could be decided; seed {seed}")
         there = _check_point(claims, box, box.u, box.v)

@@ -1,0 +1,64 @@
+"""Operation ranges over the other axis of a slice whose springs have free lengths, by the certified engine.
+
+With free lengths there may be more than two stable equilibria, on small parts of a window: an operation range is where
+there are at least two (of a system at least one).
+
+Guarantee: of each row the ends are enclosed, and two neighbouring intervals are one range only where both are
+operation ranges. What could not be decided in a row is said there. Nothing is claimed between two rows.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from ptmcad.answer.counts import operation_number
+from ptmcad.answer.intervals import CertifiedInterval
+from ptmcad.answer.widths import CertifiedRange, CertifiedRow, CertifiedWidths
+from ptmcad.certified.intervals import certified_intervals
+from ptmcad.errors import HypothesisError
+from ptmcad.options import Progress
+from ptmcad.question.slice import Slice
+
+
+def certified_widths(
+    slice: Slice, along: str, rows: int, digits: int, progress: Progress | None = None
+) -> CertifiedWidths:
+    """Tabulate the operation ranges along one axis over the other one.
+
+    Parameters
+    ----------
+    rows : how many values of the other axis, at equal distances.
+    digits : to which ends are enclosed.
+    progress : called as progress("rows", done, rows).
+    """
+    number = slice.axis_names.index(along)
+    over = slice.axes[1 - number]
+    found: list[tuple[Fraction, tuple[CertifiedInterval, ...], str]] = []
+    for k in range(1, rows + 1):
+        value = over.low + (over.high - over.low) * Fraction(k, rows + 1)
+        try:
+            found.append((value, certified_intervals(slice, along, {over.name: value}, digits).intervals, ""))
+        except HypothesisError as error:
+            found.append((value, (), str(error)))
+        if progress is not None:
+            progress("rows", k, rows)
+    working = operation_number(slice.model, ())
+    table = tuple(
+        CertifiedRow(value, _ranges(row, working), any(i.index is None for i in row), remark)
+        for value, row, remark in found
+    )
+    return CertifiedWidths(slice.name, slice.axes[number], over, table, slice.model, working)
+
+
+def _ranges(row: tuple[CertifiedInterval, ...], working: int) -> tuple[CertifiedRange, ...]:
+    """The operation ranges of a row; one goes on through a value at which only other solutions meet."""
+    ranges: list[CertifiedRange] = []
+    before = False
+    for interval in row:
+        inside = interval.index is not None and interval.index[0] >= working
+        if inside and before:
+            ranges[-1] = CertifiedRange(ranges[-1].low, interval.high)
+        elif inside:
+            ranges.append(CertifiedRange(interval.low, interval.high))
+        before = inside
+    return tuple(ranges)

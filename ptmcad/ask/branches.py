@@ -1,0 +1,179 @@
+"""Bifurcation diagrams: all solutions at many values of one axis, joined to branches between the critical values.
+
+Guarantee: critical values are those of `ptmcad.ask.ranges`, or the certified engine's with free lengths; the solutions
+at each value are all there are. Between two neighbouring values they are joined by nearness, each to one of the same
+Morse index; where that is ambiguous more values are tried in between. The joins are no claim.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import cos, pi
+from typing import Any
+
+from ptmcad.answer.branches import Branch, Branches, BranchPoint
+from ptmcad.answer.intervals import End, lower, upper
+from ptmcad.answer.poses import Pose
+from ptmcad.answer.regionmap import Status
+from ptmcad.ask.quantities import Quantity, quantity
+from ptmcad.ask.solving import poses_at
+from ptmcad.options import Progress
+from ptmcad.question.line import has_free_lengths, restricted, varying_axis
+from ptmcad.question.slice import Slice
+
+SAMPLES = 24
+"""Values in each interval, closer to its ends, where branches turn."""
+NEAR = (Fraction(1, 10**5), Fraction(1, 10**4), Fraction(1, 1000))
+"""... and these parts of its length from each end."""
+HALVINGS = 5
+"""Of the distance of two values between which a join is ambiguous."""
+CLEAR = 0.6
+"""A join is clear when it is shorter than this part of the next best."""
+DIGITS = 6
+
+_Place = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Sample:
+    """All solutions at a value."""
+
+    value: Fraction
+    poses: tuple[Pose, ...]
+
+
+def branch_diagram(
+    slice: Slice, along: str, at: Mapping[str, Any], names: Sequence[str], progress: Progress | None = None
+) -> Branches:
+    """All branches of solutions on a line of a slice, with some quantities at each of their points.
+
+    Parameters
+    ----------
+    along, at : as for `ptmcad.ask.ranges.intervals`.
+    names : of `ptmcad.ask.quantities.quantities`.
+    progress : called as progress("branches: interval", done, total).
+
+    Raises
+    ------
+    ConfigError
+        For a name that the model does not have, and as the intervals do.
+    """
+    asked = [quantity(slice.model, name) for name in names]
+    varying, other, value = varying_axis(slice, along, at)
+    line = _Line(slice, varying, value)
+    branches: list[Branch] = []
+    stretches = _stretches(slice, along, at)
+    for number, (low, high) in enumerate(stretches):
+        if progress is not None:
+            progress("branches: interval", number, len(stretches))
+        branches += _joined(line.samples(low, high), asked)
+    fixed = {other: value}
+    units = tuple(q.unit for q in asked)
+    undecided = tuple(line.undecided)
+    return Branches(
+        slice.name, slice.model, slice.axes[varying], fixed, tuple(names), units, tuple(branches), undecided
+    )
+
+
+def _stretches(slice: Slice, along: str, at: Mapping[str, Any]) -> list[tuple[Fraction, Fraction]]:
+    """Intervals without a critical value, from the window's lower edge to its upper one."""
+    if has_free_lengths(slice, along, at):
+        from ptmcad.certified.intervals import certified_intervals
+
+        found = certified_intervals(slice, along, at, DIGITS)
+        return [(i.low.high, i.high.low) for i in found.intervals]
+    from ptmcad.exact.ranges.line import intervals
+
+    exact = intervals(slice, along, at)
+    ends: list[End] = [exact.along.low, *(c.at for c in exact.changes), exact.along.high]
+    return [(upper(a), lower(b)) for a, b in itertools.pairwise(ends)]
+
+
+class _Line:
+    """The solutions on a line, as they are asked for."""
+
+    def __init__(self, slice: Slice, varying: int, value: Fraction):
+        self.model = slice.model
+        self.parameters = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
+        self.undecided: list[Fraction] = []
+
+    def at(self, value: Fraction) -> _Sample | None:
+        """The solutions at a value; None where they are not all known, or one is degenerate."""
+        parameters = {name: e.evaluate(value, Fraction(0)) for name, e in self.parameters.items()}
+        found = poses_at(self.model, parameters, DIGITS)
+        if found.status not in (Status.EXACT, Status.CERTIFIED):
+            self.undecided.append(value)
+            return None
+        return _Sample(value, found.equilibria)
+
+    def samples(self, low: Fraction, high: Fraction) -> list[_Sample]:
+        """Solutions at values in an interval, close enough to be joined."""
+        width = high - low
+        parts = {*NEAR, *(1 - part for part in NEAR)}
+        parts |= {Fraction(round((1 - cos(pi * k / SAMPLES)) * 2**19), 2**20) for k in range(1, SAMPLES)}
+        known = [s for part in sorted(parts) if (s := self.at(_short(low + part * width, width))) is not None]
+        result = known[:1]
+        for sample in known[1:]:
+            result += [*self._between(result[-1], sample, HALVINGS), sample]
+        return result
+
+    def _between(self, first: _Sample, second: _Sample, depth: int) -> list[_Sample]:
+        if depth == 0 or _pairs(first, second)[1]:
+            return []
+        width = second.value - first.value
+        middle = self.at(_short((first.value + second.value) / 2, width))
+        if middle is None:
+            return []
+        return [*self._between(first, middle, depth - 1), middle, *self._between(middle, second, depth - 1)]
+
+
+def _short(value: Fraction, width: Fraction) -> Fraction:
+    """A number near a value with few digits, against the width of where it lies."""
+    unit = 2**24 * (width.denominator // width.numerator + 1)
+    return Fraction(round(value * unit), unit)
+
+
+def _place(pose: Pose) -> _Place:
+    return (*map(float, pose.cosines_sines), *map(float, pose.reals))
+
+
+def _pairs(first: _Sample, second: _Sample) -> tuple[dict[int, int], bool]:
+    """For the solutions at one value those at the next that are nearest, and whether no other comes near to that."""
+    before, after = ([(p.index, p.stable, _place(p)) for p in s.poses] for s in (first, second))
+    distances = sorted(
+        (sum((a - b) ** 2 for a, b in zip(p[2], q[2], strict=True)) ** 0.5, i, j)
+        for i, p in enumerate(before)
+        for j, q in enumerate(after)
+        if p[:2] == q[:2]
+    )
+    pairs: dict[int, int] = {}
+    lengths: dict[int, float] = {}
+    for distance, i, j in distances:
+        if i not in pairs and j not in pairs.values():
+            pairs[i], lengths[i] = j, distance
+    clear = all(lengths.get(i, 0.0) <= CLEAR * distance for distance, i, j in distances if pairs.get(i) != j)
+    return pairs, clear and len(pairs) == len(before) == len(after)
+
+
+def _joined(samples: Sequence[_Sample], asked: Sequence[Quantity]) -> list[Branch]:
+    """The branches through the samples of an interval; one that finds no continuation ends."""
+    if not samples:
+        return []
+
+    def point(value: Fraction, pose: Pose) -> BranchPoint:
+        return BranchPoint(value, tuple(q.of(pose) for q in asked))
+
+    done: list[tuple[Pose, list[BranchPoint]]] = []
+    growing = {k: (p, [point(samples[0].value, p)]) for k, p in enumerate(samples[0].poses)}
+    for first, second in itertools.pairwise(samples):
+        pairs, _ = _pairs(first, second)
+        done += [branch for k, branch in growing.items() if k not in pairs]
+        following = {j: growing[i] for i, j in pairs.items()}
+        for j, pose in enumerate(second.poses):
+            following.setdefault(j, (pose, []))[1].append(point(second.value, pose))
+        growing = following
+    done += growing.values()
+    return [Branch(pose.stable, pose.index, tuple(points)) for pose, points in done]

@@ -1,0 +1,42 @@
+"""Options that were given and have no effect on what was asked for.
+
+Guarantee: one line on standard error for each such option, and none for an option that was not typed; the computation
+goes on as without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import click
+from click.core import ParameterSource
+
+
+class Idle(NamedTuple):
+    """An option by its parameter's name, whether it is without effect, and why it would be."""
+
+    parameter: str
+    idle: bool
+    why: str
+
+
+def report_idle(cases: Iterable[Idle]) -> None:
+    """Say which of the options that were typed have no effect here, and why."""
+    context = click.get_current_context()
+    flags = {p.name: p.opts[0] for p in context.command.params if isinstance(p, click.Option)}
+    for parameter, idle, why in cases:
+        if idle and context.get_parameter_source(parameter) is ParameterSource.COMMANDLINE:
+            click.echo(f"note: {flags[parameter]} has no effect here: {why}", err=True)
+
+
+def idle_drawing(formats: Iterable[str]) -> tuple[Idle, ...]:
+    """The options of `ptmcad.cli.drawing` that none of these formats heeds."""
+    chosen = set(formats)
+    picture = bool(chosen - {"json", "csv", "npz", "table"})
+    return (
+        Idle("dpi", not picture, "no picture is written"),
+        Idle("samples", not picture, "no picture is written"),
+        Idle("pixels", "npz" not in chosen, "only NPZ has a grid, see --format"),
+        Idle("boundary_tolerance", not chosen & {"csv", "npz"}, "only CSV and NPZ have boundaries, see --format"),
+    )

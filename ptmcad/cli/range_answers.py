@@ -1,0 +1,184 @@
+"""What ``ptmcad range`` answers: texts, JSON and pictures of lines, of bands over the other axis, paths and branches.
+
+Guarantee: only the engine that a question needs is loaded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.errors import ConfigError
+from ptmcad.question.slice import Slice
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What is asked for beside the slice.
+
+    Attributes
+    ----------
+    at : the value of the slice's other axis, empty when only ``over`` is asked for.
+    over : whether to tabulate the widths over the other axis, in so many rows.
+    critical : whether to find the critical free lengths by elimination instead.
+    start, pose : of the paths; ``start`` None for none.
+    quantities : of which to draw all branches.
+    """
+
+    along: str
+    at: Mapping[str, str]
+    over: bool
+    rows: int
+    start: Fraction | None
+    pose: int | None
+    digits: int
+    critical: bool
+    quantities: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What was found, for the terminal, the JSON and the pictures."""
+
+    text: str
+    parts: Mapping[str, Any]
+    pictures: Mapping[str, Callable[[Path], None]]
+
+
+def answer(slice: Slice, request: Request) -> Answer:
+    """Compute all that is asked for.
+
+    Raises
+    ------
+    PtmcadError
+        Of any kind.
+    """
+    from ptmcad.ask import ranges
+    from ptmcad.exact.ranges.strips import refuse_free_lengths
+    from ptmcad.show.ranges import document, table
+
+    if request.start is None and is_enclosed(slice, request):
+        known = _enclosed(slice, request) if request.at else Answer(slice.heading, {}, {})
+        return _with_branches(_with_bands(known, slice, request) if request.over else known, slice, request)
+    if request.critical:
+        raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
+    if request.over:
+        refuse_free_lengths(slice)  # before the line is asked for, whose refusal would not say what to leave out
+    texts, parts = [slice.heading], {}
+    pictures: dict[str, Callable[[Path], None]] = {}
+    if request.at:
+        found = ranges.intervals(slice, request.along, request.at)
+        texts.append(table.table(found, request.digits))
+        parts["line"] = document.line_data(found, request.digits)
+        pictures[""] = partial(_picture, "line", slice, found)
+    if request.over:
+        widths = ranges.operation_widths(slice, request.along, request.rows)
+        texts.append(table.width_table(widths, request.digits))
+        parts["over"] = document.over_data(widths, request.digits)
+        pictures["-over"] = partial(_picture, "over", slice, widths)
+    if request.start is not None:
+        paths = ranges.pose_paths(slice, request.along, request.at, request.start, request.pose)
+        texts.append(table.path_table(paths, min(request.digits, 10)))
+        parts["path"] = document.path_data(paths)
+        pictures["-path"] = partial(_picture, "path", slice, paths)
+    return _with_branches(Answer("\n\n".join(texts), parts, pictures), slice, request)
+
+
+def is_enclosed(slice: Slice, request: Request) -> bool:
+    """Whether the certified engine answers, as springs have free lengths."""
+    from ptmcad.question.line import has_free_lengths
+
+    if not request.at:
+        return request.over and slice.has_free_lengths
+    return has_free_lengths(slice, request.along, request.at)
+
+
+def _with_bands(found: Answer, slice: Slice, request: Request) -> Answer:
+    """The answer with the operation ranges over the other axis, where springs have free lengths."""
+    from ptmcad.ask.bands import certified_widths
+    from ptmcad.show.ranges import certified, document
+
+    with ProgressBar() as progress:
+        widths = certified_widths(slice, request.along, request.rows, request.digits, progress)
+    return Answer(
+        f"{found.text}\n\n{certified.width_table(widths, request.digits)}",
+        {**found.parts, "bands": document.bands_data(widths, request.digits)},
+        {**found.pictures, "-over": partial(_picture, "over", slice, widths)},
+    )
+
+
+def _with_branches(found: Answer, slice: Slice, request: Request) -> Answer:
+    """The answer with the branches of the quantities that were asked for."""
+    if not request.quantities:
+        return found
+    from ptmcad.ask.branches import branch_diagram
+    from ptmcad.show.ranges import branches
+
+    with ProgressBar() as progress:
+        diagram = branch_diagram(slice, request.along, request.at, request.quantities, progress)
+    return Answer(
+        f"{found.text}\n\n{branches.table(diagram)}",
+        {**found.parts, "branches": branches.branches_data(diagram)},
+        {**found.pictures, "-branches": partial(_picture, "branches", slice, diagram)},
+    )
+
+
+def _enclosed(slice: Slice, request: Request) -> Answer:
+    """The answer where springs have free lengths."""
+    from ptmcad.show.ranges import certified, document, table
+
+    texts, parts = [slice.heading], dict[str, Any]()
+    if request.critical:
+        from ptmcad.exact.ranges.free_lengths import critical_on_line
+
+        critical = critical_on_line(slice, request.along, request.at)
+        texts.append(table.critical_table(critical, request.digits))
+        parts["critical"] = document.critical_data(critical, request.digits)
+    else:
+        from ptmcad.certified.intervals import certified_intervals
+
+        line = certified_intervals(slice, request.along, request.at, request.digits)
+        texts.append(certified.table(line, request.digits))
+        parts["enclosed"] = document.enclosed_data(line, request.digits)
+    return Answer("\n\n".join(texts), parts, {})
+
+
+def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render import ranges as pictures
+    from ptmcad.show.render.printing import save
+
+    if kind == "line":
+        figure = pictures.draw_range(slice, found)
+    elif kind == "over":
+        figure = pictures.draw_widths(slice, found)
+    elif kind == "branches":
+        from ptmcad.show.render.branches import draw_branches
+
+        figure = draw_branches(slice, found)
+    else:
+        figure = _paths_and_branches(slice, found)
+    save(figure, path)
+
+
+MAX_UNKNOWNS = 2
+"""Of a model of which a picture of paths shows the unstable branches unasked: of others they take minutes."""
+
+
+def _paths_and_branches(slice: Slice, found: Any) -> Any:
+    from ptmcad.ask.branches import branch_diagram
+    from ptmcad.show.render.branches import draw_paths_and_branches
+    from ptmcad.show.render.ranges import draw_paths
+
+    model = found.model
+    if len(model.unknowns) > MAX_UNKNOWNS or not model.tells_stability:
+        return draw_paths(slice, found)
+    unknowns = (*model.angles, *model.reals)
+    return draw_paths_and_branches(slice, found, branch_diagram(slice, found.along.name, found.at, unknowns))

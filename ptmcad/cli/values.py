@@ -1,0 +1,152 @@
+"""What the shell may propose for an option's or argument's value, as far as it is known: names, formats, files.
+
+The words typed so far are the context's ``obj`` (`ptmcad.cli.completion`).
+
+Guarantee: proposing computes nothing, changes no file, and fails silently where a record cannot be read: whoever types
+is told when the command runs. Signatures are those of click's ``shell_complete``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import click
+from click.shell_completion import CompletionItem
+
+from ptmcad.errors import PtmcadError
+
+Proposals = list[CompletionItem]
+Complete = Callable[[click.Context, click.Parameter, str], Proposals]
+MAX_BYTES = 20_000_000
+"""Of a result whose axes are looked up: of a larger one nothing is proposed."""
+_FILE = "file"
+
+
+def formats(known: Iterable[str]) -> Complete:
+    """The formats that a list, separated by commas, does not have yet."""
+
+    def propose(_context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+        return _next_of_list(typed, known)
+
+    return propose
+
+
+def mechanisms(_context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+    """The built-in mechanisms and systems; else a file."""
+    from ptmcad.question.config.starters import NAMES
+
+    found = [CompletionItem(name) for name in NAMES if name.startswith(typed)]
+    return found or [CompletionItem(typed, type=_FILE)]
+
+
+def files(*suffixes: str) -> Complete:
+    """The files of these suffixes, and folders to look in; whatever there is where there are none of them."""
+
+    def propose(_context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+        folder, _, start = typed.rpartition("/")
+        base = f"{folder}/" if "/" in typed else ""
+        try:
+            entries = sorted(os.scandir(base or "."), key=lambda entry: entry.name)
+        except OSError:  # no such folder
+            return []
+        seen = [e for e in entries if e.name.startswith(start) and (start or not e.name.startswith("."))]
+        found = [f"{base}{e.name}" for e in seen if e.name.endswith(suffixes) and e.is_file()]
+        found += [f"{base}{e.name}/" for e in seen if e.is_dir()]
+        return [CompletionItem(name) for name in found] or [CompletionItem(typed, type=_FILE)]
+
+    return propose
+
+
+def names(context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+    """An axis or a parameter of the question's model."""
+    return [CompletionItem(name) for name in _names(context) if name.startswith(typed)]
+
+
+def pair_of_names(context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+    """Two axes, such as rho,L2."""
+    if typed.count(",") > 1:
+        return []
+    return [item if typed.count(",") else CompletionItem(f"{item.value},")
+            for item in _next_of_list(typed, _names(context))]  # fmt: skip
+
+
+def settings(context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+    """NAME=, of which the value is for the user to say."""
+    return (
+        [CompletionItem(f"{name}=") for name in _names(context) if name.startswith(typed)] if "=" not in typed else []
+    )
+
+
+def point(context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+    """NAME=VALUE,NAME=VALUE, as far as names go."""
+    before, comma, last = typed.rpartition(",")
+    if "=" in last:
+        return []
+    given = {part.partition("=")[0].strip() for part in before.split(",")}
+    return [CompletionItem(f"{before}{comma}{name}=") for name in _names(context)
+            if name.startswith(last) and name not in given]  # fmt: skip
+
+
+def quantity_names(context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+    """What a pose of the record's model, or of the default one, can be asked for."""
+    from ptmcad.ask.quantities import quantities
+    from ptmcad.mechanism import ptm
+    from ptmcad.question.config import load
+
+    try:
+        config = _typed_file(context, ".yaml", ".yml")
+        model = ptm() if config is None else load(config).model
+    except PtmcadError:  # the command itself will say what is wrong with the file
+        return []
+    return [CompletionItem(name) for name in quantities(model) if name.startswith(typed)]
+
+
+def _next_of_list(typed: str, known: Iterable[str]) -> Proposals:
+    before, comma, last = typed.rpartition(",")
+    given = set(before.split(","))
+    return [CompletionItem(f"{before}{comma}{name}") for name in known if name.startswith(last) and name not in given]
+
+
+def _names(context: click.Context) -> tuple[str, ...]:
+    """The axes of the record or result that was typed, or else of the default, and the model's parameters."""
+    try:
+        if any(parameter.name == "result" for parameter in context.command.params):
+            result = _typed_file(context, ".json")
+            return () if result is None else _axes_of_result(result)
+        return _names_of_question(_typed_file(context, ".yaml", ".yml"), context.params.get("mechanism"))
+    except (PtmcadError, OSError, ValueError):  # the command itself will say what is wrong with the file
+        return ()
+
+
+def _typed_file(context: click.Context, *suffixes: str) -> Path | None:
+    """The first file of these suffixes among the words typed so far.
+
+    Click's own parser gives no arguments where the last word is an option that waits for its value.
+    """
+    return next((Path(word) for word in context.obj or () if word.endswith(suffixes) and word[0] != "-"), None)
+
+
+def _axes_of_result(path: Path) -> tuple[str, ...]:
+    if path.stat().st_size > MAX_BYTES:
+        return ()
+    data = json.loads(path.read_text(encoding="utf-8"))
+    axes = data["slice"]["axes"] if isinstance(data, dict) and isinstance(data.get("slice"), dict) else {}
+    return tuple(axes)
+
+
+def _names_of_question(config: Path | None, mechanism: str | None) -> tuple[str, ...]:
+    from ptmcad.mechanism import ptm
+    from ptmcad.question.config import load
+    from ptmcad.question.config.model import model_of
+    from ptmcad.question.config.starters import NAMES, starter_text
+    from ptmcad.text.yamltree import read_text
+
+    if config is not None:
+        asked = load(config)
+        return tuple(dict.fromkeys((*asked.axis_names, *asked.model.parameters)))
+    if mechanism in NAMES:
+        return tuple(model_of(read_text(starter_text(mechanism))).parameters)
+    return tuple(ptm().parameters) if mechanism is None else ()

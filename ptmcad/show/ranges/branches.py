@@ -1,0 +1,79 @@
+"""Branches of solutions along a line as text and as JSON data.
+
+Guarantee: every digit that is shown is right.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ptmcad.answer.branches import Branch, Branches, BranchPoint
+from ptmcad.answer.words import kind_name, noun
+from ptmcad.mechanism import Model
+from ptmcad.show.ranges.numbers import known
+from ptmcad.show.ranges.table import aligned
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.numerals import shortest_text, text_of
+
+DIGITS = 6
+
+
+def kind(branch: Branch, model: Model) -> str:
+    """What the solutions of a branch are called: stable, saddle, maximum, unstable, or by the model's noun."""
+    if branch.stable:
+        return "stable"
+    if branch.index is not None:
+        return kind_name(branch.index, len(model.unknowns))
+    return noun(model, 1) if branch.stable is None else "unstable"
+
+
+def heading(name: str, unit: str) -> str:
+    """A quantity with its unit."""
+    return f"{name} ({unit})" if unit else name
+
+
+def table(found: Branches) -> str:
+    """One row for each branch: where it begins and ends, and the quantities there."""
+    heads = [heading(*pair) for pair in zip(found.quantities, found.units, strict=True)]
+    rows = [["from", "to", "kind", *heads]]
+    for branch in found.branches:
+        first, last = branch.points[0], branch.points[-1]
+        numbers = zip(first.numbers, last.numbers, strict=True)
+        changes = [f"{_text(a)} to {_text(b)}" for a, b in numbers]
+        rows.append([_short(first), _short(last), kind(branch, found.model), *changes])
+    fixed = ", ".join(f"{n} = {shortest_text(v)}" for n, v in found.at.items())
+    lines = [f"branches along {found.along.name} at {fixed}, without the last 1/100000 before critical values", ""]
+    lines += aligned(rows)
+    if found.undecided:
+        lines += ["", f"not all solutions could be told apart at {len(found.undecided)} of the values tried"]
+    return "\n".join(lines)
+
+
+def _short(point: BranchPoint) -> str:
+    return f"{float(point.value):.6g}"
+
+
+def _text(number: Enclosure | None) -> str:
+    return "-" if number is None else known(number, DIGITS)
+
+
+def branches_data(found: Branches) -> dict[str, Any]:
+    """The branches as JSON data."""
+    return {
+        "along": found.along.name,
+        "at": {name: text_of(value) for name, value in found.at.items()},
+        "quantities": list(found.quantities),
+        "units": list(found.units),
+        "undecided": [text_of(value) for value in found.undecided],
+        "branches": [
+            {
+                "stable": branch.stable,
+                "index": branch.index,
+                "points": [
+                    {"value": text_of(p.value), "numbers": [None if n is None else known(n, DIGITS) for n in p.numbers]}
+                    for p in branch.points
+                ],
+            }
+            for branch in found.branches
+        ],
+    }

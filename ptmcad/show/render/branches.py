@@ -1,0 +1,132 @@
+"""A bifurcation diagram: quantities of all solutions along a line, stable branches solid and the others broken.
+
+Guarantee: as of `ptmcad.show.render.ranges`; lines join what is next to each other, which is no claim.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ptmcad.answer.branches import Branch, Branches
+from ptmcad.answer.paths import PosePaths
+from ptmcad.question.slice import Slice
+from ptmcad.show.ranges.branches import heading, kind
+from ptmcad.show.render.axes import scale_of, symbol
+from ptmcad.show.render.legend import INK, Entry, draw_legend, height
+from ptmcad.show.render.printing import settings
+from ptmcad.show.render.ranges import (
+    KEY,
+    LEFT,
+    RIGHT,
+    SIZE,
+    WIDE,
+    _axes,
+    _axis_name,
+    _figure,
+    _scaled,
+    _short,
+    draw_paths,
+)
+
+PANEL, GAP, FOOT = 2.0, 0.25, 0.55
+COLUMNS = 100
+_LOOKS: dict[str, dict[str, Any]] = {
+    "stable": {"color": "#0b5394", "linewidth": 2.0, "linestyle": "-"},
+    "saddle": {"color": "#b45f06", "linewidth": 1.2, "linestyle": (0, (5, 2))},
+    "unstable": {"color": "#b45f06", "linewidth": 1.2, "linestyle": (0, (5, 2))},
+    "maximum": {"color": "#666666", "linewidth": 1.2, "linestyle": (0, (1, 1.5))},
+}
+_OTHER: dict[str, Any] = {"color": INK, "linewidth": 1.4, "linestyle": "-"}
+_BEHIND: dict[str, Any] = {"color": "#8a8a8a", "linewidth": 0.9}
+"""What changes where others are in front."""
+_TURN = 180
+"""Degrees by which an angle of two neighbouring points differs only where it comes round."""
+
+
+def draw_branches(slice: Slice, found: Branches) -> Figure:
+    """A panel for each quantity."""
+    fixed = ", ".join(f"{symbol(n)} = {_short(v)}" for n, v in found.at.items())
+    title = textwrap.wrap(f"{slice.heading}; {fixed}", COLUMNS)[:3]
+    kinds = list(dict.fromkeys(kind(b, found.model) for b in found.branches))
+    kinds.sort(key=_rank)
+    entries = (Entry(("branches",), strong=True), *(Entry((name,), _mark(name)) for name in kinds))
+    last = len(found.quantities) - 1
+    tall = max((last + 1) * PANEL + last * GAP + FOOT, height(entries) + 0.2)
+    words = f"{', '.join(found.quantities)} of all solutions along {found.along.name}: {', '.join(kinds)}."
+    with settings():
+        figure = _figure(title, (LEFT + WIDE + RIGHT + KEY, tall), words)
+        scale = scale_of(found.along.low, found.along.high)
+        for number, (name, unit) in enumerate(zip(found.quantities, found.units, strict=True)):
+            bottom = tall - (number + 1) * PANEL - number * GAP
+            axes = _axes(figure, (LEFT, bottom, WIDE, PANEL))
+            for branch in sorted(found.branches, key=lambda b: bool(b.stable)):  # the stable ones on top
+                look = _look(kind(branch, found.model))
+                for xs, ys in _strokes(branch, number, found, turns=unit == "degrees"):
+                    axes.plot(xs, ys, **look)
+            axes.set_xlim(scale.low, scale.high)
+            axes.margins(y=0.08)
+            axes.tick_params(labelsize=SIZE, labelbottom=number == last)
+            axes.set_ylabel(heading(symbol(name) if name in found.model.unknowns else name, unit), fontsize=SIZE + 2)
+            if number == last:
+                axes.set_xlabel(_axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=2)
+        draw_legend(figure, entries, LEFT + WIDE + RIGHT, tall - 0.05)
+    return figure
+
+
+def draw_paths_and_branches(slice: Slice, paths: PosePaths, found: Branches) -> Figure:
+    """The paths of poses, and behind them the branches that are not stable; ``found`` has the unknowns, in order."""
+    unstable = [branch for branch in found.branches if branch.stable is False]
+    kinds = sorted({kind(branch, found.model) for branch in unstable}, key=_rank)
+    further = [Entry((f"{name}, not followed",), _mark(name, **_BEHIND)) for name in kinds]
+    figure = draw_paths(slice, paths, further)
+    for number, unit in enumerate(found.units):
+        for branch in unstable:
+            for xs, ys in _strokes(branch, number, found, turns=unit == "degrees"):
+                figure.axes[number].plot(xs, ys, zorder=1.5, **(_look(kind(branch, found.model)) | _BEHIND))
+    return figure
+
+
+def _strokes(branch: Branch, number: int, found: Branches, *, turns: bool) -> Iterator[tuple[list[float], list[float]]]:
+    """The line of a quantity, cut where it has none, and where an angle comes round."""
+    xs: list[float] = []
+    ys: list[float] = []
+    for point in branch.points:
+        value = point.numbers[number]
+        y = None if value is None else float(value)
+        x = _scaled(point.value, found.along)
+        if xs and y is None:
+            yield xs, ys
+            xs, ys = [], []
+        elif xs and y is not None and turns and abs(y - ys[-1]) > _TURN:
+            # it leaves at one edge and comes in at the other
+            edge = _TURN if ys[-1] > 0 else -_TURN
+            before, after = abs(edge - ys[-1]), abs(edge + y)
+            between = xs[-1] + (x - xs[-1]) * before / max(before + after, 1e-300)
+            yield [*xs, between], [*ys, edge]
+            xs, ys = [between], [-edge]
+        if y is not None:
+            xs.append(x)
+            ys.append(y)
+    if xs:
+        yield xs, ys
+
+
+def _look(name: str) -> dict[str, Any]:
+    return _LOOKS.get(name, _OTHER)
+
+
+def _rank(name: str) -> int:
+    return list(_LOOKS).index(name) if name in _LOOKS else len(_LOOKS)
+
+
+def _mark(name: str, **changes: Any) -> Callable[[Any, float, float], None]:
+    def draw(figure: Any, left: float, middle: float) -> None:
+        look = _look(name) | changes
+        figure.add_artist(Line2D((left, left + 0.28), (middle, middle), transform=figure.dpi_scale_trans, **look))
+
+    return draw

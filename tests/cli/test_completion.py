@@ -1,0 +1,112 @@
+"""What the shell is told when Tab is pressed, by real processes and click's protocol."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support.maps import shipped
+
+from ptmcad.cli import COMMANDS
+
+ROOT = Path(__file__).resolve().parents[2]
+FIG4 = str(ROOT / "configs" / "fig4.yaml")
+
+
+def asked(shell: str, *words: str, cwd: Path | None = None) -> list[str]:
+    """What the program answers; the last word is the one that is being typed."""
+    environment = os.environ | {"_PTMCAD_COMPLETE": f"{shell}_complete"}
+    environment["COMP_WORDS"] = " ".join(("ptmcad", *words))
+    # fish says what is being typed, the others the place of it
+    environment["COMP_CWORD"] = words[-1] if shell == "fish" else str(len(words))
+    done = subprocess.run(
+        [sys.executable, "-m", "ptmcad"], env=environment, cwd=cwd, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    return [line for line in done.stdout.splitlines() if line]
+
+
+def plain(*words: str, cwd: Path | None = None) -> list[str]:
+    """The values that bash is given."""
+    lines = asked("bash", *words, cwd=cwd)
+    assert all(line.startswith("plain,") for line in lines)
+    return [line.removeprefix("plain,") for line in lines]
+
+
+def test_every_shell_is_answered() -> None:
+    assert asked("bash", "cl") == ["plain,classify"]
+    assert asked("zsh", "cl")[:2] == ["plain", "classify"]
+    assert [line.partition("\t")[0] for line in asked("fish", "cl")] == ["plain,classify"]
+    assert plain("") == list(COMMANDS)
+    assert plain("verify", "--bo") == ["--boxes"]
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_script_of_a_shell(shell: str) -> None:
+    environment = os.environ | {"_PTMCAD_COMPLETE": f"{shell}_source"}
+    done = subprocess.run([sys.executable, "-m", "ptmcad"], env=environment, capture_output=True, text=True, check=True)
+    assert f"_PTMCAD_COMPLETE={shell}_complete" in done.stdout and done.stderr == ""
+
+
+@pytest.mark.parametrize("value", ["", "bash", "tcsh_complete", "bash_now"])
+def test_no_request_of_a_shell(value: str) -> None:
+    environment = os.environ | {"_PTMCAD_COMPLETE": value}
+    done = subprocess.run(
+        [sys.executable, "-m", "ptmcad"], env=environment, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "error: _PTMCAD_COMPLETE is no request of bash, zsh or fish: unset it\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "values"),
+    [
+        (["classify", "--format", "json,p"], ["json,png", "json,pdf"]),
+        (["solve", "--format", "png,"], ["png,table", "png,json", "png,svg", "png,pdf"]),
+        (["classify", "--count", "s"], ["stable"]),
+        (["init", "p"], ["ptm", "pendulum", "platform"]),
+        (["classify", "--mechanism", "pl"], ["platform"]),
+        (["classify", "--mechanism", "pendulum", "--set", ""], ["L=", "k=", "W=", "H="]),
+        (["classify", FIG4, "--slice", ""], ["rho,", "L2,", "L1,", "k,"]),
+        (["classify", FIG4, "--slice", "L2,r"], ["L2,rho"]),
+        (["range", FIG4, "--along", "rh"], ["rho"]),
+        (["solve", "--at", "rho=1,L"], ["rho=1,L1=", "rho=1,L2="]),
+        (["classify", "missing.yaml", "--slice", ""], []),
+    ],
+)
+def test_values(words: list[str], values: list[str]) -> None:
+    found = plain(*words)
+    assert found[: len(values)] == values and (values or not found)
+
+
+def test_files(tmp_path: Path) -> None:
+    (tmp_path / "map.json").write_text(shipped("fig4").to_json(), encoding="utf-8")
+    (tmp_path / "mine.yaml").touch()
+    (tmp_path / "maps").mkdir()
+    (tmp_path / "maps" / "other.json").touch()
+    assert plain("verify", "ma", cwd=tmp_path) == ["map.json", "maps/"]
+    assert plain("classify", "--resume", "maps/", cwd=tmp_path) == ["maps/other.json"]
+    assert plain("classify", "m", cwd=tmp_path) == ["mine.yaml", "maps/"]
+    assert asked("bash", "verify", "mi", cwd=tmp_path) == ["file,mi"]
+    assert plain("locate", "map.json", "--at", "", cwd=tmp_path) == ["rho=", "L2="]
+    assert plain("locate", "maps/other.json", "--at", "", cwd=tmp_path) == []
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
+def test_bash_itself(tmp_path: Path) -> None:
+    """The script as bash runs it: what it would put at the cursor, and whether a space would follow."""
+    (tmp_path / "ptmcad").write_text(f"#!/bin/sh\nexec {sys.executable} -m ptmcad\n", encoding="utf-8")
+    (tmp_path / "ptmcad").chmod(0o755)
+    program = (
+        'eval "$(_PTMCAD_COMPLETE=bash_source ptmcad)"\n'
+        'compopt() { echo "$@"; }\n'
+        "COMP_WORDS=(ptmcad classify --set rh) COMP_CWORD=3\n"
+        "_ptmcad_completion ptmcad; printf '%s\\n' \"${COMPREPLY[@]}\"\n"
+    )
+    environment = os.environ | {"PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}"}
+    done = subprocess.run(["bash", "-c", program], env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-2:] == ["-o nospace", "rho="]

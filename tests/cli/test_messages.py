@@ -1,0 +1,135 @@
+"""What the program says, in the words that a newcomer is to read."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from ptmcad.answer.regionmap import COMPILATION, RegionMap
+from ptmcad.cli import run
+from ptmcad.show.table import table
+from ptmcad.verification import verify
+from ptmcad.verification.report import Headway
+
+CONFIGS = Path(__file__).resolve().parents[2] / "configs"
+FIG2 = str(CONFIGS / "fig2.yaml")
+Shipped = Callable[..., RegionMap]
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--tolerance", "1/50"], ["--tolerance has no effect here: the exact engine leaves nothing undetermined"]),
+        (["--jobs", "1", "--dpi", "90"], ["--jobs has no effect here: the exact engine uses one thread",
+                                         "--dpi has no effect here: no picture is written"]),
+        (["--samples", "--pixels", "9"], ["--samples has no effect here: no picture is written",
+                                          "--pixels has no effect here: only NPZ has a grid, see --format"]),
+        (["--boundary-tolerance", "1/9"],
+         ["--boundary-tolerance has no effect here: only CSV and NPZ have boundaries, see --format"]),
+        (["--format", "csv", "--boundary-tolerance", "1/9"], []),
+        (["--no-areas"], []),
+    ],
+)  # fmt: skip
+def test_an_option_without_effect_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], said: list[str]
+) -> None:
+    assert run(["classify", FIG2, "--format", "json", "--out", str(tmp_path), *options]) == 0
+    assert capsys.readouterr().err.splitlines() == [f"note: {line}" for line in said]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("mechanism: ptm\naxes: {rho: [0, 2], L2: [0, 2]}\n",
+         "this is a problem record, not a result: run `ptmcad classify` on it first"),
+        ('{"axes": {"rho": [0, 2], "L2": [0, 2]}}',
+         "this is a problem record, not a result: run `ptmcad classify` on it first"),
+        ('{"format": "ptmcad-poses/1"}',
+         "this is a ptmcad-poses/1 file, not a region map: `ptmcad classify` makes one"),
+        ('{"format": "ptmcad-region-map/1"}',
+         "this is a ptmcad-region-map/1 file, and this program reads version 2: make it anew"),
+        ("{", "is damaged or not a ptmcad-region-map/2 file: "),
+        ('{"format": "ptmcad-region-map/2"}', "is damaged or not a ptmcad-region-map/2 file: "),
+        ("name: x\n", "is damaged or not a ptmcad-region-map/2 file: "),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("command", [["locate", "--at", "rho=1,L2=1"], ["verify"], ["plot"], ["report"]])
+def test_a_file_that_is_no_result(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str], text: str, said: str
+) -> None:
+    path = tmp_path / "given"
+    path.write_text(text, encoding="utf-8")
+    assert run([command[0], str(path), *command[1:]]) == 2
+    assert capsys.readouterr().err.startswith(f"error: {path}: {said}")
+
+
+@pytest.mark.parametrize("command", [["solve", "--at", "rho=1"], ["range", "--along", "rho", "--at", "L2=3/2"]])
+def test_a_folder_for_no_files(tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]) -> None:
+    assert run([*command, "--out", str(tmp_path)]) == 0
+    assert capsys.readouterr().err == "note: --out has no effect here: no file is written, see --format\n"
+
+
+def test_an_unknown_axis(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["classify", "--slice", "foo,rho"]) == 2
+    said = "error: --slice: unknown axis 'foo'; to introduce a new variable add --range foo=LO:HI\n"
+    assert capsys.readouterr().err == said
+
+
+def test_what_is_spared_on_every_slice_is_not_explained(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    common = ["classify", FIG2, "--format", "json", "--out", str(tmp_path), "--explain"]
+    assert run(common) == 0
+    assert "import" not in capsys.readouterr().out
+    plan = json.loads((tmp_path / "fig2.json").read_text(encoding="utf-8"))["plan"]
+    assert plan[0]["saving"] == "imports"
+    assert run([*common, "--without", "imports"]) == 0
+    assert "computed: imports of numpy" in capsys.readouterr().out
+
+
+def test_the_time_line(shipped: Shipped) -> None:
+    exact = replace(shipped("fig2"), timings={"total": 0.314})
+    assert table(exact).splitlines()[-1].startswith("time      0.31 s; nothing undetermined; area bounds")
+    first = replace(exact, timings={"total": 24.9, COMPILATION: 38.0})
+    assert "time      62.9 s, of which 38 s compilation (once); nothing" in table(first)
+
+
+def test_no_curve_changes_the_count(shipped: Shipped) -> None:
+    assert "curves    no curve changes the count" in table(replace(shipped("fig2"), components=()))
+
+
+def test_verify_shows_progress_on_a_terminal(shipped: Shipped, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "fig2.json"
+    path.write_text(shipped("fig2").to_json(), encoding="utf-8")
+    monkeypatch.setattr("ptmcad.cli.progress.PATIENCE", 0)
+    monkeypatch.setattr("ptmcad.cli.progress._INTERVAL", 0)
+    for watched in (True, False):
+        terminal = io.StringIO()
+        monkeypatch.setattr(terminal, "isatty", lambda watched=watched: watched)
+        monkeypatch.setattr(sys, "stderr", terminal)
+        assert run(["verify", str(path)]) == 0
+        assert ("] check 21 of 21: areas ..., " in terminal.getvalue()) == watched
+
+
+def test_the_bar_of_a_verification_only_grows(shipped: Shipped) -> None:
+    told: list[tuple[str, int, int]] = []
+    verify(shipped("fig2"), progress=lambda *what: told.append(what))
+    assert [done for _, done, _ in told] == [100 * k for k in range(21)]
+    assert told[0] == ("check 1 of 21: shape ...", 0, 2100)
+    headway = Headway(lambda *what: told.append(what), 8)
+    headway.begins("form")
+    headway.within(1, 3)
+    assert told[-1] == ("check 1 of 8: form, 33 %", 33, 800)
+
+
+def test_ranges_in_words(capsys: pytest.CaptureFixture[str]) -> None:
+    fig4 = str(CONFIGS / "fig4.yaml")
+    assert run(["range", fig4, "--along", "rho", "--over", "L2", "--rows", "1"]) == 0
+    assert ", attained only at L2 = 1, a critical value of L2" in capsys.readouterr().out
+    assert run(["range", fig4, "--along", "rho", "--at", "L2=3/2"]) == 0
+    shown = capsys.readouterr().out
+    assert "as rho increases" in shown and "loses one stable equilibrium and one saddle" in shown
