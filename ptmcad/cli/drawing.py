@@ -20,6 +20,7 @@ from ptmcad.cli.gathering import gathered
 from ptmcad.cli.pictures import picture
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.process.output import Writer, text_writer
+from ptmcad.show.render.style import DEFAULT, LINES, PALETTES, PRESETS, Place, Style, styled
 from ptmcad.text.parsing import rational
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -47,12 +48,14 @@ class Drawing:
     Attributes
     ----------
     samples : whether pictures show the cells' sample points.
+    style : what pictures look like.
     dpi : resolution of a PNG.
     boundary_tolerance : distance of polylines from their curves, as a share of the window's side.
     pixels : columns and rows of the grid in an NPZ.
     """
 
     samples: bool = False
+    style: Style = DEFAULT
     dpi: int = 150
     boundary_tolerance: Fraction = Fraction(1, 1000)
     pixels: tuple[int, int] = (400, 400)
@@ -70,7 +73,7 @@ class Drawing:
     def _picture(self, result: Any, _name: str, _boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show.render import draw  # brings matplotlib
 
-        draw(result, path, samples=self.samples, dpi=self.dpi)
+        draw(result, path, samples=self.samples, dpi=self.dpi, style=self.style)
 
     def _table(self, result: Any, name: str, boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show import data
@@ -109,6 +112,59 @@ def _pixels(_context: click.Context, parameter: click.Parameter, value: str) -> 
     return sides
 
 
+def _drawing(
+    samples: bool, dpi: int, boundary_tolerance: Fraction, pixels: tuple[int, int], style: str, size: str | None,
+    font_size: str | None, font_family: str | None, palette: str | None, title: str | None, legend: str | None,
+    line_width: str | None, thin_lines: str | None,
+) -> Drawing:  # fmt: skip
+    """The options together."""
+    options = {
+        "size": size, "font_size": font_size, "font_family": font_family, "palette": palette, "title": title,
+        "legend": legend, "line_width": line_width, "thin_lines": thin_lines,
+    }  # fmt: skip
+    try:
+        made = styled(style, **options)
+    except ConfigError as error:
+        raise ConfigError(error.message, key=f"--{(error.key or 'style').replace('_', '-')}") from error
+    if made.font_family:
+        _check_fonts(made.font_family)
+    return Drawing(samples, made, dpi, boundary_tolerance, pixels)
+
+
+def _check_fonts(families: tuple[str, ...]) -> None:
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render.fonts import check_families
+
+    try:
+        check_families(families)
+    except ConfigError as error:
+        raise ConfigError(error.message, key="--font-family") from error
+
+
+def style_options(command: F) -> F:
+    """Add the options that make a `Style`."""
+    for option in (
+        click.option("--thin-lines", type=click.Choice(LINES),
+                     help="Curves of the variety where the count does not change.  [default: solid]"),
+        click.option("--line-width", metavar="PT", help="Width of curves where the count changes, in points."),
+        click.option("--legend", type=click.Choice([place.value for place in Place]),
+                     help="Where the legend stands.  [default: where it fits]"),
+        click.option("--title", metavar="TEXT",
+                     help="Title, '' for none.  [default: the slice's heading; none in journals' styles]"),
+        click.option("--palette", metavar="NAME|COLOUR,..",
+                     help=f"{', '.join(PALETTES)}, or colours for the counts in increasing order.  [default: default]"),
+        click.option("--font-family", metavar="NAME,..", help="Fonts that are installed; the first that has a letter."),
+        click.option("--font-size", metavar="PT", help="Of the legend, at the printed size; none below 6 points."),
+        click.option("--size", metavar="WxH", help="Of the whole picture, as 3.5x2.6in or 90x70mm."),
+        click.option("--style", type=click.Choice(tuple(PRESETS)), default="default", show_default=True,
+                     help="Size, font and lines for a journal's column, a slide or a poster; other options override."),
+    ):  # fmt: skip
+        command = option(command)
+    return command
+
+
 def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable[[F], F]:
     """Add ``--format``, which the command gets as ``formats``, and the options that it gets as a `Drawing`.
 
@@ -119,7 +175,7 @@ def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable
     """
 
     def decorate(command: F) -> F:
-        command = gathered(drawing=Drawing)(command)
+        command = style_options(gathered(drawing=_drawing)(command))
         for option in (
             click.option("--pixels", callback=_pixels, default="400x400", show_default=True, metavar="NxM",
                          help="Columns and rows of the grid of exact counts in an NPZ."),

@@ -245,7 +245,7 @@ def test_labels_and_texts_do_not_overlap() -> None:
 
 def test_labels_of_crowded_tips_are_apart() -> None:
     tips = [(0.5 + 0.01 * k, 0.5) for k in range(8)]
-    marks = place(tips, ["A: (1, 3, 2)"] * len(tips), outline(bands([])), side=331.0)
+    marks = place(tips, ["A: (1, 3, 2)"] * len(tips), outline(bands([])), sides=(331.2, 331.2))
     for first, second in combinations(marks, 2):
         dx, dy = (331 * abs(a - b) for a, b in zip(first.label, second.label, strict=True))
         assert dx > 60 or dy > 14

@@ -95,22 +95,41 @@ def unit(slice: Slice, axis: int) -> str:
     return found.pop() if len(found) == 1 else ""
 
 
-def dress(axes: Any, slice: Slice, x: tuple[Fraction, Fraction], y: tuple[Fraction, Fraction], small: bool) -> None:
+@dataclass(frozen=True, slots=True)
+class Dress:
+    """Sizes in points of the numbers at the ticks and of the axes' names, and the most intervals on each axis."""
+
+    ticks: float = 9
+    names: float = 11
+    intervals: tuple[int, int] = (8, 8)
+    small: bool = False
+    scale: float = 1.0
+
+
+SMALL = Dress(7, 7, (4, 4), small=True)
+
+
+def dress(
+    axes: Any, slice: Slice, x: tuple[Fraction, Fraction], y: tuple[Fraction, Fraction], how: Dress | None = None
+) -> None:
     """Give matplotlib axes their limits, ticks and names; in small ones (insets) without units."""
     from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
-    size = 7 if small else 9
+    how = how or Dress()
+    small = how.small
     for number, (matplotlib_axis, interval) in enumerate(((axes.xaxis, x), (axes.yaxis, y))):
         scale = scale_of(*interval, digits=2 if small else 4)
         (axes.set_ylim if number else axes.set_xlim)(scale.low, scale.high)
-        matplotlib_axis.set_major_locator(MaxNLocator(nbins=4 if small else 8, steps=[1, 2, 2.5, 5, 10]))
+        matplotlib_axis.set_major_locator(MaxNLocator(nbins=how.intervals[number], steps=[1, 2, 2.5, 5, 10]))
         formatter = ScalarFormatter(useOffset=False)
         formatter.set_scientific(False)
         matplotlib_axis.set_major_formatter(formatter)
         text = scale.name(_cut(symbol(slice.axes[number].name), 10 if small else 40), 9 if small else 24)
         known = "" if small else unit(slice, number)
-        matplotlib_axis.set_label_text(f"{text} ({known})" if known else text, fontsize=size if small else size + 2)
-        axes.tick_params(axis="y" if number else "x", labelsize=size, length=2 if small else 3.5, direction="out")
+        matplotlib_axis.set_label_text(f"{text} ({known})" if known else text, fontsize=how.names)
+        axes.tick_params(
+            axis="y" if number else "x", labelsize=how.ticks, length=(2 if small else 3.5) * how.scale, direction="out"
+        )
 
 
 def _cut(text: str, most: int) -> str:

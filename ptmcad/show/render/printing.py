@@ -17,6 +17,8 @@ from typing import Any
 import matplotlib
 from matplotlib.figure import Figure
 
+from ptmcad.show.render.style import DEFAULT, Style
+
 FORMATS = ("png", "svg", "pdf")
 
 _SETTINGS: dict[str, Any] = {
@@ -38,9 +40,14 @@ _KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
 
 
 @contextmanager
-def settings() -> Iterator[None]:
-    """Matplotlib's own defaults and the project's fonts, not a user's matplotlibrc; for drawing and for printing."""
+def settings(style: Style = DEFAULT) -> Iterator[None]:
+    """Matplotlib's own defaults and the project's fonts, not a user's matplotlibrc; for drawing and for printing.
+
+    A style's font comes first; letters that it lacks are taken from the one that comes with matplotlib.
+    """
     own: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS
+    if style.font_family:
+        own["font.family"] = [*style.font_family, *_SETTINGS["font.family"]]
     with matplotlib.rc_context(own), warnings.catch_warnings():
         # a title in a script that the font lacks is shown with boxes; SVG's title and the JSON keep it
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
