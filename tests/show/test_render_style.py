@@ -64,7 +64,8 @@ def test_everything_is_on_the_page_apart_and_legible(name: str, preset: str, leg
         assert style.size == pytest.approx(tuple(made.get_size_inches()))
         assert min(t.get_fontsize() for t in texts(made)) >= MIN_FONT
         boxes = [t.get_window_extent(renderer) for t in made.texts]
-        boxes += [a.get_tightbbox(renderer, bbox_extra_artists=[a.title]) for a in made.axes]
+        found = [a.get_tightbbox(renderer, bbox_extra_artists=[a.title]) for a in made.axes]
+        boxes += [box for box in found if box is not None]
         width, height = canvas.get_width_height()
         for box in boxes:
             assert box.x0 >= -0.5 and box.y0 >= -0.5 and box.x1 <= width + 0.5 and box.y1 <= height + 0.5
