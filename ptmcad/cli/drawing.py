@@ -25,7 +25,7 @@ from ptmcad.text.parsing import rational
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-PICTURES = ("png", "svg", "pdf")
+PICTURES = ("png", "svg", "pdf", "eps", "pgf")
 DATA = ("csv", "npz")
 TABLES = ("boundaries", "regions", "cells")
 """Each is a file of its own in CSV."""

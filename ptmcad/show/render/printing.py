@@ -1,4 +1,5 @@
-"""Printing: a figure as the content of a PNG, SVG or PDF file, for screen readers with a title and a description.
+"""Printing: a figure as the content of a PNG, SVG, PDF, EPS or PGF file, for screen readers with a title and a
+description where the format has room for them.
 
 Guarantee: the same figure gives the same bytes with the same matplotlib, whatever the user's settings, the date and
 the machine. Global state of matplotlib is neither used nor changed.
@@ -6,6 +7,7 @@ the machine. Global state of matplotlib is neither used nor changed.
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -19,7 +21,7 @@ from matplotlib.figure import Figure
 
 from ptmcad.show.render.style import DEFAULT, Style
 
-FORMATS = ("png", "svg", "pdf")
+FORMATS = ("png", "svg", "pdf", "eps", "pgf")
 
 _SETTINGS: dict[str, Any] = {
     "font.family": ["DejaVu Sans"],  # comes with matplotlib
@@ -35,7 +37,10 @@ _SETTINGS: dict[str, Any] = {
     "svg.hashsalt": "ptmcad",
     "svg.image_inline": True,
     "pdf.compression": 6,
+    "pdf.fonttype": 42,  # TrueType, which journals ask for and editors of drawings read
+    "ps.fonttype": 42,
 }
+_CHANGING = re.compile(rb"^%%CreationDate:.*\n", re.MULTILINE)
 _KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
 
 
@@ -73,7 +78,7 @@ def save(figure: Figure, path: Path, *, dpi: int = 150) -> None:
 
     Parameters
     ----------
-    path : its suffix gives the format: png, svg or pdf.
+    path : its suffix gives the format, one of `FORMATS`.
     dpi : resolution of a PNG.
 
     Raises
@@ -103,6 +108,10 @@ def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str)
         head = f"<title>{escape(title, quote=False)}</title>"
         described = f"{head}\n <desc>{escape(description, quote=False)}</desc>"
         return text.getvalue().replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
+    if suffix == "pgf":
+        from ptmcad.show.render.pgf import pgf_text
+
+        return pgf_text(figure, title).encode()
     data = BytesIO()
     if suffix == "pdf":
         from matplotlib.backends.backend_pdf import FigureCanvasPdf
@@ -110,9 +119,20 @@ def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str)
         canvas = FigureCanvasPdf(figure)
         metadata = {"CreationDate": None, "Creator": "ptmcad", "Producer": None, "Title": title}
         canvas.print_pdf(data, metadata=metadata)
+    elif suffix == "eps":
+        from matplotlib.backends.backend_ps import FigureCanvasPS
+
+        canvas = FigureCanvasPS(figure)
+        canvas.print_eps(data, metadata={"Creator": "ptmcad", "Title": _ascii(title)})
+        return _CHANGING.sub(b"", data.getvalue())
     else:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 
         canvas = FigureCanvasAgg(figure)
         canvas.print_png(data, metadata={"Software": None, "Title": title})
     return data.getvalue()
+
+
+def _ascii(text: str) -> str:
+    """For a comment of PostScript."""
+    return text.encode("ascii", "replace").decode()

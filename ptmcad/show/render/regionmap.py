@@ -54,7 +54,7 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
 
     Parameters
     ----------
-    path : its suffix gives the format: png, svg or pdf.
+    path : its suffix gives the format, one of `ptmcad.show.render.printing.FORMATS`.
     samples : whether to draw the cells' sample points.
     dpi : resolution of a PNG; slivers are what is not seen at this resolution, in every format.
     style : what it looks like, and its size.
