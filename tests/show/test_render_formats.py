@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from support.maps import shipped
@@ -81,3 +82,12 @@ def test_pdf_has_truetype_fonts(tmp_path: Path) -> None:
     data = drawn(tmp_path, "pdf")
     assert b"/CIDFontType2" in data or b"/TrueType" in data
     assert b"/Type3" not in data
+
+
+def test_svg_has_text_that_can_be_searched_in_fonts_that_are_there(tmp_path: Path) -> None:
+    root = ElementTree.fromstring(drawn(tmp_path, "svg", name="ieee", title="a < b & 'DejaVu Sans'"))
+    texts = list(root.iter("{http://www.w3.org/2000/svg}text"))
+    said = [text.text for text in texts]
+    assert {"Stable equilibria", "area 3.2536", "0.5", "L₂ (length)", "a < b & 'DejaVu Sans'"} <= set(said)
+    for text in texts:
+        assert "'DejaVu Sans', 'Bitstream Vera Sans', Verdana" in text.attrib["style"]

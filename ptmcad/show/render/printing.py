@@ -33,7 +33,7 @@ _SETTINGS: dict[str, Any] = {
     "path.simplify": False,
     "path.snap": True,
     "savefig.bbox": None,
-    "svg.fonttype": "path",
+    "svg.fonttype": "none",  # text that can be searched and copied
     "svg.hashsalt": "ptmcad",
     "svg.image_inline": True,
     "pdf.compression": 6,
@@ -41,6 +41,9 @@ _SETTINGS: dict[str, Any] = {
     "ps.fonttype": 42,
 }
 _CHANGING = re.compile(rb"^%%CreationDate:.*\n", re.MULTILINE)
+_TEXT_STYLE = re.compile(r"""(?<=<text style=")[^"<>]*'DejaVu Sans'""")
+_SIMILAR = "'Bitstream Vera Sans', Verdana, Geneva, sans-serif"
+"""Fonts about as wide as the one that SVG text was measured in, for where that is not installed."""
 _KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
 
 
@@ -107,7 +110,8 @@ def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str)
         canvas.print_svg(text, metadata={"Date": None, "Creator": "ptmcad", "Title": title})
         head = f"<title>{escape(title, quote=False)}</title>"
         described = f"{head}\n <desc>{escape(description, quote=False)}</desc>"
-        return text.getvalue().replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
+        content = _TEXT_STYLE.sub(rf"\g<0>, {_SIMILAR}", text.getvalue())
+        return content.replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
     if suffix == "pgf":
         from ptmcad.show.render.pgf import pgf_text
 
