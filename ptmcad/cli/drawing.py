@@ -20,7 +20,7 @@ from ptmcad.cli.gathering import gathered
 from ptmcad.cli.pictures import picture
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.process.output import Writer, text_writer
-from ptmcad.show.render.style import DEFAULT, LINES, PALETTES, PRESETS, Place, Style, styled
+from ptmcad.show.render.style import DEFAULT, LINES, PALETTES, STYLES, Place, Style, styled
 from ptmcad.text.parsing import rational
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -115,12 +115,12 @@ def _pixels(_context: click.Context, parameter: click.Parameter, value: str) -> 
 def _drawing(
     samples: bool, dpi: int, boundary_tolerance: Fraction, pixels: tuple[int, int], style: str, size: str | None,
     font_size: str | None, font_family: str | None, palette: str | None, title: str | None, legend: str | None,
-    line_width: str | None, thin_lines: str | None,
+    line_width: str | None, thin_lines: str | None, mpl_style: str | None,
 ) -> Drawing:  # fmt: skip
     """The options together."""
     options = {
         "size": size, "font_size": font_size, "font_family": font_family, "palette": palette, "title": title,
-        "legend": legend, "line_width": line_width, "thin_lines": thin_lines,
+        "legend": legend, "line_width": line_width, "thin_lines": thin_lines, "mpl_style": mpl_style,
     }  # fmt: skip
     try:
         made = styled(style, **options)
@@ -158,8 +158,11 @@ def style_options(command: F) -> F:
         click.option("--font-family", metavar="NAME,..", help="Fonts that are installed; the first that has a letter."),
         click.option("--font-size", metavar="PT", help="Of the legend, at the printed size; none below 6 points."),
         click.option("--size", metavar="WxH", help="Of the whole picture, as 3.5x2.6in or 90x70mm."),
-        click.option("--style", type=click.Choice(tuple(PRESETS)), default="default", show_default=True,
-                     help="Size, font and lines for a journal's column, a slide or a poster; other options override."),
+        click.option("--mpl-style", metavar="FILE|NAME",
+                     help="Settings of matplotlib's in a file, or a style of its; other options override."),
+        click.option("--style", type=click.Choice(STYLES), default="default", show_default=True,
+                     help="Size, font and lines for a journal's column, a slide or a poster; 'user' is your own "
+                          "matplotlibrc. Other options override."),
     ):  # fmt: skip
         command = option(command)
     return command

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, pairwise
@@ -178,3 +181,50 @@ def test_the_command_line_draws_in_a_style(tmp_path: Path) -> None:
         run(["plot", str(tmp_path / "slice-L2-rho.json"), "--style", "ieee", "--size", "100x50mm", "--dpi", "254"]) == 0
     )
     assert imread(tmp_path / "slice-L2-rho.png").shape[:2] == (500, 1000)
+
+
+@pytest.fixture
+def mplstyle(tmp_path: Path) -> Path:
+    path = tmp_path / "own.mplstyle"
+    path.write_text(
+        "figure.figsize: 4, 3\nfont.size: 7\naxes.edgecolor: red\nxtick.direction: in\nsvg.fonttype: path\n"
+    )
+    return path
+
+
+def test_a_users_own_settings_count_less_than_options(mplstyle: Path, tmp_path: Path) -> None:
+    style = styled("ieee", mpl_style=str(mplstyle))
+    assert (style.size, style.font_size, style.title) == ((4.0, 3.0), 7.0, "")
+    assert styled("ieee", mpl_style=str(mplstyle), font_size="10").font_size == 10
+    made = figure(shipped("fig4"), style)
+    assert made.axes[0].spines["left"].get_edgecolor() == (1, 0, 0, 1)
+    assert made.axes[0].xaxis.get_tick_params()["direction"] == "in"
+    draw(shipped("fig4"), tmp_path / "map.svg", style=style)
+    assert "<text" in (tmp_path / "map.svg").read_text(), "what files hold is not for a style to say"
+
+
+def test_a_users_matplotlibrc_counts_when_it_is_asked_for_only(mplstyle: Path, tmp_path: Path) -> None:
+    environment = {**os.environ, "MATPLOTLIBRC": str(mplstyle)}
+    found = {}
+    for name in ("default", "user"):
+        code = (
+            "from pathlib import Path; import ptmcad; from ptmcad.show.render import draw; "
+            "from ptmcad.show.render.style import styled; "
+            "result = ptmcad.classify(ptmcad.slice_from_options(slice='L2,rho')); "
+            f"draw(result, Path({str(tmp_path / name)!r} + '.png'), style=styled({name!r}))"
+        )
+        subprocess.run([sys.executable, "-c", code], check=True, env=environment)
+        found[name] = imread(tmp_path / f"{name}.png").shape[:2]
+    assert found == {"default": (865, 1267), "user": (450, 600)}
+
+
+@pytest.mark.parametrize(
+    ("content", "words"), [("font.size: 3\n", "6 to 96"), ("nonsense\n", "cannot be read"), (None, "neither a file")]
+)
+def test_a_bad_file_of_settings_is_refused(content: str | None, words: str, tmp_path: Path) -> None:
+    path = tmp_path / "bad.mplstyle"
+    if content is not None:
+        path.write_text(content)
+    with pytest.raises(ConfigError, match=words) as caught:
+        styled(mpl_style=str(path))
+    assert caught.value.key == "mpl_style"

@@ -113,6 +113,7 @@ def dress(
     axes: Any, slice: Slice, x: tuple[Fraction, Fraction], y: tuple[Fraction, Fraction], how: Dress | None = None
 ) -> None:
     """Give matplotlib axes their limits, ticks and names; in small ones (insets) without units."""
+    from matplotlib import rcParams
     from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
     how = how or Dress()
@@ -128,7 +129,10 @@ def dress(
         known = "" if small else unit(slice, number)
         matplotlib_axis.set_label_text(f"{text} ({known})" if known else text, fontsize=how.names)
         axes.tick_params(
-            axis="y" if number else "x", labelsize=how.ticks, length=(2 if small else 3.5) * how.scale, direction="out"
+            axis="y" if number else "x",
+            labelsize=how.ticks,
+            length=(2 if small else 3.5) * how.scale,
+            direction=rcParams["ytick.direction" if number else "xtick.direction"],
         )
 
 

@@ -51,9 +51,10 @@ _KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
 def settings(style: Style = DEFAULT) -> Iterator[None]:
     """Matplotlib's own defaults and the project's fonts, not a user's matplotlibrc; for drawing and for printing.
 
-    A style's font comes first; letters that it lacks are taken from the one that comes with matplotlib.
+    A style's font comes first; letters that it lacks are taken from the one that comes with matplotlib. Settings of a
+    user's own count where the style has them.
     """
-    own: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS
+    own: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS | dict(style.mpl)
     if style.font_family:
         own["font.family"] = [*style.font_family, *_SETTINGS["font.family"]]
     with matplotlib.rc_context(own), warnings.catch_warnings():

@@ -52,6 +52,7 @@ class Style:
     legend : where it stands; None where it fits best.
     line_width : in points, of curves where the count changes; other lines are in proportion.
     thin_lines : one of `LINES`, for curves where it does not.
+    mpl : further settings of matplotlib, a user's own, by their names.
     """
 
     size: Size | None = None
@@ -62,6 +63,7 @@ class Style:
     legend: Place | None = None
     line_width: float | None = None
     thin_lines: str = "solid"
+    mpl: tuple[tuple[str, Any], ...] = ()
 
     @property
     def flows(self) -> bool:
@@ -102,6 +104,9 @@ PRESETS: Mapping[str, Style] = {
     "poster": Style(size=_mm(600, 420), font_size=28.0),
 }
 """For a column of a journal, whose captions are the titles; for a slide and for a poster."""
+USER = "user"
+"""The style of the user's own matplotlibrc."""
+STYLES = (*PRESETS, USER)
 
 
 def styled(name: str | Style = "default", **options: Any) -> Style:
@@ -110,7 +115,8 @@ def styled(name: str | Style = "default", **options: Any) -> Style:
     Parameters
     ----------
     options : fields of `Style`, each as its type or as text: ``size="90x70mm"``, ``palette="grey"``,
-        ``legend="below"``.
+        ``legend="below"``; and ``mpl_style``, a file or the name of a style of matplotlib's, which counts for more than
+        the preset and less than other options.
 
     Raises
     ------
@@ -120,18 +126,41 @@ def styled(name: str | Style = "default", **options: Any) -> Style:
     >>> styled("ieee", legend="below").legend
     <Place.BELOW: 'below'>
     """
-    base = name if isinstance(name, Style) else PRESETS.get(name)
-    if base is None:
-        raise ConfigError(f"{name!r} is not among {', '.join(PRESETS)}", key="style")
+    own = options.pop("mpl_style", None)
+    if name == USER:
+        base, own = DEFAULT, own or USER
+    elif isinstance(name, Style):
+        base = name
+    elif name in PRESETS:
+        base = PRESETS[name]
+    else:
+        raise ConfigError(f"{name!r} is not among {', '.join(STYLES)}", key="style")
     unknown = [key for key in options if key not in _READERS]
     if unknown:
-        raise ConfigError(f"a picture has no {unknown[0]!r}; there are {', '.join(_READERS)}", key=unknown[0])
+        raise ConfigError(
+            f"a picture has no {unknown[0]!r}; there are {', '.join(_READERS)}, mpl_style", key=unknown[0]
+        )
+    if own is not None:
+        base = _with_settings(base, str(own))
     given = {key: _READERS[key](value) for key, value in options.items() if value is not None}
     made = replace(base, **given)
     if "size" in given and "font_size" not in given and made.font_size is not None:
         # a preset's font is for its size: on a narrower one it stays, on a much wider one it would be lost
         return replace(made, font_size=max(made.font_size, round(1.06 * given["size"][0], 1)))
     return made
+
+
+def _with_settings(base: Style, own: str) -> Style:
+    """A style with the settings of a user's own."""
+    from ptmcad.show.render.usersettings import as_options, user_settings
+
+    found = user_settings(own)
+    options = as_options(found)
+    try:
+        made = replace(base, **{key: _READERS[key](value) for key, value in options.items()})
+    except ConfigError as error:
+        raise ConfigError(f"{own}: {error.key}: {error.message}", key="mpl_style") from error
+    return replace(made, mpl=tuple(found.items()))
 
 
 def _size(value: Any) -> Size:
