@@ -115,6 +115,37 @@ def _map_to_dataframe(self: RegionMap, what: str = "regions", **options: Any) ->
     return data_frame(self, what, options)
 
 
+def _map_plot(
+    self: RegionMap, ax: Any = None, style: Any = "default", *, samples: bool = False, dpi: int = 150, **options: Any
+) -> Any:
+    """The picture as objects of matplotlib's: a `Figure` of its own, or the axes ``ax`` with the map drawn into them.
+
+    Axes have the units of the map's own axes and a caller's settings, no insets, and a legend beside them unless
+    ``legend="none"``. A figure is that of ``ptmcad plot``; `Figure.savefig` writes it.
+
+    Parameters
+    ----------
+    style : "default", "ieee", "elsevier", "springer", "beamer", "poster" or "user".
+    samples : whether to draw the cells' sample points.
+    dpi : resolution for which thin regions get arrows and insets.
+    options : ``size``, ``font_size``, ``font_family``, ``palette``, ``title``, ``legend``, ``line_width``,
+        ``thin_lines`` and ``mpl_style``, as on the command line.
+
+    Raises
+    ------
+    ConfigError
+        For an unknown style or option, a value that cannot be drawn, or what does not fit into the size.
+
+    >>> import ptmcad
+    >>> figure = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho")).plot(style="ieee", legend="below")
+    >>> [float(side) for side in figure.get_size_inches()]
+    [3.5, 2.6]
+    """
+    from ptmcad.show.render import plot
+
+    return plot(self, ax, style, samples, dpi, options)
+
+
 def _variety_text(self: SliceVariety, format: str = "text") -> str:
     """The variety in one of the formats of `ptmcad.show.export.FORMATS`.
 
@@ -163,6 +194,7 @@ METHODS["RegionMap"] = {
     "boundaries": _map_boundaries,
     "grid": _map_grid,
     "to_dataframe": _map_to_dataframe,
+    "plot": _map_plot,
 }
 METHODS["SliceVariety"] = {"text": _variety_text}
 METHODS["Poses"] = {

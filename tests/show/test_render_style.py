@@ -228,3 +228,31 @@ def test_a_bad_file_of_settings_is_refused(content: str | None, words: str, tmp_
     with pytest.raises(ConfigError, match=words) as caught:
         styled(mpl_style=str(path))
     assert caught.value.key == "mpl_style"
+
+
+def test_a_map_is_plotted_as_objects_of_matplotlib(tmp_path: Path) -> None:
+    result = shipped("fig4")
+    made = result.plot(style="ieee", title="own")
+    assert isinstance(made, Figure) and tuple(made.get_size_inches()) == (3.5, 2.6)
+    made.savefig(tmp_path / "saved.png", dpi=100)
+    assert imread(tmp_path / "saved.png").shape[:2] == (260, 350)
+    with pytest.raises(ConfigError, match="no 'colour'"):
+        result.plot(colour="red")
+
+
+def test_a_map_is_drawn_into_axes_in_the_units_of_its_own(tmp_path: Path) -> None:
+    result = shipped("fig4")
+    page = Figure(figsize=(6, 3), dpi=100)
+    left, right = page.subplots(1, 2)
+    assert result.plot(ax=left, legend="none", palette="#123456,#ffa500") is left
+    result.plot(ax=right, title="second")
+    assert (left.get_xlim(), left.get_ylabel(), left.get_legend()) == ((0, 2), "L₂ (length)", None)
+    assert [t.get_text() for t in right.get_legend().get_texts()] == ["1", "2"]
+    left.set_xlim(0.5, 1.0)
+    canvas = FigureCanvasAgg(page)
+    canvas.draw()
+    image = np.asarray(canvas.buffer_rgba())[::-1]
+    for at, colour in (((0.6, 1.0), "#ffa500"), ((0.95, 0.5), "#123456")):
+        column, row = left.transData.transform(at)
+        assert tuple(image[int(row), int(column), :3] / 255) == pytest.approx(to_rgb(colour), abs=0.01)
+        assert result.locate(rho=at[0], L2=at[1]).stable == (2 if colour == "#ffa500" else 1)

@@ -95,6 +95,12 @@ def unit(slice: Slice, axis: int) -> str:
     return found.pop() if len(found) == 1 else ""
 
 
+def axis_name(slice: Slice, axis: int) -> str:
+    """An axis's symbol with its unit, such as ``L₂ (length)``."""
+    name, known = symbol(slice.axes[axis].name), unit(slice, axis)
+    return f"{name} ({known})" if known else name
+
+
 @dataclass(frozen=True, slots=True)
 class Dress:
     """Sizes in points of the numbers at the ticks and of the axes' names, and the most intervals on each axis."""

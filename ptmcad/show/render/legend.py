@@ -86,7 +86,7 @@ class Wording:
     areas: bool = True
 
 
-def _head(slice: Slice) -> tuple[str, ...]:
+def head_of(slice: Slice) -> tuple[str, ...]:
     """What is counted."""
     many = noun(slice.model)
     return {
@@ -116,7 +116,7 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
     groups: dict[str, list[Region]] = {}
     for region in sorted(result.regions, key=lambda r: (counted_by(r, count), -r.area[0])):
         groups.setdefault(count_text(region, count), []).append(region)
-    yield Entry(_head(result.slice), strong=True)
+    yield Entry(head_of(result.slice), strong=True)
     for text, regions in groups.items():
         areas = _areas(regions) if wording.areas else []
         yield Entry((_with_total(text, regions, result.slice), *areas), wording.fill(regions[0]))

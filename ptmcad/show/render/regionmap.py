@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import noun
-from ptmcad.show.render.axes import dress
+from ptmcad.show.render.axes import axis_name, dress
 from ptmcad.show.render.colours import filler, undetermined_fill
 from ptmcad.show.render.fitting import Parts, fitted
 from ptmcad.show.render.labels import Placement, place
@@ -36,6 +36,7 @@ from ptmcad.show.render.legend import (
     Wording,
     draw_legend,
     entries,
+    head_of,
 )
 from ptmcad.show.render.printing import printed, settings, suffix_of
 from ptmcad.show.render.shapes import shapes
@@ -137,6 +138,38 @@ def figure_of(
     figure = Figure(figsize=layout.size, dpi=dpi, facecolor="white")
     _draw(figure, seen, layout, style, samples)
     return figure
+
+
+def draw_on(axes: Any, result: RegionMap, samples: bool, style: Style) -> None:
+    """The map in a caller's axes, in the units of its own axes, so that the caller can add to it.
+
+    Without insets and arrows; its legend stands at the axes' right.
+    """
+    from matplotlib.patches import Patch
+    from matplotlib.transforms import Affine2D
+
+    whole, paint = shapes(result), _paint_of(result, style)
+    sides = [tuple(float(end) for end in whole.view.along(k)) for k in (0, 1)]
+    unit_square = Affine2D().scale(*(high - low for low, high in sides)).translate(*(low for low, _ in sides))
+    _paint(axes, whole, "", paint, unit_square + axes.transData)
+    if samples:
+        points = np.array([[float(v) for v in (c.sample[0], c.sample[1])] for c in result.cells])
+        axes.plot(*points.T, "o", markersize=2.5 * paint.scale, color=INK, gid="samples")
+    axes.set(xlim=sides[0], ylim=sides[1], xlabel=axis_name(result.slice, 0), ylabel=axis_name(result.slice, 1))
+    title = _whole_title(result) if style.title is None else style.title
+    if title:
+        axes.set_title(title, loc="left", wrap=True)
+    if style.legend is not Place.NONE:
+        found = {count_text(r, result.slice.count): paint.fill(r) for r in result.regions}
+        handles = [
+            Patch(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4, label=text)
+            for text, fill in sorted(found.items())
+        ]
+        below = style.legend is Place.BELOW
+        axes.legend(
+            handles=handles, title=head_of(result.slice)[0], ncols=len(handles) if below else 1, borderaxespad=0,
+            loc="upper left", bbox_to_anchor=(0.0, -0.2) if below else (1.03, 1.0), frameon=False,
+        )  # fmt: skip
 
 
 def _fitted(result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: Style) -> tuple[_Seen, Layout]:
@@ -253,17 +286,17 @@ def _axes(figure: Figure, box: tuple[float, float, float, float], gid: str) -> A
     return axes
 
 
-def _paint(axes: Any, seen: Shapes, prefix: str, paint: _Paint) -> None:
-    """Fill the regions and draw the walls."""
+def _paint(axes: Any, seen: Shapes, prefix: str, paint: _Paint, place: Any = None) -> None:
+    """Fill the regions and draw the walls; ``place`` takes the view to the page: if not given, to all of the axes."""
     from matplotlib.collections import LineCollection
     from matplotlib.patches import PathPatch, Rectangle
     from matplotlib.path import Path as Curve
 
-    result = seen.result
+    result, place = seen.result, axes.transAxes if place is None else place
     if result.cover is not None:
         axes.add_artist(
             Rectangle(
-                (0, 0), 1, 1, transform=axes.transAxes, facecolor=paint.undetermined.face, linewidth=0, snap=False,
+                (0, 0), 1, 1, transform=place, facecolor=paint.undetermined.face, linewidth=0, snap=False,
                 gid=f"{prefix}undetermined", hatch=paint.undetermined.hatch or None,
                 edgecolor=RIM_INK if paint.undetermined.hatch else None,
             )
@@ -276,7 +309,7 @@ def _paint(axes: Any, seen: Shapes, prefix: str, paint: _Paint) -> None:
         # one path for all parts: where two of them share an edge, their coverage adds up and no seam is left
         axes.add_artist(
             PathPatch(
-                Curve.make_compound_path(*polygons), transform=axes.transAxes, facecolor=fill.face, edgecolor=INK,
+                Curve.make_compound_path(*polygons), transform=place, facecolor=fill.face, edgecolor=INK,
                 hatch=fill.hatch or None, linewidth=0, snap=False, gid=f"{prefix}region-{number}",
             )
         )  # fmt: skip
@@ -284,7 +317,7 @@ def _paint(axes: Any, seen: Shapes, prefix: str, paint: _Paint) -> None:
     if edges:
         axes.add_artist(
             LineCollection(
-                edges, transform=axes.transAxes, colors=RIM_INK, linewidths=RIM * paint.scale, joinstyle="round",
+                edges, transform=place, colors=RIM_INK, linewidths=RIM * paint.scale, joinstyle="round",
                 zorder=2, gid=f"{prefix}edges",
             )
         )  # fmt: skip
@@ -294,7 +327,7 @@ def _paint(axes: Any, seen: Shapes, prefix: str, paint: _Paint) -> None:
     for (separates, component), parts in sorted(lines.items()):
         axes.add_artist(
             LineCollection(
-                parts, transform=axes.transAxes, colors=INK, linewidths=paint.strong if separates else paint.thin,
+                parts, transform=place, colors=INK, linewidths=paint.strong if separates else paint.thin,
                 linestyles="solid" if separates else paint.thin_lines,
                 capstyle="round", joinstyle="round", zorder=3 if separates else 2,
                 gid=f"{prefix}curve-{component}" + ("" if separates else "-thin"),
