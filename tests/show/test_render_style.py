@@ -14,21 +14,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
-from matplotlib.text import Text
+from matplotlib.text import Annotation, Text
 from support.maps import shipped
 from test_render import bands
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
+from ptmcad.question.slice import Count
 from ptmcad.show.render import draw
 from ptmcad.show.render.colours import GREYS, filler
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import figure_of
+from ptmcad.show.render.slivers import told_apart
 from ptmcad.show.render.style import MIN_FONT, PRESETS, Place, Style, styled
+from ptmcad.show.table import area_text
 
 SLIVERS = [Fraction(k // 2 + 1, 8) + (k % 2) * Fraction(1, 10**5) for k in range(6)]
 MAPS = {
@@ -256,3 +260,33 @@ def test_a_map_is_drawn_into_axes_in_the_units_of_its_own(tmp_path: Path) -> Non
         column, row = left.transData.transform(at)
         assert tuple(image[int(row), int(column), :3] / 255) == pytest.approx(to_rgb(colour), abs=0.01)
         assert result.locate(rho=at[0], L2=at[1]).stable == (2 if colour == "#ffa500" else 1)
+
+
+def test_a_thin_part_in_which_unstable_equilibria_differ_is_zoomed_and_named() -> None:
+    made = figure(shipped("fig4"), styled(size="6x4in", font_size=9))
+    (inset,) = made.axes[1:]
+    assert inset.get_title(loc="left") == "1 of 6\nunstable ones differ, zoomed"
+    assert any(str(artist.get_gid()).endswith("-thin") for artist in inset.findobj(LineCollection))
+    (arrow,) = [t for t in made.findobj(Annotation) if str(t.get_gid()).startswith("arrow")]
+    assert arrow.get_text() == "1 of 6"
+    told = told_apart(shipped("fig4"))
+    index = shipped("fig4", "index")
+    assert sorted((r.stable, r.total, len(r.cells)) for r in told.regions) == sorted(
+        (r.stable, r.total, len(r.cells)) for r in index.regions
+    )
+
+
+def test_a_line_in_the_legend_has_something_to_show() -> None:
+    """Where no thin curve leaves the frame, and no inset has room, none is told of."""
+    result = shipped("fig4")
+    assert "another curve" in legend_of(figure(result, styled(size="6x4in", font_size=9)))
+    thin = replace(result, slice=replace(result.slice, count=Count.TOTAL))
+    assert "another curve" not in legend_of(figure(thin, styled(size="6x4in", font_size=9)))
+
+
+def test_areas_are_those_of_the_table() -> None:
+    for result in (shipped("fig4"), shipped("fig2"), bands([Fraction(k, 40) for k in range(1, 13)])):
+        said = legend_of(figure(result, styled(size="7x6in", font_size=9)))
+        for region in result.regions if len(result.regions) < 9 else ():
+            assert area_text(result, region.area) in said and area_text(result, region.area) in result.table()
+    assert "7 regions, in all 0.85" in said

@@ -1,6 +1,6 @@
 """The legend: what each colour and each line means, with the regions of every count and their areas.
 
-Guarantee: every digit of an area is certified (`ptmcad.show.table.certified_digits`).
+Guarantee: every digit of an area is certified, and the same as in the table (`ptmcad.show.table.area_text`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import counted, noun
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.render.colours import UNDETERMINED, Fill, counted_by, fill_of
-from ptmcad.show.table import certified_digits, count_text, index_heading
+from ptmcad.show.table import area_by_count, area_text, count_text, index_heading
 from ptmcad.text.numerals import decimal
 
 STRONG, THIN, INK = 1.3, 0.5, "#111111"
@@ -25,7 +25,7 @@ RIM, RIM_INK = 0.35, "#404040"
 
 LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
 """Inches between lines, width of a swatch, characters in a line."""
-_MAX_AREAS = 16
+_MAX_AREAS = 4
 
 FILL = 0.14
 """Height of a swatch."""
@@ -118,7 +118,7 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
         groups.setdefault(count_text(region, count), []).append(region)
     yield Entry(head_of(result.slice), strong=True)
     for text, regions in groups.items():
-        areas = _areas(regions) if wording.areas else []
+        areas = _areas(result, text, regions) if wording.areas else []
         yield Entry((_with_total(text, regions, result.slice), *areas), wording.fill(regions[0]))
     yield Entry(())
     if result.cover is not None and result.undetermined:
@@ -148,16 +148,14 @@ def _with_total(text: str, regions: list[Region], slice: Slice) -> str:
     return f"{text}   {'' if slice.count is Count.INDEX else 'of '}{counted(slice.model, total)}"
 
 
-def _areas(regions: list[Region]) -> list[str]:
-    areas = [certified_digits(r.area, 7) for r in regions[:_MAX_AREAS]]
-    if len(regions) == 1:
-        return [f"area {areas[0]}"]
-    rest = regions[_MAX_AREAS:]
-    if rest:
-        together = (sum((r.area[0] for r in rest), Fraction(0)), sum((r.area[1] for r in rest), Fraction(0)))
-        areas.append(f"{len(rest)} more: {certified_digits(together, 7)} together")
-    comma = "; " if any(" to " in area for area in areas) else ", "
-    return textwrap.wrap(f"{len(regions)} regions, areas " + comma.join(areas), COLUMNS)
+def _areas(result: RegionMap, text: str, regions: list[Region]) -> list[str]:
+    """The areas of the regions of a count, or what they have in all where they are many or their bounds are apart."""
+    number = len(regions)
+    if result.cover is None and 1 < number <= _MAX_AREAS:
+        areas = ", ".join(area_text(result, region.area) for region in regions)
+        return textwrap.wrap(f"{number} regions, areas {areas}", COLUMNS)
+    together = area_text(result, area_by_count(result)[text])
+    return textwrap.wrap(f"area {together}" if number == 1 else f"{number} regions, in all {together}", COLUMNS)
 
 
 def height(legend: tuple[Entry, ...]) -> float:

@@ -40,10 +40,10 @@ from ptmcad.show.render.legend import (
 )
 from ptmcad.show.render.printing import printed, settings, suffix_of
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.slivers import Sliver, Zoom, thin_regions, zooms
+from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
 from ptmcad.show.render.style import DEFAULT, Place, Style
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.table import certified_digits, count_text
+from ptmcad.show.table import area_text, count_text
 
 RESOLVED = 42
 """What is thinner than three pixels of this many to the inch (5 points) is taken for hidden by the walls around it."""
@@ -82,16 +82,20 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """What of a map is to be drawn: its shapes, and the views of the regions that its resolution hides."""
+    """What of a map is to be drawn: its shapes, and the views of the regions that its resolution hides.
+
+    ``thin_lines`` says whether curves are seen at which the count does not change.
+    """
 
     whole: Shapes
     thin: tuple[int, ...] = ()
     views: tuple[Zoom, ...] = ()
+    thin_lines: bool = False
 
     @property
     def hidden(self) -> int:
         """The number of regions that nothing shows."""
-        return len(self.thin) - len(self.marked)
+        return len(self.thin) - sum(sliver.cell is None for sliver in self.marked)
 
     @property
     def marked(self) -> list[Sliver]:
@@ -110,11 +114,16 @@ class _Paint:
     scale: float = 1.0
 
 
-def _seen(whole: Shapes, pixels: int, earlier: _Seen | None = None) -> _Seen:
+def _seen(whole: Shapes, sides: tuple[float, float], dpi: int, earlier: _Seen | None = None) -> _Seen:
+    """What is seen of a map with sides in inches."""
+    pixels = round(min(sides) * min(dpi, RESOLVED))
     thin = thin_regions(whole, pixels)
     if earlier is not None and earlier.thin == thin:
         return earlier
-    return _Seen(whole, thin, zooms(whole, thin))
+    views = zooms(whole, thin)
+    unstable = unstable_zooms(whole, pixels, MAX_ZOOMS - len(views))
+    lines = bool(unstable) or seen_thin_walls(whole, (72 * sides[0], 72 * sides[1]))
+    return _Seen(whole, thin, (*views, *unstable), lines)
 
 
 def figure_of(
@@ -129,7 +138,7 @@ def figure_of(
     """
     whole = shapes(result)
     if style.flows:
-        seen = _seen(whole, round(SIDE * min(dpi, RESOLVED)))
+        seen = _seen(whole, (SIDE, SIDE), dpi)
         type = Type(strong=style.strong, thin=style.strong * THIN / STRONG, thin_lines=style.thin_lines)
         legend = _legend(result, seen, samples, style)[0]
         layout = flowing(_title_lines(result, style), legend, type, len(seen.views), beside, tallest)
@@ -177,7 +186,8 @@ def _fitted(result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: St
 
     What is thin follows from the map's size, which follows from what has to be told about thin regions.
     """
-    seen, tries = _Seen(whole), 3
+    wide, tall = style.size or (8.4, 5.7)
+    seen, tries = _seen(whole, (wide / 2, tall / 2), dpi), 3
     while True:
         parts = Parts(
             result.slice,
@@ -186,7 +196,7 @@ def _fitted(result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: St
             (whole.view, *(zoom.outline.view for zoom in seen.views)),
         )
         layout = fitted(parts, style, style.size or _natural(style, parts))
-        again = _seen(whole, round(min(layout.chart[2:]) * min(dpi, RESOLVED)), seen)
+        again = _seen(whole, (layout.chart[2], layout.chart[3]), dpi, seen)
         tries -= 1
         if again is seen or not tries:
             return seen, layout
@@ -217,10 +227,9 @@ def _legend(result: RegionMap, seen: _Seen, samples: bool, style: Style) -> tupl
     """The legend with areas and without."""
     if style.legend is Place.NONE:
         return (), ()
-    thin = any(not separates for _, separates, _ in seen.whole.walls())
     paint = _paint_of(result, style)
     with_areas, without = (
-        entries(result, thin, samples, seen.hidden, Wording(paint.fill, paint.undetermined, areas))
+        entries(result, seen.thin_lines, samples, seen.hidden, Wording(paint.fill, paint.undetermined, areas))
         for areas in (True, False)
     )
     return with_areas, without
@@ -245,10 +254,11 @@ def _draw(figure: Figure, seen: _Seen, layout: Layout, style: Style, samples: bo
     for corner, part in layout.legend:
         draw_legend(figure, part, *corner, layout.type)
     marked = seen.marked
-    names = {s.region: _name_of(result, s.region, k if len(marked) > 1 else None) for k, s in enumerate(marked)}
+    names = [_name_of(result, s, k if len(marked) > 1 else None) for k, s in enumerate(marked)]
+    rest = iter(names)
     for zoom, box in zip(seen.views, layout.insets, strict=False):
-        _inset(figure, zoom, [names[s.region] for s in zoom.slivers], box, layout, paint)
-    _mark(axes, seen, list(names.values()), layout, paint)
+        _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
+    _mark(axes, seen, names, layout, paint)
 
 
 def _whole_title(result: RegionMap) -> str:
@@ -266,9 +276,11 @@ def _title_lines(result: RegionMap, style: Style) -> list[str]:
     return textwrap.wrap(style.title, TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …")
 
 
-def _name_of(result: RegionMap, region: int, number: int | None) -> str:
+def _name_of(result: RegionMap, sliver: Sliver, number: int | None) -> str:
     """A sliver's count, after a letter when there are several."""
-    text = count_text(result.regions[region], result.slice.count)
+    text = count_text(result.regions[sliver.region], result.slice.count)
+    if sliver.cell is not None:
+        text = f"{text} of {result.cells[sliver.cell].total}"
     if number is None:
         return text
     letters = ""
@@ -345,8 +357,10 @@ def _inset(
     axes = _axes(figure, box, f"sliver-{number}")
     _paint(axes, zoom.outline, f"sliver-{number}-", paint)
     dress(axes, result.slice, zoom.outline.view.x, zoom.outline.view.y, layout.inset_axes)
-    if len(names) == 1:
-        title = f"{names[0]}\narea {certified_digits(result.regions[number].area, 4)}, zoomed"
+    if any(sliver.cell is not None for sliver in zoom.slivers):
+        title = f"{', '.join(names)}\nunstable ones differ, zoomed"
+    elif len(names) == 1:
+        title = f"{names[0]}\narea {area_text(result, result.regions[number].area)}, zoomed"
     else:
         title = textwrap.shorten(", ".join(names), 34, placeholder=" …") + "\nzoomed"
     axes.set_title(title, fontsize=layout.texts.inset, loc="left", pad=3)
@@ -374,7 +388,7 @@ def description(result: RegionMap) -> str:
     """What the picture shows, in words."""
     count = result.slice.count
     window = " and ".join(f"{a.name} from {a.low} to {a.high}" for a in result.slice.axes)
-    regions = "; ".join(f"{count_text(r, count)} ({certified_digits(r.area, 7)})" for r in result.regions)
+    regions = "; ".join(f"{count_text(r, count)} ({area_text(result, r.area)})" for r in result.regions)
     return (
         f"Regions of equal count ({count.value} {noun(result.slice.model)}; area in brackets) over {window}: {regions}."
     )
