@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from ptmcad.answer.poses import Poses
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.pictures import picture
@@ -22,6 +23,9 @@ from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.process.output import Writer, text_writer
 from ptmcad.show.render.style import DEFAULT, LINES, PALETTES, STYLES, Place, Style, styled
 from ptmcad.text.parsing import rational
+
+if TYPE_CHECKING:
+    from ptmcad.show.render.overlay import Measured
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -52,6 +56,8 @@ class Drawing:
     dpi : resolution of a PNG.
     boundary_tolerance : distance of polylines from their curves, as a share of the window's side.
     pixels : columns and rows of the grid in an NPZ.
+    overlay : further points in pictures.
+    poses : points whose stable poses stand around the map in pictures.
     """
 
     samples: bool = False
@@ -59,6 +65,8 @@ class Drawing:
     dpi: int = 150
     boundary_tolerance: Fraction = Fraction(1, 1000)
     pixels: tuple[int, int] = (400, 400)
+    overlay: tuple[Measured, ...] = ()
+    poses: tuple[tuple[tuple[Fraction, Fraction], Poses], ...] = ()
 
     def writers(self, result: Any, stem: str, formats: tuple[str, ...]) -> dict[str, Writer]:
         """For each file a function that writes it, in the order of the formats."""
@@ -73,7 +81,12 @@ class Drawing:
     def _picture(self, result: Any, _name: str, _boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show.render import draw  # brings matplotlib
 
-        draw(result, path, samples=self.samples, dpi=self.dpi, style=self.style)
+        if self.poses:
+            from ptmcad.show.render.plotting import draw_with_poses
+
+            draw_with_poses(result, self.poses, path, self.dpi, self.style, self.overlay)
+        else:
+            draw(result, path, samples=self.samples, dpi=self.dpi, style=self.style, overlay=self.overlay)
 
     def _table(self, result: Any, name: str, boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show import data

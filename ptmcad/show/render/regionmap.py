@@ -10,7 +10,7 @@ Not guaranteed: anything that only the picture shows. It is drawn in floating po
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,17 +18,14 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from ptmcad.answer.regionmap import Region, RegionMap
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import noun
-from ptmcad.show.render.axes import axis_name, dress
-from ptmcad.show.render.colours import filler, undetermined_fill
+from ptmcad.show.render.axes import dress
 from ptmcad.show.render.fitting import Parts, fitted
 from ptmcad.show.render.labels import Placement, place
 from ptmcad.show.render.layout import SIDE, Layout, flowing
 from ptmcad.show.render.legend import (
     INK,
-    RIM,
-    RIM_INK,
     STRONG,
     THIN,
     Entry,
@@ -36,8 +33,9 @@ from ptmcad.show.render.legend import (
     Wording,
     draw_legend,
     entries,
-    head_of,
 )
+from ptmcad.show.render.overlay import Overlay, draw_overlay, overlay_entries
+from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import printed, settings, suffix_of
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
@@ -50,7 +48,10 @@ RESOLVED = 42
 TITLE_COLUMNS, TITLE_LINES = 80, 3
 
 
-def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150, style: Style = DEFAULT) -> None:
+def draw(
+    result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150, style: Style = DEFAULT,
+    overlay: Overlay = (),
+) -> None:  # fmt: skip
     """Write the picture of a map.
 
     Parameters
@@ -59,6 +60,7 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
     samples : whether to draw the cells' sample points.
     dpi : resolution of a PNG; slivers are what is not seen at this resolution, in every format.
     style : what it looks like, and its size.
+    overlay : further points.
 
     Raises
     ------
@@ -75,7 +77,7 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
     """
     suffix = suffix_of(path)
     with settings(style):
-        figure = figure_of(result, samples, dpi, style=style)
+        figure = figure_of(result, samples, dpi, style=style, overlay=overlay)
         data = printed(figure, suffix, dpi, " ".join(_title(result)), description(result))
     path.write_bytes(data)
 
@@ -102,18 +104,6 @@ class _Seen:
         return [sliver for zoom in self.views for sliver in zoom.slivers]
 
 
-@dataclass(frozen=True, slots=True)
-class _Paint:
-    """Colours and lines."""
-
-    fill: Callable[[Region], Any]
-    undetermined: Any
-    strong: float = STRONG
-    thin: float = THIN
-    thin_lines: str = "solid"
-    scale: float = 1.0
-
-
 def _seen(whole: Shapes, sides: tuple[float, float], dpi: int, earlier: _Seen | None = None) -> _Seen:
     """What is seen of a map with sides in inches."""
     pixels = round(min(sides) * min(dpi, RESOLVED))
@@ -127,8 +117,9 @@ def _seen(whole: Shapes, sides: tuple[float, float], dpi: int, earlier: _Seen | 
 
 
 def figure_of(
-    result: RegionMap, samples: bool, dpi: int, beside: float = 0.0, tallest: float = 0.0, style: Style = DEFAULT
-) -> Figure:
+    result: RegionMap, samples: bool, dpi: int, beside: float = 0.0, tallest: float = 0.0, style: Style = DEFAULT,
+    overlay: Overlay = (),
+) -> Figure:  # fmt: skip
     """The picture, to be called within `settings`.
 
     Parameters
@@ -140,48 +131,18 @@ def figure_of(
     if style.flows:
         seen = _seen(whole, (SIDE, SIDE), dpi)
         type = Type(strong=style.strong, thin=style.strong * THIN / STRONG, thin_lines=style.thin_lines)
-        legend = _legend(result, seen, samples, style)[0]
+        legend = _legend(result, seen, samples, style, overlay)[0]
         layout = flowing(_title_lines(result, style), legend, type, len(seen.views), beside, tallest)
     else:
-        seen, layout = _fitted(result, whole, samples, dpi, style)
+        seen, layout = fit(result, whole, samples, dpi, style, overlay)
     figure = Figure(figsize=layout.size, dpi=dpi, facecolor="white")
-    _draw(figure, seen, layout, style, samples)
+    draw_parts(figure, seen, layout, style, samples, overlay)
     return figure
 
 
-def draw_on(axes: Any, result: RegionMap, samples: bool, style: Style) -> None:
-    """The map in a caller's axes, in the units of its own axes, so that the caller can add to it.
-
-    Without insets and arrows; its legend stands at the axes' right.
-    """
-    from matplotlib.patches import Patch
-    from matplotlib.transforms import Affine2D
-
-    whole, paint = shapes(result), _paint_of(result, style)
-    sides = [tuple(float(end) for end in whole.view.along(k)) for k in (0, 1)]
-    unit_square = Affine2D().scale(*(high - low for low, high in sides)).translate(*(low for low, _ in sides))
-    _paint(axes, whole, "", paint, unit_square + axes.transData)
-    if samples:
-        points = np.array([[float(v) for v in (c.sample[0], c.sample[1])] for c in result.cells])
-        axes.plot(*points.T, "o", markersize=2.5 * paint.scale, color=INK, gid="samples")
-    axes.set(xlim=sides[0], ylim=sides[1], xlabel=axis_name(result.slice, 0), ylabel=axis_name(result.slice, 1))
-    title = _whole_title(result) if style.title is None else style.title
-    if title:
-        axes.set_title(title, loc="left", wrap=True)
-    if style.legend is not Place.NONE:
-        found = {count_text(r, result.slice.count): paint.fill(r) for r in result.regions}
-        handles = [
-            Patch(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4, label=text)
-            for text, fill in sorted(found.items())
-        ]
-        below = style.legend is Place.BELOW
-        axes.legend(
-            handles=handles, title=head_of(result.slice)[0], ncols=len(handles) if below else 1, borderaxespad=0,
-            loc="upper left", bbox_to_anchor=(0.0, -0.2) if below else (1.03, 1.0), frameon=False,
-        )  # fmt: skip
-
-
-def _fitted(result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: Style) -> tuple[_Seen, Layout]:
+def fit(
+    result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: Style, overlay: Overlay = ()
+) -> tuple[_Seen, Layout]:
     """What is to be drawn on a page of a given size, and where.
 
     What is thin follows from the map's size, which follows from what has to be told about thin regions.
@@ -191,8 +152,8 @@ def _fitted(result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: St
     while True:
         parts = Parts(
             result.slice,
-            _whole_title(result) if style.title is None else style.title,
-            _legend(result, seen, samples, style),
+            whole_title(result) if style.title is None else style.title,
+            _legend(result, seen, samples, style, overlay),
             (whole.view, *(zoom.outline.view for zoom in seen.views)),
         )
         layout = fitted(parts, style, style.size or _natural(style, parts))
@@ -212,38 +173,30 @@ def _natural(style: Style, parts: Parts) -> tuple[float, float]:
     return wide * scale, tall * scale
 
 
-def _paint_of(result: RegionMap, style: Style) -> _Paint:
-    return _Paint(
-        filler(result.regions, result.slice.count, style.palette),
-        undetermined_fill(style.palette),
-        style.strong,
-        style.strong * THIN / STRONG,
-        style.thin_lines,
-        style.line_scale,
-    )
-
-
-def _legend(result: RegionMap, seen: _Seen, samples: bool, style: Style) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
+def _legend(
+    result: RegionMap, seen: _Seen, samples: bool, style: Style, overlay: Overlay = ()
+) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
     """The legend with areas and without."""
     if style.legend is Place.NONE:
         return (), ()
-    paint = _paint_of(result, style)
+    paint = paint_of(result, style)
     with_areas, without = (
         entries(result, seen.thin_lines, samples, seen.hidden, Wording(paint.fill, paint.undetermined, areas))
         for areas in (True, False)
     )
-    return with_areas, without
+    further = overlay_entries(overlay)
+    return (*with_areas, *further), (*without, *further)
 
 
-def _draw(figure: Figure, seen: _Seen, layout: Layout, style: Style, samples: bool) -> None:
-    """Everything in its place."""
-    result, inches, paint = seen.whole.result, figure.dpi_scale_trans, _paint_of(seen.whole.result, style)
+def draw_parts(figure: Figure, seen: _Seen, layout: Layout, style: Style, samples: bool, overlay: Overlay = ()) -> Any:
+    """Everything in its place; the map's axes."""
+    result, inches, paint = seen.whole.result, figure.dpi_scale_trans, paint_of(seen.whole.result, style)
     left, middle = layout.title_at
     for k, line in enumerate(layout.title):
         at = middle - layout.title_line * k
         figure.text(left, at, line, transform=inches, fontsize=layout.texts.title, va="center")
     axes = _axes(figure, layout.chart, "map")
-    _paint(axes, seen.whole, "", paint)
+    paint_map(axes, seen.whole, "", paint)
     if samples:
         points = np.array([seen.whole.view.approximate_position(c.sample) for c in result.cells])
         axes.plot(
@@ -259,14 +212,16 @@ def _draw(figure: Figure, seen: _Seen, layout: Layout, style: Style, samples: bo
     for zoom, box in zip(seen.views, layout.insets, strict=False):
         _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
     _mark(axes, seen, names, layout, paint)
+    draw_overlay(axes, seen.whole.view, overlay, paint.scale, layout.texts.arrow)
+    return axes
 
 
-def _whole_title(result: RegionMap) -> str:
+def whole_title(result: RegionMap) -> str:
     return "".join(c if c.isprintable() else " " for c in result.slice.heading)
 
 
 def _title(result: RegionMap) -> list[str]:
-    return textwrap.wrap(_whole_title(result), TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …") or [""]
+    return textwrap.wrap(whole_title(result), TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …") or [""]
 
 
 def _title_lines(result: RegionMap, style: Style) -> list[str]:
@@ -298,64 +253,15 @@ def _axes(figure: Figure, box: tuple[float, float, float, float], gid: str) -> A
     return axes
 
 
-def _paint(axes: Any, seen: Shapes, prefix: str, paint: _Paint, place: Any = None) -> None:
-    """Fill the regions and draw the walls; ``place`` takes the view to the page: if not given, to all of the axes."""
-    from matplotlib.collections import LineCollection
-    from matplotlib.patches import PathPatch, Rectangle
-    from matplotlib.path import Path as Curve
-
-    result, place = seen.result, axes.transAxes if place is None else place
-    if result.cover is not None:
-        axes.add_artist(
-            Rectangle(
-                (0, 0), 1, 1, transform=place, facecolor=paint.undetermined.face, linewidth=0, snap=False,
-                gid=f"{prefix}undetermined", hatch=paint.undetermined.hatch or None,
-                edgecolor=RIM_INK if paint.undetermined.hatch else None,
-            )
-        )  # fmt: skip
-    for number, region in enumerate(result.regions):
-        polygons = [Curve(p, closed=False) for p in seen.polygons(number)]
-        if not polygons:
-            continue
-        fill = paint.fill(region)
-        # one path for all parts: where two of them share an edge, their coverage adds up and no seam is left
-        axes.add_artist(
-            PathPatch(
-                Curve.make_compound_path(*polygons), transform=place, facecolor=fill.face, edgecolor=INK,
-                hatch=fill.hatch or None, linewidth=0, snap=False, gid=f"{prefix}region-{number}",
-            )
-        )  # fmt: skip
-    edges = list(seen.edges())
-    if edges:
-        axes.add_artist(
-            LineCollection(
-                edges, transform=place, colors=RIM_INK, linewidths=RIM * paint.scale, joinstyle="round",
-                zorder=2, gid=f"{prefix}edges",
-            )
-        )  # fmt: skip
-    lines: dict[tuple[bool, int], list[Any]] = {}
-    for component, separates, line in seen.walls():
-        lines.setdefault((separates, component), []).append(line)
-    for (separates, component), parts in sorted(lines.items()):
-        axes.add_artist(
-            LineCollection(
-                parts, transform=place, colors=INK, linewidths=paint.strong if separates else paint.thin,
-                linestyles="solid" if separates else paint.thin_lines,
-                capstyle="round", joinstyle="round", zorder=3 if separates else 2,
-                gid=f"{prefix}curve-{component}" + ("" if separates else "-thin"),
-            )
-        )  # fmt: skip
-
-
 def _inset(
     figure: Figure, zoom: Zoom, names: Sequence[str], box: tuple[float, float, float, float], layout: Layout,
-    paint: _Paint,
+    paint: Paint,
 ) -> None:  # fmt: skip
     """Axes with the zoomed view of one or more slivers."""
     result = zoom.outline.result
     number = zoom.slivers[0].region
     axes = _axes(figure, box, f"sliver-{number}")
-    _paint(axes, zoom.outline, f"sliver-{number}-", paint)
+    paint_map(axes, zoom.outline, f"sliver-{number}-", paint)
     dress(axes, result.slice, zoom.outline.view.x, zoom.outline.view.y, layout.inset_axes)
     if any(sliver.cell is not None for sliver in zoom.slivers):
         title = f"{', '.join(names)}\nunstable ones differ, zoomed"
@@ -366,7 +272,7 @@ def _inset(
     axes.set_title(title, fontsize=layout.texts.inset, loc="left", pad=3)
 
 
-def _mark(axes: Any, seen: _Seen, names: Sequence[str], layout: Layout, paint: _Paint) -> None:
+def _mark(axes: Any, seen: _Seen, names: Sequence[str], layout: Layout, paint: Paint) -> None:
     """An arrow to every sliver, labels apart from each other."""
     tips = [seen.whole.view.approximate_position(s.at) for s in seen.marked]
     sides = (layout.chart[2] * 72, layout.chart[3] * 72)
