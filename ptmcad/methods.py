@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from ptmcad.answer.boundaries import Boundary, Grid
+    from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.poses import Poses
     from ptmcad.answer.regionmap import Location, RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
@@ -146,6 +147,24 @@ def _map_plot(
     return plot(self, ax, style, samples, dpi, options)
 
 
+def _map_compare(self: RegionMap, other: RegionMap) -> Comparison:
+    """Where two exact maps of the same axes, window and count differ, and the certified area of that.
+
+    Raises
+    ------
+    ConfigError
+        When they are not such maps.
+
+    >>> import ptmcad
+    >>> first = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))
+    >>> first.compare(first).area
+    (Fraction(0, 1), Fraction(0, 1))
+    """
+    from ptmcad.ask.comparison import compare
+
+    return compare(self, other)
+
+
 def _variety_text(self: SliceVariety, format: str = "text") -> str:
     """The variety in one of the formats of `ptmcad.show.export.FORMATS`.
 
@@ -195,6 +214,7 @@ METHODS["RegionMap"] = {
     "grid": _map_grid,
     "to_dataframe": _map_to_dataframe,
     "plot": _map_plot,
+    "compare": _map_compare,
 }
 METHODS["SliceVariety"] = {"text": _variety_text}
 METHODS["Poses"] = {

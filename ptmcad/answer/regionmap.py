@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from ptmcad.answer.boundaries import Boundary, Grid
+    from ptmcad.answer.comparison import Comparison
 
 
 class Status(Enum):
@@ -347,6 +348,8 @@ class RegionMap:
         def grid(self, columns: int = 200, rows: int | None = None) -> Grid: ...
 
         def to_dataframe(self, what: str = "regions", **options: Any) -> DataFrame: ...
+
+        def compare(self, other: RegionMap) -> Comparison: ...
 
         def plot(
             self, ax: Any = None, style: Any = "default", *, samples: bool = False, dpi: int = 150, **options: Any
