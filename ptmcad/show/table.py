@@ -11,6 +11,7 @@ from ptmcad.answer.words import index_words, noun
 from ptmcad.cover.rectangles import Cover
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.question.slice import Count
+from ptmcad.show.units import area_unit
 from ptmcad.text.numerals import decimal, magnitude
 
 _NAMES = {
@@ -65,8 +66,10 @@ def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
 
 
 def area_text(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
-    """An area of the map as it is printed everywhere: one number of an exact map, both bounds of a certified one."""
-    return certified_digits(bounds) if result.cover is None else interval_text(bounds)
+    """An area as it is printed everywhere: one number of an exact map, both bounds of a certified one, and its unit."""
+    text = certified_digits(bounds) if result.cover is None else interval_text(bounds)
+    known = area_unit(result.slice)
+    return f"{text} {known}" if known else text
 
 
 def area_by_count(result: RegionMap) -> dict[str, tuple[Fraction, Fraction]]:

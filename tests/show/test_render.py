@@ -25,13 +25,14 @@ from ptmcad.answer.regionmap import Cell, Component, Kind, Region, RegionMap, St
 from ptmcad.mechanism import known_of
 from ptmcad.question.slice import Axis, Count, Point, Slice
 from ptmcad.show.render import draw
-from ptmcad.show.render.axes import scale_of, symbol, unit
+from ptmcad.show.render.axes import scale_of, symbol
 from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, fill_of, fill_of_index
 from ptmcad.show.render.labels import place
 from ptmcad.show.render.outline import outline
 from ptmcad.show.render.regionmap import figure_of
 from ptmcad.show.render.slivers import thin_regions, zooms
 from ptmcad.show.render.view import View
+from ptmcad.show.units import unit
 from ptmcad.text.plane import PlanePolynomial
 
 ROOT = Path(__file__).resolve().parents[2]

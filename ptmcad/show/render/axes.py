@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.mechanism import Kind
 from ptmcad.question.slice import Slice
+from ptmcad.show.units import unit
 from ptmcad.text.numerals import magnitude
 
-_UNITS = {Kind.LENGTH: "length", Kind.BASE: "length", Kind.STIFFNESS: "force/length", Kind.FORCE: "force"}
 _GREEK = {
     "rho": "ρ",
     "alpha": "α",
@@ -81,18 +80,6 @@ def symbol(name: str) -> str:
     if match:
         return ("θ" if match[1] == "th" else match[1]) + match[2].translate(_SUBSCRIPT)
     return _GREEK.get(name, name)
-
-
-def unit(slice: Slice, axis: int) -> str:
-    """The unit of an axis, empty when none is known: that of the parameters which are a number times the axis."""
-    parameters = slice.model.parameters
-    exponents = (1, 0) if axis == 0 else (0, 1)
-    found = set()
-    for name, expression in slice.parameters.items():
-        if expression.is_polynomial and [term[:2] for term in expression.numerator] == [exponents]:
-            known = parameters.get(name)
-            found |= {_UNITS[known.kind]} if known is not None and known.kind in _UNITS else set()
-    return found.pop() if len(found) == 1 else ""
 
 
 def axis_name(slice: Slice, axis: int) -> str:

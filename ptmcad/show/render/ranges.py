@@ -27,10 +27,11 @@ from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.ranges.numbers import end_text, width_text
 from ptmcad.show.ranges.table import maximum_text, working_text
-from ptmcad.show.render.axes import scale_of, symbol, unit
+from ptmcad.show.render.axes import scale_of, symbol
 from ptmcad.show.render.colours import fill_of_counts, fill_of_index
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.printing import settings
+from ptmcad.show.units import unit
 from ptmcad.text.numerals import shortest_text
 
 WIDE, LEFT, RIGHT, KEY, LINE, MARGIN = 6.2, 0.85, 0.3, 2.6, 0.22, 0.15
