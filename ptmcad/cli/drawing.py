@@ -6,7 +6,7 @@ Guarantee: the names of all files are known before anything is computed.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, partial
@@ -21,7 +21,7 @@ from ptmcad.cli.gathering import gathered
 from ptmcad.cli.pictures import picture
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.process.output import Writer, text_writer
-from ptmcad.show.render.style import DEFAULT, LINES, PALETTES, STYLES, Place, Style, styled
+from ptmcad.show.style import DEFAULT, LINES, PALETTES, STYLES, USER, Place, Style, styled
 from ptmcad.text.parsing import rational
 
 if TYPE_CHECKING:
@@ -133,15 +133,23 @@ def _drawing(
     """The options together."""
     options = {
         "size": size, "font_size": font_size, "font_family": font_family, "palette": palette, "title": title,
-        "legend": legend, "line_width": line_width, "thin_lines": thin_lines, "mpl_style": mpl_style,
+        "legend": legend, "line_width": line_width, "thin_lines": thin_lines,
     }  # fmt: skip
     try:
-        made = styled(style, **options)
+        made = _made(style, mpl_style, options)
     except ConfigError as error:
         raise ConfigError(error.message, key=f"--{(error.key or 'style').replace('_', '-')}") from error
     if made.font_family:
         _check_fonts(made.font_family)
     return Drawing(samples, made, dpi, boundary_tolerance, pixels)
+
+
+def _made(style: str, mpl_style: str | None, options: Mapping[str, str | None]) -> Style:
+    if mpl_style is None and style != USER:
+        return styled(style, None, **options)
+    from ptmcad.show.render.usersettings import user_styled  # brings matplotlib
+
+    return user_styled(style, mpl_style, **options)
 
 
 def _check_fonts(families: tuple[str, ...]) -> None:

@@ -14,7 +14,7 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.comparing import CHANGES, comparison_figure
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.style import styled
+from ptmcad.show.style import styled
 
 
 def parabola(shift: str, top: str = "1", **further: object) -> RegionMap:

@@ -12,7 +12,7 @@ from test_render import bands
 
 from ptmcad.show.render import draw
 from ptmcad.show.render.pgf import escaped
-from ptmcad.show.render.style import styled
+from ptmcad.show.style import styled
 
 
 def drawn(folder: Path, suffix: str, **options: object) -> bytes:

@@ -20,7 +20,7 @@ from ptmcad.show.render.around import draw_around
 from ptmcad.show.render.overlay import Agreement
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import figure_of
-from ptmcad.show.render.style import MIN_FONT, Style, styled
+from ptmcad.show.style import MIN_FONT, Style, styled
 
 AT = ("rho=1,L2=3/2", "rho=3/2,L2=1/2", "rho=0.1,L2=1.8", "rho=1/4,L2=1/4")
 

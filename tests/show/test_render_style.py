@@ -31,7 +31,8 @@ from ptmcad.show.render.colours import GREYS, filler
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import figure_of
 from ptmcad.show.render.slivers import told_apart
-from ptmcad.show.render.style import MIN_FONT, PRESETS, Place, Style, styled
+from ptmcad.show.render.usersettings import user_styled
+from ptmcad.show.style import MIN_FONT, PRESETS, Place, Style, styled
 from ptmcad.show.table import area_text
 
 SLIVERS = [Fraction(k // 2 + 1, 8) + (k % 2) * Fraction(1, 10**5) for k in range(6)]
@@ -197,9 +198,9 @@ def mplstyle(tmp_path: Path) -> Path:
 
 
 def test_a_users_own_settings_count_less_than_options(mplstyle: Path, tmp_path: Path) -> None:
-    style = styled("ieee", mpl_style=str(mplstyle))
+    style = user_styled("ieee", mpl_style=str(mplstyle))
     assert (style.size, style.font_size, style.title) == ((4.0, 3.0), 7.0, "")
-    assert styled("ieee", mpl_style=str(mplstyle), font_size="10").font_size == 10
+    assert user_styled("ieee", mpl_style=str(mplstyle), font_size="10").font_size == 10
     made = figure(shipped("fig4"), style)
     assert made.axes[0].spines["left"].get_edgecolor() == (1, 0, 0, 1)
     assert made.axes[0].xaxis.get_tick_params()["direction"] == "in"
@@ -213,9 +214,9 @@ def test_a_users_matplotlibrc_counts_when_it_is_asked_for_only(mplstyle: Path, t
     for name in ("default", "user"):
         code = (
             "from pathlib import Path; import ptmcad; from ptmcad.show.render import draw; "
-            "from ptmcad.show.render.style import styled; "
+            "from ptmcad.show.render.usersettings import user_styled; "
             "result = ptmcad.classify(ptmcad.slice_from_options(slice='L2,rho')); "
-            f"draw(result, Path({str(tmp_path / name)!r} + '.png'), style=styled({name!r}))"
+            f"draw(result, Path({str(tmp_path / name)!r} + '.png'), style=user_styled({name!r}))"
         )
         subprocess.run([sys.executable, "-c", code], check=True, env=environment)
         found[name] = imread(tmp_path / f"{name}.png").shape[:2]
@@ -230,7 +231,7 @@ def test_a_bad_file_of_settings_is_refused(content: str | None, words: str, tmp_
     if content is not None:
         path.write_text(content)
     with pytest.raises(ConfigError, match=words) as caught:
-        styled(mpl_style=str(path))
+        user_styled(mpl_style=str(path))
     assert caught.value.key == "mpl_style"
 
 

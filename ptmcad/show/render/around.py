@@ -29,7 +29,7 @@ from ptmcad.show.render.poses import assigned, in_order
 from ptmcad.show.render.regionmap import draw_parts, fit
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sketch import Frame, arrow_lengths, frame_of, sketch
-from ptmcad.show.render.style import Place, Style
+from ptmcad.show.style import Place, Style
 
 Point = tuple[Fraction, Fraction]
 

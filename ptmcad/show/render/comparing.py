@@ -24,8 +24,8 @@ from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import printed, settings, suffix_of
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.style import MIN_FONT, Place, Style
 from ptmcad.show.render.view import Shapes
+from ptmcad.show.style import MIN_FONT, Place, Style
 from ptmcad.show.table import certified_digits, count_text
 
 SIDE = 2.7

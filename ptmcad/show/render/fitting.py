@@ -1,6 +1,6 @@
 """The layout of a map's picture on a page of a given size.
 
-Guarantee: all text has the size that is asked for, none less than `ptmcad.show.render.style.MIN_FONT` points, and every
+Guarantee: all text has the size that is asked for, none less than `ptmcad.show.style.MIN_FONT` points, and every
 part is on the page. To that end insets are left out first, then the legend goes below the map, then areas are left out
 of it; what does not fit even so is refused with the least size that would do.
 
@@ -25,8 +25,8 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import Dress, dress
 from ptmcad.show.render.layout import Box, Layout, Texts
 from ptmcad.show.render.legend import STRONG, THIN, Entry, Type
-from ptmcad.show.render.style import MIN_FONT, Place, Style
 from ptmcad.show.render.view import View
+from ptmcad.show.style import MIN_FONT, Place, Style
 
 LEAST = 11.0
 """Sides of the map, in widths of an m: a smaller one is no picture."""

@@ -9,8 +9,8 @@ from typing import Any
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.show.render.colours import Fill, filler, undetermined_fill
 from ptmcad.show.render.legend import INK, RIM, RIM_INK, STRONG, THIN
-from ptmcad.show.render.style import Style
 from ptmcad.show.render.view import Shapes
+from ptmcad.show.style import Style
 
 
 @dataclass(frozen=True, slots=True)

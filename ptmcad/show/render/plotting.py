@@ -19,7 +19,8 @@ from ptmcad.show.render.poses import describe
 from ptmcad.show.render.printing import printed, settings, suffix_of
 from ptmcad.show.render.regionmap import description, figure_of, whole_title
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.style import Place, Style, styled
+from ptmcad.show.render.usersettings import user_styled
+from ptmcad.show.style import Place, Style
 from ptmcad.show.table import count_text
 
 
@@ -31,7 +32,7 @@ def plot(result: RegionMap, ax: Any, style: str | Style, samples: bool, dpi: int
     ConfigError
         For an unknown style or option, a value that cannot be drawn, or what does not fit into the size.
     """
-    made = styled(style, **options)
+    made = user_styled(style, **options)
     if ax is not None:
         draw_on(ax, result, samples, made)
         return ax

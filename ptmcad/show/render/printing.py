@@ -19,7 +19,7 @@ from typing import Any
 import matplotlib
 from matplotlib.figure import Figure
 
-from ptmcad.show.render.style import DEFAULT, Style
+from ptmcad.show.style import DEFAULT, Style
 
 FORMATS = ("png", "svg", "pdf", "eps", "pgf")
 

@@ -39,8 +39,8 @@ from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import printed, settings, suffix_of
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
-from ptmcad.show.render.style import DEFAULT, Place, Style
 from ptmcad.show.render.view import Shapes
+from ptmcad.show.style import DEFAULT, Place, Style
 from ptmcad.show.table import area_text, count_text
 
 RESOLVED = 42

@@ -15,9 +15,8 @@ from typing import Any
 
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.backend import load_matplotlib
+from ptmcad.show.style import USER, Style, styled
 
-USER = "user"
-"""Stands for the matplotlibrc that matplotlib itself would read."""
 _OWN = ("text.usetex", "text.parse_math", "svg.", "pdf.", "ps.", "pgf.", "savefig.", "path.", "backend", "interactive",
         "toolbar", "timezone", "webagg", "keymap", "animation", "docstring", "date.epoch")  # fmt: skip
 
@@ -27,7 +26,7 @@ def user_settings(name: str) -> dict[str, Any]:
 
     Parameters
     ----------
-    name : `USER`, a path, or the name of a style.
+    name : `USER` for the matplotlibrc that matplotlib itself would read, a path, or the name of a style.
 
     Raises
     ------
@@ -75,16 +74,15 @@ def _refusing_faults(name: str) -> Iterator[None]:
         raise ConfigError(f"{name} cannot be read as a style of matplotlib: {said[0].strip()}", key="mpl_style")
 
 
-def as_options(found: dict[str, Any]) -> dict[str, Any]:
-    """The settings that are options of a style here, by their names there."""
-    options: dict[str, Any] = {}
-    if "figure.figsize" in found:
-        options["size"] = tuple(found["figure.figsize"])
-    if "font.size" in found:
-        options["font_size"] = found["font.size"]
-    if "font.family" in found:
-        family = found["font.family"]
-        options["font_family"] = (family,) if isinstance(family, str) else tuple(family)
-    if "lines.linewidth" in found:
-        options["line_width"] = found["lines.linewidth"]
-    return options
+def user_styled(name: str | Style = "default", mpl_style: str | None = None, **options: Any) -> Style:
+    """A style as `styled` makes it, with a user's own settings where they are asked for.
+
+    Raises
+    ------
+    ConfigError
+        As `styled` does, and for settings that cannot be read.
+    """
+    own = mpl_style or (USER if name == USER else None)
+    if own is None:
+        return styled(name, None, **options)
+    return styled("default" if name == USER else name, user_settings(str(own)), **options)

@@ -20,6 +20,21 @@ MIN_SIDE, MAX_SIDE = 1.0, 60.0
 MAX_LINE = 10.0
 MAX_TITLE = 200
 _TO_INCHES = {"in": 1.0, "mm": 1 / 25.4, "cm": 1 / 2.54, "pt": 1 / 72}
+_SETTINGS = {
+    "size": "figure.figsize",
+    "font_size": "font.size",
+    "font_family": "font.family",
+    "line_width": "lines.linewidth",
+}
+"""Options by matplotlib's names for them."""
+NAMED = {
+    "white": "#ffffff", "silver": "#c0c0c0", "grey": "#808080", "gray": "#808080", "black": "#000000",
+    "red": "#ff0000", "maroon": "#800000", "orange": "#ffa500", "gold": "#ffd700", "yellow": "#ffff00",
+    "olive": "#808000", "lime": "#00ff00", "green": "#008000", "teal": "#008080", "cyan": "#00ffff",
+    "blue": "#0000ff", "navy": "#000080", "purple": "#800080", "magenta": "#ff00ff", "pink": "#ffc0cb",
+    "brown": "#a52a2a", "beige": "#f5f5dc", "lightblue": "#add8e6", "lightgreen": "#90ee90", "salmon": "#fa8072",
+}  # fmt: skip
+"""Colours of CSS."""
 _COLOUR = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})", re.ASCII)
 
 Size = tuple[float, float]
@@ -109,14 +124,14 @@ USER = "user"
 STYLES = (*PRESETS, USER)
 
 
-def styled(name: str | Style = "default", **options: Any) -> Style:
+def styled(name: str | Style = "default", settings: Mapping[str, Any] | None = None, **options: Any) -> Style:
     """A preset, or a style, with options of its own; those that are None are the preset's.
 
     Parameters
     ----------
+    settings : of matplotlib's, which count for more than the preset and less than options.
     options : fields of `Style`, each as its type or as text: ``size="90x70mm"``, ``palette="grey"``,
-        ``legend="below"``; and ``mpl_style``, a file or the name of a style of matplotlib's, which counts for more than
-        the preset and less than other options.
+        ``legend="below"``.
 
     Raises
     ------
@@ -126,10 +141,7 @@ def styled(name: str | Style = "default", **options: Any) -> Style:
     >>> styled("ieee", legend="below").legend
     <Place.BELOW: 'below'>
     """
-    own = options.pop("mpl_style", None)
-    if name == USER:
-        base, own = DEFAULT, own or USER
-    elif isinstance(name, Style):
+    if isinstance(name, Style):
         base = name
     elif name in PRESETS:
         base = PRESETS[name]
@@ -140,8 +152,8 @@ def styled(name: str | Style = "default", **options: Any) -> Style:
         raise ConfigError(
             f"a picture has no {unknown[0]!r}; there are {', '.join(_READERS)}, mpl_style", key=unknown[0]
         )
-    if own is not None:
-        base = _with_settings(base, str(own))
+    if settings is not None:
+        base = _with_settings(base, settings)
     given = {key: _READERS[key](value) for key, value in options.items() if value is not None}
     made = replace(base, **given)
     if "size" in given and "font_size" not in given and made.font_size is not None:
@@ -150,17 +162,14 @@ def styled(name: str | Style = "default", **options: Any) -> Style:
     return made
 
 
-def _with_settings(base: Style, own: str) -> Style:
-    """A style with the settings of a user's own."""
-    from ptmcad.show.render.usersettings import as_options, user_settings
-
-    found = user_settings(own)
-    options = as_options(found)
+def _with_settings(base: Style, settings: Mapping[str, Any]) -> Style:
+    """A style with settings of matplotlib's, of which some are options of a style."""
+    options = {key: settings[name] for key, name in _SETTINGS.items() if name in settings}
     try:
         made = replace(base, **{key: _READERS[key](value) for key, value in options.items()})
     except ConfigError as error:
-        raise ConfigError(f"{own}: {error.key}: {error.message}", key="mpl_style") from error
-    return replace(made, mpl=tuple(found.items()))
+        raise ConfigError(f"{_SETTINGS[error.key or 'size']}: {error.message}", key="mpl_style") from error
+    return replace(made, mpl=tuple(settings.items()))
 
 
 def _size(value: Any) -> Size:
@@ -211,7 +220,7 @@ def _palette(value: Any) -> str | tuple[str, ...]:
     if value in PALETTES:
         return str(value)
     colours = [part.strip() for part in value.split(",")] if isinstance(value, str) else list(value)
-    wrong = [c for c in colours if not (isinstance(c, str) and (_COLOUR.fullmatch(c) or c.lower() in _names()))]
+    wrong = [c for c in colours if not (isinstance(c, str) and (_COLOUR.fullmatch(c) or c.lower() in NAMED))]
     if wrong or not colours:
         raise ConfigError(
             f"{(wrong or [value])[0]!r} is neither {', '.join(PALETTES)} nor a colour such as #c7e4f6 or orange",
@@ -220,17 +229,9 @@ def _palette(value: Any) -> str | tuple[str, ...]:
     return tuple(_hexadecimal(c) for c in colours)
 
 
-def _names() -> Mapping[str, str]:
-    """Names of colours, those of CSS: what is written as digits needs no library."""
-    from matplotlib.colors import CSS4_COLORS
-
-    names: Any = CSS4_COLORS
-    return {str(name): str(colour) for name, colour in names.items()}
-
-
 def _hexadecimal(colour: str) -> str:
     if not colour.startswith("#"):
-        return _names()[colour.lower()].lower()
+        return NAMED[colour.lower()]
     return (colour if len(colour) == 7 else "#" + "".join(2 * digit for digit in colour[1:])).lower()
 
 
