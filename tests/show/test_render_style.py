@@ -281,6 +281,9 @@ def test_a_line_in_the_legend_has_something_to_show() -> None:
     """Where no thin curve leaves the frame, and no inset has room, none is told of."""
     result = shipped("fig4")
     assert "another curve" in legend_of(figure(result, styled(size="6x4in", font_size=9)))
+    small = figure(result, styled("ieee"))
+    assert len(small.axes) == 1 and "another curve" not in legend_of(small)
+    assert not [t for t in small.findobj(Annotation) if str(t.get_gid()).startswith("arrow")]
     thin = replace(result, slice=replace(result.slice, count=Count.TOTAL))
     assert "another curve" not in legend_of(figure(thin, styled(size="6x4in", font_size=9)))
 
@@ -291,3 +294,8 @@ def test_areas_are_those_of_the_table() -> None:
         for region in result.regions if len(result.regions) < 9 else ():
             assert area_text(result, region.area) in said and area_text(result, region.area) in result.table()
     assert "7 regions, in all 0.85" in said
+
+
+def test_the_legend_says_of_how_many_solutions_even_where_these_differ() -> None:
+    assert "1 of 4 or 6 equilibria" in legend_of(figure(shipped("fig4"), styled(size="6x4in", font_size=9)))
+    assert "1 of 4 equilibria" in legend_of(figure(shipped("fig2"), styled(size="6x4in", font_size=9)))

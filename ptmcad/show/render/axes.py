@@ -111,6 +111,8 @@ def dress(
 
     how = how or Dress()
     small = how.small
+    for spine in axes.spines.values():
+        spine.set_linewidth(how.scale * rcParams["axes.linewidth"])
     for number, (matplotlib_axis, interval) in enumerate(((axes.xaxis, x), (axes.yaxis, y))):
         scale = scale_of(*interval, digits=2 if small else 4)
         (axes.set_ylim if number else axes.set_xlim)(scale.low, scale.high)
@@ -125,6 +127,7 @@ def dress(
             axis="y" if number else "x",
             labelsize=how.ticks,
             length=(2 if small else 3.5) * how.scale,
+            width=how.scale * rcParams["ytick.major.width" if number else "xtick.major.width"],
             direction=rcParams["ytick.direction" if number else "xtick.direction"],
         )
 

@@ -25,7 +25,7 @@ RIM, RIM_INK = 0.35, "#404040"
 
 LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
 """Inches between lines, width of a swatch, characters in a line."""
-_MAX_AREAS = 4
+_MAX_AREAS, _MAX_TOTALS = 4, 3
 
 FILL = 0.14
 """Height of a swatch."""
@@ -119,7 +119,7 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
     yield Entry(head_of(result.slice), strong=True)
     for text, regions in groups.items():
         areas = _areas(result, text, regions) if wording.areas else []
-        yield Entry((_with_total(text, regions, result.slice), *areas), wording.fill(regions[0]))
+        yield Entry((_with_total(text, regions, result), *areas), wording.fill(regions[0]))
     yield Entry(())
     if result.cover is not None and result.undetermined:
         note = ("the count may change within it",) if len(result.regions) > 1 else ()
@@ -140,12 +140,15 @@ def percent(share: Fraction) -> str:
     return f"{decimal(100 * share, up=True, digits=2)} %"
 
 
-def _with_total(text: str, regions: list[Region], slice: Slice) -> str:
-    totals = {r.total for r in regions}
-    total = totals.pop() if len(totals) == 1 else None
-    if slice.count is Count.TOTAL or total is None:
+def _with_total(text: str, regions: list[Region], result: RegionMap) -> str:
+    """The count, and of how many solutions in all; where these differ within it, of which numbers."""
+    slice = result.slice
+    totals = {result.cells[n].total for region in regions for n in region.cells}
+    known = sorted(total for total in totals if total is not None)
+    if slice.count is Count.TOTAL or not known or len(known) < len(totals) or len(known) > _MAX_TOTALS:
         return text
-    return f"{text}   {'' if slice.count is Count.INDEX else 'of '}{counted(slice.model, total)}"
+    numbers = " or ".join(filter(None, (", ".join(map(str, known[:-1])), counted(slice.model, known[-1]))))
+    return f"{text}   {'' if slice.count is Count.INDEX else 'of '}{numbers}"
 
 
 def _areas(result: RegionMap, text: str, regions: list[Region]) -> list[str]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -94,6 +94,13 @@ class _Seen:
     views: tuple[Zoom, ...] = ()
     thin_lines: bool = False
 
+    def without_unstable(self, sides: tuple[float, float]) -> _Seen:
+        """The same but for views of parts in which unstable solutions differ, in a picture with sides in points."""
+        views = tuple(zoom for zoom in self.views if all(sliver.cell is None for sliver in zoom.slivers))
+        if len(views) == len(self.views):
+            return self
+        return replace(self, views=views, thin_lines=seen_thin_walls(self.whole, sides))
+
     @property
     def hidden(self) -> int:
         """The number of regions that nothing shows."""
@@ -157,6 +164,12 @@ def fit(
             (whole.view, *(zoom.outline.view for zoom in seen.views)),
         )
         layout = fitted(parts, style, style.size or _natural(style, parts))
+        if seen.views and not layout.insets:
+            # an arrow to what no inset shows helps where a count differs, and where none does it points at nothing
+            bare = seen.without_unstable((72 * layout.chart[2], 72 * layout.chart[3]))
+            if bare is not seen:
+                seen, tries = bare, 1
+                continue
         again = _seen(whole, (layout.chart[2], layout.chart[3]), dpi, seen)
         tries -= 1
         if again is seen or not tries:
