@@ -299,3 +299,11 @@ def test_areas_are_those_of_the_table() -> None:
 def test_the_legend_says_of_how_many_solutions_even_where_these_differ() -> None:
     assert "1 of 4 or 6 equilibria" in legend_of(figure(shipped("fig4"), styled(size="6x4in", font_size=9)))
     assert "1 of 4 equilibria" in legend_of(figure(shipped("fig2"), styled(size="6x4in", font_size=9)))
+
+
+@pytest.mark.parametrize("size", ["3.5x3in", "8x5in"])
+def test_no_text_is_smaller_than_is_read_on_paper(size: str) -> None:
+    """Even where the legend's own text is as small as that: details, numbers at insets and labels of arrows."""
+    made = figure(bands(SLIVERS), styled(size=size, font_size=6))
+    assert min(t.get_fontsize() for t in texts(made)) == MIN_FONT
+    assert (len(made.axes) > 1) == (size == "8x5in")
