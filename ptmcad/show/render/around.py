@@ -20,7 +20,6 @@ from ptmcad.answer.words import counted
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism
 from ptmcad.show.drawable import no_drawing
-from ptmcad.show.render.fitting import wrapped
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.legend import INK
 from ptmcad.show.render.mechanism import STRONG, draw_sketch
@@ -29,6 +28,7 @@ from ptmcad.show.render.poses import assigned, in_order
 from ptmcad.show.render.regionmap import draw_parts, fit
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sketch import Frame, arrow_lengths, frame_of, sketch
+from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.style import Place, Style
 
 Point = tuple[Fraction, Fraction]

@@ -18,12 +18,13 @@ from ptmcad.answer.comparison import Change, Comparison
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill
-from ptmcad.show.render.fitting import LEAST, Parts, overhang, rewrapped, wrapped
+from ptmcad.show.render.fitting import LEAST, Parts, overhang, rewrapped
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import printed, settings, suffix_of
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, Place, Style
 from ptmcad.show.table import certified_digits, count_text

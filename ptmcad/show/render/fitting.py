@@ -11,20 +11,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from typing import Any
 
-from matplotlib import rcParams
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.font_manager import FontProperties
-from matplotlib.textpath import text_to_path
 
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import Dress, dress
 from ptmcad.show.render.layout import Box, Layout, Texts
 from ptmcad.show.render.legend import STRONG, THIN, Entry, Type
+from ptmcad.show.render.textwidth import ALLOWANCE, text_width, wrapped
 from ptmcad.show.render.view import View
 from ptmcad.show.style import MIN_FONT, Place, Style
 
@@ -38,8 +35,6 @@ _COLUMNS = (24.0, 18.0, 14.0, 11.0, 8.5)
 """Widths tried for a legend at the right, in widths of an m."""
 _INSET = (9.0, 6.0)
 """An inset's least sides, in widths of an m."""
-_ALLOWANCE = 1.03
-"""Text is taken to be so much wider than it is, for programs that set it by themselves."""
 _STEPS, _STEP = 60, 1.05
 MAX_TITLE_LINES = 2
 
@@ -338,7 +333,7 @@ def _measured(slice: Slice, view: View, how: Dress) -> Measured:
     dress(axes, slice, view.x, view.y, how)
     outer, inner = axes.get_tightbbox(renderer), axes.get_window_extent(renderer)
     spaces = (inner.x0 - outer.x0, inner.y0 - outer.y0, outer.x1 - inner.x1, outer.y1 - inner.y1)
-    left, below, right, above = (max(0.0, float(space)) / 72 * _ALLOWANCE for space in spaces)
+    left, below, right, above = (max(0.0, float(space)) / 72 * ALLOWANCE for space in spaces)
     names = (
         axes.xaxis.label.get_window_extent(renderer).width / 72,
         axes.yaxis.label.get_window_extent(renderer).height / 72,
@@ -363,31 +358,6 @@ def _width(entry: Entry, type: Type) -> float:
     sizes = [type.head if k < entry.heads else type.detail for k in range(len(entry.lines))]
     texts = (text_width(line, size, entry.strong) for line, size in zip(entry.lines, sizes, strict=True))
     return indent + max(texts, default=0.0)
-
-
-def wrapped(text: str, width: float, size: float, strong: bool = False) -> list[str]:
-    """Lines of whole words, each as long as the width in inches allows."""
-    lines: list[str] = []
-    for word in filter(None, text.split(" ")):
-        longer = f"{lines[-1]} {word}" if lines else word
-        if lines and text_width(longer, size, strong) <= width:
-            lines[-1] = longer
-        else:
-            lines.append(word)
-    return lines
-
-
-def text_width(text: str, size: float, strong: bool = False) -> float:
-    """Inches that a line of text takes in the font of the settings."""
-    return _text_width(text, strong, tuple(rcParams["font.family"])) * size / 72 * _ALLOWANCE
-
-
-@lru_cache(maxsize=4096)
-def _text_width(text: str, strong: bool, families: tuple[str, ...]) -> float:
-    """Against the font's size."""
-    font = FontProperties(family=list(families), size=100, weight="bold" if strong else "normal")
-    width, _, _ = text_to_path.get_text_width_height_descent(text, font, False)
-    return float(width) / 100
 
 
 def _balanced(entries: Sequence[Entry], number: int, type: Type) -> list[list[Entry]]:
