@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from ptmcad.answer.boundaries import Boundary, Grid
+    from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.field import Field
     from ptmcad.answer.poses import Poses
     from ptmcad.answer.regionmap import Location, RegionMap
@@ -177,6 +178,55 @@ def _variety_repr_html(self: SliceVariety) -> str:
     return text_html(self.text())
 
 
+def _map_plot(
+    self: RegionMap, ax: Any = None, style: Any = "default", *, samples: bool = False, dpi: int = 150, **options: Any
+) -> Any:
+    """The picture as objects of matplotlib's: a `Figure` of its own, or the axes ``ax`` with the map drawn into them.
+
+    Axes have the units of the map's own axes and a caller's settings, no insets, and a legend beside them unless
+    ``legend="none"``. A figure is that of ``ptmcad plot``; `Figure.savefig` writes it.
+
+    Parameters
+    ----------
+    style : "default", "ieee", "elsevier", "springer", "beamer", "poster" or "user".
+    samples : whether to draw the cells' sample points.
+    dpi : resolution for which thin regions get arrows and insets.
+    options : ``size``, ``font_size``, ``font_family``, ``palette``, ``title``, ``legend``, ``line_width``,
+        ``thin_lines`` and ``mpl_style``, as on the command line.
+
+    Raises
+    ------
+    ConfigError
+        For an unknown style or option, a value that cannot be drawn, or what does not fit into the size.
+
+    >>> import ptmcad
+    >>> figure = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho")).plot(style="ieee", legend="below")
+    >>> [float(side) for side in figure.get_size_inches()]
+    [3.5, 2.6]
+    """
+    from ptmcad.show.render import plot
+
+    return plot(self, ax, style, samples, dpi, options)
+
+
+def _map_compare(self: RegionMap, other: RegionMap) -> Comparison:
+    """Where two exact maps of the same axes, window and count differ, and the certified area of that.
+
+    Raises
+    ------
+    ConfigError
+        When they are not such maps.
+
+    >>> import ptmcad
+    >>> first = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))
+    >>> first.compare(first).area
+    (Fraction(0, 1), Fraction(0, 1))
+    """
+    from ptmcad.ask.comparison import compare
+
+    return compare(self, other)
+
+
 def _variety_text(self: SliceVariety, format: str = "text") -> str:
     """The variety in one of the formats of `ptmcad.show.export.FORMATS`.
 
@@ -229,6 +279,8 @@ METHODS["RegionMap"] = {
     "_repr_html_": _map_repr_html,
     "_repr_svg_": _map_repr_svg,
     "_repr_png_": _map_repr_png,
+    "plot": _map_plot,
+    "compare": _map_compare,
 }
 METHODS["SliceVariety"] = {"text": _variety_text, "_repr_html_": _variety_repr_html}
 METHODS["Poses"] = {

@@ -25,7 +25,7 @@ PAGES = sorted(path for path in DOCS.rglob("*.md") if "generated" not in path.pa
 TUTORIAL = (DOCS / "tutorial.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", TUTORIAL, re.DOTALL | re.MULTILINE)
 RESULT = re.compile(r"^(?P<expression>[^#\n]+?)\s*#\s*(?P<value>\S.*)$")
-SAYS = {"classify": "computed: ", "verify": "ok ", "locate": "total   4\n", "variety": "written "}
+SAYS = {"classify": "computed: ", "verify": "ok ", "locate": "total   4\n", "variety": "written ", "plot": "mine.pdf"}
 needs_sphinx = pytest.mark.skipif(
     not all(map(find_spec, ("sphinx", "myst_parser", "furo", "sphinx_click"))),
     reason="Sphinx and its extensions are not installed (pip install '.[docs]')",
@@ -43,7 +43,7 @@ def test_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest
     Path("mine.yaml").write_text(record, encoding="utf-8")
     make, *lines = [line for block in blocks("sh") for line in block.splitlines()]
     assert make == "make demo"
-    assert len(lines) == 5
+    assert len(lines) == 6
     for line in lines:
         program, command, *arguments = shlex.split(line)
         assert program == ".venv/bin/ptmcad"
@@ -54,7 +54,7 @@ def test_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest
     assert {path.name for path in Path("mine").iterdir()} == {
         "mine.json", "mine.pdf", "mine.svg", "variety.py", "variety.tex",
     }  # fmt: skip
-    assert r"\includegraphics[width=\columnwidth]{mine/mine.pdf}" in "".join(blocks("latex"))
+    assert r"\includegraphics{mine/mine.pdf}" in "".join(blocks("latex"))
     names: dict[str, object] = {}
     (python,) = blocks("python")
     values = 0

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from ptmcad.answer.boundaries import Boundary, Grid
+    from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.field import Field
 
 
@@ -360,6 +361,12 @@ class RegionMap:
         def _repr_svg_(self) -> str | None: ...
 
         def _repr_png_(self) -> bytes | None: ...
+
+        def compare(self, other: RegionMap) -> Comparison: ...
+
+        def plot(
+            self, ax: Any = None, style: Any = "default", *, samples: bool = False, dpi: int = 150, **options: Any
+        ) -> Any: ...
 
 
 def with_compilation(result: RegionMap, seconds: float) -> RegionMap:

@@ -6,26 +6,31 @@ Guarantee: the names of all files are known before anything is computed.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from ptmcad.answer.poses import Poses
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.process.output import Writer, text_writer
+from ptmcad.show.style import DEFAULT, LINES, PALETTES, STYLES, USER, Place, Style, styled
 from ptmcad.text.parsing import rational
+
+if TYPE_CHECKING:
+    from ptmcad.show.render.overlay import Measured
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-PICTURES = ("png", "svg", "pdf")
+PICTURES = ("png", "svg", "pdf", "eps", "pgf")
 DATA = ("csv", "npz")
 TABLES = ("boundaries", "regions", "cells")
 """Each is a file of its own in CSV."""
@@ -48,15 +53,21 @@ class Drawing:
     Attributes
     ----------
     samples : whether pictures show the cells' sample points.
+    style : what pictures look like.
     dpi : resolution of a PNG.
     boundary_tolerance : distance of polylines from their curves, as a share of the window's side.
     pixels : columns and rows of the grid in an NPZ.
+    overlay : further points in pictures.
+    poses : points whose stable poses stand around the map in pictures.
     """
 
     samples: bool = False
+    style: Style = DEFAULT
     dpi: int = 150
     boundary_tolerance: Fraction = Fraction(1, 1000)
     pixels: tuple[int, int] = (400, 400)
+    overlay: tuple[Measured, ...] = ()
+    poses: tuple[tuple[tuple[Fraction, Fraction], Poses], ...] = ()
 
     def writers(self, result: Any, stem: str, formats: tuple[str, ...]) -> dict[str, Writer]:
         """For each file a function that writes it, in the order of the formats."""
@@ -71,7 +82,12 @@ class Drawing:
     def _picture(self, result: Any, _name: str, _boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show.render import draw  # brings matplotlib
 
-        draw(result, path, samples=self.samples, dpi=self.dpi)
+        if self.poses:
+            from ptmcad.show.render.plotting import draw_with_poses
+
+            draw_with_poses(result, self.poses, path, self.dpi, self.style, self.overlay)
+        else:
+            draw(result, path, samples=self.samples, dpi=self.dpi, style=self.style, overlay=self.overlay)
 
     def _table(self, result: Any, name: str, boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show import data
@@ -112,6 +128,70 @@ def pixels_of(_context: click.Context, parameter: click.Parameter, value: str) -
     return sides
 
 
+def _drawing(
+    samples: bool, dpi: int, boundary_tolerance: Fraction, pixels: tuple[int, int], style: str, size: str | None,
+    font_size: str | None, font_family: str | None, palette: str | None, title: str | None, legend: str | None,
+    line_width: str | None, thin_lines: str | None, mpl_style: str | None,
+) -> Drawing:  # fmt: skip
+    """The options together."""
+    options = {
+        "size": size, "font_size": font_size, "font_family": font_family, "palette": palette, "title": title,
+        "legend": legend, "line_width": line_width, "thin_lines": thin_lines,
+    }  # fmt: skip
+    try:
+        made = _made(style, mpl_style, options)
+    except ConfigError as error:
+        raise ConfigError(error.message, key=f"--{(error.key or 'style').replace('_', '-')}") from error
+    if made.font_family:
+        _check_fonts(made.font_family)
+    return Drawing(samples, made, dpi, boundary_tolerance, pixels)
+
+
+def _made(style: str, mpl_style: str | None, options: Mapping[str, str | None]) -> Style:
+    if mpl_style is None and style != USER:
+        return styled(style, None, **options)
+    from ptmcad.show.render.usersettings import user_styled  # brings matplotlib
+
+    return user_styled(style, mpl_style, **options)
+
+
+def _check_fonts(families: tuple[str, ...]) -> None:
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render.fonts import check_families
+
+    try:
+        check_families(families)
+    except ConfigError as error:
+        raise ConfigError(error.message, key="--font-family") from error
+
+
+def style_options(command: F) -> F:
+    """Add the options that make a `Style`."""
+    for option in (
+        click.option("--thin-lines", type=click.Choice(LINES),
+                     help="Curves of the variety where the count does not change.  [default: solid]"),
+        click.option("--line-width", metavar="PT", help="Width of curves where the count changes, in points."),
+        click.option("--legend", type=click.Choice([place.value for place in Place]),
+                     help="Where the legend stands.  [default: where it fits]"),
+        click.option("--title", metavar="TEXT",
+                     help="Title, '' for none.  [default: the slice's heading; none in journals' styles]"),
+        click.option("--palette", metavar="NAME|COLOUR,..",
+                     help=f"{', '.join(PALETTES)}, or colours for the counts in increasing order.  [default: default]"),
+        click.option("--font-family", metavar="NAME,..", help="Fonts that are installed; the first that has a letter."),
+        click.option("--font-size", metavar="PT", help="Of the legend, at the printed size; none below 6 points."),
+        click.option("--size", metavar="WxH", help="Of the whole picture, as 3.5x2.6in or 90x70mm."),
+        click.option("--mpl-style", metavar="FILE|NAME",
+                     help="Settings of matplotlib's in a file, or a style of its; other options override."),
+        click.option("--style", type=click.Choice(STYLES), default="default", show_default=True,
+                     help="Size, font and lines for a journal's column, a slide or a poster; 'user' is your own "
+                          "matplotlibrc. Other options override."),
+    ):  # fmt: skip
+        command = option(command)
+    return command
+
+
 def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable[[F], F]:
     """Add ``--format``, which the command gets as ``formats``, and the options that it gets as a `Drawing`.
 
@@ -122,7 +202,7 @@ def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable
     """
 
     def decorate(command: F) -> F:
-        command = gathered(drawing=Drawing)(command)
+        command = style_options(gathered(drawing=_drawing)(command))
         for option in (
             click.option("--pixels", callback=pixels_of, default="400x400", show_default=True, metavar="NxM",
                          help="Columns and rows of the grid of exact counts in an NPZ."),

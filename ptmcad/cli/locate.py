@@ -61,8 +61,9 @@ def point_of(text: str) -> dict[str, str]:
     return point
 
 
-def rows_of(path: Path, result: RegionMap) -> Iterator[dict[str, str]]:
-    """The points of a CSV file whose first row names the two axes (other columns are not looked at).
+def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Iterator[dict[str, str]]:
+    """The points of a CSV file whose first row names the two axes (other columns than the further ones are not looked
+    at).
 
     The file may have any number of rows; one row at a time is held in memory.
 
@@ -89,7 +90,7 @@ def rows_of(path: Path, result: RegionMap) -> Iterator[dict[str, str]]:
             point = {name: (row[name] or "").strip() for name in names}
             if "" in point.values():
                 raise ConfigError("a value is missing", file=str(path), line=reader.line_num)
-            yield point
+            yield point | {name: (row.get(name) or "").strip() for name in further}
     except csv.Error as error:
         raise ConfigError(f"is not a CSV file: {error}", file=str(path), line=lines.number) from error
 

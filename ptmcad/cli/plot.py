@@ -2,26 +2,105 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import click
 
+from ptmcad.answer.comparison import Comparison
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of
+from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.pictures import picture
+from ptmcad.cli.points import measured, places, poses_at
 from ptmcad.cli.stored import read_result
 from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, PictureError, shown_path
-from ptmcad.process.output import check_writable, write_files
+from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import portable_file
+
+
+class Added(NamedTuple):
+    """What is drawn beside the map itself."""
+
+    overlay: Path | None
+    at: tuple[str, ...]
+    compare: Path | None
+
+
+def _with_points(stored: RegionMap, drawing: Drawing, added: Added) -> Drawing:
+    """The drawing with measured points, and with the poses at points; both are checked before poses are computed."""
+    chosen = places(stored, added.at)
+    if added.overlay is not None:
+        found, outside = measured(stored, added.overlay)
+        drawing = replace(drawing, overlay=found)
+        if outside:
+            click.echo(f"{outside} of {outside + len(found)} points are outside of the window and left out", err=True)
+    return replace(drawing, poses=tuple((place, poses_at(stored, place)) for place in chosen))
+
+
+def _writers(
+    stored: RegionMap, stem: str, formats: tuple[str, ...], drawing: Drawing, added: Added
+) -> Mapping[str, Writer]:
+    """A writer for each file; where two maps are compared, after the difference has been printed."""
+    if added.compare is None:
+        return drawing.writers(stored, stem, formats)
+    if added.at or added.overlay is not None:
+        raise ConfigError("two maps are drawn without further points: leave out --at and --overlay", key="--compare")
+    if any(kind in DATA for kind in formats):
+        raise ConfigError(f"of a difference there are pictures only: {', '.join(PICTURES)}", key="--format")
+    from ptmcad.ask.comparison import compare
+    from ptmcad.show.render.backend import load_matplotlib
+
+    try:
+        found = compare(stored, read_result(added.compare))
+    except ConfigError as error:
+        raise ConfigError(error.message, key="--compare", file=error.file) from error
+    load_matplotlib()
+    from ptmcad.show.render.comparing import draw_comparison, in_words
+
+    for line in in_words(found):
+        click.echo(line)
+    names = names_of(stem, formats)
+    return {name: picture(name, partial(_draw_comparison, draw_comparison, found, drawing)) for name in names}
+
+
+def _draw_comparison(draw: Callable[..., None], found: Comparison, drawing: Drawing, path: Path) -> None:
+    draw(found, path, drawing.dpi, drawing.style)
 
 
 @click.command("plot")
 @click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the files.  [default: that of RESULT]")
 @drawing_options((*PICTURES, *DATA), "png", "What to make")
+@click.option(
+    "--overlay",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="A CSV file of points to draw on the map: columns named like the axes, and label and count if there are.",
+)
+@click.option(
+    "--at",
+    multiple=True,
+    metavar="NAME=VALUE,NAME=VALUE",
+    help="Draw the stable poses at a point beside the map, with a line to it. Repeatable.",
+)
+@click.option(
+    "--compare",
+    type=click.Path(path_type=Path),
+    metavar="OTHER",
+    help="Draw RESULT, another exact map of the same window, and where their counts differ; print how large that is.",
+)
 @limit_options
-def command(*, result: Path, out: Path | None, formats: tuple[str, ...], drawing: Drawing, limits: Limits) -> None:
+@gathered(added=Added)
+def command(
+    *, result: Path, out: Path | None, formats: tuple[str, ...], drawing: Drawing, added: Added, limits: Limits
+) -> None:
     """Draw RESULT, a JSON file of `ptmcad classify`, or write it as numbers.
 
     \b
@@ -29,15 +108,21 @@ def command(*, result: Path, out: Path | None, formats: tuple[str, ...], drawing
         ptmcad classify --slice L2,rho --format json
         ptmcad plot slice-L2-rho.json --format png,svg --dpi 300
         ptmcad plot slice-L2-rho.json --format csv
+        ptmcad plot slice-L2-rho.json --style ieee --legend below --format pgf
+        ptmcad plot slice-L2-rho.json --at L2=1,rho=1 --at L2=3,rho=1/2 --format pdf
+        ptmcad plot slice-L2-rho.json --overlay measured.csv
+        ptmcad plot slice-L2-rho.json --compare heavier.json
     """
     report_idle(idle_drawing(formats))
     with held(limits):
         stored = read_result(result)
         folder = result.parent if out is None else out
-        portable_file(f"{result.stem}.{formats[0]}", "RESULT")
-        check_writable(folder, names_of(result.stem, formats))
+        stem = result.stem if added.compare is None else f"{result.stem}-and-{added.compare.stem}"
+        portable_file(f"{stem}.{formats[0]}", "RESULT")
+        check_writable(folder, names_of(stem, formats))
+        writers = _writers(stored, stem, formats, _with_points(stored, drawing, added), added)
         try:
-            written = write_files(folder, drawing.writers(stored, result.stem, formats))
+            written = write_files(folder, writers)
         except PictureError as error:
             cause = error.__cause__
             if isinstance(cause, ConfigError):

@@ -73,8 +73,8 @@ def assemble(
         components=variety.components
         if cells is None
         else tuple(replace(c, separates=n in separating) for n, c in enumerate(variety.components)),
-        critical_values=() if cells is None else _critical_values(cells.projection),
-        stacks=() if cells is None else _stacks(cells.stacks.stacks),
+        critical_values=() if cells is None else critical_values_of(cells.projection),
+        stacks=() if cells is None else stacks_of_cells(cells.stacks.stacks),
         cells=() if cells is None else tuple(_cells(cells, samples)),
         adjacencies=adjacencies,
         non_adjacencies=() if cells is None else _non_adjacencies(cells.stacks.stacks, cells.neighbours.crossings),
@@ -102,7 +102,7 @@ def _samples(problem: SliceProblem, cells: Cells) -> tuple[Point, ...]:
     return tuple(Point(names, to_fraction(x), to_fraction(y)) for x, y in cells.stacks.points)
 
 
-def _critical_values(projection: Projection) -> tuple[CriticalValue, ...]:
+def critical_values_of(projection: Projection) -> tuple[CriticalValue, ...]:
     return tuple(
         CriticalValue(
             tuple(int(c) for c in r.polynomial.coeffs()),
@@ -148,7 +148,7 @@ def _solutions(found: Equilibria) -> tuple[Solution, ...]:
     )
 
 
-def _stacks(stacks: Sequence[StackData]) -> tuple[Stack, ...]:
+def stacks_of_cells(stacks: Sequence[StackData]) -> tuple[Stack, ...]:
     result, first = [], 0
     for stack in stacks:
         cells = tuple(range(first, first + len(stack.heights)))

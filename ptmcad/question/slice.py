@@ -44,6 +44,12 @@ class Count(Enum):
     """stable equilibria at which every spring is longer than its free length"""
 
 
+QUANTITIES = ("length", "force")
+"""Whose units a record may declare."""
+MAX_UNIT = 20
+"""Characters of one."""
+
+
 @dataclass(frozen=True, slots=True)
 class Axis:
     """One axis of the window: the open interval ``low < name < high`` (its ends belong to the picture's edge)."""
@@ -70,6 +76,7 @@ class Slice:
     reference : published answers, as read from the record; never used by the computation.
     text : each parameter as the user wrote it, for reports; and any of k, l0, l0_1, l0_2 and l0_3 that such a text
         names, even where it is not among the parameters. An axis has only the text of the parameter that it is.
+    units : of ``length`` and ``force``, where they are declared; nothing but text depends on them.
     """
 
     name: str
@@ -80,6 +87,7 @@ class Slice:
     title: str = ""
     reference: Mapping[str, Any] = field(default_factory=dict)
     text: Mapping[str, str] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def axis_names(self) -> tuple[str, str]:

@@ -11,6 +11,7 @@ from ptmcad.answer.words import index_words, noun
 from ptmcad.cover.rectangles import Cover
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.question.slice import Count
+from ptmcad.show.units import area_unit
 from ptmcad.text.numerals import decimal, magnitude
 
 _NAMES = {
@@ -62,6 +63,30 @@ def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
         if len(str(digits)) <= most and digits > 0 and high - digits * unit <= unit and digits * unit - low <= unit:
             return decimal(digits * unit, up=False, digits=most)
     return f"{decimal(low, up=False, digits=2)} to {decimal(high, up=True, digits=2)}"
+
+
+def area_text(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
+    """An area as it is printed everywhere: one number of an exact map, both bounds of a certified one, and its unit."""
+    text = certified_digits(bounds) if result.cover is None else interval_text(bounds)
+    known = area_unit(result.slice)
+    return f"{text} {known}" if known else text
+
+
+def area_by_count(result: RegionMap) -> dict[str, tuple[Fraction, Fraction]]:
+    """Bounds of the area of all points with each count, by the count's text.
+
+    Of a certified map with all that is undetermined, in which there may be more regions.
+    """
+    bounds = [(count_text(r, result.slice.count), r.area) for r in result.regions]
+    if result.cover is not None:
+        return dict(_by_count(bounds, result))
+    return {
+        text: (
+            sum((a[0] for t, a in bounds if t == text), Fraction(0)),
+            sum((a[1] for t, a in bounds if t == text), Fraction(0)),
+        )
+        for text in dict(bounds)
+    }
 
 
 def interval_text(bounds: tuple[Fraction, Fraction]) -> str:
@@ -141,8 +166,7 @@ def table(result: RegionMap) -> str:
     bounds = [(count_text(r, count), r.area) for r in result.regions]
     if result.cover is not None:
         bounds = _by_count(bounds, result)
-    text_of_bounds = certified_digits if result.cover is None else interval_text
-    areas = "; ".join(f"{text}: {text_of_bounds(area)}" for text, area in bounds)
+    areas = "; ".join(f"{text}: {area_text(result, area)}" for text, area in bounds)
     if result.status is Status.EXACT and len(bounds) > 1 and not any(low for _, (low, _) in bounds):
         areas = "not computed"
     widths = [(high - low) / low for _, (low, high) in bounds if low]

@@ -61,7 +61,7 @@ def engine(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
             raise calls["raise"]
         return StandIn(slice.name)
 
-    def draw(result: StandIn, path: Path, *, samples: bool = False, dpi: int = 150) -> None:
+    def draw(result: StandIn, path: Path, *, samples: bool = False, dpi: int = 150, **_how: object) -> None:
         calls["samples"] = samples
         path.write_text(f"picture of {result.name}")
         if "draw raises" in calls:
@@ -320,6 +320,9 @@ def test_help_examples_about_a_result_run(
     Path("points.csv").write_text("rho,L2\n7/10,3/2\n", encoding="utf-8")
     for folder in ("configs", "docs"):
         Path(folder).symlink_to(ROOT / folder)
+    for name in ("measured.csv", "heavier.json"):
+        source = Path("points.csv" if name.endswith("csv") else "slice-L2-rho.json")
+        Path(name).write_text(source.read_text(encoding="utf-8"), encoding="utf-8")
     if "--compare" in example:
         Path("out").mkdir()
         Path("out/fig4.bench.json").symlink_to(ROOT / "docs" / "benchmarks" / "fig4.bench.json")

@@ -27,8 +27,9 @@ from ptmcad.question.slice import Count, Point
 from ptmcad.show.render import draw
 from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED, fill_of
 from ptmcad.show.render.coveroutline import TOLERANCE, simplified
+from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
 from ptmcad.show.render.legend import RIM
-from ptmcad.show.render.regionmap import LEFT, MARGIN, SIDE, TITLE_LINE, figure_of
+from ptmcad.show.render.regionmap import figure_of
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import View
 from ptmcad.show.report import page

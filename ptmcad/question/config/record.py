@@ -15,11 +15,11 @@ from ptmcad.mechanism import Model, ptm
 from ptmcad.question.config.model import model_of
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.examples import AXES
-from ptmcad.question.slice import Count, unstorable
+from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count, unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
-RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "count", "reference")
+RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "count", "units", "reference")
 _MAX_NAME = 100
 _MAX_TITLE = 300
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -46,6 +46,7 @@ class Record:
     values: Mapping[str, Scalar] = field(default_factory=dict)
     axes: Mapping[str, Window] = field(default_factory=dict)
     count: Count | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
     reference: Mapping[str, Any] = field(default_factory=dict)
     place: Place = field(default_factory=Place)
 
@@ -81,6 +82,7 @@ def read_record(tree: Tree, faults: Faults) -> Record:
         "parameters": lambda node: _values(node, model, faults),
         "axes": lambda node: _axes(node, faults),
         "count": count_of,
+        "units": _units,
         "reference": _reference,
     }
     for key, reader in readers.items():
@@ -230,6 +232,19 @@ def count_of(node: Node) -> Count:
         found = f"'{node.text[:40]}'" if isinstance(node, Scalar) else "a list or a mapping"
         raise node.place.error(f"{found} is not a count: write {', '.join(words[:-1])} or {words[-1]}")
     return Count(node.text)
+
+
+def _units(node: Node) -> dict[str, str]:
+    """Units of quantities, which pictures and tables name."""
+    if not isinstance(node, Tree):
+        raise node.place.error(f"expected a mapping such as length: mm of {' and '.join(QUANTITIES)}")
+    for key, unit in node.entries.items():
+        if key not in QUANTITIES:
+            hint = did_you_mean(key, QUANTITIES) or f"; units are those of {' and '.join(QUANTITIES)}"
+            raise _node_place(unit, key, node).error(f"unknown quantity{hint}")
+        if not _text(unit, MAX_UNIT).strip().isprintable() or not _text(unit, MAX_UNIT).strip():
+            raise unit.place.error("a unit is a short text such as mm")
+    return {key: _text(unit, MAX_UNIT).strip() for key, unit in node.entries.items()}
 
 
 def _reference(node: Node) -> dict[str, Any]:

@@ -114,6 +114,7 @@ def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expre
         title=record.title,
         reference=record.reference,
         text=_texts(effective, resolved, record, axes),
+        units=record.units,
     )
 
 

@@ -29,7 +29,7 @@ from ptmcad.answer.regionmap import (
 from ptmcad.answer.regionmap import System as Equations
 from ptmcad.errors import ExpressionError
 from ptmcad.mechanism import Model
-from ptmcad.question.slice import Axis, Count, Point, Slice
+from ptmcad.question.slice import MAX_UNIT, Axis, Count, Point, Slice
 from ptmcad.show.document.codec import (
     COUNT,
     NATURAL,
@@ -235,5 +235,6 @@ SLICE = record(
     parameters=Key(Codec(dict, Node.mapping), _expressions),
     text=named(TEXT),
     count=choice(Count),
+    units=Key(named(line(MAX_UNIT)), default={}),
     reference=Codec(dict, Node.data),
 )

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.mechanism import Kind
 from ptmcad.question.slice import Slice
+from ptmcad.show.units import unit
 from ptmcad.text.numerals import magnitude
 
-_UNITS = {Kind.LENGTH: "length", Kind.BASE: "length", Kind.STIFFNESS: "force/length", Kind.FORCE: "force"}
 _GREEK = {
     "rho": "ρ",
     "alpha": "α",
@@ -83,34 +82,54 @@ def symbol(name: str) -> str:
     return _GREEK.get(name, name)
 
 
-def unit(slice: Slice, axis: int) -> str:
-    """The unit of an axis, empty when none is known: that of the parameters which are a number times the axis."""
-    parameters = slice.model.parameters
-    exponents = (1, 0) if axis == 0 else (0, 1)
-    found = set()
-    for name, expression in slice.parameters.items():
-        if expression.is_polynomial and [term[:2] for term in expression.numerator] == [exponents]:
-            known = parameters.get(name)
-            found |= {_UNITS[known.kind]} if known is not None and known.kind in _UNITS else set()
-    return found.pop() if len(found) == 1 else ""
+def axis_name(slice: Slice, axis: int) -> str:
+    """An axis's symbol with its unit, such as ``L₂ (length)``."""
+    name, known = symbol(slice.axes[axis].name), unit(slice, axis)
+    return f"{name} ({known})" if known else name
 
 
-def dress(axes: Any, slice: Slice, x: tuple[Fraction, Fraction], y: tuple[Fraction, Fraction], small: bool) -> None:
+@dataclass(frozen=True, slots=True)
+class Dress:
+    """Sizes in points of the numbers at the ticks and of the axes' names, and the most intervals on each axis."""
+
+    ticks: float = 9
+    names: float = 11
+    intervals: tuple[int, int] = (8, 8)
+    small: bool = False
+    scale: float = 1.0
+
+
+SMALL = Dress(7, 7, (4, 4), small=True)
+
+
+def dress(
+    axes: Any, slice: Slice, x: tuple[Fraction, Fraction], y: tuple[Fraction, Fraction], how: Dress | None = None
+) -> None:
     """Give matplotlib axes their limits, ticks and names; in small ones (insets) without units."""
+    from matplotlib import rcParams
     from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
-    size = 7 if small else 9
+    how = how or Dress()
+    small = how.small
+    for spine in axes.spines.values():
+        spine.set_linewidth(how.scale * rcParams["axes.linewidth"])
     for number, (matplotlib_axis, interval) in enumerate(((axes.xaxis, x), (axes.yaxis, y))):
         scale = scale_of(*interval, digits=2 if small else 4)
         (axes.set_ylim if number else axes.set_xlim)(scale.low, scale.high)
-        matplotlib_axis.set_major_locator(MaxNLocator(nbins=4 if small else 8, steps=[1, 2, 2.5, 5, 10]))
+        matplotlib_axis.set_major_locator(MaxNLocator(nbins=how.intervals[number], steps=[1, 2, 2.5, 5, 10]))
         formatter = ScalarFormatter(useOffset=False)
         formatter.set_scientific(False)
         matplotlib_axis.set_major_formatter(formatter)
         text = scale.name(_cut(symbol(slice.axes[number].name), 10 if small else 40), 9 if small else 24)
         known = "" if small else unit(slice, number)
-        matplotlib_axis.set_label_text(f"{text} ({known})" if known else text, fontsize=size if small else size + 2)
-        axes.tick_params(axis="y" if number else "x", labelsize=size, length=2 if small else 3.5, direction="out")
+        matplotlib_axis.set_label_text(f"{text} ({known})" if known else text, fontsize=how.names)
+        axes.tick_params(
+            axis="y" if number else "x",
+            labelsize=how.ticks,
+            length=(2 if small else 3.5) * how.scale,
+            width=how.scale * rcParams["ytick.major.width" if number else "xtick.major.width"],
+            direction=rcParams["ytick.direction" if number else "xtick.direction"],
+        )
 
 
 def _cut(text: str, most: int) -> str:

@@ -5,11 +5,14 @@ nor have others of one or two unknowns with up to three maxima. Of three unknown
 Along a row of the palette the lightness falls by at least six units of CIE L* a step; the hues start from those of
 Okabe & Ito.
 
+Not guaranteed: as many for a caller's own colours, which are taken in turn for the counts of one map.
+
 Reference: Okabe & Ito, Color universal design, 2008.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ptmcad.answer.counts import Counts, MorseIndex
@@ -36,6 +39,9 @@ UNKNOWN = Fill("#ffffff")
 NONE = Fill("#ffffff", "////")
 UNDETERMINED = Fill("#8f8f8f")
 """L* = 59; the only grey, so that its lightness need not differ from all others'."""
+GREYS = ("#ffffff", "#e2e2e2", "#bcbcbc", "#979797", "#757575", "#545454")
+"""L* = 100, 90, 76, 62, 49, 36."""
+UNDETERMINED_IN_GREY = Fill("#ffffff", "xxxxxxxx")
 
 
 def fill_of(region: Region, count: Count) -> Fill:
@@ -50,6 +56,45 @@ def fill_of(region: Region, count: Count) -> Fill:
     if count is Count.TOTAL:
         return UNKNOWN if region.total is None else _of_total(region.total)
     return UNKNOWN if region.index is None else fill_of_index(region.index)
+
+
+def filler(regions: Sequence[Region], count: Count, palette: str | tuple[str, ...]) -> Callable[[Region], Fill]:
+    """The fills of one map's regions in a palette.
+
+    Parameters
+    ----------
+    palette : ``default``; ``grey`` has greys for numbers of stable equilibria, or of all, and hatches; or colours, for
+        the counts of these regions in increasing order, again with hatches where they are too few.
+    """
+    if palette == "default":
+        return lambda region: fill_of(region, count)
+    values = sorted({counted_by(region, count) for region in regions} - {(-1,)})
+    faces = GREYS if palette == "grey" else tuple(palette)
+    # greys go by the count itself, so that all grey maps agree, while the palette has enough of them
+    few = all(len(value) == 1 and value[0] < len(GREYS) for value in values)
+    steps = {value: value[0] if palette == "grey" and few else step for step, value in enumerate(values)}
+
+    def fill(region: Region) -> Fill:
+        step = steps.get(counted_by(region, count))
+        return UNKNOWN if step is None else _of(faces, step, 0)
+
+    return fill
+
+
+def counted_by(region: Region, count: Count) -> tuple[int, ...]:
+    """The count that distinguishes regions, as something to sort by; (-1,) where it is not known."""
+    value = {
+        Count.STABLE: region.stable,
+        Count.TOTAL: region.total,
+        Count.INDEX: region.index,
+        Count.ADMISSIBLE: region.admissible,
+    }[count]
+    return (-1,) if value is None else value if isinstance(value, tuple) else (value,)
+
+
+def undetermined_fill(palette: str | tuple[str, ...]) -> Fill:
+    """What is undetermined: the only grey, or among greys the only dense crosshatch on white."""
+    return UNDETERMINED_IN_GREY if palette == "grey" else UNDETERMINED
 
 
 def fill_of_counts(counts: Counts) -> Fill:

@@ -100,7 +100,7 @@ def field_figure(result: RegionMap, field: Field, boundaries: Sequence[Boundary]
     for boundary in boundaries:
         if boundary.separates:
             axes.plot(*_shares(result, boundary.points).T, color=INK, linewidth=STRONG, transform=axes.transAxes)
-    dress(axes, result.slice, view.x, view.y, small=False)
+    dress(axes, result.slice, view.x, view.y)
     return figure
 
 

@@ -19,6 +19,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Slice
 from ptmcad.show.render import regionmap
+from ptmcad.show.render.layout import GAP, LEFT, SIDE
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import spring_mark, symbol_mark
 from ptmcad.show.render.poses import (
@@ -84,7 +85,7 @@ def draw_figure(result: RegionMap, poses: Poses) -> Figure:
         chart: Any = figure.axes[0]
         width, tall = (float(side) for side in figure.get_size_inches())
         bottom = chart.get_position().y0 * tall
-        left, place = width - wide - _RIM, (regionmap.LEFT + regionmap.SIDE + regionmap.GAP, bottom + key)
+        left, place = width - wide - _RIM, (LEFT + SIDE + GAP, bottom + key)
         if len(figure.axes) > 1 or lowest - 0.3 < bottom + key:
             figure = regionmap.figure_of(result, False, _DPI, wide + _GAP + _RIM, panels + key)
             chart = figure.axes[0]

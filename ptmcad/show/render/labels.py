@@ -33,38 +33,45 @@ class Placement:
     size: float
 
 
-def place(tips: Sequence[tuple[float, float]], texts: Sequence[str], seen: Shapes, side: float) -> list[Placement]:
+def place(
+    tips: Sequence[tuple[float, float]], texts: Sequence[str], seen: Shapes, sides: tuple[float, float],
+    size: float = FONT_SIZE,
+) -> list[Placement]:  # fmt: skip
     """Places for the texts, one after the other.
 
     Parameters
     ----------
-    side : of the picture, in points.
+    sides : width and height of the picture, in points.
+    size : of the texts, in points.
     """
     image = seen.raster(96, 96) if tips else np.zeros((1, 1), dtype=np.int64)
-    points = [(x * side, y * side) for x, y in tips]
+    points = [(x * sides[0], y * sides[1]) for x, y in tips]
+    away = [distance * min(*sides, 331.2) / 331.2 for distance in _DISTANCES]
     taken: list[Box] = []
     arrows: list[tuple[tuple[float, float], tuple[float, float]]] = []
     result = []
     for number, (tip, text) in enumerate(zip(points, texts, strict=True)):
-        half = ((len(text) * _EM * FONT_SIZE) / 2 + 4, FONT_SIZE * 0.6 + 4)
+        half = ((len(text) * _EM * size) / 2 + 4, size * 0.6 + 4)
         best, label = float("inf"), tip
-        for distance in _DISTANCES:
+        for distance in away:
             for k in range(_DIRECTIONS):
                 angle = 2 * pi * (k + 0.5) / _DIRECTIONS
                 x, y = tip[0] + (half[0] + distance) * cos(angle), tip[1] + (half[1] + distance) * sin(angle)
                 box = (x - half[0], y - half[1], x + half[0], y + half[1])
                 cost = float(distance)
-                cost += 1e6 * sum(max(0.0, e) for e in (6 - box[0], 6 - box[1], box[2] - side + 6, box[3] - side + 6))
+                cost += 1e6 * sum(
+                    max(0.0, e) for e in (6 - box[0], 6 - box[1], box[2] - sides[0] + 6, box[3] - sides[1] + 6)
+                )
                 cost += 1e4 * sum(_overlap(box, other) for other in taken)
                 cost += 1e3 * sum(_near(box, p) for j, p in enumerate(points) if j != number)
                 cost += 1e3 * sum(_crosses(a, b, tip, (x, y)) for a, b in arrows)
                 cost += 1e3 * sum(_meets(box, a, b) for a, b in arrows)
-                cost += 25 * _variety(image, box, side)
+                cost += 25 * _variety(image, box, sides)
                 if cost < best:
                     best, label = cost, (x, y)
         taken.append((label[0] - half[0], label[1] - half[1], label[0] + half[0], label[1] + half[1]))
         arrows.append((tip, label))
-        result.append(Placement(tips[number], (label[0] / side, label[1] / side), FONT_SIZE))
+        result.append(Placement(tips[number], (label[0] / sides[0], label[1] / sides[1]), size))
     return result
 
 
@@ -89,9 +96,9 @@ def _crosses(a: tuple[float, float], b: tuple[float, float], c: tuple[float, flo
     return side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
 
 
-def _variety(image: np.ndarray[tuple[int, int], np.dtype[np.int64]], box: Box, side: float) -> int:
+def _variety(image: np.ndarray[tuple[int, int], np.dtype[np.int64]], box: Box, sides: tuple[float, float]) -> int:
     """How many other regions than one the box covers."""
     rows, columns = image.shape
-    left, right = (int(min(max(v / side, 0.0), 0.999) * columns) for v in (box[0], box[2]))
-    bottom, top = (int(min(max(v / side, 0.0), 0.999) * rows) for v in (box[1], box[3]))
+    left, right = (int(min(max(v / sides[0], 0.0), 0.999) * columns) for v in (box[0], box[2]))
+    bottom, top = (int(min(max(v / sides[1], 0.0), 0.999) * rows) for v in (box[1], box[3]))
     return len(np.unique(image[bottom : top + 1, left : right + 1])) - 1

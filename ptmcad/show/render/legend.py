@@ -1,12 +1,12 @@
 """The legend: what each colour and each line means, with the regions of every count and their areas.
 
-Guarantee: every digit of an area is certified (`ptmcad.show.table.certified_digits`).
+Guarantee: every digit of an area is certified, and the same as in the table (`ptmcad.show.table.area_text`).
 """
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -14,8 +14,8 @@ from typing import Any
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import counted, noun
 from ptmcad.question.slice import Count, Slice
-from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
-from ptmcad.show.table import certified_digits, count_text, index_heading
+from ptmcad.show.render.colours import UNDETERMINED, Fill, counted_by, fill_of
+from ptmcad.show.table import area_by_count, area_text, count_text, index_heading
 from ptmcad.text.numerals import decimal
 
 STRONG, THIN, INK = 1.3, 0.5, "#111111"
@@ -25,7 +25,10 @@ RIM, RIM_INK = 0.35, "#404040"
 
 LINE, SWATCH, COLUMNS = 0.17, 0.26, 36
 """Inches between lines, width of a swatch, characters in a line."""
-_MAX_AREAS = 16
+_MAX_AREAS, _MAX_TOTALS = 4, 3
+
+FILL = 0.14
+"""Height of a swatch."""
 
 Mark = Callable[[Any, float, float], None]
 """Draws into a figure, from a place in inches (left, middle) to the right, no wider than a swatch."""
@@ -33,14 +36,57 @@ Mark = Callable[[Any, float, float], None]
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """Some lines of text beside a fill, a line's width, a dot, a drawing of its own or nothing."""
+    """Some lines of text beside a fill, a line (`STRONG` or `THIN`), a dot, a drawing of its own or nothing.
+
+    ``heads`` is the number of lines, from the first, in the larger type.
+    """
 
     lines: tuple[str, ...]
     mark: Fill | float | str | Mark | None = None
     strong: bool = False
+    heads: int = 1
 
 
-def _head(slice: Slice) -> tuple[str, ...]:
+@dataclass(frozen=True, slots=True)
+class Type:
+    """How a legend is set: sizes in points, the rest against that of a picture in 9 points."""
+
+    head: float = 9
+    detail: float = 8
+    scale: float = 1.0
+    strong: float = STRONG
+    thin: float = THIN
+    thin_lines: str = "solid"
+
+    @property
+    def line(self) -> float:
+        """Inches between lines."""
+        return LINE * self.scale
+
+    @property
+    def indent(self) -> float:
+        """Inches from a mark's left to its text."""
+        return SWATCH * self.scale + 0.1 * self.scale
+
+    def height(self, legend: Sequence[Entry]) -> float:
+        """Of a legend, in inches."""
+        return sum(self.entry_height(entry) for entry in legend)
+
+    def entry_height(self, entry: Entry) -> float:
+        """Of an entry, in inches, with the space below."""
+        return self.line * len(entry.lines) + 0.07 * self.scale
+
+
+@dataclass(frozen=True, slots=True)
+class Wording:
+    """What a legend says: the fill of a region, that of what is undetermined, and whether areas are told."""
+
+    fill: Callable[[Region], Fill]
+    undetermined: Fill = UNDETERMINED
+    areas: bool = True
+
+
+def head_of(slice: Slice) -> tuple[str, ...]:
     """What is counted."""
     many = noun(slice.model)
     return {
@@ -51,7 +97,9 @@ def _head(slice: Slice) -> tuple[str, ...]:
     }[slice.count]
 
 
-def entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> tuple[Entry, ...]:
+def entries(
+    result: RegionMap, thin: bool, samples: bool, hidden: int, wording: Wording | None = None
+) -> tuple[Entry, ...]:
     """The legend's entries, from above.
 
     Parameters
@@ -59,21 +107,23 @@ def entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> tuple[
     thin : whether the picture shows walls that separate nothing.
     hidden : number of regions that are too thin to be seen and are shown by no inset.
     """
-    return tuple(_entries(result, thin, samples, hidden))
+    count = result.slice.count
+    return tuple(_entries(result, thin, samples, hidden, wording or Wording(lambda region: fill_of(region, count))))
 
 
-def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> Iterator[Entry]:
+def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording: Wording) -> Iterator[Entry]:
     count = result.slice.count
     groups: dict[str, list[Region]] = {}
-    for region in sorted(result.regions, key=lambda r: (_key(r, count), -r.area[0])):
+    for region in sorted(result.regions, key=lambda r: (counted_by(r, count), -r.area[0])):
         groups.setdefault(count_text(region, count), []).append(region)
-    yield Entry(_head(result.slice), strong=True)
+    yield Entry(head_of(result.slice), strong=True)
     for text, regions in groups.items():
-        yield Entry((_with_total(text, regions, result.slice), *_areas(regions)), fill_of(regions[0], count))
+        areas = _areas(result, text, regions) if wording.areas else []
+        yield Entry((_with_total(text, regions, result), *areas), wording.fill(regions[0]))
     yield Entry(())
     if result.cover is not None and result.undetermined:
         note = ("the count may change within it",) if len(result.regions) > 1 else ()
-        yield Entry((f"undetermined {percent(result.undetermined)}", *note), UNDETERMINED)
+        yield Entry((f"undetermined {percent(result.undetermined)}", *note), wording.undetermined)
     elif len(result.regions) > 1:
         yield Entry(("the count changes",), STRONG)
     if thin:
@@ -85,87 +135,88 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int) -> Itera
         yield Entry((f"{hidden} more regions are too thin to be seen",))
 
 
-def _key(region: Region, count: Count) -> tuple[int, ...]:
-    value = {
-        Count.STABLE: region.stable,
-        Count.TOTAL: region.total,
-        Count.INDEX: region.index,
-        Count.ADMISSIBLE: region.admissible,
-    }[count]
-    return (-1,) if value is None else value if isinstance(value, tuple) else (value,)
-
-
 def percent(share: Fraction) -> str:
     """A share of the window in percent: two digits, rounded up."""
     return f"{decimal(100 * share, up=True, digits=2)} %"
 
 
-def _with_total(text: str, regions: list[Region], slice: Slice) -> str:
-    totals = {r.total for r in regions}
-    total = totals.pop() if len(totals) == 1 else None
-    if slice.count is Count.TOTAL or total is None:
+def _with_total(text: str, regions: list[Region], result: RegionMap) -> str:
+    """The count, and of how many solutions in all; where these differ within it, of which numbers."""
+    slice = result.slice
+    totals = {result.cells[n].total for region in regions for n in region.cells}
+    known = sorted(total for total in totals if total is not None)
+    if slice.count is Count.TOTAL or not known or len(known) < len(totals) or len(known) > _MAX_TOTALS:
         return text
-    return f"{text}   {'' if slice.count is Count.INDEX else 'of '}{counted(slice.model, total)}"
+    numbers = " or ".join(filter(None, (", ".join(map(str, known[:-1])), counted(slice.model, known[-1]))))
+    return f"{text}   {'' if slice.count is Count.INDEX else 'of '}{numbers}"
 
 
-def _areas(regions: list[Region]) -> list[str]:
-    areas = [certified_digits(r.area, 7) for r in regions[:_MAX_AREAS]]
-    if len(regions) == 1:
-        return [f"area {areas[0]}"]
-    rest = regions[_MAX_AREAS:]
-    if rest:
-        together = (sum((r.area[0] for r in rest), Fraction(0)), sum((r.area[1] for r in rest), Fraction(0)))
-        areas.append(f"{len(rest)} more: {certified_digits(together, 7)} together")
-    comma = "; " if any(" to " in area for area in areas) else ", "
-    return textwrap.wrap(f"{len(regions)} regions, areas " + comma.join(areas), COLUMNS)
+def _areas(result: RegionMap, text: str, regions: list[Region]) -> list[str]:
+    """The areas of the regions of a count, or what they have in all where they are many or their bounds are apart."""
+    number = len(regions)
+    if result.cover is None and 1 < number <= _MAX_AREAS:
+        areas = ", ".join(area_text(result, region.area) for region in regions)
+        return textwrap.wrap(f"{number} regions, areas {areas}", COLUMNS)
+    together = area_text(result, area_by_count(result)[text])
+    return textwrap.wrap(f"area {together}" if number == 1 else f"{number} regions, in all {together}", COLUMNS)
 
 
 def height(legend: tuple[Entry, ...]) -> float:
-    """In inches."""
-    return sum(_entry_height(entry) for entry in legend)
+    """In inches, at the sizes of `Type`."""
+    return Type().height(legend)
 
 
-def _entry_height(entry: Entry) -> float:
-    return LINE * len(entry.lines) + 0.07
-
-
-def draw_legend(figure: Any, legend: tuple[Entry, ...], left: float, top: float) -> None:
+def draw_legend(figure: Any, legend: Sequence[Entry], left: float, top: float, type: Type | None = None) -> None:
     """Draw the entries from the place given in inches downwards."""
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Rectangle
-
+    type = type or Type()
     inches = figure.dpi_scale_trans
     for entry in legend:
-        middle = top - LINE / 2
-        match entry.mark:
-            case Fill(face, hatch):
-                figure.add_artist(
-                    Rectangle(
-                        (left, middle - 0.07), SWATCH, 0.14, transform=inches, facecolor=face, hatch=hatch or None,
-                        edgecolor=INK, linewidth=0.4,
-                    )
-                )  # fmt: skip
-            case float(width):
-                figure.add_artist(
-                    Line2D((left, left + SWATCH), (middle, middle), transform=inches, color=INK, linewidth=width)
-                )
-            case str():
-                figure.add_artist(
-                    Line2D((left + SWATCH / 2,), (middle,), transform=inches, color=INK, marker="o", markersize=2.5)
-                )
-            case None:
-                pass
-            case mark:
-                mark(figure, left, middle)
+        middle = top - type.line / 2
+        _draw_mark(figure, entry.mark, left, middle, type)
         for k, line in enumerate(entry.lines):
             figure.text(
-                left + (0 if entry.mark is None else SWATCH + 0.1),
-                middle - k * LINE,
+                left + (0 if entry.mark is None else type.indent),
+                middle - k * type.line,
                 line,
                 transform=inches,
                 va="center_baseline",
-                fontsize=9 if k == 0 else 8,
-                color=INK if k == 0 else "#444444",
+                fontsize=type.head if k < entry.heads else type.detail,
+                color=INK if k < entry.heads else "#444444",
                 fontweight="bold" if entry.strong else "normal",
             )
-        top -= _entry_height(entry)
+        top -= type.entry_height(entry)
+
+
+def _draw_mark(figure: Any, mark: Fill | float | str | Mark | None, left: float, middle: float, type: Type) -> None:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Rectangle
+
+    kind: Any
+    inches, swatch, tall = figure.dpi_scale_trans, SWATCH * type.scale, FILL * type.scale
+    match mark:
+        case Fill(face, hatch):
+            figure.add_artist(
+                Rectangle(
+                    (left, middle - tall / 2), swatch, tall, transform=inches, facecolor=face, hatch=hatch or None,
+                    edgecolor=INK, linewidth=0.4,
+                )
+            )  # fmt: skip
+        case float(width):
+            width, kind = (type.strong, "solid") if width == STRONG else (type.thin, type.thin_lines)
+            figure.add_artist(
+                Line2D(
+                    (left, left + swatch), (middle, middle), transform=inches, color=INK, linewidth=width,
+                    linestyle=kind,
+                )
+            )  # fmt: skip
+        case str():
+            figure.add_artist(
+                Line2D(
+                    (left + swatch / 2,), (middle,), transform=inches, color=INK, marker="o",
+                    markersize=2.5 * type.scale,
+                )
+            )  # fmt: skip
+        case None:
+            pass
+        case draw:
+            draw(figure, left, middle)

@@ -1,4 +1,5 @@
-"""Printing: a figure as the content of a PNG, SVG or PDF file, for screen readers with a title and a description.
+"""Printing: a figure as the content of a PNG, SVG, PDF, EPS or PGF file, for screen readers with a title and a
+description where the format has room for them.
 
 Guarantee: the same figure gives the same bytes with the same matplotlib, whatever the user's settings, the date and
 the machine. Global state of matplotlib is neither used nor changed.
@@ -6,6 +7,7 @@ the machine. Global state of matplotlib is neither used nor changed.
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,7 +19,9 @@ from typing import Any
 import matplotlib
 from matplotlib.figure import Figure
 
-FORMATS = ("png", "svg", "pdf")
+from ptmcad.show.style import DEFAULT, Style
+
+FORMATS = ("png", "svg", "pdf", "eps", "pgf")
 
 _SETTINGS: dict[str, Any] = {
     "font.family": ["DejaVu Sans"],  # comes with matplotlib
@@ -29,18 +33,30 @@ _SETTINGS: dict[str, Any] = {
     "path.simplify": False,
     "path.snap": True,
     "savefig.bbox": None,
-    "svg.fonttype": "path",
+    "svg.fonttype": "none",  # text that can be searched and copied
     "svg.hashsalt": "ptmcad",
     "svg.image_inline": True,
     "pdf.compression": 6,
+    "pdf.fonttype": 42,  # TrueType, which journals ask for and editors of drawings read
+    "ps.fonttype": 42,
 }
+_CHANGING = re.compile(rb"^%%CreationDate:.*\n", re.MULTILINE)
+_TEXT_STYLE = re.compile(r"""(?<=<text style=")[^"<>]*'DejaVu Sans'""")
+_SIMILAR = "'Bitstream Vera Sans', Verdana, Geneva, sans-serif"
+"""Fonts about as wide as the one that SVG text was measured in, for where that is not installed."""
 _KEPT = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
 
 
 @contextmanager
-def settings() -> Iterator[None]:
-    """Matplotlib's own defaults and the project's fonts, not a user's matplotlibrc; for drawing and for printing."""
-    own: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS
+def settings(style: Style = DEFAULT) -> Iterator[None]:
+    """Matplotlib's own defaults and the project's fonts, not a user's matplotlibrc; for drawing and for printing.
+
+    A style's font comes first; letters that it lacks are taken from the one that comes with matplotlib. Settings of a
+    user's own count where the style has them.
+    """
+    own: Any = {k: v for k, v in matplotlib.rcParamsDefault.items() if k not in _KEPT} | _SETTINGS | dict(style.mpl)
+    if style.font_family:
+        own["font.family"] = [*style.font_family, *_SETTINGS["font.family"]]
     with matplotlib.rc_context(own), warnings.catch_warnings():
         # a title in a script that the font lacks is shown with boxes; SVG's title and the JSON keep it
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
@@ -66,7 +82,7 @@ def save(figure: Figure, path: Path, *, dpi: int = 150) -> None:
 
     Parameters
     ----------
-    path : its suffix gives the format: png, svg or pdf.
+    path : its suffix gives the format, one of `FORMATS`.
     dpi : resolution of a PNG.
 
     Raises
@@ -95,7 +111,12 @@ def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str)
         canvas.print_svg(text, metadata={"Date": None, "Creator": "ptmcad", "Title": title})
         head = f"<title>{escape(title, quote=False)}</title>"
         described = f"{head}\n <desc>{escape(description, quote=False)}</desc>"
-        return text.getvalue().replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
+        content = _TEXT_STYLE.sub(rf"\g<0>, {_SIMILAR}", text.getvalue())
+        return content.replace(head, described, 1).replace("<svg ", '<svg role="img" ', 1).encode()
+    if suffix == "pgf":
+        from ptmcad.show.render.pgf import pgf_text
+
+        return pgf_text(figure, title).encode()
     data = BytesIO()
     if suffix == "pdf":
         from matplotlib.backends.backend_pdf import FigureCanvasPdf
@@ -103,9 +124,20 @@ def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str)
         canvas = FigureCanvasPdf(figure)
         metadata = {"CreationDate": None, "Creator": "ptmcad", "Producer": None, "Title": title}
         canvas.print_pdf(data, metadata=metadata)
+    elif suffix == "eps":
+        from matplotlib.backends.backend_ps import FigureCanvasPS
+
+        canvas = FigureCanvasPS(figure)
+        canvas.print_eps(data, metadata={"Creator": "ptmcad", "Title": _ascii(title)})
+        return _CHANGING.sub(b"", data.getvalue())
     else:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 
         canvas = FigureCanvasAgg(figure)
         canvas.print_png(data, metadata={"Software": None, "Title": title})
     return data.getvalue()
+
+
+def _ascii(text: str) -> str:
+    """For a comment of PostScript."""
+    return text.encode("ascii", "replace").decode()

@@ -28,10 +28,11 @@ from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.ranges.certified import widest_text
 from ptmcad.show.ranges.numbers import end_text, width_text
 from ptmcad.show.ranges.table import maximum_text, operation_name, working_text
-from ptmcad.show.render.axes import scale_of, symbol, unit
+from ptmcad.show.render.axes import scale_of, symbol
 from ptmcad.show.render.colours import fill_of_counts, fill_of_index
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.printing import settings
+from ptmcad.show.units import unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
 

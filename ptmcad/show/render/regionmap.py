@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,38 +21,53 @@ from matplotlib.figure import Figure
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import noun
 from ptmcad.show.render.axes import dress
-from ptmcad.show.render.colours import UNDETERMINED, fill_of
+from ptmcad.show.render.fitting import Parts, fitted
 from ptmcad.show.render.labels import Placement, place
-from ptmcad.show.render.legend import INK, RIM, RIM_INK, STRONG, THIN, draw_legend, entries, height
+from ptmcad.show.render.layout import SIDE, Layout, flowing
+from ptmcad.show.render.legend import (
+    INK,
+    STRONG,
+    THIN,
+    Entry,
+    Type,
+    Wording,
+    draw_legend,
+    entries,
+)
+from ptmcad.show.render.overlay import Overlay, draw_overlay, overlay_entries
+from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import printed, settings, suffix_of
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.slivers import Sliver, Zoom, thin_regions, zooms
+from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.table import certified_digits, count_text
+from ptmcad.show.style import DEFAULT, Place, Style
+from ptmcad.show.table import area_text, count_text
 
 RESOLVED = 42
 """What is thinner than three pixels of this many to the inch (5 points) is taken for hidden by the walls around it."""
-
-SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15
-"""In inches: the map's side, the space at its left and below, a column at its right, the space before, the rim."""
-INSET_WIDTH, INSET_HEIGHT, INSET_LEFT, INSET_BELOW, INSET_ABOVE = 1.75, 1.2, 0.62, 0.48, 0.42
-BLOCK = INSET_ABOVE + INSET_HEIGHT + INSET_BELOW
-TITLE_LINE, TITLE_COLUMNS, TITLE_LINES = 0.22, 80, 3
+TITLE_COLUMNS, TITLE_LINES = 80, 3
 
 
-def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150) -> None:
+def draw(
+    result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150, style: Style = DEFAULT,
+    overlay: Overlay = (),
+) -> None:  # fmt: skip
     """Write the picture of a map.
 
     Parameters
     ----------
-    path : its suffix gives the format: png, svg or pdf.
+    path : its suffix gives the format, one of `ptmcad.show.render.printing.FORMATS`.
     samples : whether to draw the cells' sample points.
     dpi : resolution of a PNG; slivers are what is not seen at this resolution, in every format.
+    style : what it looks like, and its size.
+    overlay : further points.
 
     Raises
     ------
     ValueError
         For another suffix.
+    ConfigError
+        When it does not fit into the style's size.
     OSError
         When the file cannot be written.
 
@@ -60,68 +76,179 @@ def draw(result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150
     No region is invisible.
     """
     suffix = suffix_of(path)
-    with settings():
-        data = printed(figure_of(result, samples, dpi), suffix, dpi, " ".join(_title(result)), description(result))
+    with settings(style):
+        figure = figure_of(result, samples, dpi, style=style, overlay=overlay)
+        data = printed(figure, suffix, dpi, " ".join(_title(result)), description(result))
     path.write_bytes(data)
 
 
-def figure_of(result: RegionMap, samples: bool, dpi: int, beside: float = 0.0, tallest: float = 0.0) -> Figure:
-    """The picture, with so many inches left free at its right and at least so tall there."""
-    whole = shapes(result)
-    thin = thin_regions(whole, round(SIDE * min(dpi, RESOLVED)))
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """What of a map is to be drawn: its shapes, and the views of the regions that its resolution hides.
+
+    ``thin_lines`` says whether curves are seen at which the count does not change.
+    """
+
+    whole: Shapes
+    thin: tuple[int, ...] = ()
+    views: tuple[Zoom, ...] = ()
+    thin_lines: bool = False
+
+    def without_unstable(self, sides: tuple[float, float]) -> _Seen:
+        """The same but for views of parts in which unstable solutions differ, in a picture with sides in points."""
+        views = tuple(zoom for zoom in self.views if all(sliver.cell is None for sliver in zoom.slivers))
+        if len(views) == len(self.views):
+            return self
+        return replace(self, views=views, thin_lines=seen_thin_walls(self.whole, sides))
+
+    @property
+    def hidden(self) -> int:
+        """The number of regions that nothing shows."""
+        return len(self.thin) - sum(sliver.cell is None for sliver in self.marked)
+
+    @property
+    def marked(self) -> list[Sliver]:
+        return [sliver for zoom in self.views for sliver in zoom.slivers]
+
+
+def _seen(whole: Shapes, sides: tuple[float, float], dpi: int, earlier: _Seen | None = None) -> _Seen:
+    """What is seen of a map with sides in inches."""
+    pixels = round(min(sides) * min(dpi, RESOLVED))
+    thin = thin_regions(whole, pixels)
+    if earlier is not None and earlier.thin == thin:
+        return earlier
     views = zooms(whole, thin)
-    marked = [sliver for zoom in views for sliver in zoom.slivers]
-    legend = entries(
-        result,
-        thin=any(not separates for _, separates, _ in whole.walls()),
-        samples=samples,
-        hidden=len(thin) - len(marked),
-    )
-    title = _title(result)
+    unstable = unstable_zooms(whole, pixels, MAX_ZOOMS - len(views))
+    lines = bool(unstable) or seen_thin_walls(whole, (72 * sides[0], 72 * sides[1]))
+    return _Seen(whole, thin, (*views, *unstable), lines)
 
-    below = height(legend) + 0.1
-    tall = max(SIDE + BOTTOM, below + 0.1, BLOCK, tallest)
-    places = _places(len(views), below, tall)
-    columns = 1 + max((column for column, _ in places), default=0)
-    size = (LEFT + SIDE + GAP + columns * COLUMN + MARGIN + beside, tall + TITLE_LINE * len(title) + 2 * MARGIN)
-    top = tall
 
-    figure = Figure(figsize=size, dpi=dpi, facecolor="white")
-    inches = figure.dpi_scale_trans
-    for k, line in enumerate(title):
-        figure.text(LEFT, size[1] - MARGIN - TITLE_LINE * (k + 0.5), line, transform=inches, fontsize=11, va="center")
-    axes = _axes(figure, (LEFT, top - SIDE, SIDE, SIDE), "map")
-    _paint(axes, whole, "")
-    if samples:
-        points = np.array([whole.view.approximate_position(c.sample) for c in result.cells])
-        axes.plot(*points.T, "o", markersize=2.5, color=INK, transform=axes.transAxes, gid="samples", clip_on=False)
-    dress(axes, result.slice, whole.view.x, whole.view.y, small=False)
-    draw_legend(figure, legend, LEFT + SIDE + GAP, top)
-    names = {s.region: _name_of(result, s.region, k if len(marked) > 1 else None) for k, s in enumerate(marked)}
-    for zoom, (column, down) in zip(views, places, strict=True):
-        corner = (LEFT + SIDE + GAP + column * COLUMN + INSET_LEFT, top - down - INSET_ABOVE - INSET_HEIGHT)
-        _inset(figure, zoom, [names[s.region] for s in zoom.slivers], corner)
-    _mark(axes, whole, marked, list(names.values()))
+def figure_of(
+    result: RegionMap, samples: bool, dpi: int, beside: float = 0.0, tallest: float = 0.0, style: Style = DEFAULT,
+    overlay: Overlay = (),
+) -> Figure:  # fmt: skip
+    """The picture, to be called within `settings`.
+
+    Parameters
+    ----------
+    beside, tallest : so many inches are left free at the right, and it is at least so tall there; in a picture that
+        grows with what it shows.
+    """
+    whole = shapes(result)
+    if style.flows:
+        seen = _seen(whole, (SIDE, SIDE), dpi)
+        type = Type(strong=style.strong, thin=style.strong * THIN / STRONG, thin_lines=style.thin_lines)
+        legend = _legend(result, seen, samples, style, overlay)[0]
+        layout = flowing(_title_lines(result, style), legend, type, len(seen.views), beside, tallest)
+    else:
+        seen, layout = fit(result, whole, samples, dpi, style, overlay)
+    figure = Figure(figsize=layout.size, dpi=dpi, facecolor="white")
+    draw_parts(figure, seen, layout, style, samples, overlay)
     return figure
 
 
-def _places(number: int, below: float, tall: float) -> list[tuple[int, float]]:
-    """Columns and distances from the top for insets: the first ones go below the legend, others to further columns."""
-    first = int((tall - below) // BLOCK)
-    places = [(0, below + k * BLOCK) for k in range(first)]
-    per_column = int(tall // BLOCK)
-    places += [(1 + k // per_column, k % per_column * BLOCK) for k in range(max(0, number - first))]
-    return places[:number]
+def fit(
+    result: RegionMap, whole: Shapes, samples: bool, dpi: int, style: Style, overlay: Overlay = ()
+) -> tuple[_Seen, Layout]:
+    """What is to be drawn on a page of a given size, and where.
+
+    What is thin follows from the map's size, which follows from what has to be told about thin regions.
+    """
+    wide, tall = style.size or (8.4, 5.7)
+    seen, tries = _seen(whole, (wide / 2, tall / 2), dpi), 3
+    while True:
+        parts = Parts(
+            result.slice,
+            whole_title(result) if style.title is None else style.title,
+            _legend(result, seen, samples, style, overlay),
+            (whole.view, *(zoom.outline.view for zoom in seen.views)),
+        )
+        layout = fitted(parts, style, style.size or _natural(style, parts))
+        if seen.views and not layout.insets:
+            # an arrow to what no inset shows helps where a count differs, and where none does it points at nothing
+            bare = seen.without_unstable((72 * layout.chart[2], 72 * layout.chart[3]))
+            if bare is not seen:
+                seen, tries = bare, 1
+                continue
+        again = _seen(whole, (layout.chart[2], layout.chart[3]), dpi, seen)
+        tries -= 1
+        if again is seen or not tries:
+            return seen, layout
+        seen = again
+
+
+def _natural(style: Style, parts: Parts) -> tuple[float, float]:
+    """A size for a map as large as in a picture that grows with what it shows, in proportion to the text."""
+    scale = style.base_font / 9
+    lines = sum(len(entry.lines) for entry in parts.legend[0])
+    wide = {Place.RIGHT: 8.4, None: 8.4, Place.BELOW: 6.0, Place.NONE: 5.7}[style.legend]
+    tall = 5.7 + (0.1 * lines if style.legend is Place.BELOW else 0.0)
+    return wide * scale, tall * scale
+
+
+def _legend(
+    result: RegionMap, seen: _Seen, samples: bool, style: Style, overlay: Overlay = ()
+) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
+    """The legend with areas and without."""
+    if style.legend is Place.NONE:
+        return (), ()
+    paint = paint_of(result, style)
+    with_areas, without = (
+        entries(result, seen.thin_lines, samples, seen.hidden, Wording(paint.fill, paint.undetermined, areas))
+        for areas in (True, False)
+    )
+    further = overlay_entries(overlay)
+    return (*with_areas, *further), (*without, *further)
+
+
+def draw_parts(figure: Figure, seen: _Seen, layout: Layout, style: Style, samples: bool, overlay: Overlay = ()) -> Any:
+    """Everything in its place; the map's axes."""
+    result, inches, paint = seen.whole.result, figure.dpi_scale_trans, paint_of(seen.whole.result, style)
+    left, middle = layout.title_at
+    for k, line in enumerate(layout.title):
+        at = middle - layout.title_line * k
+        figure.text(left, at, line, transform=inches, fontsize=layout.texts.title, va="center")
+    axes = _axes(figure, layout.chart, "map")
+    paint_map(axes, seen.whole, "", paint)
+    if samples:
+        points = np.array([seen.whole.view.approximate_position(c.sample) for c in result.cells])
+        axes.plot(
+            *points.T, "o", markersize=2.5 * paint.scale, color=INK, transform=axes.transAxes, gid="samples",
+            clip_on=False,
+        )  # fmt: skip
+    dress(axes, result.slice, seen.whole.view.x, seen.whole.view.y, layout.axes)
+    for corner, part in layout.legend:
+        draw_legend(figure, part, *corner, layout.type)
+    marked = seen.marked
+    names = [_name_of(result, s, k if len(marked) > 1 else None) for k, s in enumerate(marked)]
+    rest = iter(names)
+    for zoom, box in zip(seen.views, layout.insets, strict=False):
+        _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
+    _mark(axes, seen, names, layout, paint)
+    draw_overlay(axes, seen.whole.view, overlay, paint.scale, layout.texts.arrow)
+    return axes
+
+
+def whole_title(result: RegionMap) -> str:
+    return "".join(c if c.isprintable() else " " for c in result.slice.heading)
 
 
 def _title(result: RegionMap) -> list[str]:
-    text = "".join(c if c.isprintable() else " " for c in result.slice.heading)
-    return textwrap.wrap(text, TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …") or [""]
+    return textwrap.wrap(whole_title(result), TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …") or [""]
 
 
-def _name_of(result: RegionMap, region: int, number: int | None) -> str:
+def _title_lines(result: RegionMap, style: Style) -> list[str]:
+    """Lines over a picture that grows with what it shows."""
+    if style.title is None:
+        return _title(result)
+    return textwrap.wrap(style.title, TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …")
+
+
+def _name_of(result: RegionMap, sliver: Sliver, number: int | None) -> str:
     """A sliver's count, after a letter when there are several."""
-    text = count_text(result.regions[region], result.slice.count)
+    text = count_text(result.regions[sliver.region], result.slice.count)
+    if sliver.cell is not None:
+        text = f"{text} of {result.cells[sliver.cell].total}"
     if number is None:
         return text
     letters = ""
@@ -139,79 +266,39 @@ def _axes(figure: Figure, box: tuple[float, float, float, float], gid: str) -> A
     return axes
 
 
-def _paint(axes: Any, seen: Shapes, prefix: str) -> None:
-    """Fill the regions and draw the walls."""
-    from matplotlib.collections import LineCollection
-    from matplotlib.patches import PathPatch, Rectangle
-    from matplotlib.path import Path as Curve
-
-    result = seen.result
-    if result.cover is not None:
-        axes.add_artist(
-            Rectangle(
-                (0, 0), 1, 1, transform=axes.transAxes, facecolor=UNDETERMINED.face, linewidth=0, snap=False,
-                gid=f"{prefix}undetermined",
-            )
-        )  # fmt: skip
-    for number, region in enumerate(result.regions):
-        polygons = [Curve(p, closed=False) for p in seen.polygons(number)]
-        if not polygons:
-            continue
-        fill = fill_of(region, result.slice.count)
-        # one path for all parts: where two of them share an edge, their coverage adds up and no seam is left
-        axes.add_artist(
-            PathPatch(
-                Curve.make_compound_path(*polygons), transform=axes.transAxes, facecolor=fill.face, edgecolor=INK,
-                hatch=fill.hatch or None, linewidth=0, snap=False, gid=f"{prefix}region-{number}",
-            )
-        )  # fmt: skip
-    edges = list(seen.edges())
-    if edges:
-        axes.add_artist(
-            LineCollection(
-                edges, transform=axes.transAxes, colors=RIM_INK, linewidths=RIM, joinstyle="round", zorder=2,
-                gid=f"{prefix}edges",
-            )
-        )  # fmt: skip
-    lines: dict[tuple[bool, int], list[Any]] = {}
-    for component, separates, line in seen.walls():
-        lines.setdefault((separates, component), []).append(line)
-    for (separates, component), parts in sorted(lines.items()):
-        axes.add_artist(
-            LineCollection(
-                parts, transform=axes.transAxes, colors=INK, linewidths=STRONG if separates else THIN,
-                capstyle="round", joinstyle="round", zorder=3 if separates else 2,
-                gid=f"{prefix}curve-{component}" + ("" if separates else "-thin"),
-            )
-        )  # fmt: skip
-
-
-def _inset(figure: Figure, zoom: Zoom, names: Sequence[str], corner: tuple[float, float]) -> None:
+def _inset(
+    figure: Figure, zoom: Zoom, names: Sequence[str], box: tuple[float, float, float, float], layout: Layout,
+    paint: Paint,
+) -> None:  # fmt: skip
     """Axes with the zoomed view of one or more slivers."""
     result = zoom.outline.result
     number = zoom.slivers[0].region
-    axes = _axes(figure, (*corner, INSET_WIDTH, INSET_HEIGHT), f"sliver-{number}")
-    _paint(axes, zoom.outline, f"sliver-{number}-")
-    dress(axes, result.slice, zoom.outline.view.x, zoom.outline.view.y, small=True)
-    if len(names) == 1:
-        title = f"{names[0]}\narea {certified_digits(result.regions[number].area, 4)}, zoomed"
+    axes = _axes(figure, box, f"sliver-{number}")
+    paint_map(axes, zoom.outline, f"sliver-{number}-", paint)
+    dress(axes, result.slice, zoom.outline.view.x, zoom.outline.view.y, layout.inset_axes)
+    if any(sliver.cell is not None for sliver in zoom.slivers):
+        title = f"{', '.join(names)}\nunstable ones differ, zoomed"
+    elif len(names) == 1:
+        title = f"{names[0]}\narea {area_text(result, result.regions[number].area)}, zoomed"
     else:
         title = textwrap.shorten(", ".join(names), 34, placeholder=" …") + "\nzoomed"
-    axes.set_title(title, fontsize=7.5, loc="left", pad=3)
+    axes.set_title(title, fontsize=layout.texts.inset, loc="left", pad=3)
 
 
-def _mark(axes: Any, whole: Shapes, thin: Sequence[Sliver], names: Sequence[str]) -> None:
+def _mark(axes: Any, seen: _Seen, names: Sequence[str], layout: Layout, paint: Paint) -> None:
     """An arrow to every sliver, labels apart from each other."""
-    tips = [whole.view.approximate_position(s.at) for s in thin]
-    marks: list[Placement] = place(tips, names, whole, SIDE * 72)
-    for sliver, mark, name in zip(thin, marks, names, strict=True):
+    tips = [seen.whole.view.approximate_position(s.at) for s in seen.marked]
+    sides = (layout.chart[2] * 72, layout.chart[3] * 72)
+    marks: list[Placement] = place(tips, names, seen.whole, sides, layout.texts.arrow)
+    for sliver, mark, name in zip(seen.marked, marks, names, strict=True):
         axes.annotate(
             name, xy=mark.tip, xytext=mark.label, xycoords="axes fraction", textcoords="axes fraction",
             ha="center", va="center", fontsize=mark.size, color=INK, zorder=6, gid=f"arrow-{sliver.region}",
             annotation_clip=False,
             bbox={"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": INK, "linewidth": 0.5},
             arrowprops={
-                "arrowstyle": "-|>", "color": INK, "linewidth": 0.9, "mutation_scale": 8, "shrinkA": 0, "shrinkB": 0,
+                "arrowstyle": "-|>", "color": INK, "linewidth": 0.9 * paint.scale, "mutation_scale": 8 * paint.scale,
+                "shrinkA": 0, "shrinkB": 0,
             },
         )  # fmt: skip
 
@@ -220,7 +307,7 @@ def description(result: RegionMap) -> str:
     """What the picture shows, in words."""
     count = result.slice.count
     window = " and ".join(f"{a.name} from {a.low} to {a.high}" for a in result.slice.axes)
-    regions = "; ".join(f"{count_text(r, count)} ({certified_digits(r.area, 7)})" for r in result.regions)
+    regions = "; ".join(f"{count_text(r, count)} ({area_text(result, r.area)})" for r in result.regions)
     return (
         f"Regions of equal count ({count.value} {noun(result.slice.model)}; area in brackets) over {window}: {regions}."
     )

@@ -7,17 +7,20 @@ square of it with at least a twelfth of the view's sides, or as much as `STEPS` 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.regionmap import Merge, Region, RegionMap
+from ptmcad.question.slice import Count
 from ptmcad.show.render.view import Interval, Shapes, View
 
 STEPS = 100
 MAX_ZOOMS = 12
+_FRAME = 1.5
 _PIXELS = 60
 _CLEAR = 2
 """A square of 2 * _CLEAR + 1 pixels of the view's _PIXELS is seen clearly."""
@@ -27,10 +30,15 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class Sliver:
-    """A thin region and a point in the thick of it, in the axes' order."""
+    """A thin region and a point in the thick of it, in the axes' order.
+
+    ``cell`` is one of its cells where it is a thin part of a larger region, in which only the counts of unstable
+    solutions differ.
+    """
 
     region: int
     at: tuple[Fraction, Fraction]
+    cell: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +58,76 @@ def thin_regions(whole: Shapes, pixels: int) -> tuple[int, ...]:
     """
     image = whole.raster(pixels, pixels)
     return tuple(n for n in range(len(whole.result.regions)) if not _eroded(image == n).any())
+
+
+def unstable_zooms(whole: Shapes, pixels: int, most: int) -> tuple[Zoom, ...]:
+    """Views of parts of regions that are too thin to be seen and differ by unstable solutions only.
+
+    Of the map that tells such parts from each other thin regions are found and zoomed as of any; what is shown then is
+    the map itself, with the thin curve around that part.
+    """
+    result = whole.result
+    all_known = all(None not in (region.total, region.index) for region in result.regions)
+    if result.cover is not None or result.slice.count is not Count.STABLE or all_known:
+        return ()
+    finer = told_apart(result)
+    outline: Any = whole
+    in_parts: Shapes = replace(outline, result=finer)
+    parts = [
+        n for n in thin_regions(in_parts, pixels)
+        if len(finer.regions[n].cells) < len(result.regions[result.cells[finer.regions[n].cells[0]].region].cells)
+    ]  # fmt: skip
+    return tuple(
+        Zoom(whole.in_view(zoom.outline.view), tuple(_part(result, finer, sliver) for sliver in zoom.slivers))
+        for zoom in zooms(in_parts, parts, most)
+    )
+
+
+def _part(result: RegionMap, finer: RegionMap, sliver: Sliver) -> Sliver:
+    cell = finer.regions[sliver.region].cells[0]
+    return Sliver(result.cells[cell].region, sliver.at, cell)
+
+
+def seen_thin_walls(whole: Shapes, sides: tuple[float, float]) -> bool:
+    """Whether a wall that separates nothing is further than a line's width from the frame of a picture somewhere.
+
+    Parameters
+    ----------
+    sides : of the picture, in points.
+    """
+    x, y = (_FRAME / side for side in sides)
+    return any(
+        not separates and ((x < line[:, 0]) & (line[:, 0] < 1 - x) & (y < line[:, 1]) & (line[:, 1] < 1 - y)).any()
+        for _, separates, line in whole.walls()
+    )
+
+
+def told_apart(result: RegionMap) -> RegionMap:
+    """An exact map whose regions are joined only where all counts of both cells are equal."""
+    parent = list(range(len(result.cells)))
+
+    def root(n: int) -> int:
+        while parent[n] != n:
+            parent[n] = parent[parent[n]]
+            n = parent[n]
+        return n
+
+    for adjacency in result.adjacencies:
+        a, b = result.cells[adjacency.first], result.cells[adjacency.second]
+        if adjacency.merge is not Merge.SEPARATED and (a.total, a.index) == (b.total, b.index):
+            parent[root(adjacency.first)] = root(adjacency.second)
+    groups: dict[int, list[int]] = {}
+    for n in range(len(result.cells)):
+        groups.setdefault(root(n), []).append(n)
+    regions: list[Region] = []
+    of_cell: dict[int, int] = {}
+    for number, members in enumerate(groups.values()):
+        cell = result.cells[members[0]]
+        of_cell |= dict.fromkeys(members, number)
+        nothing = (Fraction(0), Fraction(0))
+        regions.append(Region(cell.stable, cell.total, cell.index, nothing, tuple(members), cell.sample))
+    cells = tuple(replace(cell, region=of_cell[n]) for n, cell in enumerate(result.cells))
+    return replace(result, cells=cells, regions=tuple(regions))
 
 
 def zooms(whole: Shapes, thin: Sequence[int], most: int = MAX_ZOOMS) -> tuple[Zoom, ...]:

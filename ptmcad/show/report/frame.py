@@ -9,8 +9,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 from html import escape
 
-from ptmcad.show.render.axes import Scale, scale_of, symbol, unit
+from ptmcad.show.render.axes import Scale, scale_of, symbol
 from ptmcad.show.render.view import Shapes
+from ptmcad.show.units import unit
 from ptmcad.text.numerals import magnitude, shortest_text
 
 SIDE, LEFT, BOTTOM, RIM = 600, 110, 100, 24

@@ -1,0 +1,64 @@
+"""Two maps of the same window compared: where they have different counts, and how large that is.
+
+Guarantee: areas are certified bounds, in the product of the axes' units.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from ptmcad.answer.regionmap import RegionMap
+
+Bounds = tuple[Fraction, Fraction]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """Where the first map has one count and the second another, or both the same one.
+
+    Attributes
+    ----------
+    before, after : numbers of regions, one of each map, that have these counts.
+    region : number of the region of `Comparison.decomposition` that is all of it.
+    """
+
+    before: int
+    after: int
+    region: int
+    area: Bounds
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """What is different between two exact maps.
+
+    Attributes
+    ----------
+    decomposition : the window cut along the curves of both maps; its regions, which need not be connected, are where
+        both maps have the same pair of counts. It has neither equations nor counts of its own.
+    changes : the pairs of counts that differ.
+    """
+
+    first: RegionMap
+    second: RegionMap
+    decomposition: RegionMap
+    changes: tuple[Change, ...]
+
+    @property
+    def area(self) -> Bounds:
+        """Of all changes together."""
+        lows, highs = ([change.area[k] for change in self.changes] for k in (0, 1))
+        return sum(lows, Fraction(0)), sum(highs, Fraction(0))
+
+    @property
+    def share(self) -> Bounds:
+        """Of the window's area."""
+        x, y = self.first.slice.axes
+        whole = (x.high - x.low) * (y.high - y.low)
+        low, high = self.area
+        return low / whole, min(high / whole, Fraction(1))
+
+    def __repr__(self) -> str:
+        low, high = (float(100 * share) for share in self.share)
+        return f"<Comparison of {self.first.slice.name} and {self.second.slice.name}: {low:.4g} to {high:.4g} % differ>"

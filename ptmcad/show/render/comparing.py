@@ -1,0 +1,191 @@
+"""Two maps and their difference side by side, each with its own legend below.
+
+Guarantee: every area shown is certified; changes of count are told apart by colour or hatch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+
+from ptmcad.answer.comparison import Change, Comparison
+from ptmcad.errors import ConfigError
+from ptmcad.show.render.axes import Dress, dress
+from ptmcad.show.render.colours import GREYS, HATCHES, Fill
+from ptmcad.show.render.fitting import LEAST, Parts, overhang, rewrapped
+from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries
+from ptmcad.show.render.painting import Paint, paint_map, paint_of
+from ptmcad.show.render.printing import printed, settings, suffix_of
+from ptmcad.show.render.regionmap import whole_title
+from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.textwidth import wrapped
+from ptmcad.show.render.view import Shapes
+from ptmcad.show.style import MIN_FONT, Place, Style
+from ptmcad.show.table import certified_digits, count_text
+
+SIDE = 2.7
+"""Inches of a map in 9 points, in a picture that grows with what it shows."""
+CHANGES = ("#d55e00", "#0072b2", "#cc79a7", "#009e73", "#f0e442")
+"""Of Okabe & Ito, none of which a count has."""
+_EQUAL = Fill("#ffffff")
+_MAX_HEAD = 3
+
+
+@dataclass(frozen=True, slots=True)
+class _Panel:
+    """A chart with what stands above and below it, and regions that are seen however narrow they are."""
+
+    seen: Shapes
+    paint: Paint
+    head: Sequence[str]
+    legend: Sequence[Entry]
+    outlined: Mapping[int, Fill]
+
+
+def draw_comparison(comparison: Comparison, path: Path, dpi: int, style: Style) -> None:
+    """Write the picture.
+
+    Raises
+    ------
+    ValueError
+        For another suffix than those of `ptmcad.show.render.printing.FORMATS`.
+    ConfigError
+        When it does not fit into the style's size.
+    OSError
+        When the file cannot be written.
+    """
+    suffix = suffix_of(path)
+    with settings(style):
+        figure = comparison_figure(comparison, dpi, style)
+        title = f"{whole_title(comparison.first)} and {whole_title(comparison.second)}"
+        data = printed(figure, suffix, dpi, title, " ".join(in_words(comparison)))
+    path.write_bytes(data)
+
+
+def in_words(comparison: Comparison) -> list[str]:
+    """The areas of all changes, and of each kind, as sentences."""
+    if not comparison.changes:
+        return ["The maps have the same counts everywhere."]
+    low, high = comparison.share
+    share = certified_digits((100 * low, 100 * high), 4)
+    lines = [f"The counts differ on an area of {certified_digits(comparison.area)}, {share} % of the window."]
+    return lines + [f"{change_text(comparison, c)}: area {certified_digits(c.area)}." for c in comparison.changes]
+
+
+def change_text(comparison: Comparison, change: Change) -> str:
+    """Such as ``2 → 1``."""
+    count = comparison.first.slice.count
+    before = count_text(comparison.first.regions[change.before], count)
+    return f"{before} → {count_text(comparison.second.regions[change.after], count)}"
+
+
+def comparison_figure(comparison: Comparison, dpi: int, style: Style) -> Figure:
+    """The picture; within `ptmcad.show.render.printing.settings`."""
+    font = style.base_font
+    em = font / 72
+    type = Type(
+        font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, style.strong * THIN / STRONG, style.thin_lines
+    )
+    first = shapes(comparison.first)
+    parts = Parts(comparison.first.slice, "", ((), ()), (first.view,))
+    width = style.size[0] if style.size is not None else 3 * (SIDE * font / 9 + 6 * em)
+    how = Dress(max(MIN_FONT, 0.95 * font), 1.05 * font, (4, 5), scale=font / 9)
+    left, below, right, _ = overhang(parts, first.view, (SIDE, SIDE), how)
+    each = width / 3
+    side = each - left - right - 1.2 * em
+    panels = _panels(comparison, first, style, side, type)
+    head = 1.35 * em * max(len(panel.head) for panel in panels) + 0.5 * em
+    legend = max(type.height(panel.legend) for panel in panels)
+    rest = head + below + 0.8 * em + legend + 0.6 * em
+    tall = style.size[1] - rest if style.size is not None else side
+    if min(side, tall) < LEAST * em:
+        missing = LEAST * em - side, LEAST * em - tall
+        least = (width + 3 * max(0.0, missing[0]), rest + tall + max(0.0, missing[1]))
+        raise ConfigError(
+            f"three maps with their legends need at least {least[0] + 0.01:.2f}x{least[1] + 0.01:.2f}in", key="size"
+        )
+    figure = Figure(figsize=(width, tall + rest), dpi=dpi, facecolor="white")
+    for k, panel in enumerate(panels):
+        box = (k * each + left + 0.3 * em, tall + rest - head - tall, side, tall)
+        _draw(figure, panel, box, how, font)
+        draw_legend(figure, panel.legend, box[0], box[1] - below - 0.8 * em, type)
+    return figure
+
+
+def _panels(comparison: Comparison, first: Shapes, style: Style, side: float, type: Type) -> list[_Panel]:
+    """The two maps and the difference, with text as wide as they are."""
+    found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill]]] = []
+    for result, seen in ((comparison.first, first), (comparison.second, shapes(comparison.second))):
+        paint = paint_of(result, style)
+        told = entries(result, False, False, 0, Wording(paint.fill, paint.undetermined))
+        found.append((seen, paint, whole_title(result), told, {}))
+    fills = _fills(comparison, style)
+    decomposition = comparison.decomposition
+    of_cells = {region.cells: fills.get(n, _EQUAL) for n, region in enumerate(decomposition.regions)}
+    strong = style.strong / 4
+    bare = Paint(lambda region: of_cells[region.cells], _EQUAL, strong, strong)
+    found.append((shapes(decomposition), bare, "Difference", _told(comparison, style), fills))
+    return [
+        _Panel(
+            seen, paint, _head(title, side, type) if style.title is None else [],
+            [] if style.legend is Place.NONE else [rewrapped(entry, side, type) for entry in told], outlined,
+        )
+        for seen, paint, title, told, outlined in found
+    ]  # fmt: skip
+
+
+def _head(title: str, side: float, type: Type) -> list[str]:
+    lines = wrapped(title, side, type.head, True)
+    return lines if len(lines) <= _MAX_HEAD else [*lines[: _MAX_HEAD - 1], f"{lines[_MAX_HEAD - 1]} …"]
+
+
+def _fills(comparison: Comparison, style: Style) -> dict[int, Fill]:
+    """Of each change, by the number of its region; others are white."""
+    faces = GREYS[2:] if style.palette == "grey" else CHANGES
+    found: dict[int, Fill] = {}
+    for n, change in enumerate(comparison.changes):
+        rounds, step = divmod(n, len(faces))
+        found[change.region] = Fill(faces[step], HATCHES[(rounds - 1) % len(HATCHES)] if rounds else "")
+    return found
+
+
+def _told(comparison: Comparison, style: Style) -> list[Entry]:
+    fills = _fills(comparison, style)
+    if not comparison.changes:
+        return [Entry(("The counts are the same everywhere",), strong=True)]
+    low, high = comparison.share
+    share = certified_digits((100 * low, 100 * high), 4)
+    told = [Entry((f"Counts differ on {share} %", f"area {certified_digits(comparison.area)}"), strong=True)]
+    for change in comparison.changes:
+        told.append(
+            Entry((change_text(comparison, change), f"area {certified_digits(change.area)}"), fills[change.region])
+        )
+    return told
+
+
+def _draw(figure: Figure, panel: _Panel, box: tuple[float, float, float, float], how: Dress, font: float) -> None:
+    width, tall = (float(side) for side in figure.get_size_inches())
+    left, bottom, wide, high = box
+    axes: Any = figure.add_axes((left / width, bottom / tall, wide / width, high / tall))
+    result = panel.seen.result
+    paint_map(axes, panel.seen, "", panel.paint)
+    for number, fill in panel.outlined.items():
+        rims = [np.vstack([polygon, polygon[:1]]) for polygon in panel.seen.polygons(number)]
+        axes.add_artist(
+            LineCollection(
+                rims, transform=axes.transAxes, colors=fill.face, linewidths=0.1 * font, joinstyle="round", zorder=4,
+                gid=f"change-{number}",
+            )
+        )  # fmt: skip
+    dress(axes, result.slice, panel.seen.view.x, panel.seen.view.y, how)
+    for k, line in enumerate(reversed(panel.head)):
+        figure.text(
+            left, bottom + high + 0.35 * font / 72 + 1.35 * font / 72 * (k + 0.5), line, fontsize=font,
+            fontweight="bold", va="center", transform=figure.dpi_scale_trans, color=INK,
+        )  # fmt: skip

@@ -1,0 +1,385 @@
+"""The layout of a map's picture on a page of a given size.
+
+Guarantee: all text has the size that is asked for, none less than `ptmcad.show.style.MIN_FONT` points, and every
+part is on the page. To that end insets are left out first, then the legend goes below the map, then areas are left out
+of it; what does not fit even so is refused with the least size that would do.
+
+Measured, not guessed: widths of text in its font, and what numbers and names take beside the axes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from ptmcad.errors import ConfigError
+from ptmcad.question.slice import Slice
+from ptmcad.show.render.axes import Dress, dress
+from ptmcad.show.render.layout import Box, Layout, Texts
+from ptmcad.show.render.legend import STRONG, THIN, Entry, Type
+from ptmcad.show.render.textwidth import ALLOWANCE, text_width, wrapped
+from ptmcad.show.render.view import View
+from ptmcad.show.style import MIN_FONT, Place, Style
+
+LEAST = 11.0
+"""Sides of the map, in widths of an m: a smaller one is no picture."""
+_GOOD = (0.5, 0.45, 0.4)
+"""Shares of the page's width that the map has if it can."""
+_NEARLY = 0.85
+"""A map so much smaller is as good, with the legend where it is read first."""
+_COLUMNS = (24.0, 18.0, 14.0, 11.0, 8.5)
+"""Widths tried for a legend at the right, in widths of an m."""
+_INSET = (9.0, 6.0)
+"""An inset's least sides, in widths of an m."""
+_STEPS, _STEP = 60, 1.05
+MAX_TITLE_LINES = 2
+
+
+Measured = tuple[Box, tuple[float, float]]
+"""Spaces around axes, and the lengths of their names."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What has to be laid out.
+
+    Attributes
+    ----------
+    title : one line; empty for none.
+    legend : its entries with areas, and without.
+    views : of the whole map and of the insets.
+    measured : what has been found out about axes; filled while the parts are laid out.
+    """
+
+    slice: Slice
+    title: str
+    legend: tuple[Sequence[Entry], Sequence[Entry]]
+    views: tuple[View, ...]
+    measured: dict[tuple[View, Dress], Measured] = field(default_factory=dict)
+
+
+def fitted(parts: Parts, style: Style, size: tuple[float, float]) -> Layout:
+    """The layout of the parts on a page of this size, in inches; within `ptmcad.show.render.printing.settings`.
+
+    Raises
+    ------
+    ConfigError
+        When they do not fit; the message has the least size of the same shape that would do.
+    """
+    for font in _fonts(style):
+        found = _on(parts, style, size, font)
+        if found is not None:
+            return found
+    larger = size
+    for _ in range(_STEPS):
+        larger = (larger[0] * _STEP, larger[1] * _STEP)
+        if _on(parts, style, larger, _fonts(style)[-1]) is not None:
+            break
+    raise ConfigError(
+        f"axes and legend do not fit into {_inches(size)} in text of {_fonts(style)[-1]:g} points; "
+        f"the least size of this shape that does is {_inches(larger, up=True)}"
+        + ("" if style.legend is Place.NONE else ", or leave the legend out"),
+        key="size",
+    )
+
+
+def _inches(size: tuple[float, float], up: bool = False) -> str:
+    return "x".join(f"{side + (0.005 if up else 0):.2f}" for side in size) + "in"
+
+
+def _fonts(style: Style) -> list[float]:
+    """The sizes of text that are tried: the one that is asked for, or smaller and smaller ones."""
+    first = style.base_font
+    if style.font_size is not None:
+        return [first]
+    return [first, *(first - 0.5 * k for k in range(1, int(2 * (first - MIN_FONT)) + 1))]
+
+
+@dataclass(frozen=True, slots=True)
+class _Page:
+    """A page that is being laid out, with sizes of text.
+
+    ``em`` is the font's size in inches, and ``rim`` the space around everything.
+    """
+
+    parts: Parts
+    style: Style
+    size: tuple[float, float]
+    font: float
+
+    @property
+    def em(self) -> float:
+        return self.font / 72
+
+    @property
+    def rim(self) -> float:
+        return 0.4 * self.em
+
+    @property
+    def type(self) -> Type:
+        return Type(
+            head=self.font, detail=_points(0.89 * self.font), scale=self.font / 9, strong=self.style.strong,
+            thin=self.style.strong * THIN / STRONG, thin_lines=self.style.thin_lines,
+        )  # fmt: skip
+
+    @property
+    def texts(self) -> Texts:
+        return Texts(title=1.1 * self.font, inset=_points(0.83 * self.font), arrow=_points(0.89 * self.font))
+
+    def dressed(self, width: float, height: float, small: bool = False) -> Dress:
+        """Sizes at axes of these sides, with as many numbers as there is room for."""
+        ticks = _points((0.78 if small else 0.95) * self.font)
+        names = _points((0.78 if small else 1.05) * self.font)
+        most = 4 if small else 8
+        intervals = [int(max(2, min(most, side / (ems * ticks / 72)))) for side, ems in ((width, 3.3), (height, 2.0))]
+        return Dress(ticks, names, (intervals[0], intervals[1]), small, self.font / 9)
+
+    def title(self) -> list[str]:
+        lines = wrapped(self.parts.title, self.size[0] - 2 * self.rim, self.texts.title) if self.parts.title else []
+        if len(lines) > MAX_TITLE_LINES:
+            lines = [*lines[: MAX_TITLE_LINES - 1], f"{lines[MAX_TITLE_LINES - 1]} …"]
+        return lines
+
+    @property
+    def title_line(self) -> float:
+        return 1.35 * self.texts.title / 72
+
+    @property
+    def top(self) -> float:
+        """Of what stands below the title."""
+        lines = len(self.title())
+        return self.size[1] - self.rim - (self.title_line * lines + 0.3 * self.em if lines else 0.35 * self.em)
+
+    def layout(
+        self, chart: Box, legend: Sequence[tuple[tuple[float, float], Sequence[Entry]]], insets: Sequence[Box]
+    ) -> Layout:
+        inset = insets[0] if insets else chart
+        return Layout(
+            size=self.size, chart=chart, title=self.title(),
+            title_at=(self.rim, self.size[1] - self.rim - self.title_line / 2), title_line=self.title_line,
+            legend=legend, insets=insets, type=self.type, axes=self.dressed(chart[2], chart[3]),
+            inset_axes=self.dressed(inset[2], inset[3], small=True), texts=self.texts,
+        )  # fmt: skip
+
+
+def _points(size: float) -> float:
+    return max(MIN_FONT, size)
+
+
+def _on(parts: Parts, style: Style, size: tuple[float, float], font: float) -> Layout | None:
+    """The first layout, in the order in which parts are given up, that has room for what it shows."""
+    page = _Page(parts, style, size, font)
+    for legend in parts.legend:
+        for insets in dict.fromkeys((len(parts.views) - 1, 0)):
+            found = _placed(page, legend, insets)
+            if found is not None:
+                return found
+    return None
+
+
+def _placed(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
+    """The legend where it is asked for; else at the right unless the map is much larger when it is below."""
+    place = page.style.legend
+    if place is not None:
+        return {Place.RIGHT: _right, Place.BELOW: _below, Place.NONE: _alone}[place](page, legend, insets)
+    right, below = _right(page, legend, insets), _below(page, legend, insets)
+    if right is None or below is None:
+        return right or below
+    return right if min(right.chart[2:]) >= _NEARLY * min(below.chart[2:]) else below
+
+
+def _right(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
+    """The legend, and insets below it, at the right of the map."""
+    em, (width, _) = page.em, page.size
+    for least in (*(max(share * width, LEAST * em) for share in _GOOD), LEAST * em):
+        for columns in _COLUMNS:
+            entries = [rewrapped(entry, columns * em, page.type) for entry in legend]
+            column = max((_width(entry, page.type) for entry in entries), default=0.0)
+            if column > columns * em * 1.01:
+                continue  # a word is longer
+            if insets:
+                column = max(column, _INSET[0] * em + _inset_overhang(page)[0] + 0.5 * em)
+            chart = _chart(page, width - 2 * page.rim - 0.9 * em - column, page.top - page.rim)
+            if chart is None or chart[2] < least:
+                continue
+            left = width - page.rim - column
+            bottom = page.top - page.type.height(entries)
+            boxes = _stacked(page, (left, bottom - 0.4 * em, column), insets)
+            if bottom < page.rim or boxes is None:
+                continue
+            return page.layout(chart, [((left, page.top), entries)], boxes)
+    return None
+
+
+def _below(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
+    """The legend in columns below the map, and insets in a row between."""
+    em, (width, _) = page.em, page.size
+    best: tuple[float, list[list[Entry]]] | None = None
+    for number in (4, 3, 2, 1):
+        room = (width - 2 * page.rim - (number - 1) * em) / number
+        entries = [rewrapped(entry, room, page.type) for entry in legend if entry.lines]
+        if max(_width(entry, page.type) for entry in entries) > room * 1.01:
+            continue
+        columns = _balanced(entries, number, page.type)
+        height = max(page.type.height(column) for column in columns)
+        if best is None or height < best[0] - 1e-9:
+            best = (height, columns)
+    if best is None:
+        return None
+    height, columns = best
+    found = _over(page, page.rim + height + 0.5 * em, insets)
+    if found is None:
+        return None
+    chart, boxes = found
+    widths = [max((_width(entry, page.type) for entry in column), default=0.0) for column in columns]
+    gap = min(2 * em, (width - 2 * page.rim - sum(widths)) / max(1, len(widths) - 1))
+    # below the map where there is room for that
+    left = max(page.rim, min(chart[0], width - page.rim - sum(widths) - gap * (len(widths) - 1)))
+    starts = [left + sum(widths[:k]) + gap * k for k in range(len(widths))]
+    return page.layout(
+        chart, [((x, page.rim + height), column) for x, column in zip(starts, columns, strict=True)], boxes
+    )
+
+
+def _alone(page: _Page, _legend: Sequence[Entry], insets: int) -> Layout | None:
+    found = _over(page, page.rim, insets)
+    return None if found is None else page.layout(found[0], (), found[1])
+
+
+def _over(page: _Page, bottom: float, insets: int) -> tuple[Box, list[Box]] | None:
+    """The map and a row of insets above a height."""
+    em, width = page.em, page.size[0]
+    boxes: list[Box] = []
+    if insets:
+        left, below, _, _ = _inset_overhang(page)
+        each = (width - 2 * page.rim) / insets - left - 0.6 * em
+        if each < _INSET[0] * em:
+            return None
+        each, tall = min(each, 14 * em), _INSET[1] * em
+        boxes = [(page.rim + left + k * (each + left + 0.6 * em), bottom + below, each, tall) for k in range(insets)]
+        bottom += below + tall + _inset_head(page)
+    chart = _chart(page, width - 2 * page.rim, page.top - bottom)
+    return None if chart is None else (chart, boxes)
+
+
+def _chart(page: _Page, width: float, height: float) -> Box | None:
+    """The map's place in a part of the page at its left and top; None where that is too small."""
+    em = page.em
+    least = LEAST * em
+    inner = (0.8 * width, 0.8 * height)
+    for _ in range(3):  # what numbers take depends on how many there are, hence on the sides
+        if inner[0] < least or inner[1] < least:
+            return None
+        left, below, right, _above = overhang(page.parts, page.parts.views[0], inner, page.dressed(*inner))
+        inner = (width - left - right, height - below)
+    if inner[0] < least or inner[1] < least:
+        return None
+    return (page.rim + left, page.top - inner[1], *inner)
+
+
+def _stacked(page: _Page, place: tuple[float, float, float], insets: int) -> list[Box] | None:
+    """Insets one below the other, from a left end and a top in a column of some width."""
+    left, top, column = place
+    boxes: list[Box] = []
+    if not insets:
+        return boxes
+    before, below, after, _ = _inset_overhang(page)
+    room = (top - page.rim) / insets - below - _inset_head(page)
+    if room < _INSET[1] * page.em:
+        return None
+    wide = column - before - after
+    tall = min(room, 0.75 * wide)
+    for _ in range(insets):
+        top -= _inset_head(page) + tall
+        boxes.append((left + before, top, wide, tall))
+        top -= below
+    return boxes
+
+
+def _inset_head(page: _Page) -> float:
+    """Inches of the two lines over an inset."""
+    return 3.0 * page.texts.inset / 72
+
+
+def _inset_overhang(page: _Page) -> Box:
+    """What numbers and names of the insets' axes take: the most of all."""
+    sides = (_INSET[0] * page.em, _INSET[1] * page.em)
+    found = [overhang(page.parts, view, sides, page.dressed(*sides, small=True)) for view in page.parts.views[1:]]
+    left, below, right, above = (max(of[k] for of in found) for k in range(4))
+    return left, below + 0.3 * page.em, right, above
+
+
+def overhang(parts: Parts, view: View, sides: tuple[float, float], how: Dress) -> Box:
+    """Inches that numbers and names take at the left, below, at the right and above axes of these sides."""
+    key = (view, how)
+    if key not in parts.measured:
+        parts.measured[key] = _measured(parts.slice, view, how)
+    (left, below, right, above), names = parts.measured[key]
+    # a name may be longer than its axis
+    beyond = [max(0.0, (name - side) / 2) for name, side in zip(names, sides, strict=True)]
+    return max(left, beyond[0]), max(below, beyond[1]), max(right, beyond[0]), max(above, beyond[1])
+
+
+def _measured(slice: Slice, view: View, how: Dress) -> Measured:
+    """The same for axes long enough for their names, and the lengths of these."""
+    figure = Figure(figsize=(24.0, 24.0), dpi=72)
+    canvas: Any = FigureCanvasAgg(figure)
+    renderer = canvas.get_renderer()
+    axes: Any = figure.add_axes((1 / 3, 1 / 3, 1 / 3, 1 / 3))
+    dress(axes, slice, view.x, view.y, how)
+    outer, inner = axes.get_tightbbox(renderer), axes.get_window_extent(renderer)
+    spaces = (inner.x0 - outer.x0, inner.y0 - outer.y0, outer.x1 - inner.x1, outer.y1 - inner.y1)
+    left, below, right, above = (max(0.0, float(space)) / 72 * ALLOWANCE for space in spaces)
+    names = (
+        axes.xaxis.label.get_window_extent(renderer).width / 72,
+        axes.yaxis.label.get_window_extent(renderer).height / 72,
+    )
+    return (left, below, right, above), names
+
+
+def rewrapped(entry: Entry, width: float, type: Type) -> Entry:
+    """The entry with lines of at most this width, in inches, where words allow that."""
+    room = width - (0.0 if entry.mark is None else type.indent)
+    if not entry.lines:
+        return entry
+    entry = replace(entry, lines=tuple(line.replace(" %", "\N{NO-BREAK SPACE}%") for line in entry.lines))
+    head = wrapped(entry.lines[0], room, type.head, entry.strong)
+    rest = wrapped(" ".join(entry.lines[1:]), room, type.detail) if entry.lines[1:] else []
+    return replace(entry, lines=(*head, *rest), heads=len(head))
+
+
+def _width(entry: Entry, type: Type) -> float:
+    """Of an entry with its mark, in inches."""
+    indent = 0.0 if entry.mark is None else type.indent
+    sizes = [type.head if k < entry.heads else type.detail for k in range(len(entry.lines))]
+    texts = (text_width(line, size, entry.strong) for line, size in zip(entry.lines, sizes, strict=True))
+    return indent + max(texts, default=0.0)
+
+
+def _balanced(entries: Sequence[Entry], number: int, type: Type) -> list[list[Entry]]:
+    """Columns in reading order, none longer than it must be."""
+    heights = [type.entry_height(entry) for entry in entries]
+    most = next(most for most in _sums(heights) if len(list(_columns(entries, heights, most))) <= number)
+    return list(_columns(entries, heights, most))
+
+
+def _sums(heights: Sequence[float]) -> list[float]:
+    """What a column can be high, in increasing order."""
+    runs = {sum(heights[a:b]) for a in range(len(heights)) for b in range(a + 1, len(heights) + 1)}
+    return sorted(run + 1e-9 for run in runs)
+
+
+def _columns(entries: Sequence[Entry], heights: Sequence[float], most: float) -> Iterator[list[Entry]]:
+    column: list[Entry] = []
+    filled = 0.0
+    for entry, height in zip(entries, heights, strict=True):
+        if column and filled + height > most:
+            yield column
+            column, filled = [], 0.0
+        column.append(entry)
+        filled += height
+    yield column

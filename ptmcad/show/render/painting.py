@@ -1,0 +1,85 @@
+"""The map itself: regions filled, walls drawn, in colours and lines of a style."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from ptmcad.answer.regionmap import Region, RegionMap
+from ptmcad.show.render.colours import Fill, filler, undetermined_fill
+from ptmcad.show.render.legend import INK, RIM, RIM_INK, STRONG, THIN
+from ptmcad.show.render.view import Shapes
+from ptmcad.show.style import Style
+
+
+@dataclass(frozen=True, slots=True)
+class Paint:
+    """Colours and lines."""
+
+    fill: Callable[[Region], Fill]
+    undetermined: Fill
+    strong: float = STRONG
+    thin: float = THIN
+    thin_lines: str = "solid"
+    scale: float = 1.0
+
+
+def paint_of(result: RegionMap, style: Style) -> Paint:
+    return Paint(
+        filler(result.regions, result.slice.count, style.palette),
+        undetermined_fill(style.palette),
+        style.strong,
+        style.strong * THIN / STRONG,
+        style.thin_lines,
+        style.line_scale,
+    )
+
+
+def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = None) -> None:
+    """Fill the regions and draw the walls; ``place`` takes the view to the page: if not given, to all of the axes."""
+    from matplotlib.collections import LineCollection
+    from matplotlib.patches import PathPatch, Rectangle
+    from matplotlib.path import Path as Curve
+
+    result, place = seen.result, axes.transAxes if place is None else place
+    if result.cover is not None:
+        axes.add_artist(
+            Rectangle(
+                (0, 0), 1, 1, transform=place, facecolor=paint.undetermined.face, linewidth=0, snap=False,
+                gid=f"{prefix}undetermined", hatch=paint.undetermined.hatch or None,
+                edgecolor=RIM_INK if paint.undetermined.hatch else None,
+            )
+        )  # fmt: skip
+    for number, region in enumerate(result.regions):
+        polygons = [Curve(p, closed=False) for p in seen.polygons(number)]
+        if not polygons:
+            continue
+        fill = paint.fill(region)
+        # one path for all parts: where two of them share an edge, their coverage adds up and no seam is left
+        axes.add_artist(
+            PathPatch(
+                Curve.make_compound_path(*polygons), transform=place, facecolor=fill.face, edgecolor=INK,
+                hatch=fill.hatch or None, linewidth=0, snap=False, gid=f"{prefix}region-{number}",
+            )
+        )  # fmt: skip
+    edges = list(seen.edges())
+    if edges:
+        axes.add_artist(
+            LineCollection(
+                edges, transform=place, colors=RIM_INK, linewidths=RIM * paint.scale, joinstyle="round",
+                zorder=2, gid=f"{prefix}edges",
+            )
+        )  # fmt: skip
+    lines: dict[tuple[bool, int], list[Any]] = {}
+    for component, separates, line in seen.walls():
+        lines.setdefault((separates, component), []).append(line)
+    for (separates, component), parts in sorted(lines.items()):
+        axes.add_artist(
+            LineCollection(
+                parts, transform=place, colors=INK, linewidths=paint.strong if separates else paint.thin,
+                linestyles="solid" if separates else paint.thin_lines,
+                capstyle="round", joinstyle="round", zorder=3 if separates else 2,
+                gid=f"{prefix}curve-{component}" + ("" if separates else "-thin"),
+            )
+        )  # fmt: skip

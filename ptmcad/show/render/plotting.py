@@ -1,0 +1,94 @@
+"""A map as objects of matplotlib's, for a caller who goes on with them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ptmcad.answer.poses import Poses
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.show.render.around import Point, draw_around
+from ptmcad.show.render.axes import axis_name
+from ptmcad.show.render.legend import INK, head_of
+from ptmcad.show.render.overlay import Overlay
+from ptmcad.show.render.painting import paint_map, paint_of
+from ptmcad.show.render.poses import describe
+from ptmcad.show.render.printing import printed, settings, suffix_of
+from ptmcad.show.render.regionmap import description, figure_of, whole_title
+from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.usersettings import user_styled
+from ptmcad.show.style import Place, Style
+from ptmcad.show.table import count_text
+
+
+def plot(result: RegionMap, ax: Any, style: str | Style, samples: bool, dpi: int, options: dict[str, Any]) -> Any:
+    """A figure of its own, or the axes that were given, with the map in them.
+
+    Raises
+    ------
+    ConfigError
+        For an unknown style or option, a value that cannot be drawn, or what does not fit into the size.
+    """
+    made = user_styled(style, **options)
+    if ax is not None:
+        draw_on(ax, result, samples, made)
+        return ax
+    with settings(made):
+        return figure_of(result, samples, dpi, style=made)
+
+
+def draw_on(axes: Any, result: RegionMap, samples: bool, style: Style) -> None:
+    """The map in a caller's axes, in the units of its own axes, so that the caller can add to it.
+
+    Without insets and arrows; its legend stands at the axes' right.
+    """
+    from matplotlib.patches import Patch
+    from matplotlib.transforms import Affine2D
+
+    whole, paint = shapes(result), paint_of(result, style)
+    sides = [tuple(float(end) for end in whole.view.along(k)) for k in (0, 1)]
+    unit_square = Affine2D().scale(*(high - low for low, high in sides)).translate(*(low for low, _ in sides))
+    paint_map(axes, whole, "", paint, unit_square + axes.transData)
+    if samples:
+        points = np.array([[float(v) for v in (c.sample[0], c.sample[1])] for c in result.cells])
+        axes.plot(*points.T, "o", markersize=2.5 * paint.scale, color=INK, gid="samples")
+    axes.set(xlim=sides[0], ylim=sides[1], xlabel=axis_name(result.slice, 0), ylabel=axis_name(result.slice, 1))
+    title = whole_title(result) if style.title is None else style.title
+    if title:
+        axes.set_title(title, loc="left", wrap=True)
+    if style.legend is not Place.NONE:
+        found = {count_text(r, result.slice.count): paint.fill(r) for r in result.regions}
+        handles = [
+            Patch(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4, label=text)
+            for text, fill in sorted(found.items())
+        ]
+        below = style.legend is Place.BELOW
+        axes.legend(
+            handles=handles, title=head_of(result.slice)[0], ncols=len(handles) if below else 1, borderaxespad=0,
+            loc="upper left", bbox_to_anchor=(0.0, -0.2) if below else (1.03, 1.0), frameon=False,
+        )  # fmt: skip
+
+
+def draw_with_poses(
+    result: RegionMap, points: Sequence[tuple[Point, Poses]], path: Path, dpi: int, style: Style, overlay: Overlay
+) -> None:
+    """Write the map with the stable poses at points around it.
+
+    Raises
+    ------
+    ValueError
+        For another suffix than those of `ptmcad.show.render.printing.FORMATS`.
+    ConfigError
+        As `ptmcad.show.render.around.draw_around` does.
+    OSError
+        When the file cannot be written.
+    """
+    suffix = suffix_of(path)
+    told = " ".join(f"At point {n}: {describe(poses)}" for n, (_, poses) in enumerate(points, 1))
+    with settings(style):
+        figure = draw_around(result, points, style, dpi, overlay)
+        data = printed(figure, suffix, dpi, whole_title(result), f"{description(result)} {told}")
+    path.write_bytes(data)

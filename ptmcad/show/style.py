@@ -1,0 +1,269 @@
+"""The style of a region map's picture: size, text, colours, title, legend and lines, with presets for where it goes.
+
+Guarantee: a style is plain data; what cannot be drawn at all is refused when it is made, before anything is computed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any
+
+from ptmcad.errors import ConfigError
+
+MIN_FONT, MAX_FONT = 6.0, 96.0
+"""In points, at the printed size: smaller text is not read on paper."""
+MIN_SIDE, MAX_SIDE = 1.0, 60.0
+"""Of a picture, in inches."""
+MAX_LINE = 10.0
+MAX_TITLE = 200
+_TO_INCHES = {"in": 1.0, "mm": 1 / 25.4, "cm": 1 / 2.54, "pt": 1 / 72}
+_SETTINGS = {
+    "size": "figure.figsize",
+    "font_size": "font.size",
+    "font_family": "font.family",
+    "line_width": "lines.linewidth",
+}
+"""Options by matplotlib's names for them."""
+NAMED = {
+    "white": "#ffffff", "silver": "#c0c0c0", "grey": "#808080", "gray": "#808080", "black": "#000000",
+    "red": "#ff0000", "maroon": "#800000", "orange": "#ffa500", "gold": "#ffd700", "yellow": "#ffff00",
+    "olive": "#808000", "lime": "#00ff00", "green": "#008000", "teal": "#008080", "cyan": "#00ffff",
+    "blue": "#0000ff", "navy": "#000080", "purple": "#800080", "magenta": "#ff00ff", "pink": "#ffc0cb",
+    "brown": "#a52a2a", "beige": "#f5f5dc", "lightblue": "#add8e6", "lightgreen": "#90ee90", "salmon": "#fa8072",
+}  # fmt: skip
+"""Colours of CSS."""
+_COLOUR = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})", re.ASCII)
+
+Size = tuple[float, float]
+
+
+class Place(Enum):
+    """Where the legend stands."""
+
+    RIGHT = "right"
+    BELOW = "below"
+    NONE = "none"
+
+
+PALETTES = ("default", "grey")
+LINES = ("solid", "dashed", "dotted")
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """How a picture of a map looks; what is None is chosen to fit.
+
+    Attributes
+    ----------
+    size : width and height in inches, of the whole picture; None for one that grows with what it shows.
+    font_size : of the legend and the numbers at the axes, in points; other text is in proportion, none below
+        `MIN_FONT`.
+    font_family : families, the first that is installed; empty for the one that comes with matplotlib.
+    palette : one of `PALETTES`, or colours for the map's counts in increasing order.
+    title : instead of the slice's heading; empty for none.
+    legend : where it stands; None where it fits best.
+    line_width : in points, of curves where the count changes; other lines are in proportion.
+    thin_lines : one of `LINES`, for curves where it does not.
+    mpl : further settings of matplotlib, a user's own, by their names.
+    """
+
+    size: Size | None = None
+    font_size: float | None = None
+    font_family: tuple[str, ...] = ()
+    palette: str | tuple[str, ...] = "default"
+    title: str | None = None
+    legend: Place | None = None
+    line_width: float | None = None
+    thin_lines: str = "solid"
+    mpl: tuple[tuple[str, Any], ...] = ()
+
+    @property
+    def flows(self) -> bool:
+        """Whether the picture grows with what it shows, as it does by default."""
+        return self.size is None and self.font_size is None and not self.font_family and self.legend is None
+
+    @property
+    def base_font(self) -> float:
+        """The font's size, where it is not given in proportion to the picture's width."""
+        if self.font_size is not None:
+            return self.font_size
+        return 9.0 if self.size is None else round(max(8.0, 1.06 * self.size[0]), 1)
+
+    @property
+    def line_scale(self) -> float:
+        """Of widths of lines and of marks, against those of a picture in 9 points."""
+        return 1.0 if self.flows else self.base_font / 9
+
+    @property
+    def strong(self) -> float:
+        """Width in points of the curves where the count changes."""
+        return self.line_width if self.line_width is not None else 1.3 * self.line_scale
+
+
+DEFAULT = Style()
+
+
+def _mm(width: float, height: float) -> Size:
+    return width / 25.4, height / 25.4
+
+
+PRESETS: Mapping[str, Style] = {
+    "default": DEFAULT,
+    "ieee": Style(size=(3.5, 2.6), font_size=8.0, title="", line_width=1.0),
+    "elsevier": Style(size=_mm(90, 68), font_size=7.5, title="", line_width=1.0),
+    "springer": Style(size=_mm(84, 64), font_size=8.0, title="", line_width=1.0),
+    "beamer": Style(size=_mm(120, 70), font_size=9.0, title=""),
+    "poster": Style(size=_mm(600, 420), font_size=28.0),
+}
+"""For a column of a journal, whose captions are the titles; for a slide and for a poster."""
+USER = "user"
+"""The style of the user's own matplotlibrc."""
+STYLES = (*PRESETS, USER)
+
+
+def styled(name: str | Style = "default", settings: Mapping[str, Any] | None = None, **options: Any) -> Style:
+    """A preset, or a style, with options of its own; those that are None are the preset's.
+
+    Parameters
+    ----------
+    settings : of matplotlib's, which count for more than the preset and less than options.
+    options : fields of `Style`, each as its type or as text: ``size="90x70mm"``, ``palette="grey"``,
+        ``legend="below"``.
+
+    Raises
+    ------
+    ConfigError
+        For an unknown preset or option, or a value that cannot be drawn; its key is the option.
+
+    >>> styled("ieee", legend="below").legend
+    <Place.BELOW: 'below'>
+    """
+    if isinstance(name, Style):
+        base = name
+    elif name in PRESETS:
+        base = PRESETS[name]
+    else:
+        raise ConfigError(f"{name!r} is not among {', '.join(STYLES)}", key="style")
+    unknown = [key for key in options if key not in _READERS]
+    if unknown:
+        raise ConfigError(
+            f"a picture has no {unknown[0]!r}; there are {', '.join(_READERS)}, mpl_style", key=unknown[0]
+        )
+    if settings is not None:
+        base = _with_settings(base, settings)
+    given = {key: _READERS[key](value) for key, value in options.items() if value is not None}
+    made = replace(base, **given)
+    if "size" in given and "font_size" not in given and made.font_size is not None:
+        # a preset's font is for its size: on a narrower one it stays, on a much wider one it would be lost
+        return replace(made, font_size=max(made.font_size, round(1.06 * given["size"][0], 1)))
+    return made
+
+
+def _with_settings(base: Style, settings: Mapping[str, Any]) -> Style:
+    """A style with settings of matplotlib's, of which some are options of a style."""
+    options = {key: settings[name] for key, name in _SETTINGS.items() if name in settings}
+    try:
+        made = replace(base, **{key: _READERS[key](value) for key, value in options.items()})
+    except ConfigError as error:
+        raise ConfigError(f"{_SETTINGS[error.key or 'size']}: {error.message}", key="mpl_style") from error
+    return replace(made, mpl=tuple(settings.items()))
+
+
+def _size(value: Any) -> Size:
+    """Inches of a text such as 3.5x2.6in or 90x70mm, or of two numbers of inches."""
+    if isinstance(value, str):
+        match = re.fullmatch(r"\s*(\d*\.?\d+)\s*(?:x|×|\*)\s*(\d*\.?\d+)\s*(in|mm|cm|pt)\s*", value, re.ASCII)
+        if match is None:
+            raise ConfigError(f"{value!r} is not a size such as 3.5x2.6in or 90x70mm", key="size")
+        size = (float(match[1]) * _TO_INCHES[match[3]], float(match[2]) * _TO_INCHES[match[3]])
+    else:
+        size = _two(value)
+    if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):
+        least, most = f"{MIN_SIDE:g}", f"{MAX_SIDE:g}"
+        raise ConfigError(f"{value!r}: each side must be {least} to {most} inches ({least}x{least}in)", key="size")
+    return size
+
+
+def _two(value: Any) -> Size:
+    try:
+        width, height = (float(side) for side in value)
+    except (TypeError, ValueError) as error:
+        raise ConfigError(f"{value!r} is not a width and a height in inches", key="size") from error
+    return width, height
+
+
+def _points(key: str, least: float, most: float, why: str) -> Any:
+    def read(value: Any) -> float:
+        text = value.strip().removesuffix("pt") if isinstance(value, str) else value
+        try:
+            points = float(text)
+        except (TypeError, ValueError) as error:
+            raise ConfigError(f"{value!r} is not a number of points", key=key) from error
+        if not least <= points <= most:
+            raise ConfigError(f"{value} is not from {least:g} to {most:g} points{why}", key=key)
+        return points
+
+    return read
+
+
+def _family(value: Any) -> tuple[str, ...]:
+    names = [part.strip() for part in value.split(",")] if isinstance(value, str) else list(value)
+    if not names or not all(isinstance(name, str) and name for name in names):
+        raise ConfigError(f"{value!r} is not a font's family such as serif or Times New Roman", key="font_family")
+    return tuple(names)
+
+
+def _palette(value: Any) -> str | tuple[str, ...]:
+    if value in PALETTES:
+        return str(value)
+    colours = [part.strip() for part in value.split(",")] if isinstance(value, str) else list(value)
+    wrong = [c for c in colours if not (isinstance(c, str) and (_COLOUR.fullmatch(c) or c.lower() in NAMED))]
+    if wrong or not colours:
+        raise ConfigError(
+            f"{(wrong or [value])[0]!r} is neither {', '.join(PALETTES)} nor a colour such as #c7e4f6 or orange",
+            key="palette",
+        )
+    return tuple(_hexadecimal(c) for c in colours)
+
+
+def _hexadecimal(colour: str) -> str:
+    if not colour.startswith("#"):
+        return NAMED[colour.lower()]
+    return (colour if len(colour) == 7 else "#" + "".join(2 * digit for digit in colour[1:])).lower()
+
+
+def _title(value: Any) -> str:
+    text = "".join(c if c.isprintable() else " " for c in str(value)).strip()
+    if len(text) > MAX_TITLE:
+        raise ConfigError(f"a title has at most {MAX_TITLE} characters", key="title")
+    return text
+
+
+def _one_of(key: str, kinds: tuple[str, ...]) -> Any:
+    def read(value: Any) -> str:
+        if value not in kinds:
+            raise ConfigError(f"{value!r} is not among {', '.join(kinds)}", key=key)
+        return str(value)
+
+    return read
+
+
+def _legend(value: Any) -> Place:
+    if isinstance(value, Place):
+        return value
+    return Place(_one_of("legend", tuple(place.value for place in Place))(value))
+
+
+_READERS: Mapping[str, Any] = {
+    "size": _size,
+    "font_size": _points("font_size", MIN_FONT, MAX_FONT, ": smaller text is not read on paper"),
+    "font_family": _family,
+    "palette": _palette,
+    "title": _title,
+    "legend": _legend,
+    "line_width": _points("line_width", 0.1, MAX_LINE, ""),
+    "thin_lines": _one_of("thin_lines", LINES),
+}

@@ -1,0 +1,40 @@
+"""Units of axes and areas: those that the record declares, else what they are units of.
+
+Guarantee: an axis has the unit of the parameters which are a number times it, or none.
+"""
+
+from __future__ import annotations
+
+from ptmcad.mechanism import Kind
+from ptmcad.question.slice import Slice
+
+_LENGTH, _FORCE, _STIFFNESS = ("length",), ("force",), ("force", "length")
+_QUANTITIES = {Kind.LENGTH: _LENGTH, Kind.BASE: _LENGTH, Kind.STIFFNESS: _STIFFNESS, Kind.FORCE: _FORCE}
+"""The quantities, of which a second one divides."""
+
+
+def _quantities(slice: Slice, axis: int) -> tuple[str, ...]:
+    """Of an axis; empty where they are not known, or not the same for all parameters that are a number times it."""
+    exponents = (1, 0) if axis == 0 else (0, 1)
+    found = set()
+    for name, expression in slice.parameters.items():
+        if expression.is_polynomial and [term[:2] for term in expression.numerator] == [exponents]:
+            known = slice.model.parameters.get(name)
+            found |= {_QUANTITIES[known.kind]} if known is not None and known.kind in _QUANTITIES else set()
+    return found.pop() if len(found) == 1 else ()
+
+
+def unit(slice: Slice, axis: int) -> str:
+    """The unit of an axis, such as ``mm``, or ``length`` where the record declares none; empty when not known."""
+    return "/".join(slice.units.get(quantity, quantity) for quantity in _quantities(slice, axis))
+
+
+def area_unit(slice: Slice) -> str:
+    """The unit of areas, such as ``mm²``; empty unless units are declared for both axes."""
+    both = [_quantities(slice, axis) for axis in (0, 1)]
+    if not all(quantities and all(q in slice.units for q in quantities) for quantities in both):
+        return ""
+    first, second = (unit(slice, axis) for axis in (0, 1))
+    if first != second:
+        return f"{first}·{second}"
+    return f"({first})²" if "/" in first else f"{first}²"

@@ -1,0 +1,109 @@
+"""Two maps compared: the area where their counts differ, against areas that are known and exact grids."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from support.maps import shipped
+
+import ptmcad
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.cli import run
+from ptmcad.errors import ConfigError
+from ptmcad.show.render.comparing import CHANGES, comparison_figure
+from ptmcad.show.render.printing import settings
+from ptmcad.show.style import styled
+
+
+def parabola(shift: str, top: str = "1", **further: object) -> RegionMap:
+    """x^2 = a - shift has two solutions above a line, none below: areas are known."""
+    return ptmcad.classify(
+        {
+            "system": {"unknowns": {"x": "real"}, "equations": [f"x^2 - b + a*({shift})"]},
+            "axes": {"a": [0, 1], "b": [0, top]},
+            "count": "total",
+            **further,
+        }
+    )
+
+
+def test_the_area_between_two_lines() -> None:
+    """Two solutions where b > a / 2, and where b > a / 3: a triangle of 1/12 lies between."""
+    found = parabola("1/2").compare(parabola("1/3"))
+    (change,) = found.changes
+    assert change.area[0] <= Fraction(1, 12) <= change.area[1]
+    assert change.area[1] - change.area[0] < Fraction(1, 10**6)
+    assert found.first.regions[change.before].total == 0 and found.second.regions[change.after].total == 2
+    assert found.share == found.area
+
+
+def test_lines_that_cross_make_changes_of_both_kinds() -> None:
+    """b > a / 2 against b > 1/4: they cross at a = 1/2, with triangles of 1/16 at both sides."""
+    found = parabola("1/2").compare(
+        ptmcad.classify(
+            {
+                "system": {"unknowns": {"x": "real"}, "equations": ["x^2 - b + 1/4 + 0*a"]},
+                "axes": {"a": [0, 1], "b": [0, 1]},
+                "count": "total",
+            }
+        )
+    )
+    assert len(found.changes) == 2
+    for change in found.changes:
+        assert change.area[0] <= Fraction(1, 16) <= change.area[1]
+    assert {found.first.regions[c.before].total for c in found.changes} == {0, 2}
+
+
+def test_a_map_does_not_differ_from_itself() -> None:
+    for name, count in (("fig4", None), ("fig3", "index")):
+        found = shipped(name, count).compare(shipped(name, count))
+        assert found.changes == () and found.area == (0, 0)
+
+
+def test_the_area_agrees_with_an_exact_grid() -> None:
+    first = shipped("fig4")
+    second = ptmcad.classify(
+        ptmcad.slice_from_options(slice="rho,L2", ranges=["rho=0:2", "L2=0:2"], sets=["F3=-14", "F4=-8"])
+    )
+    found = first.compare(second)
+    different = first.grid(300).stable != second.grid(300).stable
+    assert 4 * different.mean() == pytest.approx(float(found.area[0]), rel=0.03)
+    for change in found.changes:
+        sample = found.decomposition.regions[change.region].sample
+        at = {name: sample[name] for name in sample.names}
+        assert (first.locate(**at).region, second.locate(**at).region) == (change.before, change.after)
+
+
+def test_maps_that_are_not_of_one_window_are_refused() -> None:
+    with pytest.raises(ConfigError, match="not the same axes"):
+        parabola("1/2").compare(parabola("1/3", "2"))
+    with pytest.raises(ConfigError, match="not the same count"):
+        shipped("fig4").compare(shipped("fig4", "index"))
+
+
+def test_the_picture_has_both_maps_and_the_difference() -> None:
+    found = parabola("1/2").compare(parabola("1/3"))
+    style = styled(size="7x4in", font_size=8)
+    with settings(style):
+        made = comparison_figure(found, 100, style)
+    assert tuple(made.get_size_inches()) == pytest.approx((7, 4)) and len(made.axes) == 3
+    said = [t.get_text() for t in made.texts]
+    assert "0 → 2" in said and "area 0.0833333" in " ".join(said)
+    (rim,) = [a for a in made.axes[2].get_children() if str(a.get_gid()).startswith("change-")]
+    assert rim.get_edgecolor()[0][:3] == pytest.approx([int(CHANGES[0][k : k + 2], 16) / 255 for k in (1, 3, 5)])
+    with pytest.raises(ConfigError, match="at least"), settings():
+        comparison_figure(found, 100, styled("ieee"))
+
+
+def test_the_command_line_compares(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, shift in (("one", "1/2"), ("two", "1/3")):
+        (tmp_path / f"{name}.json").write_text(parabola(shift).to_json())
+    one, two = (str(tmp_path / f"{name}.json") for name in ("one", "two"))
+    assert run(["plot", one, "--compare", two, "--format", "svg,pdf"]) == 0
+    assert "0 → 2: area 0.0833333" in capsys.readouterr().out
+    assert {path.name for path in tmp_path.iterdir()} >= {"one-and-two.svg", "one-and-two.pdf"}
+    assert run(["plot", one, "--compare", two, "--format", "csv"]) == 2
+    assert run(["plot", one, "--compare", two, "--at", "a=1,b=1"]) == 2
+    assert run(["plot", one, "--compare", str(tmp_path / "none.json")]) == 2

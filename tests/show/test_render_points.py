@@ -1,0 +1,116 @@
+"""Points on a map's picture: with the stable poses there, or measured by somebody."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+from matplotlib.lines import Line2D
+from support.maps import shipped
+
+from ptmcad.cli import run
+from ptmcad.cli.points import measured, places, poses_at
+from ptmcad.errors import ConfigError
+from ptmcad.show.render.around import draw_around
+from ptmcad.show.render.overlay import Agreement
+from ptmcad.show.render.printing import settings
+from ptmcad.show.render.regionmap import figure_of
+from ptmcad.show.style import MIN_FONT, Style, styled
+
+AT = ("rho=1,L2=3/2", "rho=3/2,L2=1/2", "rho=0.1,L2=1.8", "rho=1/4,L2=1/4")
+
+
+@pytest.fixture
+def stored(tmp_path: Path) -> str:
+    path = tmp_path / "fig4.json"
+    path.write_text(shipped("fig4").to_json())
+    return str(path)
+
+
+def around(texts: tuple[str, ...], style: Style) -> Figure:
+    result = shipped("fig4")
+    points = [(at, poses_at(result, at)) for at in places(result, texts)]
+    with settings(style):
+        made = draw_around(result, points, style, 100)
+        FigureCanvasAgg(made).draw()
+    return made
+
+
+@pytest.mark.parametrize("texts", [AT[:1], AT[:2], AT])
+@pytest.mark.parametrize("size", [None, "13x7in"])
+def test_poses_stand_beside_the_map_each_led_to_its_point(texts: tuple[str, ...], size: str | None) -> None:
+    made = around(texts, styled(size=size))
+    if size is not None:
+        assert tuple(made.get_size_inches()) == (13, 7)
+    panels = [axes for axes in made.axes if str(axes.get_gid()).startswith("pose-")]
+    assert len(panels) == sum(2 if text == AT[0] else 1 for text in texts)
+    (chart,) = (axes for axes in made.axes if axes.get_gid() == "map")
+    for number, text in enumerate(texts, 1):
+        (mark,) = [a for a in made.findobj(Line2D) if a.get_gid() == f"point-{number}"]
+        (leader,) = [a for a in made.findobj(Line2D) if a.get_gid() == f"leader-{number}"]
+        end = (leader.get_xdata()[1], leader.get_ydata()[1])
+        assert end == (mark.get_xdata()[0], mark.get_ydata()[0])
+        at = chart.transData.inverted().transform(made.dpi_scale_trans.transform(end))
+        assert tuple(at) == pytest.approx([float(v) for v in places(shipped("fig4"), [text])[0]], abs=1e-9)
+    boxes = [axes.get_window_extent() for axes in (*panels, chart)]
+    width, height = made.bbox.width, made.bbox.height
+    assert all(b.x0 >= 0 and b.y0 >= 0 and b.x1 <= width and b.y1 <= height for b in boxes)
+    assert not any(a.overlaps(b) for a, b in combinations([b.shrunk(0.98, 0.98) for b in boxes], 2))
+    assert min(t.get_fontsize() for t in made.texts) >= MIN_FONT
+
+
+def test_poses_without_room_are_refused_with_the_least_width(
+    stored: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["plot", stored, "--at", AT[0], "--style", "ieee"]) == 2
+    said = capsys.readouterr().err
+    assert "need a width of 5.5" in said
+    assert run(["plot", stored, "--at", AT[0], "--size", "5.6x4in"]) == 0
+    assert imread(tmp_path / "fig4.png").shape[:2] == (600, 840)
+
+
+@pytest.mark.parametrize(("text", "words"), [("rho=1", "rho and L2"), ("rho=1,L2=9", "outside"), ("rho=x,L2=1", "x")])
+def test_a_bad_point_is_refused(text: str, words: str, stored: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["plot", stored, "--at", text]) == 2
+    said = capsys.readouterr().err
+    assert "--at" in said and words in said
+
+
+def test_measured_points_are_compared_with_the_map(tmp_path: Path) -> None:
+    table = tmp_path / "points.csv"
+    table.write_text("L2,rho,label,count\n1.5,0.7,a,2\n1,1.5,b,2\n0.5,1.2,,\n9,9,out,1\n")
+    found, outside = measured(shipped("fig4"), table)
+    assert [point.agreement for point in found] == [Agreement.SAME, Agreement.OTHER, Agreement.UNTOLD]
+    assert [point.label for point in found] == ["a", "b", ""]
+    assert found[0].at == (Fraction(7, 10), Fraction(3, 2)) and outside == 1
+    with settings():
+        made = figure_of(shipped("fig4"), False, 100, style=styled(size="6x4in"), overlay=found)
+    said = [t.get_text() for t in made.texts]
+    assert {"measured point", "measured, another count", "1 point"} <= set(said)
+    marks = {a.get_gid(): a for a in made.axes[0].findobj(Line2D) if str(a.get_gid()).startswith("measured")}
+    assert [float(v) for v in marks["measured-other"].get_data()[0]] == [0.75]
+
+
+@pytest.mark.parametrize(
+    ("content", "words"), [("rho,x\n1,2\n", "must name the axes"), ("rho,L2\n1,two\n", "point 1"), ("", "must name")]
+)
+def test_a_bad_table_is_refused(content: str, words: str, tmp_path: Path) -> None:
+    table = tmp_path / "points.csv"
+    table.write_text(content)
+    with pytest.raises(ConfigError, match=words):
+        measured(shipped("fig4"), table)
+
+
+def test_the_command_line_draws_measured_points(
+    stored: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = tmp_path / "points.csv"
+    table.write_text("rho,L2\n1,1\n5,5\n")
+    assert run(["plot", stored, "--format", "svg", "--overlay", str(table)]) == 0
+    assert "1 of 2 points are outside" in capsys.readouterr().err
+    assert 'id="measured-untold"' in (tmp_path / "fig4.svg").read_text()

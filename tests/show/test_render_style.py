@@ -1,0 +1,309 @@
+"""Pictures of a stated size and style: everything is on the page, nothing is too small to be read on paper."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from fractions import Fraction
+from itertools import combinations, pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+from matplotlib.text import Annotation, Text
+from support.maps import shipped
+from test_render import bands
+
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.cli import run
+from ptmcad.errors import ConfigError
+from ptmcad.question.slice import Count
+from ptmcad.show.render import draw
+from ptmcad.show.render.colours import GREYS, filler
+from ptmcad.show.render.printing import settings
+from ptmcad.show.render.regionmap import figure_of
+from ptmcad.show.render.slivers import told_apart
+from ptmcad.show.render.usersettings import user_styled
+from ptmcad.show.style import MIN_FONT, PRESETS, Place, Style, styled
+from ptmcad.show.table import area_text
+
+SLIVERS = [Fraction(k // 2 + 1, 8) + (k % 2) * Fraction(1, 10**5) for k in range(6)]
+MAPS = {
+    "fig2": lambda: shipped("fig2"),
+    "fig4": lambda: shipped("fig4"),
+    "index": lambda: shipped("fig4", "index"),
+    "slivers": lambda: bands(SLIVERS, title="word " * 30),
+    "large numbers": lambda: bands([Fraction(1, 2)], window=((Fraction(10**9), Fraction(10**9 + 1)),) * 2),
+}
+JOURNALS = tuple(name for name in PRESETS if name != "default")
+
+
+def figure(result: RegionMap, style: Style) -> Figure:
+    with settings(style):
+        made = figure_of(result, samples=True, dpi=100, style=style)
+        FigureCanvasAgg(made).draw()
+    return made
+
+
+def texts(made: Figure) -> list[Text]:
+    return [t for t in made.findobj(Text) if t.get_text() and t.get_visible()]
+
+
+@pytest.mark.parametrize("name", MAPS)
+@pytest.mark.parametrize("preset", JOURNALS)
+@pytest.mark.parametrize("legend", [None, "below"])
+def test_everything_is_on_the_page_apart_and_legible(name: str, preset: str, legend: str | None) -> None:
+    style = styled(preset, legend=legend)
+    if legend == "below" and style.size is not None:
+        style = replace(style, size=(style.size[0], 1.5 * style.size[1]))
+    with settings(style):
+        made = figure_of(MAPS[name](), samples=True, dpi=100, style=style)
+        canvas = FigureCanvasAgg(made)
+        canvas.draw()
+        renderer = canvas.get_renderer()
+        assert style.size == pytest.approx(tuple(made.get_size_inches()))
+        assert min(t.get_fontsize() for t in texts(made)) >= MIN_FONT
+        boxes = [t.get_window_extent(renderer) for t in made.texts]
+        found = [a.get_tightbbox(renderer, bbox_extra_artists=[a.title]) for a in made.axes]
+        boxes += [box for box in found if box is not None]
+        width, height = canvas.get_width_height()
+        for box in boxes:
+            assert box.x0 >= -0.5 and box.y0 >= -0.5 and box.x1 <= width + 0.5 and box.y1 <= height + 0.5
+        for first, second in combinations(boxes, 2):
+            overlap = first.intersection(first, second)
+            assert overlap is None or min(overlap.width, overlap.height) < 1.5
+
+
+@pytest.mark.parametrize(("text", "inches"), [("3.5x2.6in", (3.5, 2.6)), ("90x70mm", (90 / 25.4, 70 / 25.4))])
+def test_the_picture_has_the_size_that_is_asked_for(text: str, inches: tuple[float, float], tmp_path: Path) -> None:
+    draw(shipped("fig2"), tmp_path / "map.png", dpi=200, style=styled(size=text))
+    rows, columns = imread(tmp_path / "map.png").shape[:2]
+    assert (columns, rows) == tuple(int(200 * side) for side in inches)
+    draw(shipped("fig2"), tmp_path / "map.svg", style=styled(size=text))
+    found = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', (tmp_path / "map.svg").read_text())
+    assert found is not None
+    assert (float(found[1]), float(found[2])) == pytest.approx(tuple(72 * side for side in inches), abs=0.01)
+
+
+def legend_of(made: Figure) -> str:
+    return " ".join(t.get_text() for t in made.texts)
+
+
+def test_insets_go_first_then_the_legend_moves_then_areas_go() -> None:
+    result = bands(SLIVERS[:2])
+    large, medium, small = (figure(result, styled(size=size, font_size=8)) for size in ((7, 5), (3.5, 2.6), (2.9, 2.9)))
+    assert [len(made.axes) for made in (large, medium, small)] == [2, 1, 1]
+    assert ["area" in legend_of(made) for made in (large, medium, small)] == [True, True, False]
+    arrows = [t.get_gid() for t in small.findobj(Text) if str(t.get_gid()).startswith("arrow")]
+    assert len(arrows) == 1, "what no inset shows is marked in the map"
+    tall = figure(shipped("fig4"), styled(size=(3.0, 3.8), font_size=8))
+    assert max(t.get_position()[1] for t in tall.texts[1:]) < tall.axes[0].get_position().y0 * 3.8
+
+
+def test_without_a_legend_there_is_none() -> None:
+    made = figure(shipped("fig4"), styled("ieee", legend=Place.NONE))
+    assert not made.texts
+    assert made.axes[0].get_position().width > 0.75
+
+
+def test_what_does_not_fit_is_refused_with_the_least_size_that_does() -> None:
+    style = styled(size=(1.5, 1.2), font_size=8)
+    with pytest.raises(ConfigError, match="least size") as caught:
+        figure(shipped("fig4"), style)
+    found = re.search(r"does is ([\d.]+x[\d.]+in)", caught.value.message)
+    assert found is not None
+    assert figure(shipped("fig4"), styled(style, size=found[1], font_size=8)).axes
+
+
+def test_a_title_of_ones_own_or_none() -> None:
+    assert "My title" in legend_of(figure(shipped("fig4"), styled("ieee", title="My title")))
+    with settings():
+        assert figure_of(shipped("fig4"), False, 100).texts[0].get_text().startswith("Equal loads")
+        untitled = figure_of(shipped("fig4"), False, 100, style=styled(title=""))
+    assert "Equal loads" not in legend_of(untitled)
+
+
+def test_colours_of_ones_own_are_those_of_the_counts_in_order(tmp_path: Path) -> None:
+    draw(shipped("fig4"), tmp_path / "map.png", style=styled(palette="#123456, orange", size="3x3in"))
+    image = imread(tmp_path / "map.png")[:, :, :3].reshape(-1, 3)
+    colours, numbers = np.unique(np.round(image * 255).astype(int), axis=0, return_counts=True)
+    found = {tuple(int(v) for v in c): n for c, n in zip(colours, numbers, strict=True)}
+    first, second = (found[tuple(round(255 * v) for v in to_rgb(c))] for c in ("#123456", "orange"))
+    assert first > 2 * second > 1000, "3.25 and 0.75 of the area"
+
+
+def test_the_grey_palette_is_grey_and_tells_counts_apart(tmp_path: Path) -> None:
+    draw(shipped("fig4", "index"), tmp_path / "map.png", style=styled("ieee", palette="grey"))
+    image = imread(tmp_path / "map.png")[:, :, :3]
+    assert np.ptp(image, axis=2).max() == 0
+    steps = [int(face[1:3], 16) for face in GREYS]
+    assert all(a - b >= 25 for a, b in pairwise(steps))
+    many = bands([Fraction(k, 20) for k in range(1, 16)], counts=[2 * k for k in range(16)])
+    for palette in ("grey", ("#ffffff", "#ff0000")):
+        fill = filler(many.regions, many.slice.count, palette)
+        assert len({fill(region) for region in many.regions}) == len({r.stable for r in many.regions})
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("--size", "3.5", "3.5x2.6in"),
+        ("--size", "0.5x2in", "inches"),
+        ("--size", "nanx2in", "3.5x2.6in"),
+        ("--font-size", "5", "6 to 96"),
+        ("--font-size", "nan", "6 to 96"),
+        ("--font-family", "No Such Font", "installed"),
+        ("--palette", "no colour", "colour"),
+        ("--line-width", "0", "points"),
+        ("--title", "x" * 1000, "200"),
+        ("--legend", "left", "right"),
+        ("--style", "nature", "ieee"),
+    ],
+)
+def test_bad_values_are_refused_before_anything_is_computed(
+    option: str, value: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["classify", "--slice", "L2,rho", "--out", str(tmp_path / "out"), option, value]) == 2
+    said = capsys.readouterr().err
+    assert option in said and words in said and "Traceback" not in said
+    assert len(said.strip().splitlines()[-1:]) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_command_line_draws_in_a_style(tmp_path: Path) -> None:
+    folder = str(tmp_path)
+    assert run(["classify", "--slice", "L2,rho", "--out", folder, "--format", "json,png", "--style", "ieee"]) == 0
+    assert imread(tmp_path / "slice-L2-rho.png").shape[:2] == (390, 525)
+    assert (
+        run(["plot", str(tmp_path / "slice-L2-rho.json"), "--style", "ieee", "--size", "100x50mm", "--dpi", "254"]) == 0
+    )
+    assert imread(tmp_path / "slice-L2-rho.png").shape[:2] == (500, 1000)
+
+
+@pytest.fixture
+def mplstyle(tmp_path: Path) -> Path:
+    path = tmp_path / "own.mplstyle"
+    path.write_text(
+        "figure.figsize: 4, 3\nfont.size: 7\naxes.edgecolor: red\nxtick.direction: in\nsvg.fonttype: path\n"
+    )
+    return path
+
+
+def test_a_users_own_settings_count_less_than_options(mplstyle: Path, tmp_path: Path) -> None:
+    style = user_styled("ieee", mpl_style=str(mplstyle))
+    assert (style.size, style.font_size, style.title) == ((4.0, 3.0), 7.0, "")
+    assert user_styled("ieee", mpl_style=str(mplstyle), font_size="10").font_size == 10
+    made = figure(shipped("fig4"), style)
+    assert made.axes[0].spines["left"].get_edgecolor() == (1, 0, 0, 1)
+    assert made.axes[0].xaxis.get_tick_params()["direction"] == "in"
+    draw(shipped("fig4"), tmp_path / "map.svg", style=style)
+    assert "<text" in (tmp_path / "map.svg").read_text(), "what files hold is not for a style to say"
+
+
+def test_a_users_matplotlibrc_counts_when_it_is_asked_for_only(mplstyle: Path, tmp_path: Path) -> None:
+    environment = {**os.environ, "MATPLOTLIBRC": str(mplstyle)}
+    found = {}
+    for name in ("default", "user"):
+        code = (
+            "from pathlib import Path; import ptmcad; from ptmcad.show.render import draw; "
+            "from ptmcad.show.render.usersettings import user_styled; "
+            "result = ptmcad.classify(ptmcad.slice_from_options(slice='L2,rho')); "
+            f"draw(result, Path({str(tmp_path / name)!r} + '.png'), style=user_styled({name!r}))"
+        )
+        subprocess.run([sys.executable, "-c", code], check=True, env=environment)
+        found[name] = imread(tmp_path / f"{name}.png").shape[:2]
+    assert found == {"default": (865, 1267), "user": (450, 600)}
+
+
+@pytest.mark.parametrize(
+    ("content", "words"), [("font.size: 3\n", "6 to 96"), ("nonsense\n", "cannot be read"), (None, "neither a file")]
+)
+def test_a_bad_file_of_settings_is_refused(content: str | None, words: str, tmp_path: Path) -> None:
+    path = tmp_path / "bad.mplstyle"
+    if content is not None:
+        path.write_text(content)
+    with pytest.raises(ConfigError, match=words) as caught:
+        user_styled(mpl_style=str(path))
+    assert caught.value.key == "mpl_style"
+
+
+def test_a_map_is_plotted_as_objects_of_matplotlib(tmp_path: Path) -> None:
+    result = shipped("fig4")
+    made = result.plot(style="ieee", title="own")
+    assert isinstance(made, Figure) and tuple(made.get_size_inches()) == (3.5, 2.6)
+    made.savefig(tmp_path / "saved.png", dpi=100)
+    assert imread(tmp_path / "saved.png").shape[:2] == (260, 350)
+    with pytest.raises(ConfigError, match="no 'colour'"):
+        result.plot(colour="red")
+
+
+def test_a_map_is_drawn_into_axes_in_the_units_of_its_own(tmp_path: Path) -> None:
+    result = shipped("fig4")
+    page = Figure(figsize=(6, 3), dpi=100)
+    left, right = page.subplots(1, 2)
+    assert result.plot(ax=left, legend="none", palette="#123456,#ffa500") is left
+    result.plot(ax=right, title="second")
+    assert (left.get_xlim(), left.get_ylabel(), left.get_legend()) == ((0, 2), "L₂ (length)", None)
+    assert [t.get_text() for t in right.get_legend().get_texts()] == ["1", "2"]
+    left.set_xlim(0.5, 1.0)
+    canvas = FigureCanvasAgg(page)
+    canvas.draw()
+    image = np.asarray(canvas.buffer_rgba())[::-1]
+    for at, colour in (((0.6, 1.0), "#ffa500"), ((0.95, 0.5), "#123456")):
+        column, row = left.transData.transform(at)
+        assert tuple(image[int(row), int(column), :3] / 255) == pytest.approx(to_rgb(colour), abs=0.01)
+        assert result.locate(rho=at[0], L2=at[1]).stable == (2 if colour == "#ffa500" else 1)
+
+
+def test_a_thin_part_in_which_unstable_equilibria_differ_is_zoomed_and_named() -> None:
+    made = figure(shipped("fig4"), styled(size="6x4in", font_size=9))
+    (inset,) = made.axes[1:]
+    assert inset.get_title(loc="left") == "1 of 6\nunstable ones differ, zoomed"
+    assert any(str(artist.get_gid()).endswith("-thin") for artist in inset.findobj(LineCollection))
+    (arrow,) = [t for t in made.findobj(Annotation) if str(t.get_gid()).startswith("arrow")]
+    assert arrow.get_text() == "1 of 6"
+    told = told_apart(shipped("fig4"))
+    index = shipped("fig4", "index")
+    assert sorted((r.stable, r.total, len(r.cells)) for r in told.regions) == sorted(
+        (r.stable, r.total, len(r.cells)) for r in index.regions
+    )
+
+
+def test_a_line_in_the_legend_has_something_to_show() -> None:
+    """Where no thin curve leaves the frame, and no inset has room, none is told of."""
+    result = shipped("fig4")
+    assert "another curve" in legend_of(figure(result, styled(size="6x4in", font_size=9)))
+    small = figure(result, styled("ieee"))
+    assert len(small.axes) == 1 and "another curve" not in legend_of(small)
+    assert not [t for t in small.findobj(Annotation) if str(t.get_gid()).startswith("arrow")]
+    thin = replace(result, slice=replace(result.slice, count=Count.TOTAL))
+    assert "another curve" not in legend_of(figure(thin, styled(size="6x4in", font_size=9)))
+
+
+def test_areas_are_those_of_the_table() -> None:
+    for result in (shipped("fig4"), shipped("fig2"), bands([Fraction(k, 40) for k in range(1, 13)])):
+        said = legend_of(figure(result, styled(size="7x6in", font_size=9)))
+        for region in result.regions if len(result.regions) < 9 else ():
+            assert area_text(result, region.area) in said and area_text(result, region.area) in result.table()
+    assert "7 regions, in all 0.85" in said
+
+
+def test_the_legend_says_of_how_many_solutions_even_where_these_differ() -> None:
+    assert "1 of 4 or 6 equilibria" in legend_of(figure(shipped("fig4"), styled(size="6x4in", font_size=9)))
+    assert "1 of 4 equilibria" in legend_of(figure(shipped("fig2"), styled(size="6x4in", font_size=9)))
+
+
+@pytest.mark.parametrize("size", ["3.5x3in", "8x5in"])
+def test_no_text_is_smaller_than_is_read_on_paper(size: str) -> None:
+    """Even where the legend's own text is as small as that: details, numbers at insets and labels of arrows."""
+    made = figure(bands(SLIVERS), styled(size=size, font_size=6))
+    assert min(t.get_fontsize() for t in texts(made)) == MIN_FONT
+    assert (len(made.axes) > 1) == (size == "8x5in")

@@ -1,0 +1,64 @@
+"""Units that a record declares: axes, areas and stored results name them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft202012Validator
+
+import ptmcad
+from ptmcad.errors import ConfigError
+from ptmcad.question.config import slice_from
+from ptmcad.show.render.axes import axis_name
+from ptmcad.show.units import area_unit, unit
+
+ROOT = Path(__file__).resolve().parents[2]
+RECORD = {
+    "axes": {"rho": [0, 2], "L2": [0, 2]},
+    "parameters": {"F3": -10, "F4": -10},
+    "units": {"length": "mm", "force": "N"},
+}
+
+
+def test_axes_and_areas_have_the_declared_units() -> None:
+    result = ptmcad.classify(RECORD)
+    assert [axis_name(result.slice, k) for k in (0, 1)] == ["ρ (mm)", "L₂ (mm)"]
+    assert "1: 3.2536 mm²; 2: 0.7464 mm²" in result.table()
+    said = [t.get_text() for t in result.plot(style="ieee").findobj(lambda a: hasattr(a, "get_text"))]
+    assert {"ρ (mm)", "L₂ (mm)", "area 0.7464 mm²"} <= set(said)
+
+
+@pytest.mark.parametrize(
+    ("axes", "units", "expected"),
+    [
+        ({"k": [50, 200], "F3": [-10, 0]}, {"length": "mm", "force": "N"}, ("N/mm", "N", "N/mm·N")),
+        ({"k": [50, 200], "k1": [50, 200]}, {"length": "m", "force": "kN"}, ("kN/m", "kN/m", "(kN/m)²")),
+        ({"L2": [0, 2], "F3": [-10, 0]}, {"length": "mm"}, ("mm", "force", "")),
+        ({"L2": [0, 2], "rho": [0, 2]}, {}, ("length", "length", "")),
+    ],
+)
+def test_derived_units(axes: dict[str, list[int]], units: dict[str, str], expected: tuple[str, str, str]) -> None:
+    slice = slice_from({"axes": axes, "units": units})
+    assert (unit(slice, 0), unit(slice, 1), area_unit(slice)) == expected
+
+
+def test_stored_results_keep_units_and_match_the_schemas() -> None:
+    result = ptmcad.classify(RECORD)
+    text = result.to_json()
+    assert ptmcad.RegionMap.from_json(text).slice.units == {"length": "mm", "force": "N"}
+    schema = json.loads((ROOT / "docs" / "region-map.schema.json").read_text())
+    Draft202012Validator(schema).validate(json.loads(text))
+    Draft202012Validator(json.loads((ROOT / "ptmcad" / "record.schema.json").read_text())).validate(RECORD)
+    bare = ptmcad.classify({key: value for key, value in RECORD.items() if key != "units"})
+    assert "units" not in json.loads(bare.to_json())["slice"]
+
+
+@pytest.mark.parametrize(
+    ("units", "words"),
+    [({"lenght": "mm"}, "length"), ("mm", "mapping"), ({"length": "x" * 30}, "20"), ({"force": ""}, "short text")],
+)
+def test_bad_units_are_refused(units: object, words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        slice_from({**RECORD, "units": units})
