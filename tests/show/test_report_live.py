@@ -311,6 +311,18 @@ def test_paper_shows_no_controls(view: Callable[..., Browser]) -> None:
     chips = b.run("[...document.querySelectorAll('.chip')].filter((e) => e.checkVisibility()).length")
     assert b.run(shown) == chips == 22
     b.printed(SHOTS / "fig4-live-print.pdf")
+    # the landscape has light colours on paper, whatever the screen has
+    b.media(prefers_color_scheme="dark")
+    b.until("document.querySelector('#live .landscape') !== null")
+    shade = "(() => { const copy = document.createElement('canvas').getContext('2d', { willReadFrequently: true });"
+    shade += (
+        "copy.drawImage(document.querySelector('#live canvas'), 0, 0); const all = copy.getImageData(0, 0, 256, 256)"
+    )
+    shade += ".data; return Math.max(...all.filter((_, k) => k % 4 === 0)); })()"
+    dark = b.run(shade)
+    b.media(prefers_color_scheme="dark", media="print")
+    b.until(f"{shade} > {dark}")
+    assert b.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     b.media(media="")
     b.run("show(8)")
     b.media(media="print")
@@ -323,3 +335,22 @@ def test_a_system_without_points_is_listed(view: Callable[..., Browser]) -> None
     move(b, 0.5, 0.5)
     cell = result.cells[b.run("live.cell")]
     assert b.run("document.querySelectorAll('#live .live-body li').length") == cell.total
+
+
+def test_no_step_leaps_over_a_snap(view: Callable[..., Browser]) -> None:
+    """However far the point is thrown: the pose is followed to the wall, found there, and falls once."""
+    b = view(computed("fig4"))
+    for y in (0.5625, 0.625, 0.6875, 0.75, 0.8125, 0.875, 0.9375):
+        falls, ends = b.run(
+            f"(() => {{ const y = {y}; let x = 0.02; moveProbe([x, y]);"
+            " while (live.found.length < 6) moveProbe([x += 0.01, y]);"
+            " const start = pointOf([x + 0.05, y]); const { found } = solutionsAt(start, cellAt([x + 0.05, y]));"
+            " const end = pointOf([0.02, y]);"
+            " const falls = (one) => followed(start, end, one.at).snaps.map((snap) => snap.point[0] / 2);"
+            " return [found.filter((one) => one.kind === 'stable').map(falls), x]; })()"
+        )
+        assert sorted(map(len, falls)) == [0, 1]
+        at = max(falls)[0]
+        assert ends - 0.0101 < at < ends
+        beside = [f"DATA.cells[cellAt([{at + shift}, {y}])].stable" for shift in (-0.002, 0.002)]
+        assert [b.run(text) for text in beside] == [1, 2]
