@@ -36,6 +36,8 @@ from ptmcad.text.numerals import shortest_text, text_of
 MAX_DRAWN = 10**100
 """Of parameters and coefficients that can be drawn: their products stay far within the range of floating point."""
 
+_MAX_TURNED = 1000
+"""Radians in a stored angle, which is within one turn or a few."""
 _DIGITS = 7
 
 Point = tuple[Bounds, Bounds]
@@ -147,7 +149,7 @@ def _solutions(
             "unknowns": unknowns + [decimal_text(x, real_place) for x in reals[k]],
             "at": [float(sum(c) / 2) for c in box],
             "energy": "" if at is None else decimal_text(at, energy_place),
-            "level": 0.0 if at is None else float(sum(at) / 2),
+            "level": 0.0 if at is None or abs(at[0] + at[1]) > MAX_DRAWN**3 else float(sum(at) / 2),
         }
         found.append(entry | parts[k])
     return found
@@ -204,7 +206,13 @@ def _box(solution: Solution, model: Model) -> tuple[Bounds, ...]:
 
 def _box_of_angles(solution: Solution, model: Model) -> tuple[Bounds, ...]:
     """Cosines and sines from a box around the angles themselves, as a certified map stores it."""
-    if len(solution.center) != len(model.unknowns) or not 0 <= solution.radius < 1:
+    angles, reals = solution.center[: len(model.angles)], solution.center[len(model.angles) :]
+    if (
+        len(solution.center) != len(model.unknowns)
+        or not 0 <= solution.radius < 1
+        or any(abs(x) > _MAX_TURNED for x in angles)
+        or any(abs(x) > MAX_DRAWN for x in reals)
+    ):
         raise ConfigError("a stored solution is no box around the unknowns; check it with ptmcad verify")
     ends = [(c - solution.radius, c + solution.radius) for c in solution.center]
     turns = [bounds for end in ends[: len(model.angles)] for bounds in cosine_sine(end)]
