@@ -10,7 +10,7 @@ from dataclasses import replace
 from fractions import Fraction
 from html import unescape
 from html.parser import HTMLParser
-from math import atan2, hypot, pi
+from math import atan2, cos, hypot, pi, sin
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +18,10 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from support.certified_map import certified_map
 
 import ptmcad
-from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.regionmap import RegionMap, Solution, Status
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import known_of
@@ -28,7 +29,8 @@ from ptmcad.question.config import load, slice_from_options
 from ptmcad.question.slice import Point
 from ptmcad.show.render.axes import scale_of
 from ptmcad.show.report import page
-from ptmcad.show.report.bounds import decimal_text, degrees, exactly, power, square_root, times
+from ptmcad.show.report.bounds import cosine_sine, decimal_text, degrees, exactly, power, square_root, times
+from ptmcad.show.report.equilibria import at_sample
 from ptmcad.show.report.error_curve import read_error_curve
 from ptmcad.show.report.frame import ticks
 from ptmcad.show.report.page import harmless
@@ -250,6 +252,52 @@ def test_angles_contain_the_true_one(degree: int, slack: int) -> None:
     turns = min((degree, degree - 360, degree + 360), key=lambda t: abs(t - found[0]))
     assert found[0] <= turns <= found[1]
     assert found[1] - found[0] <= 400 * radius + Fraction(1, 10**15)
+
+
+@given(middle=st.fractions(min_value=-40, max_value=40), slack=st.sampled_from([0, 12, 6, 3]))
+def test_cosines_and_sines_of_bounds_contain_the_true_ones(middle: Fraction, slack: int) -> None:
+    import mpmath
+
+    radius = Fraction(1, 10**slack) if slack else Fraction(0)
+    found = cosine_sine((middle - radius, middle + radius))
+    with mpmath.workdps(60):
+        for end in (middle - radius, middle, middle + radius):
+            angle = mpmath.mpf(end.numerator) / end.denominator
+            for (low, high), function in zip(found, (mpmath.cos, mpmath.sin), strict=True):
+                assert low <= Fraction(mpmath.nstr(function(angle), 50)) <= high
+                assert high - low <= 2 * radius + Fraction(1, 10**15)
+
+
+def test_poses_with_free_lengths_satisfy_the_mechanism() -> None:
+    """Lengths, forces and energy of any two angles, against plain floating point from the geometry of method.md."""
+    result = certified_map()
+    one, two = Fraction(3, 5), Fraction(-9, 4)
+    cell = replace(result.cells[0], solutions=(Solution((one, two), Fraction(1, 10**12), "++"),))
+    (pose,) = at_sample(result, cell)["equilibria"]
+    rho, l2, l0, k, f3, f4 = 0.5, 2.5, 0.2, 100, -10, -10
+    nodes = [(0, 0), (rho, 0), (cos(one), sin(one)), (rho - l2 * cos(two), l2 * sin(two))]
+    lengths = [hypot(a[0] - b[0], a[1] - b[1]) for a, b in ((nodes[0], nodes[3]), (nodes[1], nodes[2]), nodes[2:])]
+    energy = sum(k / 2 * (d - l0) ** 2 for d in lengths) - f3 * nodes[2][1] - f4 * nodes[3][1]
+    numbers = [[float(t.replace("−", "-")) for t in pose[name]] for name in ("lengths", "forces")]
+    assert pose["nodes"] == [pytest.approx(node) for node in nodes]
+    assert numbers == [pytest.approx(lengths), pytest.approx([k * (d - l0) for d in lengths])]
+    assert float(pose["energy"]) == pytest.approx(energy) == pose["level"]
+    assert pose["unknowns"] == [f"{value * 180 / pi:.4f}°".replace("-", "−") for value in (one, two)]
+
+
+@pytest.mark.parametrize(
+    "solution",
+    [
+        Solution((Fraction(1),), Fraction(0), "++"),
+        Solution((Fraction(1), Fraction(10**400)), Fraction(0), "++"),
+        Solution((Fraction(1), Fraction(1)), Fraction(10**400), "++"),
+    ],
+    ids=["one angle", "many turns", "a box without end"],
+)
+def test_boxes_of_angles_that_are_none_are_refused(solution: Solution) -> None:
+    result = certified_map()
+    with pytest.raises(ConfigError, match="no box around the unknowns"):
+        at_sample(result, replace(result.cells[0], solutions=(solution,)))
 
 
 def test_boxes_that_tell_no_angle() -> None:

@@ -123,7 +123,7 @@ def test_a_click_draws_poses_and_landscape(view: Callable[..., Browser]) -> None
     assert b.run(ink) > 10
     # each pose: two rods, three springs, four nodes, two loads
     for what, many in (("bar", 2), ("spring", 3), ("node", 4), ("load-head", 2)):
-        assert b.run(f"document.querySelectorAll('.pose')[0].querySelectorAll('.{what}').length") == many
+        assert b.run(f"document.querySelectorAll('#poses .pose')[0].querySelectorAll('.{what}').length") == many
     b.picture(SHOTS / "fig4-light.png")
     b.run("document.querySelector('#close').click()")
     assert b.run(FEW)["poses"] == 0
@@ -273,7 +273,7 @@ def test_narrow_screens_need_no_sideways_scrolling(view: Callable[..., Browser],
     b.run("document.querySelector('#map').scrollIntoView({ behavior: 'instant' })")
     number = next(n for n, c in enumerate(computed("fig4").cells) if c.stable == 2 and c.sample["rho"] > 0.3)
     b.tap(*place(b, number))
-    b.until("document.querySelectorAll('.pose').length === 6")
+    b.until("document.querySelectorAll('#poses .pose').length === 6")
     assert f"Cell {number}, " in b.run("document.querySelector('#readout').textContent")
     assert b.run("document.documentElement.scrollWidth") == width
     small = b.run(
@@ -352,7 +352,7 @@ def test_the_policy_stops_what_is_not_the_pages_own(view: Callable[..., Browser]
 @pytest.mark.parametrize("name", PAPER)
 def test_it_opens_within_a_second_and_is_small(view: Callable[..., Browser], name: str) -> None:
     """The least of three: the machine may be doing something else."""
-    assert len(page(computed(name)).encode()) < 3_000_000
+    assert len(page(computed(name)).encode()) < 300_000
     times = []
     for _ in range(3):
         b = view(name)

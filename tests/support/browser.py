@@ -135,10 +135,27 @@ class Browser:
         self.call("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
         self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
 
-    def press(self, *keys: str) -> None:
+    def drag(self, *places: tuple[float, float]) -> None:
+        """The mouse, pressed at the first place and let go at the last."""
+        kinds = ["mousePressed", *["mouseMoved"] * (len(places) - 1)]
+        self.point_at(*places[0])
+        for kind, (x, y) in zip(kinds, places, strict=True):
+            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
+        x, y = places[-1]
+        self.call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, button="left", clickCount=1)
+
+    def swipe(self, *places: tuple[float, float]) -> None:
+        """A finger, put down at the first place and lifted at the last."""
+        for number, (x, y) in enumerate(places):
+            kind = "touchMove" if number else "touchStart"
+            self.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y}])
+        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
+    def press(self, *keys: str, shift: bool = False) -> None:
         for key in keys:
             code, text = _KEYS[key]
             base = {"key": key, "code": "Space" if key == " " else key, "windowsVirtualKeyCode": code}
+            base["modifiers"] = 8 if shift else 0
             self.call("Input.dispatchKeyEvent", type="keyDown", text=text, **base)
             self.call("Input.dispatchKeyEvent", type="keyUp", **base)
 

@@ -79,6 +79,17 @@ def degrees(cosine: Bounds, sine: Bounds) -> Bounds | None:
     return times(times(angle, exactly(180)), (1 / _PI[1], 1 / _PI[0]))
 
 
+def cosine_sine(angle: Bounds) -> tuple[Bounds, Bounds]:
+    """Cosine and sine of an angle in radians: those at the middle of its bounds, which nothing leaves faster than the
+    angle itself."""
+    middle = sum(angle) / 2
+    turns = round(middle / (2 * _PI[0]))
+    known = Fraction(round((middle - turns * 2 * _PI[0]) * 2**90), 2**90)
+    slack = (angle[1] - angle[0]) / 2 + Fraction(1, 2**90) + 2 * abs(turns) * (_PI[1] - _PI[0])
+    cosine, sine = ((low - slack, high + slack) for low, high in _cosine_sine(known))
+    return cosine, sine
+
+
 def _cosine_sine(angle: Fraction) -> tuple[Bounds, Bounds]:
     """Bounds of cosine and sine of a number in [-4, 4] with a denominator of at most `_BITS` bits, from Taylor sums.
 

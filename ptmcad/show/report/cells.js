@@ -26,6 +26,7 @@ function line(parent, label, text) {
 function show(number) {
   readout.replaceChildren();
   const cell = DATA.cells[number];
+  readout.classList.toggle("idle", !cell);
   for (const area of document.querySelectorAll(".cell.seen")) area.classList.remove("seen");
   if (!cell) {
     line(readout, "", DATA.cells.length ? "No cell is pointed at." : "No cells are known yet.");
@@ -82,10 +83,13 @@ function choose(number, bringIntoView) {
   press(number, true);
   moveTo(number, false);
   show(number);
+  if (FOLLOW) moveProbe([cell.at[0] / DATA.side, 1 - cell.at[1] / DATA.side], true);
   fillPanel(number, cell);
   say(`Cell ${number}: ${cell.counts}. ${DATA.drawable ? "Its poses are drawn." : "Its solutions are listed."}`);
-  const top = panel.getBoundingClientRect().top;
-  if (bringIntoView && (top < 0 || top > window.innerHeight - 120)) panel.scrollIntoView({ block: "start" });
+  // the point's own poses stand above the cell's: what was clicked is at the top of both
+  const pane = FOLLOW ? document.getElementById("live") : panel;
+  const top = pane.getBoundingClientRect().top;
+  if (bringIntoView && (top < 0 || top > window.innerHeight - 120)) pane.scrollIntoView({ block: "start" });
 }
 
 function fillPanel(number, cell) {
@@ -102,9 +106,7 @@ function fillPanel(number, cell) {
   panel.replaceChildren(head, html("p", "hint", `At the sample: ${given.join(", ")}.`));
   cells.redraw = null;
   if (!cell.equilibria.length) {
-    const noPoses = cell.stack === null ? "Poses of springs with free lengths are not drawn here: ptmcad solve draws them."
-      : "The result stores no poses for this cell.";
-    const why = DATA.drawable ? noPoses : cell.counts.startsWith("0 ") ? "There is no solution here."
+    const why = DATA.drawable ? "The result stores no poses for this cell." : cell.counts.startsWith("0 ") ? "There is no solution here."
       : "The result stores no solutions for this cell.";
     panel.append(html("p", "", why));
     return;
@@ -112,7 +114,7 @@ function fillPanel(number, cell) {
   if (!DATA.drawable) {
     panel.append(html("p", "hint", "A system has no points, bars or springs to draw: its solutions in numbers, every digit "
       + "certified to one unit of the last place."), springTable(cell));
-    if (DATA.landscape) {
+    if (DATA.landscape && (cell.potential.length || FOLLOW)) {
       const energy = drawLandscape(cell, () => {});
       cells.redraw = energy.redraw;
       panel.append(html("h3", "", landscapeTitle(cell)), energy.box, landscapeLegend());
@@ -140,7 +142,8 @@ function fillPanel(number, cell) {
   }
   const without = cell.moments.length ? " U is the energy of springs and loads, without the moments' work." : "";
   panel.append(grid, html("p", "hint", legendOfParts() + without));
-  const landscape = DATA.landscape ? drawLandscape(cell, pointed) : null;
+  if (cell.total === null || cell.equilibria.length < cell.total) panel.append(html("p", "hint", "The result stores the stable poses alone."));
+  const landscape = DATA.landscape && (cell.potential.length || FOLLOW) ? drawLandscape(cell, pointed) : null;
   cells.redraw = landscape && landscape.redraw;
   const numbers = html("details");
   numbers.append(html("summary", "", "Poses in numbers (every digit certified to one unit of the last place)"), springTable(cell));

@@ -14,12 +14,13 @@ from typing import Any, TypeVar
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution
 from ptmcad.answer.words import kind_name
 from ptmcad.errors import ConfigError, PoleError
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.moments import moments_at
 from ptmcad.question.slice import merged
 from ptmcad.show.report.bounds import (
     Bounds,
+    cosine_sine,
     decimal_text,
     degrees,
     exactly,
@@ -35,6 +36,8 @@ from ptmcad.text.numerals import shortest_text, text_of
 MAX_DRAWN = 10**100
 """Of parameters and coefficients that can be drawn: their products stay far within the range of floating point."""
 
+_MAX_TURNED = 1000
+"""Radians in a stored angle, which is within one turn or a few."""
 _DIGITS = 7
 
 Point = tuple[Bounds, Bounds]
@@ -46,7 +49,7 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
 
     Moments are those on the unknowns, angles first, whose work is not in the potential; none where all are zero.
 
-    In a certified map, with a cover, solutions and potential are left out.
+    Where springs have free lengths, whose energy is no polynomial, the potential's terms are left out.
 
     Raises
     ------
@@ -58,22 +61,23 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     except PoleError as error:
         raise ConfigError(f"a parameter has no value at a sample: {error}") from error
     model = result.slice.model
-    # springs with free lengths have square roots in their potential
-    polynomial = result.cover is None and result.system.unknowns == coordinates(model)
+    # springs with free lengths have square roots in their potential; a certified map knows angles by themselves
+    polynomial = result.system.unknowns == coordinates(model)
     potential = potential_at(result.system, values) if polynomial and result.system.potential else None
     drawn = (
-        polynomial
+        (polynomial or result.system.unknowns == (*model.angles, *model.reals))
         and all(name in values for name in model.without_free_lengths)
         and all(abs(v) < MAX_DRAWN for v in (*values.values(), *(potential or {}).values()))
     )
-    moments = moments_at(model, values) if drawn and potential is not None else {}
+    known = dict.fromkeys(model.free_lengths, Fraction(0)) | values
+    moments = moments_at(model, known) if drawn and model.has_potential else {}
     loads = model.loads if drawn and isinstance(model, Mechanism) else ()
     return {
         "parameters": [[n, both(v)] for n, v in distinct_parameters(values, model).items()],
-        "loads": [[float(value_at(load.x, values)), float(value_at(load.y, values))] for load in loads],
+        "loads": [[float(value_at(load.x, known)), float(value_at(load.y, known))] for load in loads],
         "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()] if drawn else [],
         "moments": [float(moments.get(name, 0)) for name in (*model.angles, *model.reals)] if moments else [],
-        "equilibria": _solutions(model, cell, values, potential) if drawn else [],
+        "equilibria": _solutions(model, cell, known, potential, polynomial) if drawn else [],
     }
 
 
@@ -114,11 +118,14 @@ def both(value: Fraction) -> str:
 
 
 def _solutions(
-    model: Model, cell: Cell, values: Mapping[str, Fraction], potential: Potential | None
+    model: Model, cell: Cell, values: Mapping[str, Fraction], potential: Potential | None, polynomial: bool
 ) -> list[dict[str, Any]]:
     """The solutions, the stable ones first, then by energy; all numbers of a kind to the same last place."""
-    boxes = [_box(s, model) for s in cell.solutions]
-    energies = [None if potential is None else energy(potential, box) for box in boxes]
+    boxes = [_box(s, model) if polynomial else _box_of_angles(s, model) for s in cell.solutions]
+    energies = [
+        _energy(model, box, values) if not polynomial else None if potential is None else energy(potential, box)
+        for box in boxes
+    ]
     known = [bounds for bounds in energies if bounds is not None]
     energy_place = last_place(known, _DIGITS)
     turns = 2 * len(model.angles)
@@ -142,7 +149,7 @@ def _solutions(
             "unknowns": unknowns + [decimal_text(x, real_place) for x in reals[k]],
             "at": [float(sum(c) / 2) for c in box],
             "energy": "" if at is None else decimal_text(at, energy_place),
-            "level": 0.0 if at is None else float(sum(at) / 2),
+            "level": 0.0 if at is None or abs(at[0] + at[1]) > MAX_DRAWN**3 else float(sum(at) / 2),
         }
         found.append(entry | parts[k])
     return found
@@ -156,7 +163,11 @@ def _parts(
     springs = mechanism.springs
     lengths = [[square_root(_squared_distance(where[s.start], where[s.end])) for s in springs] for where in nodes]
     stiffnesses = [exactly(value_at(spring.stiffness, values)) for spring in springs]
-    forces = [[times(k, length) for k, length in zip(stiffnesses, row, strict=True)] for row in lengths]
+    free = [exactly(-value_at(spring.free, values)) for spring in springs]
+    forces = [
+        [times(k, plus(length, rest)) for k, length, rest in zip(stiffnesses, row, free, strict=True)]
+        for row in lengths
+    ]  # fmt: skip
     of_points = [x for where in nodes for place in where.values() for x in place]
     length_place = last_place([length for row in lengths for length in row] + of_points, _DIGITS)
     force_place = last_place([f for row in forces for f in row], _DIGITS)
@@ -193,6 +204,40 @@ def _box(solution: Solution, model: Model) -> tuple[Bounds, ...]:
     return tuple((c - solution.radius, c + solution.radius) for c in solution.center)
 
 
+def _box_of_angles(solution: Solution, model: Model) -> tuple[Bounds, ...]:
+    """Cosines and sines from a box around the angles themselves, as a certified map stores it."""
+    angles, reals = solution.center[: len(model.angles)], solution.center[len(model.angles) :]
+    if (
+        len(solution.center) != len(model.unknowns)
+        or not 0 <= solution.radius < 1
+        or any(abs(x) > _MAX_TURNED for x in angles)
+        or any(abs(x) > MAX_DRAWN for x in reals)
+    ):
+        raise ConfigError("a stored solution is no box around the unknowns; check it with ptmcad verify")
+    ends = [(c - solution.radius, c + solution.radius) for c in solution.center]
+    turns = [bounds for end in ends[: len(model.angles)] for bounds in cosine_sine(end)]
+    return (*turns, *ends[len(model.angles) :])
+
+
+def _energy(model: Model, box: tuple[Bounds, ...], values: Mapping[str, Fraction]) -> Bounds | None:
+    """Bounds of the energy by the description, with free lengths; None where there is none."""
+    within = _InBounds(model, box, values)
+    if isinstance(model, System):
+        return None if model.potential is None else evaluate(model.potential, within).bounds
+    if not isinstance(model, Mechanism) or not model.has_potential:
+        return None
+    where = _nodes(model, box, values)
+    terms = [evaluate(torsion.energy, within).bounds for torsion in model.torsion]
+    for spring in model.springs:
+        length = square_root(_squared_distance(where[spring.start], where[spring.end]))
+        stretch = plus(length, exactly(-value_at(spring.free, values)))
+        terms.append(times(exactly(value_at(spring.stiffness, values) / 2), power(stretch, 2)))
+    for load in model.loads:
+        for component, place in zip((load.x, load.y), where[load.point], strict=True):
+            terms.append(times(exactly(-value_at(component, values)), place))
+    return plus(*terms)
+
+
 def _nodes(mechanism: Mechanism, box: tuple[Bounds, ...], values: Mapping[str, Fraction]) -> dict[str, Point]:
     """Bounds of the coordinates of all points."""
     within = _InBounds(mechanism, box, values)
@@ -218,8 +263,8 @@ class _Bounded:
 class _InBounds:
     """Values within bounds, at a box of cosines and sines."""
 
-    def __init__(self, mechanism: Mechanism, box: tuple[Bounds, ...], values: Mapping[str, Fraction]):
-        self.box, self.values = dict(zip(coordinates(mechanism), box, strict=True)), values
+    def __init__(self, model: Model, box: tuple[Bounds, ...], values: Mapping[str, Fraction]):
+        self.box, self.values = dict(zip(coordinates(model), box, strict=True)), values
 
     def constant(self, value: Fraction) -> _Bounded:
         return _Bounded(exactly(value))

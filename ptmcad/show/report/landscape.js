@@ -7,6 +7,7 @@ const PLOT = { side: 400, left: 84, bottom: 74, rim: 34 };
 
 function energyTable(cell, steps) {
   const { potential: terms, moments: [one = 0, two = 0] } = cell;
+  if (!terms.length) return followedTable(cell, steps);
   const powers = [];
   const angles = [];
   for (let k = 0; k <= steps; k += 1) {
@@ -27,6 +28,15 @@ function energyTable(cell, steps) {
     table.push(row);
   }
   return table;
+}
+
+// The same from the model's operations, for energies that are no polynomial and away from the samples.
+function followedTable(cell, steps) {
+  const [one = 0, two = 0] = cell.moments;
+  const parameters = parametersAt(cell.point);
+  const angle = (k) => -Math.PI + 2 * Math.PI * k / steps;
+  return Array.from({ length: steps + 1 }, (_, j) => Float64Array.from({ length: steps + 1 }, (__, i) => (
+    valuesAt(parameters, [angle(i), angle(j)])[FOLLOW.energy] - one * angle(i) - two * angle(j))));
 }
 
 // Marching squares: one segment for each square that the level passes through, two in a saddle's square.

@@ -29,11 +29,12 @@ from ptmcad.show.report.equilibria import at_sample, both
 from ptmcad.show.report.error_curve import ErrorCurve, error_section
 from ptmcad.show.report.formulas import curves
 from ptmcad.show.report.frame import SIDE
+from ptmcad.show.report.tape import tape
 from ptmcad.show.table import certified_digits
 from ptmcad.text.numerals import text_of
 from ptmcad.version import __version__
 
-SCRIPTS = ("theme.js", "mechanism.js", "landscape.js", "cells.js")
+SCRIPTS = ("theme.js", "mechanism.js", "landscape.js", "cells.js", "follow.js", "live.js")
 """In the order in which they run."""
 
 
@@ -165,9 +166,10 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "axes": [symbol(name) for name in names],
         "drawable": isinstance(model, Mechanism),
         "told": model.tells_stability,
-        "landscape": len(model.angles) == len(model.unknowns) == 2 and bool(result.system.potential),
+        "landscape": len(model.angles) == len(model.unknowns) == 2 and model.has_potential,
         "index": index_words(len(model.unknowns) + 1),
         "mechanism": _drawing(model),
+        "follow": tape(result),
         "regions": [{"area": certified_digits(r.area), "counts": counts_text(r, model)} for r in result.regions],
         "stacks": [list(s.cells) for s in result.stacks],
         "cells": [
@@ -178,6 +180,9 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
                 "region": cell.region,
                 "counts": counts_text(cell, model),
                 "index": list(cell.index) if cell.index else None,
+                "stable": cell.stable,
+                "total": cell.total,
+                "point": [float(value) for value in cell.sample],
                 "sample": [[name, both(cell.sample[name]), text_of(cell.sample[name])] for name in names],
                 **at_sample(result, cell),
             }

@@ -39,6 +39,7 @@ theme.button.addEventListener("click", () => {
   theme.show();
 });
 theme.system.addEventListener("change", theme.show);
+window.matchMedia("print").addEventListener("change", theme.show); // paper has colours of its own
 theme.show();
 
 async function copy(text) {
