@@ -48,6 +48,7 @@ KERNELS = {
 }
 """The certified engine's formulas, made by hand for this mechanism."""
 GREEK = {
+    "show/render/pgf.py",
     "show/polynomial_text.py",
     "show/render/axes.py",
     "text/syntax.py",

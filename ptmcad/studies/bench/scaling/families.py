@@ -6,9 +6,12 @@ Guarantee: `Family.measure` depends on size and seed alone, but for the time and
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
+from importlib import import_module
+from typing import Any
 
 from ptmcad.errors import PtmcadError
 from ptmcad.options import Options
@@ -144,6 +147,25 @@ def certified_window() -> Slice:
     return ptm_slice("window", {"rho": ("1/2", "3/2"), "L2": ("11/10", 2)}, L1=1, k=100, l0="1/5", F3=-10, F4=-10)
 
 
+@contextmanager
+def _treated_boxes() -> Iterator[list[int]]:
+    """How many boxes each call of the search inside treats: the engine's own progress tells shares only."""
+    refinement: Any = import_module("ptmcad.certified.refinement")
+    used: list[int] = []
+    search = refinement.search_curve
+
+    def counting(*arguments: Any) -> Any:
+        found = search(*arguments)
+        used.append(found.used)
+        return found
+
+    refinement.search_curve = counting
+    try:
+        yield used
+    finally:
+        refinement.search_curve = search
+
+
 def tolerances(size: int, seed: int) -> tuple[Run]:
     """One certified map with the tolerance 1 / size, by one thread."""
     from ptmcad.certified.engine import certified_map
@@ -151,19 +173,13 @@ def tolerances(size: int, seed: int) -> tuple[Run]:
 
     load()  # compiles, once in a process: neither its time nor its steps are the map's
     watch = Stages()
-    boxes = 0
-
-    def progress(what: str, done: int, total: int) -> None:
-        nonlocal boxes
-        if done == total:  # no box is waiting: a curve is finished at this level
-            boxes += done
-
     watch.begin("map")
-    result = certified_map(certified_window(), Options(tolerance=Fraction(1, size), jobs=1, progress=progress))
+    with _treated_boxes() as used:
+        result = certified_map(certified_window(), Options(tolerance=Fraction(1, size), jobs=1))
     if result.undetermined * size > 1:
         raise PtmcadError(f"{float(result.undetermined):.3g} is undetermined, more than 1/{size}")
     rectangles = 0 if result.cover is None else len(result.cover.rectangles)
-    return (watch.run(size, {"boxes": boxes, "rectangles of the cover": rectangles, "cells": len(result.cells)}),)
+    return (watch.run(size, {"boxes": sum(used), "rectangles of the cover": rectangles, "cells": len(result.cells)}),)
 
 
 def threads(size: int, seed: int) -> tuple[Run]:
