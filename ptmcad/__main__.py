@@ -13,6 +13,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import NoReturn
 
+_ROOM = [bytearray(96 << 10)]
+"""Given back where there is none left, for the few lines that say so."""
+
 STOPPING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
@@ -35,6 +38,8 @@ def main() -> "NoReturn":
 def _refuse(error: Exception) -> "NoReturn":
     """Say that not even what watches can be loaded, with as little as there is, and exit."""
     try:
+        _ROOM.clear()
+        error.__traceback__ = None  # it holds what the import had made so far
         why = f"{type(error).__name__} {error}".strip()
         os.write(2, f"error: ptmcad cannot start: {why}{_low_memory_limits()}\n".encode(errors="replace"))
     finally:

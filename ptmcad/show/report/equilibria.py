@@ -61,8 +61,8 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     except PoleError as error:
         raise ConfigError(f"a parameter has no value at a sample: {error}") from error
     model = result.slice.model
-    # springs with free lengths have square roots in their potential; a certified map knows angles by themselves
-    polynomial = result.system.unknowns == coordinates(model)
+    # a certified map knows angles by themselves, and its potential may have roots, of lengths alone too
+    polynomial = result.cover is None and result.system.unknowns == coordinates(model)
     potential = potential_at(result.system, values) if polynomial and result.system.potential else None
     drawn = (
         (polynomial or result.system.unknowns == (*model.angles, *model.reals))
