@@ -171,9 +171,9 @@ def test_the_script_has_the_equations_of_the_description(view: Callable[..., Bro
         values = {n: float(e.evaluate(Fraction(x), Fraction(y))) for n, e in parameters.items()}
         state = state_at(slice.model, values, at.reshape(-1, 1))
         found = b.run(
-            f"(() => {{ Object.assign(FOLLOW, {json.dumps(data)});"
-            f" const {{ residuals, jacobian }} = equationsAt(parametersAt([{x!r}, {y!r}]), {at.tolist()});"
-            " return [residuals, jacobian]; })()"
+            f"(() => {{ const own = {{ ...FOLLOW }}; Object.assign(FOLLOW, {json.dumps(data)});"
+            f" try {{ const {{ residuals, jacobian }} = equationsAt(parametersAt([{x!r}, {y!r}]), {at.tolist()});"
+            " return [residuals, jacobian]; } finally { Object.assign(FOLLOW, own); } })()"
         )
         assert found[0] == pytest.approx(state.residuals[:, 0].tolist(), rel=1e-9, abs=1e-9)
         assert np.allclose(found[1], state.jacobian[:, :, 0], rtol=1e-9, atol=1e-9)
