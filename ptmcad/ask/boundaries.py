@@ -17,6 +17,7 @@ import numpy as np
 
 from ptmcad.answer.boundaries import Boundary
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.ask.doubles import within_doubles
 from ptmcad.ask.location import component_cells
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
@@ -48,9 +49,10 @@ def boundaries(result: RegionMap, tolerance: Any = TOLERANCE) -> tuple[Boundary,
         raise ConfigError(f"tolerance={tolerance} is not between 0 and 1")
     if not result.cells:
         raise ConfigError(f"the map {result.slice.name} was stopped before it had cells: it has no boundaries")
-    if result.cover is not None:
-        return tuple(_outlines(result, result.cover))
-    return tuple(_drawn(result, piece) for piece in _pieces(result, wanted))
+    with within_doubles(result.slice):
+        if result.cover is not None:
+            return tuple(_outlines(result, result.cover))
+        return tuple(_drawn(result, piece) for piece in _pieces(result, wanted))
 
 
 @dataclass(frozen=True, slots=True)

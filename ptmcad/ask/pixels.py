@@ -17,6 +17,7 @@ from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
+from ptmcad.ask.doubles import within_doubles
 from ptmcad.ask.location import component_cells, in_steps, locate, stack_over
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
@@ -49,7 +50,8 @@ def grid(result: RegionMap, columns: int = 200, rows: int | None = None) -> Grid
         for a, n in zip(result.slice.axes, (columns, down), strict=True)
     ]
     cells = _exact(result, centres) if result.cover is None else _certified(result, result.cover, centres)
-    x, y = (np.array([float(v) for v in values]) for values in centres)
+    with within_doubles(result.slice):
+        x, y = (np.array([float(v) for v in values]) for values in centres)
     return Grid(
         x, y, result.slice.axis_names, cells, _of(result, cells, lambda c: c.region),
         _of(result, cells, lambda c: c.stable), _of(result, cells, lambda c: c.total),

@@ -48,8 +48,8 @@ def quantities(model: Model) -> dict[str, Quantity]:
 
     >>> from ptmcad.mechanism import ptm
     >>> [name for name in quantities(ptm()) if not name.startswith(("x:", "y:"))]
-    ['th1', 'th2', 'energy', 'stiffness', 'force:A1A4', 'force:A2A3', 'force:A3A4', 'length:A1A4', 'length:A2A3', \
-'length:A3A4']
+    ['th1', 'th2', 'energy', 'stiffness', 'force:A1A4', 'force:A2A3', 'force:A3A4', 'force:k1', 'force:k2', \
+'force:k3', 'length:A1A4', 'length:A2A3', 'length:A3A4', 'length:k1', 'length:k2', 'length:k3']
     """
     found = [Quantity(name, "degrees", _degrees(k)) for k, name in enumerate(model.angles)]
     found += [Quantity(name, "", _real(k)) for k, name in enumerate(model.reals)]
@@ -57,9 +57,9 @@ def quantities(model: Model) -> dict[str, Quantity]:
         found.append(Quantity("energy", "", lambda pose: pose.energy))
         found.append(Quantity("stiffness", "", lambda pose: pose.eigenvalues[0] if pose.eigenvalues else None))
     if isinstance(model, Mechanism):
-        springs = [f"{spring.start}{spring.end}" for spring in model.springs]
-        found += [Quantity(f"force:{name}", "", _force(k)) for k, name in enumerate(springs)]
-        found += [Quantity(f"length:{name}", "", _length(k)) for k, name in enumerate(springs)]
+        springs = model.spring_numbers
+        found += [Quantity(f"force:{name}", "", _force(k)) for name, k in springs.items()]
+        found += [Quantity(f"length:{name}", "", _length(k)) for name, k in springs.items()]
         found += [Quantity(f"{'xy'[n]}:{name}", "", _place(name, n)) for name in model.moving for n in (0, 1)]
     return {q.name: q for q in found}
 

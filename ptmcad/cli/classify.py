@@ -13,7 +13,7 @@ import click
 
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.regionmap import with_compilation
-from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of
+from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of, share_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
@@ -21,7 +21,7 @@ from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.cli.values import files
-from ptmcad.errors import ConfigError, ExpressionError, LimitReached
+from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import ptm
 from ptmcad.options import Options
 from ptmcad.process.handover import Topic, send, watched
@@ -35,7 +35,6 @@ from ptmcad.process.output import (
 )
 from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Count, Slice
-from ptmcad.text.parsing import rational
 
 FORMATS = ("json", *PICTURES, *DATA)
 MIN_SECONDS = 0.01
@@ -209,19 +208,6 @@ def warn(slice: Slice, options: Options) -> None:
         click.echo(f"note: {text}", err=True)
 
 
-def _share(_context: click.Context, parameter: click.Parameter, value: str | None) -> Fraction | None:
-    if value is None:
-        return None
-    option = parameter.opts[0]
-    try:
-        share = rational(value)
-    except ExpressionError as error:
-        raise ConfigError(str(error), key=option) from error
-    if not 0 < share < 1:
-        raise ConfigError(f"{value} is not between 0 and 1: write a number such as 1e-6", key=option)
-    return share
-
-
 def _names_of_savings(_context: click.Context, parameter: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
     try:
         check_names(names)
@@ -279,7 +265,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @limit_options
 @click.option(
     "--tolerance",
-    callback=_share,
+    callback=share_of,
     metavar="EPS",
     help="Stop when this share of the window is undetermined (certified engine).",
 )
@@ -291,7 +277,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
     help="Go on from a stored certified map of the same slice.",
 )
 @click.option(
-    "--area-tolerance", callback=_share, metavar="EPS", help="Relative width of the areas' bounds (exact engine)."
+    "--area-tolerance", callback=share_of, metavar="EPS", help="Relative width of the areas' bounds (exact engine)."
 )
 @click.option("--no-areas", is_flag=True, help="Leave the regions' areas out, often half of the work (exact engine).")
 @click.option("--no-timings", is_flag=True, help="Leave run times out of the JSON, so that it is the same every time.")

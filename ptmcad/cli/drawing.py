@@ -105,8 +105,10 @@ class Drawing:
         path.write_bytes(npz_bytes(result, boundaries(), result.grid(*self.pixels)))
 
 
-def share_of(_context: click.Context, parameter: click.Parameter, value: str) -> Fraction:
-    """A share between 0 and 1."""
+def share_of(_context: click.Context, parameter: click.Parameter, value: str | None) -> Fraction | None:
+    """A share between 0 and 1, where one is given."""
+    if value is None:
+        return None
     option = parameter.opts[0]
     try:
         share = rational(value)

@@ -291,6 +291,12 @@ class Mechanism(Model):
             if start not in self.moving and any(angle in names_of(tree) for tree in self.points[end])
         }
 
+    @cached_property
+    def spring_numbers(self) -> Mapping[str, int]:
+        """Every name under which a spring is asked for, to its number: its own, and its ends' names put together."""
+        ends = {f"{s.start}{s.end}": k for k, s in enumerate(self.springs)}
+        return ends | {s.name: k for k, s in enumerate(self.springs)}
+
     def held(self, support: Support) -> str:
         """The first point that is held so; an empty name when there is none."""
         return next((name for name, kind in self.supports.items() if kind is support), "")

@@ -273,3 +273,54 @@ def test_derivatives_of_the_equations_are_those_of_differences() -> None:
         assert down.energy is not None
         assert state.residuals[k] == pytest.approx((up.energy - down.energy) / (2 * step), rel=1e-6, abs=1e-5)
         assert state.jacobian[k] == pytest.approx((up.residuals - down.residuals) / (2 * step), rel=1e-6, abs=1e-5)
+
+
+TURNED = {
+    "name": "turned",
+    "mechanism": {
+        "parameters": {"M": {"kind": "force"}, "b": {"kind": "base"}},
+        "unknowns": {"th": "angle"},
+        "points": {"O": [0, 0], "B": ["b", 0], "P": ["cos(th)", "sin(th)"]},
+        "springs": [{"between": ["B", "P"], "k": 2}],
+        "moments": {"th": "M*sin(th)^2"},
+    },
+    "axes": {"b": ["1/2", 2], "M": [-1, 1]},
+}  # fmt: skip
+"""A moment whose mean works on the angle, and whose rest is the slope of an energy."""
+
+
+def test_moments_on_their_own_unknown_are_in_the_energy() -> None:
+    """As `solve` has it: the part with a value for each pose."""
+    result = ptmcad.classify(TURNED)
+    field = result.field("energy", "stable:1", 9)
+    assert (field.missed, field.checked > 0, field.difference < 1e-9) == (0, True, True)
+    for row, column in ((0, 0), (4, 7), (8, 3)):
+        pose = next(p for p in exact_at(result, *centre(result, result.grid(9), row, column)).equilibria if p.stable)
+        assert field.values[row, column] == pytest.approx(float(pose.known_energy.center), abs=1e-9)
+    with pytest.raises(ConfigError, match="where moments work"):
+        result.field("barrier", "stable:1", 9)
+
+
+def test_springs_have_the_names_of_other_commands() -> None:
+    """By their stiffness or by their ends, as `range --quantity` takes them too."""
+    result = shipped("fig2")
+    assert np.array_equal(result.field("force:k2", columns=5).values, result.field("force:A2A3", columns=5).values)
+
+
+def test_a_barrier_that_was_not_found_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ptmcad.ask.fields.barrier.STEPS", 1)
+    field = shipped("fig4").field("barrier", "stable:2", 16)
+    assert field.missed == (shipped("fig4").grid(16).stable == 2).sum() > 0
+    assert np.isnan(field.values).all()
+
+
+def test_windows_beyond_doubles_are_refused() -> None:
+    record = {
+        "name": "vast", "system": {"unknowns": {"z": "real"}, "equations": ["z^2 - x*y"]},
+        "axes": {"x": ["1e400", "2e400"], "y": [1, 2]},
+    }  # fmt: skip
+    result = ptmcad.classify(record)
+    assert result.boundaries() == ()  # no curve is in the window
+    for ask in (result.grid, lambda: result.field("z", "pose:1")):
+        with pytest.raises(ConfigError, match="beyond doubles"):
+            ask()

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
+from ptmcad.ask.doubles import within_doubles
 from ptmcad.ask.fields.equations import State, determinant, eigenvalues, newton_step, state_at
 from ptmcad.ask.fields.jets import Floats
 from ptmcad.mechanism import Model
@@ -158,11 +159,13 @@ def parameters_at(result: RegionMap, grid: Grid) -> Mapping[str, Any]:
     """Every parameter of the model over the grid: a number, or shape (rows, columns)."""
     x, y = grid.x[None, :], grid.y[:, None]
     found: dict[str, Any] = {}
-    for name, e in result.slice.parameters.items():
-        sides = [
-            sum((float(c) * x**i * y**j for i, j, c in terms), 0.0 * x * y) for terms in (e.numerator, e.denominator)
-        ]
-        found[name] = float(e.constant()) if e.is_constant else sides[0] / sides[1]
+    with within_doubles(result.slice):
+        for name, e in result.slice.parameters.items():
+            sides = [
+                sum((float(c) * x**i * y**j for i, j, c in terms), 0.0 * x * y)
+                for terms in (e.numerator, e.denominator)
+            ]
+            found[name] = float(e.constant()) if e.is_constant else sides[0] / sides[1]
     return found
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from ptmcad.ask.fields.jets import Floats, Jet, cos_sin, unknowns
 from ptmcad.mechanism import Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.mechanism.work import split_moments
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,8 @@ class State:
     energy : shape S; None where there is no potential.
     conditions : what is positive at solutions that count.
     stability : without a potential what is positive at stable ones.
-    points, lengths, forces : of a mechanism, by name; a force is positive where the spring pulls.
+    points : of a mechanism, by name.
+    lengths, forces : of its springs, in their order; a force is positive where the spring pulls.
     """
 
     residuals: Floats
@@ -37,8 +39,8 @@ class State:
     conditions: tuple[Floats, ...] = ()
     stability: tuple[Floats, ...] = ()
     points: Mapping[str, tuple[Floats, Floats]] | None = None
-    lengths: Mapping[str, Floats] | None = None
-    forces: Mapping[str, Floats] | None = None
+    lengths: tuple[Floats, ...] = ()
+    forces: tuple[Floats, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +81,8 @@ def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> State:
     # the ring's protocol asks for more than arrays' types tell
     evaluated: Any = ring
     if isinstance(model, Mechanism):
-        return _mechanism(model, evaluated, at)
+        with np.errstate(divide="ignore", invalid="ignore"):  # a spring without length has no direction: nan
+            return _mechanism(model, evaluated, at)
     assert isinstance(model, System)
     conditions = tuple(_jet(evaluate(tree, evaluated), at).value for tree in model.inequalities)
     stability = tuple(_jet(evaluate(tree, evaluated), at).value for tree in model.stability)
@@ -94,7 +97,7 @@ def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> State:
 def _mechanism(model: Mechanism, ring: Any, at: Floats) -> State:
     points = {name: (_jet(evaluate(x, ring), at), _jet(evaluate(y, ring), at)) for name, (x, y) in model.points.items()}
     energy = _jet(0.0, at)
-    lengths, forces = {}, {}
+    lengths, forces = [], []
     for spring in model.springs:
         (x0, y0), (x1, y1) = points[spring.start], points[spring.end]
         k, free = evaluate(spring.stiffness, ring), evaluate(spring.free, ring)
@@ -103,27 +106,30 @@ def _mechanism(model: Mechanism, ring: Any, at: Floats) -> State:
         if np.any(free):
             length = square.root()
             energy = energy + (length - free) * (length - free) * (k / 2)
-            lengths[spring.name] = length.value
+            lengths.append(length.value)
         else:
             energy = energy + square * (k / 2)
-            lengths[spring.name] = np.sqrt(np.maximum(square.value, 0))
-        forces[spring.name] = k * (lengths[spring.name] - free)
+            lengths.append(np.sqrt(np.maximum(square.value, 0)))
+        forces.append(k * (lengths[-1] - free))
     for torsion in model.torsion:
         energy = energy + evaluate(torsion.energy, ring)
     for load in model.loads:
         x, y = points[load.point]
         energy = energy - x * evaluate(load.x, ring) - y * evaluate(load.y, ring)
+    moments = split_moments(model)
+    for tree in moments.energies:
+        energy = energy + evaluate(tree, ring)
     residuals, jacobian = energy.gradient, energy.hessian
-    if model.moments:
+    if moments.steady:
         residuals, jacobian = residuals.copy(), jacobian.copy()
-        for moment in model.moments:
+        for moment in moments.steady:
             k = (*model.angles, *model.reals).index(moment.unknown)
             value = _jet(evaluate(moment.value, ring), at)
             residuals[k] -= value.value
             jacobian[k] -= value.gradient
     places = {name: (x.value, y.value) for name, (x, y) in points.items()}
     has_energy = energy.value if model.has_potential else None
-    return State(residuals, jacobian, has_energy, points=places, lengths=lengths, forces=forces)
+    return State(residuals, jacobian, has_energy, points=places, lengths=tuple(lengths), forces=tuple(forces))
 
 
 def _jet(value: Any, at: Floats) -> Jet:

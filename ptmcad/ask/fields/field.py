@@ -24,6 +24,7 @@ from ptmcad.ask.pixels import grid as grid_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism.work import split_moments
 
 BATCH, LARGE_BATCH = 300, 20_000
 """Pixels at a time: what they take stays in the processor's cache; of descents few are long, which go on together."""
@@ -110,7 +111,9 @@ def field_of(
         check()
         r, c = (p[first : first + batch] for p in places)
         values[r, c] = _at_pixels(model, quantity, choice, follower, (r, c), solutions.at[:, r, c])
-    number, difference = _checked(result, grid, quantity, choice, values, follower, checks)
+    if quantity.name == BARRIER:  # there is one wherever there is another stable pose
+        missed += int((np.isnan(values) & solutions.done & (grid.stable >= max(2, choice.rank))).sum())
+    number, difference = _checked(result, quantity, choice, values, follower, checks)
     return Field(
         quantity.name, str(choice), quantity.unit, grid.x, grid.y, grid.names, values, grid.region, missed, number,
         difference,
@@ -123,7 +126,7 @@ def _check_request(result: RegionMap, quantity: Quantity, choice: Choice) -> Non
     if choice.kind != "stable":
         raise ConfigError("a barrier is that of a stable pose: ask for stable:1", key="--pose")
     model = result.slice.model
-    if isinstance(model, Mechanism) and model.moments:
+    if isinstance(model, Mechanism) and split_moments(model).steady:
         raise ConfigError("where moments work a pose's energy is not what a barrier is counted from", key="--value")
 
 
@@ -236,28 +239,28 @@ def _unknowns(pose: Pose) -> list[float]:
 
 
 def _checked(
-    result: RegionMap,
-    grid: Grid,
-    quantity: Quantity,
-    choice: Choice,
-    values: Floats,
-    follower: Follower,
-    checks: int,
+    result: RegionMap, quantity: Quantity, choice: Choice, values: Floats, follower: Follower, checks: int
 ) -> tuple[int, float]:
-    """How many random pixels were compared with exact poses, and the largest difference as a share."""
+    """How many random pixels were compared with exact poses, and the largest difference as a share.
+
+    Where certified poses could not be told apart there is nothing to compare with.
+    """
     rows, columns = np.nonzero(~np.isnan(values))
     if not len(rows) or not checks:
         return 0, 0.0
     size = float(np.nanmax(np.abs(values))) or 1.0
     source = random.Random(f"{result.slice.name} {quantity.name} {choice}")
     picked = source.sample(range(len(rows)), min(checks, len(rows)))
-    worst = 0.0
+    worst, number = 0.0, 0
     for k in picked:
         row, column = int(rows[k]), int(columns[k])
-        poses = exact_at(result, *centre(result, grid, row, column))
+        poses = exact_at(result, *centre(result, follower.grid, row, column))
+        if not poses.equilibria:
+            continue
+        number += 1
         points = np.array([_unknowns(p) for p in poses.equilibria]).T[:, None, :]
         place = (rows[k : k + 1], columns[k : k + 1])
         exact = _at_pixels(result.slice.model, quantity, choice, follower, place, points)
         difference = abs(float(exact[0]) - float(values[row, column])) / size
         worst = max(worst, np.inf if np.isnan(difference) else difference)
-    return len(picked), worst
+    return number, worst

@@ -54,7 +54,7 @@ def quantity_of(text: str, slice: Slice) -> Quantity:
     if not colon:
         return _expression(text, slice)
     if kind in ("force", "length"):
-        known = tuple(s.name for s in mechanism.springs) if mechanism else ()
+        known = tuple(mechanism.spring_numbers) if mechanism else ()
     elif kind in ("x", "y"):
         known = tuple(mechanism.points) if mechanism else ()
     elif kind == "angle":
@@ -90,10 +90,9 @@ def _named(kind: str, name: str, model: Model) -> Values:
     if kind == "angle":
         k = model.angles.index(name)
         return lambda state, at, values: np.degrees(at[k])
-    if kind == "force":
-        return lambda state, at, values: _known(state.forces)[name]
-    if kind == "length":
-        return lambda state, at, values: _known(state.lengths)[name]
+    if kind in ("force", "length") and isinstance(model, Mechanism):
+        number = model.spring_numbers[name]
+        return lambda state, at, values: _known(state.forces if kind == "force" else state.lengths)[number]
     side = 0 if kind == "x" else 1
     return lambda state, at, values: _known(state.points)[name][side]
 

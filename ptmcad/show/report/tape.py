@@ -16,6 +16,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import kind_name
 from ptmcad.mechanism import Mechanism, Model, System
 from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.mechanism.work import split_moments
 from ptmcad.question.slice import Slice, have_free_lengths
 from ptmcad.text.tree import Tree
 
@@ -161,11 +162,14 @@ def _mechanism(model: Mechanism, t: _Tape, slice: Slice) -> dict[str, Any]:
     loads = [(load.point, evaluate(load.x, t), evaluate(load.y, t)) for load in model.loads]
     for point, fx, fy in loads:
         energy = energy - (points[point][0] * fx + points[point][1] * fy)
+    moments = split_moments(model)
+    for tree in moments.energies:
+        energy = energy + evaluate(tree, t)
     unknowns = (*model.angles, *model.reals)
     return _parts(
         energy=energy.number if model.has_potential else None,
         force=energy.number,
-        moments=[[unknowns.index(m.unknown), evaluate(m.value, t).number] for m in model.moments],
+        moments=[[unknowns.index(m.unknown), evaluate(m.value, t).number] for m in moments.steady],
         points=[[x.number, y.number] for x, y in points.values()],
         loads=[[fx.number, fy.number] for _, fx, fy in loads],
     )
