@@ -26,7 +26,7 @@ from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.verification.claims import Claims, ball, is_root
 from ptmcad.verification.elimination import discriminant, resultant
 from ptmcad.verification.structure import points_over
-from ptmcad.verification.sturm import isolated, parting, real_roots
+from ptmcad.verification.sturm import ends_of, isolated, parting, real_roots
 
 _BITS = (256, 1024, 4096)
 _FINEST = 512
@@ -66,7 +66,8 @@ class Heights:
             value = ball(self.value, fmpq(1, 1 << _FINEST))
             ends = [end for end in (low, high) if self._is_point(end)]
             for v in real_roots(tuple(int(c) for c in self._polynomial.coeffs()), _FINEST):
-                if v < low or v > high or any(v.contains(end) for end in ends):
+                first, last = ends_of(v)
+                if last < low or high < first or any(first <= end <= last for end in ends):
                     continue
                 number += any(arb_poly([c(value) for c in curve.in_v])(v).contains(0) for curve in self.claims.curves)
         return number

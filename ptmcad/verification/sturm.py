@@ -64,12 +64,12 @@ def _balls_between(coefficients: tuple[int, ...], low: fmpq, high: fmpq, ends: S
     bits = 64
     while True:
         inside = 0
-        for ball in real_roots(coefficients, bits):
-            if any(ball.contains(end) for end in ends):
+        for first, last in map(ends_of, real_roots(coefficients, bits)):
+            if any(first <= end <= last for end in ends):
                 continue  # there is one root in the ball, so it is this end
-            if ball > low and ball < high:
+            if low < first and last < high:
                 inside += 1
-            elif not (ball < low or ball > high):
+            elif not (last < low or high < first):
                 break
         else:
             return inside
@@ -82,6 +82,15 @@ def real_roots(coefficients: tuple[int, ...], bits: int) -> tuple[arb, ...]:
     with ctx.workprec(bits):
         pairs: Any = squarefree(fmpz_poly(list(coefficients))).complex_roots()  # FLINT's stub says otherwise
         return tuple(root.real for root, _ in pairs if root.imag == 0)
+
+
+def ends_of(ball: arb) -> tuple[fmpq, fmpq]:
+    """The least and the greatest number in a ball, to be compared with rational numbers.
+
+    A ball itself compares with a rational number rounded to the working precision, which may be far coarser than it is.
+    """
+    middle, radius = ball.mid().fmpq(), ball.rad().fmpq()
+    return middle - radius, middle + radius
 
 
 def roots_within(p: fmpz_poly, low: fmpq, high: fmpq) -> int:

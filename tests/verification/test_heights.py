@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from flint import fmpq, fmpz_poly
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.curves_with_known_points import KnownCurves, known_curves
 
@@ -102,6 +102,9 @@ def test_points_that_are_very_near_to_each_other_are_two(digits: int) -> None:
 
 
 @settings(max_examples=20)
+@example(
+    [Fraction(7, 5)], [Fraction(0), Fraction(7, 5)], 2
+)  # an end that is a root and no number of finitely many bits
 @given(
     st.lists(st.fractions(-2, 2, max_denominator=12), min_size=1, max_size=5, unique=True),
     st.lists(st.fractions(-2, 2, max_denominator=12), min_size=2, max_size=2, unique=True),
@@ -119,3 +122,13 @@ def test_roots_of_long_polynomials_are_counted(roots: list[Fraction], ends: list
     assert inside == sum(low < r < high for r in roots)
     assert roots_between(p, fmpq(5, 2), fmpq(4)) == 2
     assert roots_between(p, fmpq(3), fmpq(4)) == 1
+
+
+def test_a_point_at_an_end_that_balls_only_round_to_is_not_between() -> None:
+    # (5 v - 7) (v + 1) + (u^2 - 2) u
+    known = KnownCurves(
+        (((0, 2, 5), (0, 1, -2), (0, 0, -7), (3, 0, 1), (1, 0, -2)),), (Fraction(-1), Fraction(7, 5))
+    )  # fmt: skip
+    heights = checker(known)
+    assert heights._candidates_between(LOW, fmpq(7, 5)) == heights.between(LOW, fmpq(7, 5)) == 1
+    assert heights._candidates_between(fmpq(7, 5), HIGH) == heights.between(fmpq(7, 5), HIGH) == 0
