@@ -15,6 +15,8 @@ from ptmcad.answer.field import Field
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields import equations
+from ptmcad.ask.fields.barrier import barriers
+from ptmcad.ask.fields.equations import State
 from ptmcad.ask.fields.field import centre, exact_at
 from ptmcad.cli import map as command
 from ptmcad.cli import run
@@ -312,6 +314,20 @@ def test_a_barrier_that_was_not_found_is_counted(monkeypatch: pytest.MonkeyPatch
     field = shipped("fig4").field("barrier", "stable:2", 16)
     assert field.missed == (shipped("fig4").grid(16).stable == 2).sum() > 0
     assert np.isnan(field.values).all()
+
+
+def test_a_barrier_among_more_poses_than_an_integer_has_bits() -> None:
+    """-cos 40 x has 40 wells, and all passes between them are as high."""
+    waves = 40
+
+    def evaluate(_pixels: Any, points: np.ndarray) -> State:
+        angle = waves * points[0]
+        return State(waves * np.sin(angle)[None], waves**2 * np.cos(angle)[None, None], -np.cos(angle))
+
+    at = (np.pi * np.arange(2 * waves) / waves)[None, None]
+    stable = np.arange(2 * waves)[None] % 2 == 0
+    for chosen in (0, 66, 78):
+        assert barriers(evaluate, at, stable, np.array([chosen]), 1) == pytest.approx(2)
 
 
 def test_windows_beyond_doubles_are_refused() -> None:
