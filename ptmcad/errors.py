@@ -8,7 +8,6 @@
     * DegenerateSliceError -- the whole slice lies inside the discriminant variety: exit status 2
       * NothingToCountError -- off some curves there is no solution, or none that counts: exit status 2
     * InfiniteSolutionsError -- infinitely many equilibria at every point of the slice: exit status 2
-    * DimensionError       -- a formula for two angles was asked about a system that has more, or one
     * GeometryError        -- a length or a stiffness is not positive somewhere in the window: exit status 2
   * OutputError            -- a result could not be written: exit status 2
     * PictureError         -- a picture could not be drawn; the result itself is saved: exit status 2
@@ -188,10 +187,6 @@ class NothingToCountError(DegenerateSliceError):
 
 class InfiniteSolutionsError(HypothesisError):
     """Every point of the slice has infinitely many equilibria."""
-
-
-class DimensionError(HypothesisError):
-    """The system does not have two angles, and what was asked of it is known for two only."""
 
 
 class GeometryError(HypothesisError):

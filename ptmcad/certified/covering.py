@@ -18,8 +18,8 @@ from ptmcad.certified.search import Boxes
 from ptmcad.certified.strips import NONE, Strips, areas_of_pieces, numbers_of_pieces, pieces, strips
 from ptmcad.certified.tiling import COMPILED
 from ptmcad.cover import from_boxes, union_area
-from ptmcad.cover.filling import combined
 from ptmcad.cover.rectangles import Cover, Window
+from ptmcad.cover.simplification import combined
 
 BATCH = 4096
 SLACK = 0.9

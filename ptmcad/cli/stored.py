@@ -18,6 +18,8 @@ from ptmcad.text.textfile import read_text
 
 MAX_BYTES = 60_000_000
 """Twice what a certified map with a million rectangles takes."""
+_BEGINNING = 200
+"""Bytes within which a result says that it is one."""
 _OF_A_RECORD = frozenset(("mechanism", "system", "axes"))
 """Keys of which a problem record has one at least, and no result has any at its top."""
 
@@ -38,6 +40,15 @@ def read_result(path: Path) -> RegionMap:
         reason = shown(" ".join(str(error).split()), 300)
         what = _other_kind(text) or f"is damaged or not a {FORMAT} file: {reason}"
         raise ConfigError(what, file=str(path)) from error
+
+
+def is_result(path: Path) -> bool:
+    """Whether a file begins as a region map does; nothing is said of the rest."""
+    try:
+        with path.open("rb") as file:
+            return FORMAT.encode() in file.read(_BEGINNING) if path.is_file() else False
+    except OSError:  # whoever reads the file says what is wrong
+        return False
 
 
 def _other_kind(text: str) -> str:

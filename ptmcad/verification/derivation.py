@@ -21,10 +21,7 @@ from ptmcad.mechanism import Kind, Mechanism, Model, System, ptm
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree, names_of
 
 MECHANISM = ptm()
-PARAMETERS = MECHANISM.without_free_lengths
 ANGLES = MECHANISM.angles
-UNKNOWNS = tuple(f"{function}_{angle}" for angle in ANGLES for function in ("cos", "sin"))
-"""As the exact engine names them."""
 POSITIVE = MECHANISM.positive
 NOT_NEGATIVE = MECHANISM.nonnegative
 

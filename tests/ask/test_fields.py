@@ -238,6 +238,27 @@ def test_the_command_writes_pictures_and_numbers(tmp_path: Any, capsys: pytest.C
     assert np.array_equal(table["value"].reshape(15, 20), expected, equal_nan=True)
 
 
+def test_the_command_takes_a_result_whose_map_is_not_made_again(
+    tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(*_: object) -> None:
+        raise AssertionError("made again")
+
+    result = tmp_path / "stored.json"
+    result.write_text(shipped("fig2").to_json())
+    monkeypatch.setattr("ptmcad.ask.classification.region_map", fail)
+    wanted = ["--pixels", "12x9", "--checks", "0", "--format", "npz", "--tolerance", "1/9", "--out", str(tmp_path)]
+    assert run(["map", str(result), *wanted]) == 0
+    assert "--tolerance has no effect here: the map is made already" in capsys.readouterr().err
+    with np.load(tmp_path / "fig2-energy-stable-1.npz") as arrays:
+        assert np.array_equal(arrays["values"], shipped("fig2").field("energy", "stable:1", 12, 9).values)
+    assert run(["map", str(result), "--set", "L1=2"]) == 2
+    assert "--set: a result has its slice already" in capsys.readouterr().err
+    result.write_text(result.read_text()[:500])
+    assert run(["map", str(result), *wanted]) == 2
+    assert "stored.json: is damaged or not a ptmcad-region-map/" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("arguments", [["--value", "nothing"], ["--pose", "best"], ["--pixels", "0"]])
 def test_bad_options_leave_nothing(arguments: list[str], tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["map", "--slice", "L2,rho", "--out", str(tmp_path), *arguments]) == 2

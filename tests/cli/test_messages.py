@@ -133,3 +133,15 @@ def test_ranges_in_words(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["range", fig4, "--along", "rho", "--at", "L2=3/2"]) == 0
     shown = capsys.readouterr().out
     assert "as rho increases" in shown and "loses one stable equilibrium and one saddle" in shown
+
+
+@pytest.mark.parametrize("command", ["classify", "check", "variety"])
+def test_a_result_where_a_record_is_needed_is_named(
+    command: str, tmp_path: Path, shipped: Shipped, capsys: pytest.CaptureFixture[str]
+) -> None:
+    result = tmp_path / "fig2.json"
+    result.write_text(shipped("fig2").to_json())
+    assert run([command, str(result)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("error") == 1
+    assert "a result, not a problem record: `ptmcad plot`" in said

@@ -17,10 +17,10 @@ from support.examples import examples
 
 from ptmcad.cover import components, from_boxes, union_area
 from ptmcad.cover.borders import area_bounds
-from ptmcad.cover.filling import combined, filled, gathered, pockets, simplified
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Rectangle
 from ptmcad.cover.samples import samples, simplest_between
+from ptmcad.cover.simplification import combined, gathered, simplified
 
 UNIT = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))
 WINDOW = ((Fraction(1, 20), Fraction(2)), (Fraction(-7, 3), Fraction(5)))
@@ -171,16 +171,6 @@ def test_samples_are_in_their_components_and_rectangles_can_not_grow(cover: Cove
         for x, y in samples(found, number, WINDOW):
             assert found.locate((x - x0) / (x1 - x0) * cover.steps, (y - y0) / (y1 - y0) * cover.steps) == number
             assert left * across < x - x0 < right * across and bottom * up < y - y0 < top * up
-
-
-@settings(deadline=None, max_examples=examples(50))
-@given(covers(), st.integers(0, 300))
-def test_filling_removes_the_chosen_components_only(cover: Cover, least: int) -> None:
-    found = components(cover)
-    small = pockets(found, least)
-    after = filled(found, small)
-    assert components(after).areas == tuple(area for area in found.areas if area >= least)
-    assert union_area(after) == union_area(cover) + sum(found.areas[n] for n in small)
 
 
 @settings(deadline=None, max_examples=examples(80))

@@ -75,7 +75,9 @@ def test_eps_has_its_size_and_no_date(tmp_path: Path) -> None:
     assert data.startswith(b"%!PS-Adobe-3.0 EPSF")
     assert b"%%HiResBoundingBox: 0.000000 0.000000 216.000000 180.000000" in data
     assert b"Date" not in data
-    assert b"/FontType 42" in data and b"/FontType 3" not in data
+    assert b"/FontType 42 def" in data
+    # older versions of matplotlib write Type 3 behind it, for printers that do not know 42
+    assert data.count(b"/FontType 3 def") == data.count(b"{42 /FontType resourcestatus")
 
 
 def test_pdf_has_truetype_fonts(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import Faults
+from ptmcad.errors import Faults, shown
 from ptmcad.mechanism import Model, ptm
 from ptmcad.question.config.model import model_of
 from ptmcad.question.config.parameters import unknown_parameter
@@ -66,7 +66,19 @@ def record_of(tree: Tree) -> Record:
 
 
 def read_record(tree: Tree, faults: Faults) -> Record:
-    """A record as far as its keys and shapes are right; what is not is noted, and left out or replaced by 1."""
+    """A record as far as its keys and shapes are right; what is not is noted, and left out or replaced by 1.
+
+    Raises
+    ------
+    ConfigError
+        At once for a file that ptmcad wrote itself: each of its keys would be a fault of its own.
+    """
+    kind = tree.entries.get("format")
+    if isinstance(kind, Scalar) and kind.text.startswith("ptmcad-"):
+        raise tree.place.error(
+            f"this is a {shown(kind.text, 40)} file, a result, not a problem record: `ptmcad plot`, `report`, "
+            "`verify`, `locate` and `map` take results"
+        )
     for key, node in tree.entries.items():
         with faults:
             if key not in RECORD_KEYS:

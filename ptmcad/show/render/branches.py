@@ -5,7 +5,6 @@ Guarantee: as of `ptmcad.show.render.ranges`; lines join what is next to each ot
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -17,24 +16,22 @@ from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.branches import heading, kind
 from ptmcad.show.render.axes import scale_of, symbol
-from ptmcad.show.render.legend import INK, Entry, draw_legend, height
+from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.ranges import (
-    KEY,
     LEFT,
     RIGHT,
     SIZE,
     WIDE,
     _axes,
     _axis_name,
-    _figure,
+    _beside,
     _scaled,
     _short,
     draw_paths,
 )
 
 PANEL, GAP, FOOT = 2.0, 0.25, 0.55
-COLUMNS = 100
 _LOOKS: dict[str, dict[str, Any]] = {
     "stable": {"color": "#0b5394", "linewidth": 2.0, "linestyle": "-"},
     "saddle": {"color": "#b45f06", "linewidth": 1.2, "linestyle": (0, (5, 2))},
@@ -51,7 +48,6 @@ _TURN = 180
 def draw_branches(slice: Slice, found: Branches) -> Figure:
     """A panel for each quantity."""
     fixed = ", ".join(f"{symbol(n)} = {_short(v)}" for n, v in found.at.items())
-    title = textwrap.wrap(f"{slice.heading}; {fixed}", COLUMNS)[:3]
     kinds = list(dict.fromkeys(kind(b, found.model) for b in found.branches))
     kinds.sort(key=_rank)
     entries = (Entry(("branches",), strong=True), *(Entry((name,), _mark(name)) for name in kinds))
@@ -59,7 +55,7 @@ def draw_branches(slice: Slice, found: Branches) -> Figure:
     tall = max((last + 1) * PANEL + last * GAP + FOOT, height(entries) + 0.2)
     words = f"{', '.join(found.quantities)} of all solutions along {found.along.name}: {', '.join(kinds)}."
     with settings():
-        figure = _figure(title, (LEFT + WIDE + RIGHT + KEY, tall), words)
+        figure = _beside(f"{slice.heading}; {fixed}", width(entries), tall, words)
         scale = scale_of(found.along.low, found.along.high)
         for number, (name, unit) in enumerate(zip(found.quantities, found.units, strict=True)):
             bottom = tall - (number + 1) * PANEL - number * GAP

@@ -21,7 +21,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import Dress, dress
 from ptmcad.show.render.layout import Box, Layout, Texts
 from ptmcad.show.render.legend import STRONG, THIN, Entry, Type
-from ptmcad.show.render.textwidth import ALLOWANCE, text_width, wrapped
+from ptmcad.show.render.textwidth import ALLOWANCE, wrapped
 from ptmcad.show.render.view import View
 from ptmcad.show.style import MIN_FONT, Place, Style
 
@@ -198,7 +198,7 @@ def _right(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
     for least in (*(max(share * width, LEAST * em) for share in _GOOD), LEAST * em):
         for columns in _COLUMNS:
             entries = [rewrapped(entry, columns * em, page.type) for entry in legend]
-            column = max((_width(entry, page.type) for entry in entries), default=0.0)
+            column = max((page.type.entry_width(entry) for entry in entries), default=0.0)
             if column > columns * em * 1.01:
                 continue  # a word is longer
             if insets:
@@ -222,7 +222,7 @@ def _below(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
     for number in (4, 3, 2, 1):
         room = (width - 2 * page.rim - (number - 1) * em) / number
         entries = [rewrapped(entry, room, page.type) for entry in legend if entry.lines]
-        if max(_width(entry, page.type) for entry in entries) > room * 1.01:
+        if max(page.type.entry_width(entry) for entry in entries) > room * 1.01:
             continue
         columns = _balanced(entries, number, page.type)
         height = max(page.type.height(column) for column in columns)
@@ -235,7 +235,7 @@ def _below(page: _Page, legend: Sequence[Entry], insets: int) -> Layout | None:
     if found is None:
         return None
     chart, boxes = found
-    widths = [max((_width(entry, page.type) for entry in column), default=0.0) for column in columns]
+    widths = [max((page.type.entry_width(entry) for entry in column), default=0.0) for column in columns]
     gap = min(2 * em, (width - 2 * page.rim - sum(widths)) / max(1, len(widths) - 1))
     # below the map where there is room for that
     left = max(page.rim, min(chart[0], width - page.rim - sum(widths) - gap * (len(widths) - 1)))
@@ -350,14 +350,6 @@ def rewrapped(entry: Entry, width: float, type: Type) -> Entry:
     head = wrapped(entry.lines[0], room, type.head, entry.strong)
     rest = wrapped(" ".join(entry.lines[1:]), room, type.detail) if entry.lines[1:] else []
     return replace(entry, lines=(*head, *rest), heads=len(head))
-
-
-def _width(entry: Entry, type: Type) -> float:
-    """Of an entry with its mark, in inches."""
-    indent = 0.0 if entry.mark is None else type.indent
-    sizes = [type.head if k < entry.heads else type.detail for k in range(len(entry.lines))]
-    texts = (text_width(line, size, entry.strong) for line, size in zip(entry.lines, sizes, strict=True))
-    return indent + max(texts, default=0.0)
 
 
 def _balanced(entries: Sequence[Entry], number: int, type: Type) -> list[list[Entry]]:

@@ -6,7 +6,7 @@ Guarantee: every digit of an area is certified, and the same as in the table (`p
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -15,6 +15,7 @@ from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import counted, noun
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.render.colours import UNDETERMINED, Fill, counted_by, fill_of
+from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.table import area_by_count, area_text, count_text, index_heading
 from ptmcad.text.numerals import decimal
 
@@ -75,6 +76,13 @@ class Type:
     def entry_height(self, entry: Entry) -> float:
         """Of an entry, in inches, with the space below."""
         return self.line * len(entry.lines) + 0.07 * self.scale
+
+    def entry_width(self, entry: Entry) -> float:
+        """Of an entry with its mark, in inches."""
+        indent = 0.0 if entry.mark is None else self.indent
+        sizes = [self.head if k < entry.heads else self.detail for k in range(len(entry.lines))]
+        texts = (text_width(line, size, entry.strong) for line, size in zip(entry.lines, sizes, strict=True))
+        return indent + max(texts, default=0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,6 +172,11 @@ def _areas(result: RegionMap, text: str, regions: list[Region]) -> list[str]:
 def height(legend: tuple[Entry, ...]) -> float:
     """In inches, at the sizes of `Type`."""
     return Type().height(legend)
+
+
+def width(legend: Iterable[Entry]) -> float:
+    """In inches, at the sizes of `Type`, in the family that is set."""
+    return max(map(Type().entry_width, legend), default=0.0)
 
 
 def draw_legend(figure: Any, legend: Sequence[Entry], left: float, top: float, type: Type | None = None) -> None:

@@ -30,13 +30,14 @@ from ptmcad.show.ranges.numbers import end_text, width_text
 from ptmcad.show.ranges.table import maximum_text, operation_name, working_text
 from ptmcad.show.render.axes import scale_of, symbol
 from ptmcad.show.render.colours import fill_of_counts, fill_of_index
-from ptmcad.show.render.legend import INK, Entry, draw_legend, height
+from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
 from ptmcad.show.render.printing import settings
+from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.units import unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
 
-WIDE, LEFT, RIGHT, KEY, LINE, MARGIN = 6.2, 0.85, 0.3, 2.6, 0.22, 0.15
+WIDE, LEFT, RIGHT, LINE, MARGIN = 6.2, 0.85, 0.3, 0.22, 0.15
 """In inches: the bar, the space at its sides, the legend, a line of the title, the rim."""
 BAR, LABELS, ROOM = 0.62, 0.42, 0.36
 SIZE = 8.0
@@ -44,6 +45,7 @@ _DIGITS = 7
 _COLOURS = ("#0b5394", "#b45f06", "#38761d", "#741b47")
 _DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (2, 2)), (0, (6, 2, 1, 2)))
 _COLUMNS = 100
+_TITLE = 11.0
 _LOST = (Fate.VANISH, Fate.UNSTABLE, Fate.EXCLUDED)
 
 
@@ -54,11 +56,11 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
     space = 0.95 if upright else LABELS
     legend = tuple(_bar_legend(found))
     fixed = ", ".join(f"{symbol(n)} = {_short(v)}" for n, v in found.at.items())
-    title = textwrap.wrap(f"{slice.heading}; {fixed}", _COLUMNS)[:3]
+    heading = f"{slice.heading}; {fixed}"
     below = ROOM + 0.35 + space
     tall = max(below + BAR + 0.45, height(legend) + 0.2)
     with settings():
-        figure = _figure(title, (LEFT + WIDE + RIGHT + KEY, tall), _words(found))
+        figure = _beside(heading, width(legend), tall, _words(found))
         axes = _axes(figure, (LEFT, below, WIDE, BAR))
         scale = scale_of(found.along.low, found.along.high)
         for i in found.intervals:
@@ -258,7 +260,7 @@ def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) ->
     ``further`` are the legend's last entries, of what is going to be added.
     """
     fixed = ", ".join(f"{symbol(n)} = {_short(v)}" for n, v in found.at.items())
-    title = textwrap.wrap(f"{slice.heading}; {fixed}", _COLUMNS)[:3]
+    heading = f"{slice.heading}; {fixed}"
     model = found.model
     what = "pose" if isinstance(model, Mechanism) else "solution"
     stable = "stable " * model.tells_stability
@@ -283,7 +285,7 @@ def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) ->
     kind = "Unknowns" if model.reals else "Angles"
     words = f"{kind} of {len(found.paths)} {stable}{what}s along {found.along.name}."
     with settings():
-        figure = _figure(title, (LEFT + WIDE + RIGHT + KEY, tall), words)
+        figure = _beside(heading, width(entries), tall, words)
         scale = scale_of(found.along.low, found.along.high)
         for number, name in enumerate(names):
             axes = _axes(figure, (LEFT, foot + spare + (last - number) * (panel + 0.25), WIDE, panel))
@@ -339,12 +341,18 @@ def _marker(figure: Any, left: float, middle: float, marker: str) -> None:
                              fillstyle="none", markersize=6))  # fmt: skip
 
 
+def _beside(heading: str, key: float, tall: float, words: str) -> Figure:
+    """A figure for axes with a legend of this width beside them, under a heading in at most three lines."""
+    wide = LEFT + WIDE + RIGHT + key + RIGHT
+    return _figure(wrapped(heading, wide - LEFT - MARGIN, _TITLE)[:3], (wide, tall), words)
+
+
 def _figure(title: Sequence[str], size: tuple[float, float], words: str) -> Figure:
     tall = size[1] + LINE * len(title) + 2 * MARGIN
     figure = Figure(figsize=(size[0], tall), facecolor="white")
     figure.set_label(f"{' '.join(title)}\n{words}")
     for k, line in enumerate(title):
-        figure.text(LEFT, tall - MARGIN - LINE * (k + 0.5), line, transform=figure.dpi_scale_trans, fontsize=11,
+        figure.text(LEFT, tall - MARGIN - LINE * (k + 0.5), line, transform=figure.dpi_scale_trans, fontsize=_TITLE,
                     va="center")  # fmt: skip
     return figure
 

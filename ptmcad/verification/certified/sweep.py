@@ -63,11 +63,6 @@ class Sweep:
     cluster_areas: dict[int, int]
     touching: frozenset[tuple[int, int]]
 
-    @property
-    def covered(self) -> int:
-        """The area of the rectangles' union."""
-        return sum(self.cluster_areas.values())
-
     def locate(self, u: Fraction, v: Fraction) -> int | None:
         """The component that a point of the open window lies in, None in a closed rectangle."""
         k = bisect_right(self.lines, v) - 1

@@ -1,32 +1,16 @@
-"""Covers with less detail: small components given up, and the same area covered by fewer rectangles.
+"""Covers of fewer rectangles.
 
-Guarantee: `filled` covers what the cover covers and the chosen components, and no inner point of another component;
-`simplified` and `combined` cover the same points as before; `gathered` covers them and more.
+Guarantee: `simplified` and `combined` cover the same points as before; `gathered` covers them and more.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
-from ptmcad.cover.complement import PLAIN, Components, Tiling
+from ptmcad.cover.complement import PLAIN, Tiling
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.rounding import cover_of
-from ptmcad.cover.subdivision import FREE, Integers, rectangle_array
-
-
-def pockets(components: Components, least_area: int) -> tuple[int, ...]:
-    """The components of less than an area, in squares of a lattice step: those between the rectangles, mostly."""
-    return tuple(n for n, area in enumerate(components.areas) if area < least_area)
-
-
-def filled(components: Components, numbers: Iterable[int]) -> Cover:
-    """The cover with these components covered too, by as many rectangles as they have parts."""
-    tree = components.subdivision
-    chosen = (tree.state == FREE) & np.isin(components.owner, list(numbers))
-    array = rectangle_array(components.cover)
-    return cover_of(np.concatenate([array, _merged(tree.bounds[chosen])]), components.cover.steps)
+from ptmcad.cover.subdivision import Integers, rectangle_array
 
 
 def simplified(cover: Cover, tiling: Tiling = PLAIN) -> Cover:
