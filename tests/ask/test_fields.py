@@ -166,7 +166,7 @@ def test_roots_of_a_cubic() -> None:
             assert [v for v in found if not np.isnan(v)] == pytest.approx(real, abs=1e-6)
 
 
-def test_a_certified_map_and_its_stable_poses() -> None:
+def test_a_certified_map_and_its_stable_poses(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     record = {
         "name": "short", "mechanism": "ptm", "parameters": {"l0": "1/5", "F3": -10, "F4": -10},
@@ -176,6 +176,7 @@ def test_a_certified_map_and_its_stable_poses() -> None:
     field = result.field("energy", "stable:1", 12)
     assert (field.missed, field.checked > 0, field.difference < 1e-9) == (0, True, True)
     assert (np.isnan(field.values) == (result.grid(12).stable < 1)).all()
+    monkeypatch.setattr("ptmcad.ask.fields.field.filled", None)  # refused before anything is followed
     for value, pose in (("energy", "saddle:1"), ("barrier", "stable:1")):
         with pytest.raises(ConfigError, match="knows the stable equilibria only"):
             result.field(value, pose, 12)
@@ -195,6 +196,9 @@ def test_what_is_nowhere_is_nan_everywhere() -> None:
         ("torque:k1", "stable:1", "'torque' is not among force, length, angle, x and y"),
         ("th1 + q", "stable:1", "'q' is neither an unknown nor a parameter"),
         ("th1 +", "stable:1", "th1 +"),
+        ("1e400*th1", "stable:1", "'1e400[*]th1' has a number beyond doubles"),
+        ("th1^10^400", "stable:1", "beyond doubles"),
+        ("1/(th1 - th1)", "best", "'best' is not a pose"),
         ("energy", "stable", ""),
         ("energy", "stable:0", "'stable:0' is not a pose such as stable:1"),
         ("energy", "second", "'second' is not a pose such as stable:1"),
@@ -264,6 +268,15 @@ def test_bad_options_leave_nothing(arguments: list[str], tmp_path: Any, capsys: 
     assert run(["map", "--slice", "L2,rho", "--out", str(tmp_path), *arguments]) == 2
     assert arguments[0] in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("request_", ["--value barrier --pose saddle:1", "--value enrgy", "--value th1^1e400"])
+def test_what_means_nothing_is_refused_before_the_map_is_made(
+    request_: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("ptmcad.ask.classification.region_map", None)
+    assert run(["map", "--slice", "L2,rho", *request_.split()]) == 2
+    assert capsys.readouterr().err.startswith("error: --")
 
 
 def test_a_difference_from_exact_poses_is_said(
