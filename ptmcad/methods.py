@@ -127,9 +127,9 @@ def _map_field(
     >>> [round(float(v), 3) for v in result.field("length:k3", "stable:1", 3, 1).values[0]]
     [0.333, 1.0, 2.0]
     """
-    from ptmcad.ask.fields.field import field_of
+    from ptmcad.ask.fields.field import field_of, request_of
 
-    return field_of(self, value, pose, columns, rows)
+    return field_of(self, request_of(self.slice, value, pose), columns, rows)
 
 
 def _map_to_dataframe(self: RegionMap, what: str = "regions", **options: Any) -> DataFrame:

@@ -97,7 +97,8 @@ def _joined(before: list[_Piece], after: list[_Piece]) -> tuple[list[_Piece], li
 
 
 def _together(left: _Piece, right: _Piece) -> _Piece:
-    points = (*left.points, *right.points[1:])
+    # at the seam each has a height of its own, and its distance is proved for chords that begin or end there
+    points = (*left.points, *right.points[left.points[-1] == right.points[0] :])
     return _Piece(points, right.component, right.regions, max(left.distance, right.distance))
 
 

@@ -18,7 +18,7 @@ from ptmcad.answer.branches import Branch, Branches, BranchPoint
 from ptmcad.answer.intervals import End, lower, upper
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
-from ptmcad.ask.quantities import Quantity, quantity
+from ptmcad.ask.quantities import Quantity, of_pose, quantity
 from ptmcad.ask.solving import poses_at
 from ptmcad.options import Progress
 from ptmcad.question.line import has_free_lengths, restricted, varying_axis
@@ -53,7 +53,7 @@ def branch_diagram(
     Parameters
     ----------
     along, at : as for `ptmcad.ask.ranges.intervals`.
-    names : of `ptmcad.ask.quantities.quantities`.
+    names : as `ptmcad.ask.quantities.quantity` takes them.
     progress : called as progress("branches: interval", done, total).
 
     Raises
@@ -71,10 +71,10 @@ def branch_diagram(
             progress("branches: interval", number, len(stretches))
         branches += _joined(line.samples(low, high), asked)
     fixed = {other: value}
-    units = tuple(q.unit for q in asked)
+    shown, units = (q.name for q in asked), (q.unit for q in asked)
     undecided = tuple(line.undecided)
     return Branches(
-        slice.name, slice.model, slice.axes[varying], fixed, tuple(names), units, tuple(branches), undecided
+        slice.name, slice.model, slice.axes[varying], fixed, tuple(shown), tuple(units), tuple(branches), undecided
     )
 
 
@@ -164,7 +164,7 @@ def _joined(samples: Sequence[_Sample], asked: Sequence[Quantity]) -> list[Branc
         return []
 
     def point(value: Fraction, pose: Pose) -> BranchPoint:
-        return BranchPoint(value, tuple(q.of(pose) for q in asked))
+        return BranchPoint(value, tuple(of_pose(q, pose) for q in asked))
 
     done: list[tuple[Pose, list[BranchPoint]]] = []
     growing = {k: (p, [point(samples[0].value, p)]) for k, p in enumerate(samples[0].poses)}

@@ -1,84 +1,175 @@
-"""Quantities of a pose by name: an unknown, the energy, the least eigenvalue, a spring's force, a point's place."""
+"""Quantities of a solution by name: its energy, an unknown, a spring's force, a point's place.
+
+Guarantee: names, units and messages of all commands are these. Values are taken in two ways: `of_pose` encloses them,
+and `ptmcad.ask.fields.quantities` computes them in floating point, for many solutions at once.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
 
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism.description import UnknownKind
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.syntax import did_you_mean
 
 OPTION = "--quantity"
 
 
+class Kind(Enum):
+    """What a quantity is of a solution; where it belongs to a part of the mechanism, the word before the colon."""
+
+    ENERGY = "energy"
+    STIFFNESS = "stiffness"
+    """the least eigenvalue of the Hessian"""
+    BARRIER = "barrier"
+    """the energy to another stable pose: of a field only"""
+    FORCE = "force"
+    LENGTH = "length"
+    ANGLE = "angle"
+    X = "x"
+    Y = "y"
+    REAL = ""
+    """an unknown on the line, which has no word before its name"""
+
+
+OF_ENERGY = (Kind.ENERGY, Kind.STIFFNESS, Kind.BARRIER)
+OF_PARTS = (Kind.FORCE, Kind.LENGTH, Kind.ANGLE, Kind.X, Kind.Y)
+
+
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A number that each pose has, or may have.
+    """A number that each solution has, or may have.
 
     Attributes
     ----------
-    unit : in words; empty where the record's own units decide.
+    name : as it is shown.
+    unit : in words; empty where none is known.
+    part : the point's name.
+    number : that of the spring, or of the unknown, angles first.
     """
 
     name: str
+    kind: Kind
     unit: str
-    of: Callable[[Pose], Enclosure | None]
+    part: str = ""
+    number: int = 0
 
 
-def quantity(model: Model, name: str) -> Quantity:
-    """The quantity of a name.
+def quantity(model: Model, text: str, key: str = OPTION) -> Quantity:
+    """The quantity of a pose of this name: one of `quantities`, or an angle as ``angle:th1``.
 
     Raises
     ------
     ConfigError
-        That lists what the model has.
+        That lists what the model has; its key is the option that the name was given to.
     """
-    known = quantities(model)
-    if name not in known:
-        hint = did_you_mean(name, known) or f"; there are {', '.join(known)}"
-        raise ConfigError(f"{name[:60]!r} is no quantity of {model.name}{hint}", key=OPTION)
-    return known[name]
+    found = named(model, text, key)
+    if found is None:
+        found = unknown(model, text.strip())
+    if found is None:
+        known = quantities(model)
+        hint = did_you_mean(text.strip(), known) or _there_are(tuple(known))
+        raise ConfigError(f"{text[:60]!r} is no quantity of {model.name}{hint}", key=key)
+    if found.kind is Kind.BARRIER:
+        raise ConfigError("a barrier is no number of a pose alone: `ptmcad map --value barrier` has it", key=key)
+    return found
+
+
+def named(model: Model, text: str, key: str) -> Quantity | None:
+    """The quantity that ``energy``, ``stiffness``, ``barrier`` or KIND:NAME stands for; None for another text.
+
+    Raises
+    ------
+    ConfigError
+        When the model has no energy, or no such part; its key is the option that the text was given to.
+    """
+    word, colon, name = (part.strip() for part in text.partition(":"))
+    if not colon:
+        kind = next((kind for kind in OF_ENERGY if kind.value == word), None)
+        return None if kind is None else _of_energy(model, kind, key)
+    kind = next((kind for kind in OF_PARTS if kind.value == word), None)
+    if kind is None:
+        words = [kind.value for kind in OF_PARTS]
+        raise ConfigError(f"{word[:60]!r} is not among {', '.join(words[:-1])} and {words[-1]}", key=key)
+    return _of_part(model, kind, name, key)
 
 
 def quantities(model: Model) -> dict[str, Quantity]:
-    """All that can be asked for, by name.
+    """All numbers of a pose that change with it, by name.
 
     >>> from ptmcad.mechanism import ptm
     >>> [name for name in quantities(ptm()) if not name.startswith(("x:", "y:"))]
     ['th1', 'th2', 'energy', 'stiffness', 'force:A1A4', 'force:A2A3', 'force:A3A4', 'force:k1', 'force:k2', \
 'force:k3', 'length:A1A4', 'length:A2A3', 'length:A3A4', 'length:k1', 'length:k2', 'length:k3']
     """
-    found = [Quantity(name, "degrees", _degrees(k)) for k, name in enumerate(model.angles)]
-    found += [Quantity(name, "", _real(k)) for k, name in enumerate(model.reals)]
+    found = [unknown(model, name) for name in (*model.angles, *model.reals)]
     if model.has_potential:
-        found.append(Quantity("energy", "", lambda pose: pose.energy))
-        found.append(Quantity("stiffness", "", lambda pose: pose.eigenvalues[0] if pose.eigenvalues else None))
+        found += [_of_energy(model, kind, OPTION) for kind in (Kind.ENERGY, Kind.STIFFNESS)]
     if isinstance(model, Mechanism):
-        springs = model.spring_numbers
-        found += [Quantity(f"force:{name}", "", _force(k)) for name, k in springs.items()]
-        found += [Quantity(f"length:{name}", "", _length(k)) for name, k in springs.items()]
-        found += [Quantity(f"{'xy'[n]}:{name}", "", _place(name, n)) for name in model.moving for n in (0, 1)]
-    return {q.name: q for q in found}
+        found += [_of_part(model, kind, n, OPTION) for kind in (Kind.FORCE, Kind.LENGTH) for n in model.spring_numbers]
+        found += [_of_part(model, kind, name, OPTION) for name in model.moving for kind in (Kind.X, Kind.Y)]
+    return {q.name: q for q in found if q is not None}
 
 
-def _degrees(number: int) -> Callable[[Pose], Enclosure | None]:
-    return lambda pose: pose.degrees[number]
+def of_pose(quantity: Quantity, pose: Pose) -> Enclosure | None:
+    """The value, enclosed; None where the pose has none."""
+    match quantity.kind:
+        case Kind.ENERGY:
+            return pose.energy
+        case Kind.STIFFNESS:
+            return pose.eigenvalues[0] if pose.eigenvalues else None
+        case Kind.FORCE:
+            return pose.springs[quantity.number].force
+        case Kind.LENGTH:
+            return pose.springs[quantity.number].length
+        case Kind.ANGLE | Kind.REAL:
+            return (*pose.degrees, *pose.reals)[quantity.number]
+        case Kind.X | Kind.Y:
+            return pose.nodes[quantity.part][quantity.kind is Kind.Y]
+        case Kind.BARRIER:
+            return None
 
 
-def _real(number: int) -> Callable[[Pose], Enclosure | None]:
-    return lambda pose: pose.reals[number]
+def unknown(model: Model, name: str) -> Quantity | None:
+    """The unknown of this name, an angle in degrees; None where there is none."""
+    names = (*model.angles, *model.reals)
+    if name not in names:
+        return None
+    kind = Kind.ANGLE if name in model.angles else Kind.REAL
+    unit = {UnknownKind.ANGLE: "degrees", UnknownKind.LENGTH: "length", UnknownKind.REAL: ""}[model.unknowns[name]]
+    return Quantity(name, kind, unit, number=names.index(name))
 
 
-def _force(number: int) -> Callable[[Pose], Enclosure | None]:
-    return lambda pose: pose.springs[number].force
+def _of_energy(model: Model, kind: Kind, key: str) -> Quantity:
+    if not model.has_potential:
+        raise ConfigError(f"solutions of {model.name} have no energy{_there_are(tuple(quantities(model)))}", key=key)
+    return Quantity(kind.value, kind, "force × length" if isinstance(model, Mechanism) else "")
 
 
-def _length(number: int) -> Callable[[Pose], Enclosure | None]:
-    return lambda pose: pose.springs[number].length
+def _of_part(model: Model, kind: Kind, name: str, key: str) -> Quantity:
+    mechanism = model if isinstance(model, Mechanism) else None
+    match kind:
+        case Kind.ANGLE:
+            what, known, unit = "unknown angle", model.angles, "degrees"
+        case Kind.FORCE | Kind.LENGTH:
+            what, known, unit = "spring", tuple(mechanism.spring_numbers) if mechanism else (), kind.value
+        case _:
+            what, known, unit = "point", tuple(mechanism.points) if mechanism else (), "length"
+    if name not in known:
+        there = f": they are {', '.join(known)}" if known else ": there are none"
+        raise ConfigError(f"{model.name} has no {what} {name[:60]!r}{did_you_mean(name, known) or there}", key=key)
+    shown = f"{kind.value}:{name}"
+    if kind is Kind.ANGLE:
+        return Quantity(shown, kind, unit, number=model.angles.index(name))
+    if mechanism is not None and kind in (Kind.FORCE, Kind.LENGTH):
+        return Quantity(shown, kind, unit, number=mechanism.spring_numbers[name])
+    return Quantity(shown, kind, unit, part=name)
 
 
-def _place(name: str, number: int) -> Callable[[Pose], Enclosure | None]:
-    return lambda pose: pose.nodes[name][number]
+def _there_are(names: Sequence[str]) -> str:
+    return f"; there are {', '.join(names)}" if names else ""

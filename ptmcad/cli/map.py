@@ -21,6 +21,7 @@ from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.cli.stored import is_result, read_result
+from ptmcad.cli.values import quantity_names
 from ptmcad.errors import ConfigError, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -37,7 +38,7 @@ class DifferenceError(PtmcadError):
 
 @click.command("map")
 @slice_options
-@click.option("--value", default="energy", show_default=True, metavar="QUANTITY",
+@click.option("--value", default="energy", show_default=True, metavar="QUANTITY", shell_complete=quantity_names,
               help="energy, stiffness, barrier, force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT, y:POINT, or an "
                    "expression in unknowns, parameters and axes.")  # fmt: skip
 @click.option("--pose", default="stable:1", show_default=True, metavar="KIND:N",
@@ -91,11 +92,9 @@ def command(
     check_writable(out, names)
     with held(limits), ProgressBar() as progress:
         from ptmcad.ask.classification import prepare, region_map
-        from ptmcad.ask.fields.field import choice_of, field_of
-        from ptmcad.ask.fields.quantities import quantity_of
+        from ptmcad.ask.fields.field import field_of, request_of
 
-        quantity_of(value, slice)  # a name that means nothing is refused before anything is computed
-        choice_of(pose, slice.model)
+        request = request_of(slice, value, pose)  # what means nothing is refused before anything is computed
         result = stored
         if result is None:
             options = Options(areas=False, progress=progress, timeout=limits.timeout)
@@ -103,7 +102,7 @@ def command(
                 options = replace(options, areas=True, tolerance=tolerance)
             prepare(slice, options)
             result = region_map(slice, options)
-        field = field_of(result, value, pose, *pixels, checks=checks)
+        field = field_of(result, request, *pixels, checks=checks)
         written = write_files(out, _writers(result, field, names, contours))
     for path in written:
         click.echo(shown_path(path))

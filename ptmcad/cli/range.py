@@ -187,7 +187,8 @@ class Output:
               help="Which pose, as ptmcad solve numbers them.  [default: every stable one]")  # fmt: skip
 @click.option("--quantity", "quantities", multiple=True, metavar="NAME", shell_complete=quantity_names,
               help="Draw all branches, stable and unstable, of a quantity: an unknown, energy, stiffness (the least "
-                   "eigenvalue), force:SPRING, length:SPRING, x:POINT, y:POINT. Repeatable.")  # fmt: skip
+                   "eigenvalue), force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT or y:POINT. "
+                   "Repeatable.")  # fmt: skip
 @click.option("--critical", is_flag=True,
               help="Along the springs' free length: all critical values by elimination, with msolve.")  # fmt: skip
 @limit_options

@@ -90,8 +90,8 @@ def point(context: click.Context, _parameter: click.Parameter, typed: str) -> Pr
             if name.startswith(last) and name not in given]  # fmt: skip
 
 
-def quantity_names(context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
-    """What a pose of the record's model, or of the default one, can be asked for."""
+def quantity_names(context: click.Context, parameter: click.Parameter, typed: str) -> Proposals:
+    """What a pose of the record's model, or of the default one, can be asked for; barriers by ``--value`` alone."""
     from ptmcad.ask.quantities import quantities
     from ptmcad.mechanism import ptm
     from ptmcad.question.config import load
@@ -101,7 +101,8 @@ def quantity_names(context: click.Context, _parameter: click.Parameter, typed: s
         model = ptm() if config is None else load(config).model
     except PtmcadError:  # the command itself will say what is wrong with the file
         return []
-    return [CompletionItem(name) for name in quantities(model) if name.startswith(typed)]
+    further = ("barrier",) if "--value" in parameter.opts and model.has_potential else ()
+    return [CompletionItem(name) for name in (*quantities(model), *further) if name.startswith(typed)]
 
 
 def _next_of_list(typed: str, known: Iterable[str]) -> Proposals:

@@ -16,7 +16,13 @@ _GUARD = 6
 
 
 def enclosed(ball: arb, digits: int) -> Enclosure | None:
-    """An enclosure that settles ``digits`` digits of any number in the ball; None when the ball is too wide."""
+    """An enclosure that settles ``digits`` digits of any number in the ball; None when the ball is too wide.
+
+    >>> enclosed(arb(1) / 4, 10) == Enclosure(Fraction(1, 4), Fraction(1, 4)), enclosed(arb(0, 1), 10) is None
+    (True, True)
+    """
+    if ball.is_exact() and ball.is_finite():  # no wider enclosure of a short decimal settles its digits
+        return Enclosure(exact(ball), exact(ball))
     if not ball.is_finite() or ball.contains(0) or 10 * ball.rel_accuracy_bits() < 33 * (digits + _GUARD - 2):
         return None  # the test of the radius below would say so too; most balls that are too wide end here
     mantissa, exponent = (int(n) for n in ball.mid().man_exp())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ import ptmcad
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import ConfigError
+from ptmcad.exact.cad.chains import chains
 
 SLICES = ("fig2", "fig3", "fig4", "forces")
 
@@ -53,6 +55,28 @@ def test_every_point_of_a_curve_is_as_near_as_is_said(name: str, tolerance: str)
             for q, c in over:
                 assert q.distance <= float(Fraction(tolerance) * (across.high - across.low)) * 1.0000001
                 assert min(distance_along_fibre(c, float(at), r) for r in roots) <= q.distance + 1e-12
+
+
+@pytest.mark.parametrize(("name", "tolerance"), [("fig2", "1/50"), ("fig4", "1/10")])
+def test_polylines_have_all_chords_of_which_the_distance_is_proved(name: str, tolerance: str) -> None:
+    result = shipped(name)
+    base, axes = result.base, result.slice.axes
+    drawn = {
+        (b.component, *(round(float(v), 9) for end in chord for v in end))
+        for b in result.boundaries(tolerance)
+        for chord in pairwise(b.points[:, [base, 1 - base]])
+    }
+    for stack, walls in zip(result.stacks, chains(result, Fraction(tolerance)), strict=True):
+        for wall, chain in zip(stack.walls, walls, strict=True):
+            units = [
+                [
+                    round(float(axes[k].low + (axes[k].high - axes[k].low) * v), 9)
+                    for k, v in zip((base, 1 - base), at, strict=True)
+                ]
+                for at in chain.points
+            ]
+            for one, other in pairwise(units):
+                assert (wall.component, *one, *other) in drawn
 
 
 @pytest.mark.parametrize("name", SLICES)

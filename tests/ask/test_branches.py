@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
@@ -12,10 +14,13 @@ import pytest
 import ptmcad
 from ptmcad.answer.branches import Branch, Branches
 from ptmcad.ask.branches import branch_diagram
-from ptmcad.ask.quantities import quantities, quantity
+from ptmcad.ask.fields import quantities as fields
+from ptmcad.ask.fields.quantities import quantity_of
+from ptmcad.ask.quantities import OPTION, of_pose, quantities, quantity
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load
+from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.branches import kind
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -99,6 +104,80 @@ def test_quantities_that_there_are_not() -> None:
         quantity(load(CONFIGS / "systems" / "cubic.yaml").model, "energy")
 
 
+COMMANDS = [
+    (lambda slice, text: quantity(slice.model, text), OPTION),
+    (lambda slice, text: quantity_of(text, slice), fields.OPTION),
+]
+
+
+@pytest.mark.parametrize(("read", "key"), COMMANDS)
+def test_both_commands_take_the_same_names(read: Callable[[Slice, str], Any], key: str) -> None:
+    slice = load(FIG4)
+    for name, known in quantities(slice.model).items():
+        found = read(slice, name)
+        if name not in slice.model.angles or key == OPTION:  # by itself an angle is an expression, in radians
+            assert (found.name, found.unit) == (name, known.unit)
+    for text, name, unit in [("angle:th2", "angle:th2", "degrees"), (" force : k1 ", "force:k1", "force"),
+                             ("x:A1", "x:A1", "length"), ("stiffness ", "stiffness", "force × length")]:  # fmt: skip
+        found = read(slice, text)
+        assert (found.name, found.unit) == (name, unit)
+
+
+@pytest.mark.parametrize(("read", "key"), COMMANDS)
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("enrgy", "did you mean 'energy'"),
+        ("torque:k1", "'torque' is not among force, length, angle, x and y"),
+        ("force:k4", "ptm has no spring 'k4': they are A1A4, A2A3, A3A4, k1"),
+        ("length:zzz", "ptm has no spring 'zzz': they are A1A4, A2A3, A3A4, k1, k2, k3"),
+        ("angle:rho", "ptm has no unknown angle 'rho': they are th1, th2"),
+        ("y:A9", "ptm has no point 'A9': they are A1, A2"),
+    ],
+)
+def test_both_commands_refuse_a_name_alike(
+    read: Callable[[Slice, str], Any], key: str, text: str, message: str
+) -> None:
+    with pytest.raises(ConfigError, match=message) as caught:
+        read(load(FIG4), text)
+    assert caught.value.key == key
+
+
+@pytest.mark.parametrize("read", [read for read, _ in COMMANDS])
+def test_both_commands_say_that_there_is_no_energy(read: Callable[[Slice, str], Any]) -> None:
+    with pytest.raises(ConfigError, match=r"solutions of cubic have no energy; there are x$"):
+        read(load(CONFIGS / "systems" / "cubic.yaml"), "stiffness")
+
+
+def test_a_barrier_is_no_number_of_a_pose() -> None:
+    with pytest.raises(ConfigError, match="`ptmcad map --value barrier` has it"):
+        quantity(load(FIG4).model, "barrier")
+
+
+def test_numbers_of_a_pose() -> None:
+    model = load(FIG4).model
+    pose = ptmcad.solve(rho="7/10", L2="3/2", F3=-10).equilibria[0]
+    of = {text: of_pose(quantity(model, text), pose) for text in (*quantities(model), "angle:th2")}
+    assert of["force:k2"] == of["force:A2A3"] == pose.springs[1].force
+    assert of["length:k3"] == of["length:A3A4"] == pose.springs[2].length
+    assert (of["th1"], of["th2"]) == pose.degrees and of["angle:th2"] == of["th2"]
+    assert (of["x:A4"], of["y:A4"]) == pose.nodes["A4"]
+    assert (of["energy"], of["stiffness"]) == (pose.energy, pose.eigenvalues[0])
+
+
+def test_other_spellings_are_the_same_numbers() -> None:
+    asked = ["th1", "angle:th1", "x:A1", "force:A1A4", "force:k1"]
+    slice = ptmcad.slice_from_options(FIG4, ranges=["rho=1:5/4"])
+    found = branch_diagram(slice, "rho", {"L2": Fraction(3, 2)}, [" angle:th1 ", *asked])
+    assert found.quantities == ("angle:th1", *asked)
+    assert found.units == ("degrees", "degrees", "degrees", "length", "force", "force")
+    for branch in found.branches:
+        for point in branch.points:
+            angle, alone, other, fixed, one, two = point.numbers
+            assert angle == alone == other and one == two
+            assert fixed is not None and fixed.exact == 0
+
+
 def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     common = ["range", FIG4, "--along", "rho"]
     asked = ["--quantity", "th1", "--quantity", "energy", "--quantity", "th1", "--format", "json,svg"]
@@ -111,7 +190,7 @@ def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     picture = (tmp_path / "x-branches.svg").read_text(encoding="utf-8")
     assert "th1, energy of all solutions along rho: stable, saddle, maximum." in picture
     out = capsys.readouterr().out
-    assert "\nfrom         to        kind     th1 (degrees)          energy\n" in out
+    assert "\nfrom         to        kind     th1 (degrees)          energy (force × length)\n" in out
     assert run([*common, "--over", "L2", "--quantity", "th1"]) == 2
     assert "error: --quantity: needs the value of the other axis too" in capsys.readouterr().err
 

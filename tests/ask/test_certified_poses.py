@@ -20,7 +20,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.certified.intervals import certified_intervals
 from ptmcad.cli.range import command
 from ptmcad.errors import ConfigError
-from ptmcad.question.config import slice_from_options
+from ptmcad.question.config import load, slice_from_options
 from ptmcad.show.ranges.certified import table
 from ptmcad.show.render.landscape import energy_of
 
@@ -147,6 +147,31 @@ def test_the_cone_s_critical_length_by_hand() -> None:
         c12, s12 = c1 * c2 - s1 * s2, s1 * c2 + c1 * s2
         residues.append(a1**2 + a2**2 + 2 * a1 * a2 * c12 - s12**2 * free**2)
     assert min(map(abs, residues)) < 1e-12
+
+
+SLIDERS = """
+mechanism:
+  name: two_sliders
+  parameters:
+    free: {kind: length, default: 1}
+    F: {kind: force, range: [-2, 2]}
+    G: {kind: force, range: [-2, 2]}
+  unknowns: {x: length, y: length}
+  points: {O: [0, 0], S: [x, 0], T: [y, 1]}
+  supports: {O: pin, S: slider x, T: slider x}
+  springs: [{between: [O, S], k: 1}, {between: [O, T], k: 2, free: free}]
+  loads: {S: [F, 0], T: [G, 0]}
+axes: {F: [-1, 1], G: [-1, 1]}
+"""
+
+
+@pytest.mark.parametrize("force", [Q(1, 2), Q(0)])
+def test_a_coordinate_that_interval_arithmetic_knows_exactly(force: Q, tmp_path: Path) -> None:
+    (tmp_path / "sliders.yaml").write_text(SLIDERS, encoding="utf-8")
+    model = load(tmp_path / "sliders.yaml").model
+    (pose,) = solve(model=model, F=force, G="1/4").equilibria
+    assert pose.reals[0].exact == force
+    assert pose.reals[1].exact is None
 
 
 @pytest.mark.slow

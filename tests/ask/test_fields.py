@@ -15,6 +15,8 @@ from ptmcad.answer.field import Field
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields import equations
+from ptmcad.ask.fields.barrier import barriers
+from ptmcad.ask.fields.equations import State
 from ptmcad.ask.fields.field import centre, exact_at
 from ptmcad.cli import map as command
 from ptmcad.cli import run
@@ -164,7 +166,7 @@ def test_roots_of_a_cubic() -> None:
             assert [v for v in found if not np.isnan(v)] == pytest.approx(real, abs=1e-6)
 
 
-def test_a_certified_map_and_its_stable_poses() -> None:
+def test_a_certified_map_and_its_stable_poses(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
     record = {
         "name": "short", "mechanism": "ptm", "parameters": {"l0": "1/5", "F3": -10, "F4": -10},
@@ -174,6 +176,7 @@ def test_a_certified_map_and_its_stable_poses() -> None:
     field = result.field("energy", "stable:1", 12)
     assert (field.missed, field.checked > 0, field.difference < 1e-9) == (0, True, True)
     assert (np.isnan(field.values) == (result.grid(12).stable < 1)).all()
+    monkeypatch.setattr("ptmcad.ask.fields.field.filled", None)  # refused before anything is followed
     for value, pose in (("energy", "saddle:1"), ("barrier", "stable:1")):
         with pytest.raises(ConfigError, match="knows the stable equilibria only"):
             result.field(value, pose, 12)
@@ -193,6 +196,9 @@ def test_what_is_nowhere_is_nan_everywhere() -> None:
         ("torque:k1", "stable:1", "'torque' is not among force, length, angle, x and y"),
         ("th1 + q", "stable:1", "'q' is neither an unknown nor a parameter"),
         ("th1 +", "stable:1", "th1 +"),
+        ("1e400*th1", "stable:1", "'1e400[*]th1' has a number beyond doubles"),
+        ("th1^10^400", "stable:1", "beyond doubles"),
+        ("1/(th1 - th1)", "best", "'best' is not a pose"),
         ("energy", "stable", ""),
         ("energy", "stable:0", "'stable:0' is not a pose such as stable:1"),
         ("energy", "second", "'second' is not a pose such as stable:1"),
@@ -264,6 +270,15 @@ def test_bad_options_leave_nothing(arguments: list[str], tmp_path: Any, capsys: 
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("request_", ["--value barrier --pose saddle:1", "--value enrgy", "--value th1^1e400"])
+def test_what_means_nothing_is_refused_before_the_map_is_made(
+    request_: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("ptmcad.ask.classification.region_map", None)
+    assert run(["map", "--slice", "L2,rho", *request_.split()]) == 2
+    assert capsys.readouterr().err.startswith("error: --")
+
+
 def test_a_difference_from_exact_poses_is_said(
     tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -333,6 +348,20 @@ def test_a_barrier_that_was_not_found_is_counted(monkeypatch: pytest.MonkeyPatch
     field = shipped("fig4").field("barrier", "stable:2", 16)
     assert field.missed == (shipped("fig4").grid(16).stable == 2).sum() > 0
     assert np.isnan(field.values).all()
+
+
+def test_a_barrier_among_more_poses_than_an_integer_has_bits() -> None:
+    """-cos 40 x has 40 wells, and all passes between them are as high."""
+    waves = 40
+
+    def evaluate(_pixels: Any, points: np.ndarray) -> State:
+        angle = waves * points[0]
+        return State(waves * np.sin(angle)[None], waves**2 * np.cos(angle)[None, None], -np.cos(angle))
+
+    at = (np.pi * np.arange(2 * waves) / waves)[None, None]
+    stable = np.arange(2 * waves)[None] % 2 == 0
+    for chosen in (0, 66, 78):
+        assert barriers(evaluate, at, stable, np.array([chosen]), 1) == pytest.approx(2)
 
 
 def test_windows_beyond_doubles_are_refused() -> None:

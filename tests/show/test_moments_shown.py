@@ -27,6 +27,7 @@ from ptmcad.question.config import point_from_mapping
 from ptmcad.show.render.landscape import draw_landscape, energy_of
 from ptmcad.show.render.poses import draw_poses
 from ptmcad.show.report import page
+from ptmcad.show.report.equilibria import at_sample
 
 
 def bar(moments: dict[str, object], loads: object = (0, "F"), **further: Any) -> dict[str, Any]:
@@ -214,6 +215,21 @@ def test_the_page_has_the_moments_and_calls_nothing_degenerate_without_a_potenti
     poses = [pose for cell in data["cells"] for pose in cell["equilibria"]]
     assert poses and {pose["kind"] for pose in poses} == {"solution"} and {pose["energy"] for pose in poses} == {""}
     assert all(cell["moments"] == [] == cell["potential"] for cell in data["cells"])
+
+
+def test_the_page_of_a_certified_map_has_the_energies_of_moments_on_their_own_unknown() -> None:
+    record = bar({"th": "M*sin(th)"}, springs=[{"between": ["A", "P"], "k": 1, "free": "1/2"}])
+    slice = ptmcad.slice_from_mapping({"name": "s", **record, "axes": {"M": [1, 3], "F": [1, 3]}})
+    result = ptmcad.classify(slice, tolerance="1/10", count="index")
+    seen = 0
+    for cell in result.cells:
+        values = {name: e.evaluate(*cell.sample) for name, e in slice.parameters.items()}
+        poses = ptmcad.solve(model=slice.model, **values)
+        known = sorted(float(pose.known_energy.center) for pose in poses.equilibria)
+        shown = sorted(pose["level"] for pose in at_sample(result, cell)["equilibria"])
+        assert shown == pytest.approx(known, rel=1e-6)
+        seen += len(shown)
+    assert seen
 
 
 CUSP = {

@@ -49,8 +49,8 @@ def barriers(evaluate: Evaluate, at: Floats, stable: Flags, chosen: Integers, an
     saddle = ((eigenvalues(state.jacobian) < 0).sum(axis=0) == 1) & ~np.isnan(at[0])
     saddle &= (stable.sum(axis=1) > 1)[:, None]
     ends = _ends(evaluate, there, state, saddle, stable, angles)
-    # bits: which solutions each solution is joined to
-    joined = np.where(stable, 1 << np.arange(most), 0).astype(np.int64)
+    # of each solution the lowest number of those that it is joined to
+    joined = np.broadcast_to(np.arange(most), (pixels, most))
     found, certain = np.full(pixels, np.nan), np.ones(pixels, dtype=np.bool_)
     order = np.argsort(np.where(saddle, energy, np.inf), axis=1, kind="stable")
     for rank in range(most):
@@ -59,9 +59,11 @@ def barriers(evaluate: Evaluate, at: Floats, stable: Flags, chosen: Integers, an
         use = saddle[own, k] & (a >= 0) & (b >= 0)
         # above a saddle of which an end was not found nothing is certain: it may be a lower pass
         certain &= use | ~saddle[own, k] | ~np.isnan(found)
-        union = np.where(use, joined[own, np.maximum(a, 0)] | joined[own, np.maximum(b, 0)], 0)
-        joined = np.where((joined & union[:, None]) != 0, joined | union[:, None], joined)
-        now = use & np.isnan(found) & (joined[own, chosen] & ~(np.int64(1) << chosen) != 0)
+        one, other = (joined[own, np.maximum(end, 0)][:, None] for end in (a, b))
+        both = use[:, None] & ((joined == one) | (joined == other))
+        joined = np.where(both, np.minimum(one, other), joined)
+        with_chosen = stable & (joined == joined[own, chosen][:, None])
+        now = use & np.isnan(found) & (with_chosen.sum(axis=1) > 1)
         found[now] = (energy[own, k] - energy[own, chosen])[now]
     return np.where(certain, found, np.nan)
 

@@ -89,9 +89,9 @@ def starting_points(model: Model, cell: Cell, only_stable: bool) -> Floats:
 class Follower:
     """Newton's method for a slice's model at any of a grid's pixels."""
 
-    def __init__(self, result: RegionMap, grid: Grid, wanted: Wanted):
+    def __init__(self, result: RegionMap, grid: Grid):
         self.model = result.slice.model
-        self.grid, self.wanted = grid, wanted
+        self.grid, self.wanted = grid, wanted_of(result, grid)
         self.values = parameters_at(result, grid)
         self.angles = len(self.model.angles)
 
@@ -169,15 +169,14 @@ def parameters_at(result: RegionMap, grid: Grid) -> Mapping[str, Any]:
     return found
 
 
-def filled(result: RegionMap, grid: Grid, check: Callable[[], None] = lambda: None) -> Filling:
+def filled(result: RegionMap, follower: Follower, check: Callable[[], None] = lambda: None) -> Filling:
     """The solutions at every pixel, as far as neighbours lead to them.
 
     Parameters
     ----------
     check : called again and again; may raise to stop.
     """
-    wanted = wanted_of(result, grid)
-    follower = Follower(result, grid, wanted)
+    wanted = follower.wanted
     most = max(int(wanted.total.max()), 1)
     rows, columns = wanted.total.shape
     filling = Filling(np.full((len(result.slice.model.unknowns), rows, columns, most), np.nan), wanted.total <= 0)

@@ -14,6 +14,7 @@ import numpy as np
 
 from ptmcad.ask.fields.jets import Floats, Jet, cos_sin, unknowns
 from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.mechanism.energy import points_in, with_springs
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
 
@@ -95,7 +96,7 @@ def state_at(model: Model, values: Mapping[str, Any], at: Floats) -> State:
 
 
 def _mechanism(model: Mechanism, ring: Any, at: Floats) -> State:
-    points = {name: (_jet(evaluate(x, ring), at), _jet(evaluate(y, ring), at)) for name, (x, y) in model.points.items()}
+    points = {name: (_jet(x, at), _jet(y, at)) for name, (x, y) in points_in(model, ring).items()}
     energy = _jet(0.0, at)
     lengths, forces = [], []
     for spring in model.springs:
@@ -111,25 +112,18 @@ def _mechanism(model: Mechanism, ring: Any, at: Floats) -> State:
             energy = energy + square * (k / 2)
             lengths.append(np.sqrt(np.maximum(square.value, 0)))
         forces.append(k * (lengths[-1] - free))
-    for torsion in model.torsion:
-        energy = energy + evaluate(torsion.energy, ring)
-    for load in model.loads:
-        x, y = points[load.point]
-        energy = energy - x * evaluate(load.x, ring) - y * evaluate(load.y, ring)
-    moments = split_moments(model)
-    for tree in moments.energies:
-        energy = energy + evaluate(tree, ring)
+    energy = with_springs(model, ring, points, energy)
     residuals, jacobian = energy.gradient, energy.hessian
-    if moments.steady:
+    if steady := split_moments(model).steady:
         residuals, jacobian = residuals.copy(), jacobian.copy()
-        for moment in moments.steady:
+        for moment in steady:
             k = (*model.angles, *model.reals).index(moment.unknown)
             value = _jet(evaluate(moment.value, ring), at)
             residuals[k] -= value.value
             jacobian[k] -= value.gradient
     places = {name: (x.value, y.value) for name, (x, y) in points.items()}
-    has_energy = energy.value if model.has_potential else None
-    return State(residuals, jacobian, has_energy, points=places, lengths=tuple(lengths), forces=tuple(forces))
+    potential = energy.value if model.has_potential else None
+    return State(residuals, jacobian, potential, points=places, lengths=tuple(lengths), forces=tuple(forces))
 
 
 def _jet(value: Any, at: Floats) -> Jet:

@@ -16,15 +16,16 @@ from ptmcad.answer.field import Field
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields.barrier import barriers
-from ptmcad.ask.fields.branches import Filling, Follower, filled, wanted_of
+from ptmcad.ask.fields.branches import Filling, Follower, filled
 from ptmcad.ask.fields.equations import State, eigenvalues
 from ptmcad.ask.fields.jets import Floats
-from ptmcad.ask.fields.quantities import BARRIER, Quantity, quantity_of
+from ptmcad.ask.fields.quantities import OPTION, Valued, quantity_of
 from ptmcad.ask.pixels import grid as grid_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.work import split_moments
+from ptmcad.question.slice import Slice
 
 BATCH, LARGE_BATCH = 300, 20_000
 """Pixels at a time: what they take stays in the processor's cache; of descents few are long, which go on together."""
@@ -69,10 +70,39 @@ def choice_of(text: str, model: Model) -> Choice:
     return Choice(match[1], int(match[2] or 1))
 
 
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A quantity of a pose, both of which have a meaning for the slice."""
+
+    quantity: Valued
+    choice: Choice
+
+
+def request_of(slice: Slice, value: str, pose: str) -> Request:
+    """What is asked for, before there is a map.
+
+    Parameters
+    ----------
+    value : see `quantity_of`.
+    pose : see `choice_of`.
+
+    Raises
+    ------
+    ConfigError
+        For a value or pose that has no meaning here.
+    """
+    quantity, choice = quantity_of(value, slice), choice_of(pose, slice.model)
+    if quantity.is_barrier:
+        if choice.kind != "stable":
+            raise ConfigError("a barrier is that of a stable pose: ask for stable:1", key="--pose")
+        if isinstance(slice.model, Mechanism) and split_moments(slice.model).steady:
+            raise ConfigError("where moments work a pose's energy is not what a barrier is counted from", key=OPTION)
+    return Request(quantity, choice)
+
+
 def field_of(
     result: RegionMap,
-    value: str = "energy",
-    pose: str = "stable:1",
+    request: Request,
     columns: int = 400,
     rows: int | None = None,
     checks: int = CHECKS,
@@ -82,36 +112,33 @@ def field_of(
 
     Parameters
     ----------
-    value : see `quantity_of`.
-    pose : see `choice_of`.
+    request : of the map's slice.
     checks : number of pixels that are compared with exact poses.
     check : called again and again; may raise to stop.
 
     Raises
     ------
     ConfigError
-        For a value or pose that has no meaning here, or a map without cells.
+        For what this map does not know, or a map without cells.
     """
-    model = result.slice.model
-    quantity, choice = quantity_of(value, result.slice), choice_of(pose, model)
-    _check_request(result, quantity, choice)
+    model, quantity, choice = result.slice.model, request.quantity, request.choice
     grid = grid_of(result, columns, rows)
-    solutions = filled(result, grid, check)
-    wanted = wanted_of(result, grid)
+    follower = Follower(result, grid)
+    wanted = follower.wanted
     if wanted.only_stable and choice.kind != "stable":
         raise ConfigError("this map knows the stable equilibria only: ask for stable:1", key="--pose")
-    if wanted.only_stable and quantity.name == BARRIER:
-        raise ConfigError("this map knows the stable equilibria only, and a barrier is a saddle's", key="--value")
+    if wanted.only_stable and quantity.is_barrier:
+        raise ConfigError("this map knows the stable equilibria only, and a barrier is a saddle's", key=OPTION)
+    solutions = filled(result, follower, check)
     missed = _complete(result, grid, solutions, wanted.total, check)
-    follower = Follower(result, grid, wanted)
     values = np.full(grid.region.shape, np.nan)
     places = np.nonzero(solutions.done & (wanted.total > 0))
-    batch = LARGE_BATCH if quantity.name == BARRIER else BATCH
+    batch = LARGE_BATCH if quantity.is_barrier else BATCH
     for first in range(0, len(places[0]), batch):
         check()
         r, c = (p[first : first + batch] for p in places)
         values[r, c] = _at_pixels(model, quantity, choice, follower, (r, c), solutions.at[:, r, c])
-    if quantity.name == BARRIER:  # there is one wherever there is another stable pose
+    if quantity.is_barrier:  # there is one wherever there is another stable pose
         missed += int((np.isnan(values) & solutions.done & (grid.stable >= max(2, choice.rank))).sum())
     number, difference = _checked(result, quantity, choice, values, follower, checks)
     return Field(
@@ -120,19 +147,9 @@ def field_of(
     )  # fmt: skip
 
 
-def _check_request(result: RegionMap, quantity: Quantity, choice: Choice) -> None:
-    if quantity.name != BARRIER:
-        return
-    if choice.kind != "stable":
-        raise ConfigError("a barrier is that of a stable pose: ask for stable:1", key="--pose")
-    model = result.slice.model
-    if isinstance(model, Mechanism) and split_moments(model).steady:
-        raise ConfigError("where moments work a pose's energy is not what a barrier is counted from", key="--value")
-
-
 def _at_pixels(
     model: Model,
-    quantity: Quantity,
+    quantity: Valued,
     choice: Choice,
     follower: Follower,
     places: tuple[NDArray[np.int64], NDArray[np.int64]],
@@ -149,7 +166,7 @@ def _at_pixels(
     hit = (number == choice.rank) & np.take_along_axis(fits, order, axis=1)
     found = hit.any(axis=1)
     k = order[own, hit.argmax(axis=1)]
-    if quantity.name == BARRIER:
+    if quantity.is_barrier:
 
         def evaluate(pixels: NDArray[np.int64], points: Floats) -> State:
             return follower.state(rows[pixels], columns[pixels], points)
@@ -239,7 +256,7 @@ def _unknowns(pose: Pose) -> list[float]:
 
 
 def _checked(
-    result: RegionMap, quantity: Quantity, choice: Choice, values: Floats, follower: Follower, checks: int
+    result: RegionMap, quantity: Valued, choice: Choice, values: Floats, follower: Follower, checks: int
 ) -> tuple[int, float]:
     """How many random pixels were compared with exact poses, and the largest difference as a share.
 

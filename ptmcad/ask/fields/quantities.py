@@ -1,4 +1,4 @@
-"""What can be asked of an equilibrium, as a number: energy, stiffness, forces, lengths, unknowns, or an expression.
+"""Values in floating point of what can be asked of a solution: a quantity of `ptmcad.ask.quantities`, or an expression.
 
 Guarantee: a name that the model does not have is refused before anything is computed.
 """
@@ -14,27 +14,33 @@ import numpy as np
 
 from ptmcad.ask.fields.equations import State, eigenvalues
 from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.quantities import Kind, Quantity, named, quantities, unknown
 from ptmcad.errors import ConfigError, ExpressionError
-from ptmcad.mechanism import Mechanism, Model
 from ptmcad.question.slice import Slice
 from ptmcad.text.syntax import did_you_mean, parse
 from ptmcad.text.tree import Call, Name, Number, Power, Step, interpret, names_of
 
-BARRIER = "barrier"
+OPTION = "--value"
 Values = Callable[[State, Floats, Mapping[str, Any]], Floats]
 """From a state, its points of shape (n, *S), angles first, and the values of parameters and axes."""
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
-    """What is shown: its name as it was asked for, its unit in words, and its values."""
+class Valued:
+    """What is shown: its name, its unit in words, and its values.
+
+    Attributes
+    ----------
+    is_barrier : whether it is counted from the values, which are a pose's energy then.
+    """
 
     name: str
     unit: str
     values: Values
+    is_barrier: bool = False
 
 
-def quantity_of(text: str, slice: Slice) -> Quantity:
+def quantity_of(text: str, slice: Slice) -> Valued:
     """The quantity of this name.
 
     ``energy``, ``stiffness`` (the least eigenvalue of the Hessian), ``barrier``, ``force:SPRING``, ``length:SPRING``,
@@ -46,39 +52,30 @@ def quantity_of(text: str, slice: Slice) -> Quantity:
     ConfigError
         For a name or an expression that has no meaning here.
     """
-    model = slice.model
-    mechanism = model if isinstance(model, Mechanism) else None
-    kind, colon, name = (part.strip() for part in text.partition(":"))
-    if text.strip() in ("energy", "stiffness", BARRIER):
-        return _of_energy(text.strip(), model)
-    if not colon:
+    known = named(slice.model, text, OPTION) or unknown(slice.model, text.strip())
+    if known is None or known.name in slice.model.angles:  # by itself an angle is in radians, as in any expression
         return _expression(text, slice)
-    if kind in ("force", "length"):
-        known = tuple(mechanism.spring_numbers) if mechanism else ()
-    elif kind in ("x", "y"):
-        known = tuple(mechanism.points) if mechanism else ()
-    elif kind == "angle":
-        known = model.angles
-    else:
-        raise ConfigError(f"{kind!r} is not among force, length, angle, x and y", key="--value")
-    if name not in known:
-        what = {"force": "spring", "length": "spring", "angle": "unknown angle"}.get(kind, "point")
-        there = f"they are {', '.join(known)}" if known else "there are none"
-        raise ConfigError(
-            f"{model.name} has no {what} {name!r}{did_you_mean(name, known) or f': {there}'}", key="--value"
-        )
-    unit = {"force": "force", "angle": "degrees"}.get(kind, "length")
-    return Quantity(f"{kind}:{name}", unit, _named(kind, name, model))
+    return Valued(known.name, known.unit, _values(known), known.kind is Kind.BARRIER)
 
 
-def _of_energy(name: str, model: Model) -> Quantity:
-    if not model.has_potential:
-        raise ConfigError(f"solutions of {model.name} have no energy", key="--value")
-    unit = "force × length" if isinstance(model, Mechanism) else ""
-    if name == "stiffness":
-        return Quantity(name, unit, lambda state, at, values: eigenvalues(state.jacobian)[0])
-    # of a barrier, the level from which it is counted
-    return Quantity(name, unit, lambda state, at, values: _known(state.energy))
+def _values(quantity: Quantity) -> Values:
+    number, part = quantity.number, quantity.part
+    match quantity.kind:
+        case Kind.ENERGY | Kind.BARRIER:
+            return lambda state, at, values: _known(state.energy)
+        case Kind.STIFFNESS:
+            return lambda state, at, values: eigenvalues(state.jacobian)[0]
+        case Kind.FORCE:
+            return lambda state, at, values: state.forces[number]
+        case Kind.LENGTH:
+            return lambda state, at, values: state.lengths[number]
+        case Kind.ANGLE:
+            return lambda state, at, values: np.degrees(at[number])
+        case Kind.REAL:
+            return lambda state, at, values: at[number]
+        case Kind.X | Kind.Y:
+            side = int(quantity.kind is Kind.Y)
+            return lambda state, at, values: _known(state.points)[part][side]
 
 
 def _known(value: Any) -> Any:
@@ -86,30 +83,21 @@ def _known(value: Any) -> Any:
     return value
 
 
-def _named(kind: str, name: str, model: Model) -> Values:
-    if kind == "angle":
-        k = model.angles.index(name)
-        return lambda state, at, values: np.degrees(at[k])
-    if kind in ("force", "length") and isinstance(model, Mechanism):
-        number = model.spring_numbers[name]
-        return lambda state, at, values: _known(state.forces if kind == "force" else state.lengths)[number]
-    side = 0 if kind == "x" else 1
-    return lambda state, at, values: _known(state.points)[name][side]
-
-
-def _expression(text: str, slice: Slice) -> Quantity:
+def _expression(text: str, slice: Slice) -> Valued:
     model = slice.model
     known = (*model.angles, *model.reals, *slice.axis_names, *slice.parameters)
     try:
         tree = parse(text)
         for name in names_of(tree):
             if name not in known:
-                raise ConfigError(
-                    f"{name!r} is neither an unknown nor a parameter{did_you_mean(name, known)}", key="--value"
-                )
-        interpret(tree, _Arrays({name: np.float64(0.5) for name in known}))
+                hint = did_you_mean(name, (*known, *quantities(model)))
+                raise ConfigError(f"{name!r} is neither an unknown nor a parameter{hint}", key=OPTION)
+        with np.errstate(all="ignore"):
+            interpret(tree, _Arrays({name: np.float64(0.5) for name in known}))
     except ExpressionError as error:
-        raise ConfigError(f"{text!r}: {error.message}", key="--value") from error
+        raise ConfigError(f"{text!r}: {error.message}", key=OPTION) from error
+    except (OverflowError, ValueError) as error:  # an exponent may be infinite, or no number
+        raise ConfigError(f"{text[:60]!r} has a number beyond doubles, 1.8e308", key=OPTION) from error
 
     def values(_state: State, at: Floats, given: Mapping[str, Any]) -> Floats:
         unknowns = dict(zip((*model.angles, *model.reals), at, strict=True))
@@ -117,7 +105,7 @@ def _expression(text: str, slice: Slice) -> Quantity:
             found: Floats = np.broadcast_to(interpret(tree, _Arrays({**given, **unknowns})), at.shape[1:]) + 0.0
         return found
 
-    return Quantity(text.strip(), "", values)
+    return Valued(text.strip(), "", values)
 
 
 class _Arrays:

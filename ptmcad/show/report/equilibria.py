@@ -15,6 +15,7 @@ from ptmcad.answer.regionmap import Cell, RegionMap, Solution
 from ptmcad.answer.words import kind_name
 from ptmcad.errors import ConfigError, PoleError
 from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.mechanism.energy import points_in, with_springs
 from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.mechanism.moments import moments_at
 from ptmcad.question.slice import merged
@@ -226,22 +227,19 @@ def _energy(model: Model, box: tuple[Bounds, ...], values: Mapping[str, Fraction
         return None if model.potential is None else evaluate(model.potential, within).bounds
     if not isinstance(model, Mechanism) or not model.has_potential:
         return None
-    where = _nodes(model, box, values)
-    terms = [evaluate(torsion.energy, within).bounds for torsion in model.torsion]
+    points = points_in(model, within)
+    springs = []
     for spring in model.springs:
-        length = square_root(_squared_distance(where[spring.start], where[spring.end]))
-        stretch = plus(length, exactly(-value_at(spring.free, values)))
-        terms.append(times(exactly(value_at(spring.stiffness, values) / 2), power(stretch, 2)))
-    for load in model.loads:
-        for component, place in zip((load.x, load.y), where[load.point], strict=True):
-            terms.append(times(exactly(-value_at(component, values)), place))
-    return plus(*terms)
+        start, end = ((x.bounds, y.bounds) for x, y in (points[spring.start], points[spring.end]))
+        stretch = plus(square_root(_squared_distance(start, end)), exactly(-value_at(spring.free, values)))
+        springs.append(times(exactly(value_at(spring.stiffness, values) / 2), power(stretch, 2)))
+    return with_springs(model, within, points, _Bounded(plus(*springs))).bounds
 
 
 def _nodes(mechanism: Mechanism, box: tuple[Bounds, ...], values: Mapping[str, Fraction]) -> dict[str, Point]:
     """Bounds of the coordinates of all points."""
     within = _InBounds(mechanism, box, values)
-    return {name: (evaluate(x, within).bounds, evaluate(y, within).bounds) for name, (x, y) in mechanism.points.items()}
+    return {name: (x.bounds, y.bounds) for name, (x, y) in points_in(mechanism, within).items()}
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,7 @@ from typing import Any
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import kind_name
 from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.mechanism.energy import points_in, with_springs
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
 from ptmcad.question.slice import Slice, have_free_lengths
@@ -145,7 +146,7 @@ def _parts(**known: Any) -> dict[str, Any]:
 
 
 def _mechanism(model: Mechanism, t: _Tape, slice: Slice) -> dict[str, Any]:
-    points = {name: (evaluate(x, t), evaluate(y, t)) for name, (x, y) in model.points.items()}
+    points = points_in(model, t)
     half, twice = t.constant(Fraction(1, 2)), t.constant(Fraction(2))
     energy = t.constant(Fraction(0))
     for spring in model.springs:
@@ -157,19 +158,12 @@ def _mechanism(model: Mechanism, t: _Tape, slice: Slice) -> dict[str, Any]:
         if have_free_lengths(replace(model, springs=(spring,)), slice.parameters):
             square = square - twice * free * square.root() + free * free
         energy = energy + half * k * square
-    for torsion in model.torsion:
-        energy = energy + evaluate(torsion.energy, t)
-    loads = [(load.point, evaluate(load.x, t), evaluate(load.y, t)) for load in model.loads]
-    for point, fx, fy in loads:
-        energy = energy - (points[point][0] * fx + points[point][1] * fy)
-    moments = split_moments(model)
-    for tree in moments.energies:
-        energy = energy + evaluate(tree, t)
+    energy = with_springs(model, t, points, energy)
     unknowns = (*model.angles, *model.reals)
     return _parts(
         energy=energy.number if model.has_potential else None,
         force=energy.number,
-        moments=[[unknowns.index(m.unknown), evaluate(m.value, t).number] for m in moments.steady],
+        moments=[[unknowns.index(m.unknown), evaluate(m.value, t).number] for m in split_moments(model).steady],
         points=[[x.number, y.number] for x, y in points.values()],
-        loads=[[fx.number, fy.number] for _, fx, fy in loads],
+        loads=[t.of((load.x, load.y)) for load in model.loads],
     )
