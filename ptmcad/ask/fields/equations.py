@@ -31,6 +31,7 @@ class State:
     stability : without a potential what is positive at stable ones.
     points : of a mechanism, by name.
     lengths, forces : of its springs, in their order; a force is positive where the spring pulls.
+    work : of moments, shape S; None where none works.
     """
 
     residuals: Floats
@@ -41,6 +42,12 @@ class State:
     points: Mapping[str, tuple[Floats, Floats]] | None = None
     lengths: tuple[Floats, ...] = ()
     forces: tuple[Floats, ...] = ()
+    work: Floats | None = None
+
+    @property
+    def height(self) -> Floats | None:
+        """What descends: the energy less the moments' work, of which the residuals are the slopes; None without one."""
+        return self.energy if self.energy is None or self.work is None else self.energy - self.work
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +123,7 @@ def _mechanism(model: Mechanism, ring: Any, at: Floats) -> State:
     for load in model.loads:
         x, y = points[load.point]
         energy = energy - x * evaluate(load.x, ring) - y * evaluate(load.y, ring)
-    moments = split_moments(model)
+    moments, work = split_moments(model), None
     for tree in moments.energies:
         energy = energy + evaluate(tree, ring)
     residuals, jacobian = energy.gradient, energy.hessian
@@ -127,9 +134,12 @@ def _mechanism(model: Mechanism, ring: Any, at: Floats) -> State:
             value = _jet(evaluate(moment.value, ring), at)
             residuals[k] -= value.value
             jacobian[k] -= value.gradient
+            work = value.value * at[k] + (0.0 if work is None else work)
     places = {name: (x.value, y.value) for name, (x, y) in points.items()}
     has_energy = energy.value if model.has_potential else None
-    return State(residuals, jacobian, has_energy, points=places, lengths=tuple(lengths), forces=tuple(forces))
+    return State(
+        residuals, jacobian, has_energy, points=places, lengths=tuple(lengths), forces=tuple(forces), work=work
+    )
 
 
 def _jet(value: Any, at: Floats) -> Jet:
