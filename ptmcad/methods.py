@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ptmcad.answer.poses import Poses
     from ptmcad.answer.regionmap import Location, RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
+    from ptmcad.show.widget import Explorer
 
 
 def _locate(self: RegionMap, **at: Any) -> Location:
@@ -158,6 +159,27 @@ def _map_animate(self: RegionMap, path: Any, pose: str = "stable:1", frames: int
     from ptmcad.ask.fields.motion import motion_of
 
     return motion_of(self, path, pose, frames)
+
+
+def _map_explore(self: RegionMap) -> Explorer:
+    """The map as a living widget of a notebook, with the extra ``notebook``: one drags a point over it.
+
+    Poses and energy follow in the browser in floating point. Where the point rests, ``widget.point`` has it, a mapping
+    of the two axes to floats, and ``widget.poses`` the exact `Poses` there, as of `solve`; setting ``widget.point``
+    moves it.
+
+    Raises
+    ------
+    ConfigError
+        When anywidget is not installed, or the map contradicts itself so that it cannot be drawn.
+    """
+    from ptmcad.ask.fields.field import exact_at
+    from ptmcad.process.extras import require_anywidget
+
+    require_anywidget()
+    from ptmcad.show.widget import Explorer
+
+    return Explorer(self, lambda x, y: exact_at(self, x, y))
 
 
 def _motion_save(
@@ -344,6 +366,7 @@ METHODS["RegionMap"] = {
     "plot": _map_plot,
     "compare": _map_compare,
     "animate": _map_animate,
+    "explore": _map_explore,
 }
 METHODS["SliceVariety"] = {"text": _variety_text, "_repr_html_": _variety_repr_html}
 METHODS["Poses"] = {
