@@ -13,6 +13,7 @@ from support.maps import CONFIGS, shipped
 import ptmcad
 from ptmcad.answer.motion import Motion
 from ptmcad.ask.fields import motion as module
+from ptmcad.ask.fields import track
 from ptmcad.ask.fields.course import Course, corners_of
 from ptmcad.ask.fields.field import exact_at, unknowns_of
 from ptmcad.ask.fields.motion import LostError, motion_of
@@ -144,7 +145,7 @@ def test_a_certified_map_and_what_it_leaves_open() -> None:
 
 
 def test_a_pose_that_is_lost_within_a_region_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "ALONG", 1e-12)
+    monkeypatch.setattr(track, "ALONG", 1e-12)
     with pytest.raises(LostError, match="in the middle of a region"):
         motion_of(shipped("fig4"), "rho=3/4:4/5,L2=3/2", frames=5)
 

@@ -23,22 +23,18 @@ from ptmcad.answer.motion import Fall, Motion, Place, Step
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.doubles import within_doubles
-from ptmcad.ask.fields.branches import Places, filled, parameters_at, wanted_of
+from ptmcad.ask.fields.branches import Places, filled, wanted_of
 from ptmcad.ask.fields.course import Course, corners_of
-from ptmcad.ask.fields.descent import descent, negatives, newton
-from ptmcad.ask.fields.equations import State, state_at
+from ptmcad.ask.fields.descent import descent, negatives
 from ptmcad.ask.fields.field import Choice, choice_of, complete, exact_at, unknowns_of
 from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.fields.track import LEAST, Track, followed
 from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError, PtmcadError
 from ptmcad.options import Progress
 
 FRAMES, MOST_FRAMES = 90, 2000
 MOST_FALLS = 20
-ALONG = 0.08
-"""Radians, or units, that a pose may move in a part of a step, in which it is followed without looking again."""
-LEAST = 1e-7
-"""Of the path: a pose that cannot be followed so far has vanished."""
 SLIP = 0.05
 """A shorter fall is none to be seen: the pose goes on beside, as where a symmetric one gives way to two."""
 SAME = 1e-6
@@ -93,27 +89,17 @@ class _Stop:
     solutions: Floats | None
 
 
-class _Walk:
-    """The model along a course."""
+class _Walk(Track):
+    """The model along a course over a map."""
 
     def __init__(self, result: RegionMap, course: Course):
-        self.result, self.course, self.model = result, course, result.slice.model
+        super().__init__(result.slice, course)
+        self.result = result
 
     def cell(self, at: Place) -> int:
         """The number of the cell at a point; `NONE` on curves, and where the map leaves it open."""
         cell = locate(self.result, dict(zip(self.result.slice.axis_names, at, strict=True))).cell
         return NONE if cell is None else cell
-
-    def state(self, at: Place, unknowns: Floats) -> State:
-        """The model at a point of the map, and unknowns of shape (n, k)."""
-        x, y = (np.array([float(value)]) for value in at)
-        return state_at(self.model, parameters_at(self.result.slice, x, y), unknowns)
-
-    def at(self, share: float, unknowns: Floats) -> State:
-        return self.state(self.course.at(Fraction(share)), unknowns)
-
-    def solved(self, share: float, start: Floats) -> tuple[Floats, State] | None:
-        return newton(lambda at: self.at(share, at), start)
 
 
 def _stops(walk: _Walk, frames: int) -> list[_Stop]:
@@ -200,7 +186,7 @@ def _walked(
             progress("motion: step", number, len(stops))
         done = float(last.share)
         while True:
-            at, done = _followed(walk, at, done, float(stop.share), own)
+            at, done = followed(walk, at, done, float(stop.share), own)
             if done >= float(stop.share):
                 break
             beyond = min(done + LEAST, float(stop.share))
@@ -219,21 +205,6 @@ def _walked(
             at, done = way[-1], beyond
         steps.append(_taken(walk, stop, at))
     return steps, falls, ""
-
-
-def _followed(walk: _Walk, at: Floats, done: float, to: float, own: int) -> tuple[Floats, float]:
-    """The pose further along the path, and how far: to where it should go, or to where it vanishes."""
-    step = to - done
-    while done < to:
-        further = to if to - done <= step * (1 + 1e-9) else done + step
-        found = walk.solved(further, at)
-        if found and negatives(found[1]) == own and np.linalg.norm(found[0] - at) < ALONG:
-            at, done, step = found[0], further, step * 2
-        elif further - done <= LEAST * 1.001:
-            return at, done
-        else:
-            step = max((further - done) / 2, LEAST)
-    return at, done
 
 
 def _no_fall(walk: _Walk, own: int, done: float) -> str:
