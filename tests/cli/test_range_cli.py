@@ -162,9 +162,3 @@ def test_a_band_with_free_lengths(at: list[str], tmp_path: Path, capsys: pytest.
     assert ("enclosed" in data) == bool(at)
     picture = (tmp_path / "x-over.svg").read_text(encoding="utf-8")
     assert "above: where there are at least two stable equilibria" in picture
-
-
-def test_paths_with_free_lengths_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["--along", "rho", "--over", "L2", "--at", "L2=3/2", "--path", "1", "--set", "l0=1/5"]
-    assert run(["range", FIG4, *arguments]) == 2
-    assert "not computed for springs with a free length" in capsys.readouterr().err
