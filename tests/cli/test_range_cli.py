@@ -145,7 +145,9 @@ def test_what_elimination_can_not_do_is_told(
     assert message in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("at", [[], ["--at", "L2=3/2"]], ids=["over alone", "with a line"])
+@pytest.mark.parametrize(
+    "at", [pytest.param([], marks=pytest.mark.slow), ["--at", "L2=3/2"]], ids=["over alone", "with a line"]
+)
 def test_a_band_with_free_lengths(at: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """At L2 = 3/2 the row's ends are those that `ptmcad range --at` gives."""
     pytest.importorskip("numba")

@@ -120,7 +120,9 @@ def test_a_false_partial_result_is_rejected() -> None:
 CUSP = {"L1": "1", "L2": "25/39", "rho": "28/169", "F3": "-22400/507", "F4": "-13440/169"}
 
 
-@pytest.mark.parametrize("exponent", [3, pytest.param(12, marks=pytest.mark.slow), 30])
+@pytest.mark.parametrize(
+    "exponent", [pytest.param(3, marks=pytest.mark.slow), 12, pytest.param(30, marks=pytest.mark.slow)]
+)
 def test_boxes_near_a_cusp_are_disjoint_and_verified(exponent: int) -> None:
     """Three equilibria meet in the cusp; next to it their boxes need more digits."""
     stored = map_near_the_cusp(exponent)
@@ -128,7 +130,7 @@ def test_boxes_near_a_cusp_are_disjoint_and_verified(exponent: int) -> None:
     check_solutions(Claims(stored))
 
 
-@pytest.mark.parametrize("exponent", [3, 12, pytest.param(30, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("exponent", [3, *(pytest.param(k, marks=pytest.mark.slow) for k in (12, 30))])
 def test_maps_near_a_cusp_are_verified(exponent: int) -> None:
     """In full where the areas are easiest, and where they need more than the usual precision."""
     report = ptmcad.verify(map_near_the_cusp(exponent))
