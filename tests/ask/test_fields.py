@@ -201,7 +201,7 @@ def test_what_is_nowhere_is_nan_everywhere() -> None:
         ("th1 +", "stable:1", "th1 +"),
         ("1e400*th1", "stable:1", "'1e400[*]th1' has a number beyond doubles"),
         ("th1^10^400", "stable:1", "beyond doubles"),
-        ("1/(th1 - th1)", "best", "'best' is not a pose"),
+        ("1/(th1 - th1)", "stable:1", "divides by zero"),
         ("energy", "stable", ""),
         ("energy", "stable:0", "'stable:0' is not a pose such as stable:1"),
         ("energy", "second", "'second' is not a pose such as stable:1"),
@@ -379,3 +379,13 @@ def test_windows_beyond_doubles_are_refused() -> None:
     for ask in (result.grid, lambda: result.field("z", "pose:1")):
         with pytest.raises(ConfigError, match="beyond doubles"):
             ask()
+
+
+def test_at_its_poles_an_expression_has_no_value(recwarn: pytest.WarningsRecorder) -> None:
+    """The diagonal's pixels, of which there are seven; and nowhere at all."""
+    with pytest.raises(ConfigError, match=r"'sin\(th1\)/0' divides by zero"):
+        shipped("fig4").field("sin(th1)/0", "stable:1", 7)
+    field = shipped("fig4").field("1/(rho-L2)", "stable:1", 7)
+    assert np.array_equal(np.isnan(field.values), np.eye(7, dtype=bool))
+    assert field.checked and field.difference < 1e-9
+    assert not recwarn.list
