@@ -40,7 +40,7 @@ PROGRAM_LINES = [line for line in shell_lines() if not line.startswith("make ")]
 def test_the_parts_are_there() -> None:
     assert MAKE_LINES == ["make demo", "make test"]
     commands = " ".join(shlex.split(line)[1] for line in PROGRAM_LINES)
-    assert commands == "classify classify verify locate report range solve solve variety classify verify solve"
+    assert commands == "classify classify verify locate report range map animate solve solve variety classify verify solve"
     assert len(blocks("yaml")) == 2
     assert len(blocks("python")) == 1
 
@@ -63,6 +63,8 @@ SAYS = {
     "locate": "stable  2\n",
     "range": "operation range: 0.4981306959 to 1.041432630",
     "report": "fig4.html",
+    "map": "50 random pixels agree with exact poses to ",
+    "animate": "snap at rho = 1.04143, L2 = 1.5: ",
     "solve": "6 equilibria: 2 stable, 3 saddles, 1 maximum",
     "variety": "variety := [",
 }
@@ -115,7 +117,7 @@ def test_program_commands_in_their_order(
     assert asked == ["free02"]
     written = {path.name for path in (tmp_path / "out").iterdir()}
     maps = {"fig4.html", "fig4.json", "fig4.svg", "slice-L2-rho.json", "slice-L2-rho.png", "slice-L2-rho.svg"}
-    maps |= {"free02.json", "free02.png"}
+    maps |= {"free02.json", "free02.png", "fig4-stiffness-stable-1.png", "fig4-motion.gif"}
     assert written == maps | {"poses.json", "poses.svg", "poses-landscape.svg"}
 
 
