@@ -45,8 +45,10 @@ def read_result(path: Path) -> RegionMap:
 def is_result(path: Path) -> bool:
     """Whether a file begins as a region map does; nothing is said of the rest."""
     try:
+        if not path.is_file():  # a pipe would be empty for whoever reads the record
+            return False
         with path.open("rb") as file:
-            return FORMAT.encode() in file.read(_BEGINNING) if path.is_file() else False
+            return FORMAT.encode() in file.read(_BEGINNING)
     except OSError:  # whoever reads the file says what is wrong
         return False
 

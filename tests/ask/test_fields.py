@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import random
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +22,9 @@ from ptmcad.ask.fields.equations import State
 from ptmcad.ask.fields.field import centre, exact_at
 from ptmcad.cli import map as command
 from ptmcad.cli import run
+from ptmcad.cli.stored import is_result
 from ptmcad.errors import ConfigError
+from ptmcad.show.data import cell_rows, region_rows
 
 
 def of_kind(poses: tuple[Pose, ...], kind: str) -> list[Pose]:
@@ -364,6 +368,15 @@ def test_a_barrier_among_more_poses_than_an_integer_has_bits() -> None:
         assert barriers(evaluate, at, stable, np.array([chosen]), 1) == pytest.approx(2)
 
 
+def test_what_is_no_file_is_not_opened_to_see_whether_it_is_a_result(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a pipe the beginning could not be read again."""
+    os.mkfifo(tmp_path / "record.yaml")
+    monkeypatch.setattr(Path, "open", None)
+    assert not is_result(tmp_path / "record.yaml")
+
+
 def test_windows_beyond_doubles_are_refused() -> None:
     record = {
         "name": "vast", "system": {"unknowns": {"z": "real"}, "equations": ["z^2 - x*y"]},
@@ -371,6 +384,8 @@ def test_windows_beyond_doubles_are_refused() -> None:
     }  # fmt: skip
     result = ptmcad.classify(record)
     assert result.boundaries() == ()  # no curve is in the window
-    for ask in (result.grid, lambda: result.field("z", "pose:1")):
+    for ask in (
+        result.grid, lambda: result.field("z", "pose:1"), lambda: region_rows(result), lambda: cell_rows(result),
+    ):  # fmt: skip
         with pytest.raises(ConfigError, match="beyond doubles"):
             ask()
