@@ -16,9 +16,11 @@ if TYPE_CHECKING:
     from ptmcad.answer.boundaries import Boundary, Grid
     from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.field import Field
+    from ptmcad.answer.motion import Motion
     from ptmcad.answer.poses import Poses
     from ptmcad.answer.regionmap import Location, RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
+    from ptmcad.show.widget import Explorer
 
 
 def _locate(self: RegionMap, **at: Any) -> Location:
@@ -130,6 +132,88 @@ def _map_field(
     from ptmcad.ask.fields.field import field_of, request_of
 
     return field_of(self, request_of(self.slice, value, pose), columns, rows)
+
+
+def _map_animate(self: RegionMap, path: Any, pose: str = "stable:1", frames: int = 90) -> Motion:
+    """The motion of one pose along a path of the map, through the folds where it vanishes, in floating point.
+
+    Every step is one of as many equilibria as the map counts there; steps of a fall, by steepest descent of the energy,
+    say that they are none. `Motion.save` writes it as a GIF or, with ffmpeg, as MP4.
+
+    Parameters
+    ----------
+    path : corners, as ``"rho=3/4:6/5,L2=3/2"`` or ``{"rho": ["3/4", "6/5"], "L2": "3/2"}``.
+    pose : at its start, as of `field`.
+    frames : number of steps along the path, beside those of falls.
+
+    Raises
+    ------
+    ConfigError
+        For a path or pose that has no meaning here, or a map without cells.
+
+    >>> import ptmcad
+    >>> result = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))
+    >>> result.animate("L2=3/2:1/2,rho=1", "stable:2", frames=20)
+    <Motion of stable:2 over slice-L2-rho: 20 steps, 0 falls>
+    """
+    from ptmcad.ask.fields.motion import motion_of
+
+    return motion_of(self, path, pose, frames)
+
+
+def _map_explore(self: RegionMap) -> Explorer:
+    """The map as a living widget of a notebook, with the extra ``notebook``: one drags a point over it.
+
+    Poses and energy follow in the browser in floating point. Where the point rests, ``widget.point`` has it, a mapping
+    of the two axes to floats, and ``widget.poses`` the exact `Poses` there, as of `solve`; setting ``widget.point``
+    moves it.
+
+    Raises
+    ------
+    ConfigError
+        When anywidget is not installed, or the map contradicts itself so that it cannot be drawn.
+    """
+    from ptmcad.ask.fields.field import exact_at
+    from ptmcad.process.extras import require_anywidget
+
+    require_anywidget()
+    from ptmcad.show.widget import Explorer
+
+    return Explorer(self, lambda x, y: exact_at(self, x, y))
+
+
+def _motion_save(
+    self: Motion, path: Any, *, fps: int = 20, size: Any = None, palette: Any = None, title: Any = None, dpi: int = 100
+) -> None:
+    """Write the motion as a film: a GIF or, with the program ffmpeg, MP4, by the file's suffix.
+
+    Parameters
+    ----------
+    fps : pictures in a second.
+    size, palette, title : as of `RegionMap.plot`.
+
+    Raises
+    ------
+    ConfigError
+        For a system, which cannot be drawn, another suffix, a size that is too small, or MP4 without ffmpeg.
+    OSError
+        When the file cannot be written.
+    """
+    from pathlib import Path
+
+    from ptmcad.show.render.backend import load_matplotlib
+    from ptmcad.show.style import styled
+
+    load_matplotlib()
+    from ptmcad.show.render.film import save_film
+
+    save_film(self, Path(path), styled("default", None, size=size, palette=palette, title=title), fps, dpi)
+
+
+def _motion_repr_html(self: Motion) -> str:
+    from ptmcad.show.notebook import motion_html
+
+    return motion_html(self)
 
 
 def _map_to_dataframe(self: RegionMap, what: str = "regions", **options: Any) -> DataFrame:
@@ -281,6 +365,8 @@ METHODS["RegionMap"] = {
     "_repr_png_": _map_repr_png,
     "plot": _map_plot,
     "compare": _map_compare,
+    "animate": _map_animate,
+    "explore": _map_explore,
 }
 METHODS["SliceVariety"] = {"text": _variety_text, "_repr_html_": _variety_repr_html}
 METHODS["Poses"] = {
@@ -289,3 +375,4 @@ METHODS["Poses"] = {
     "from_json": classmethod(_poses_from_json),
     "_repr_html_": _poses_repr_html,
 }
+METHODS["Motion"] = {"save": _motion_save, "_repr_html_": _motion_repr_html}

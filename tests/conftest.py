@@ -7,9 +7,11 @@ import os
 import shutil
 import signal
 import tempfile
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import HealthCheck, settings
+from support.browser import Browser, browser
 from support.examples import ALL, FAST, FEW, THOROUGH
 from support.maps import FOLDER, shipped
 
@@ -46,6 +48,13 @@ def pytest_collection_finish() -> None:
     # nor forked children copy them for it
     gc.collect()
     gc.freeze()
+
+
+@pytest.fixture(scope="session", name="one")
+def one_browser() -> Iterator[Browser]:
+    """One Chromium for all tests of pages that a process runs."""
+    with browser() as found:
+        yield found
 
 
 @pytest.fixture(name="shipped")

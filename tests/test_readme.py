@@ -13,7 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from support.maps import shipped_certified
+from support.maps import part_of_free02, record_of_part_of_free02, shipped_certified
 
 import ptmcad
 from ptmcad.cli import run
@@ -69,22 +69,24 @@ SAYS = {
 
 
 SAYS_FREE = {
-    "classify": "2 stable: 4 regions",
+    "classify": "2 stable: {} regions",
     "verify": "ok ",
     "solve": "7 equilibria: 2 stable, 4 saddles",
 }
 
 
+@pytest.mark.parametrize("part", [True, pytest.param(False, marks=pytest.mark.slow)], ids=["part of free02", "free02"])
 def test_program_commands_in_their_order(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    part: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """Each command ends well and says what it should, in a folder that has only the problem records at first.
 
     The first one is the installed program; to start it for the others too would show no more. The map of free02 takes
-    most of the time, and is one that other tests read too; here counts that it is asked for.
+    most of the time, even that of a part of its window; it is one that other tests read too, and here counts that it is
+    asked for.
     """
 
-    free02, asked = shipped_certified("free02", "1/50"), []
+    free02, asked = part_of_free02() if part else shipped_certified("free02", "1/50"), []
 
     def certified_map(slice: ptmcad.Slice, options: Options) -> ptmcad.RegionMap:
         assert (slice, options.tolerance) == (free02.slice, Fraction(1, 50))
@@ -94,6 +96,8 @@ def test_program_commands_in_their_order(
     monkeypatch.setattr("ptmcad.certified.engine.certified_map", certified_map)
     monkeypatch.setattr("ptmcad.verification.certified.checks.BOXES", 4)  # of 40: enough to see that some are tried
     shutil.copytree(ROOT / "configs", tmp_path / "configs")
+    if part:
+        (tmp_path / "configs" / "free02.yaml").write_text(record_of_part_of_free02(), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     installed = Path(sys.executable).with_name("ptmcad")
     for n, line in enumerate(PROGRAM_LINES):
@@ -106,7 +110,8 @@ def test_program_commands_in_their_order(
             status = run([command, *arguments])
             out, err = capfd.readouterr()
         assert (status, err) == (0, ""), line
-        assert (SAYS_FREE if "free02" in line or "l0=" in line else SAYS)[command] in out, line
+        says = (SAYS_FREE if "free02" in line or "l0=" in line else SAYS)[command]
+        assert says.replace("{}", "2" if part else "4") in out, line
     assert asked == ["free02"]
     written = {path.name for path in (tmp_path / "out").iterdir()}
     maps = {"fig4.html", "fig4.json", "fig4.svg", "slice-L2-rho.json", "slice-L2-rho.png", "slice-L2-rho.svg"}

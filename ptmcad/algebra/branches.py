@@ -111,15 +111,18 @@ def avoids_zero(p: arb_poly, low: fmpq, high: fmpq) -> bool:
     return bool(sum((abs(c) for c in rest), arb(0)) < abs(value))
 
 
-def local_coefficients(in_v: Sequence[fmpz_poly], middle: fmpq, radius: fmpq, origin: fmpq) -> list[arb_poly]:
-    """Coefficients b_i(h) of p(middle + radius h, origin + w) = sum_i b_i(h) w^i."""
+def local_coefficients(
+    in_v: Sequence[fmpz_poly], middle: fmpq, radius: fmpq, origin: fmpq, number: int | None = None
+) -> list[arb_poly]:
+    """Coefficients b_i(h) of p(middle + radius h, origin + w) = sum_i b_i(h) w^i: all, or so many first ones."""
     line = arb_poly([arb(middle), arb(radius)])
     rows = [arb_poly(c)(line) for c in in_v]
     shift = arb(origin)
-    for start in range(len(rows) - 1):
+    number = len(rows) if number is None else number
+    for start in range(min(len(rows) - 1, number)):
         for i in range(len(rows) - 2, start - 1, -1):
             rows[i] = rows[i] + rows[i + 1] * shift
-    return rows
+    return rows[:number]
 
 
 def _series(local: Sequence[arb_poly], order: int) -> arb_poly:

@@ -43,7 +43,7 @@ class PathEnd:
 
     Attributes
     ----------
-    at : the critical value or the window's edge.
+    at : the critical value or the window's edge; of springs with free lengths an enclosure of the critical value.
     last : the last point of the path, close to ``at``.
     meeting : of the solutions on the path's side, the Morse indices (numbers of negative eigenvalues) of those that
         meet there, the path's own included; without a potential 0 for a stable one, and 1 for another.
@@ -55,7 +55,7 @@ class PathEnd:
     """
 
     fate: Fate
-    at: AlgebraicNumber | Fraction
+    at: AlgebraicNumber | Fraction | Enclosure
     last: PathPoint
     meeting: tuple[int, ...] = ()
     leaving: tuple[int, ...] = ()
@@ -92,6 +92,9 @@ class PosePaths:
 
     Attributes
     ----------
+    joined : whether the points are solutions that were followed in floating point from one to the next, as those of
+        springs with free lengths are: each point is proved, and nothing between them; ``upright`` and ``reverse`` are
+        said of the points alone.
     has_moments : whether a moment works somewhere on the line, so that no energy tells where a pose goes that vanishes.
     """
 
@@ -102,6 +105,7 @@ class PosePaths:
     start: Fraction
     paths: tuple[PosePath, ...]
     has_moments: bool = False
+    joined: bool = False
 
     def __repr__(self) -> str:
         return f"<PosePaths of {self.name} along {self.along.name}: {len(self.paths)} from {self.start}>"

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from ptmcad.answer.boundaries import Boundary, Grid
     from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.field import Field
+    from ptmcad.answer.motion import Motion
 
 
 class Status(Enum):
@@ -363,6 +364,10 @@ class RegionMap:
         def _repr_png_(self) -> bytes | None: ...
 
         def compare(self, other: RegionMap) -> Comparison: ...
+
+        def animate(self, path: Any, pose: str = "stable:1", frames: int = 90) -> Motion: ...
+
+        def explore(self) -> Any: ...
 
         def plot(
             self, ax: Any = None, style: Any = "default", *, samples: bool = False, dpi: int = 150, **options: Any

@@ -38,7 +38,7 @@ _Place = tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class _Sample:
+class Sample:
     """All solutions at a value."""
 
     value: Fraction
@@ -63,7 +63,7 @@ def branch_diagram(
     """
     asked = [quantity(slice.model, name) for name in names]
     varying, other, value = varying_axis(slice, along, at)
-    line = _Line(slice, varying, value)
+    line = SolutionsOnLine(slice, varying, value)
     branches: list[Branch] = []
     stretches = _stretches(slice, along, at)
     for number, (low, high) in enumerate(stretches):
@@ -92,57 +92,57 @@ def _stretches(slice: Slice, along: str, at: Mapping[str, Any]) -> list[tuple[Fr
     return [(upper(a), lower(b)) for a, b in itertools.pairwise(ends)]
 
 
-class _Line:
+class SolutionsOnLine:
     """The solutions on a line, as they are asked for."""
 
-    def __init__(self, slice: Slice, varying: int, value: Fraction):
-        self.model = slice.model
+    def __init__(self, slice: Slice, varying: int, value: Fraction, digits: int = DIGITS):
+        self.model, self.digits = slice.model, digits
         self.parameters = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
         self.undecided: list[Fraction] = []
 
-    def at(self, value: Fraction) -> _Sample | None:
+    def at(self, value: Fraction) -> Sample | None:
         """The solutions at a value; None where they are not all known, or one is degenerate."""
         parameters = {name: e.evaluate(value, Fraction(0)) for name, e in self.parameters.items()}
-        found = poses_at(self.model, parameters, DIGITS)
+        found = poses_at(self.model, parameters, self.digits)
         if found.status not in (Status.EXACT, Status.CERTIFIED):
             self.undecided.append(value)
             return None
-        return _Sample(value, found.equilibria)
+        return Sample(value, found.equilibria)
 
-    def samples(self, low: Fraction, high: Fraction) -> list[_Sample]:
+    def samples(self, low: Fraction, high: Fraction) -> list[Sample]:
         """Solutions at values in an interval, close enough to be joined."""
         width = high - low
         parts = {*NEAR, *(1 - part for part in NEAR)}
         parts |= {Fraction(round((1 - cos(pi * k / SAMPLES)) * 2**19), 2**20) for k in range(1, SAMPLES)}
-        known = [s for part in sorted(parts) if (s := self.at(_short(low + part * width, width))) is not None]
+        known = [s for part in sorted(parts) if (s := self.at(short(low + part * width, width))) is not None]
         result = known[:1]
         for sample in known[1:]:
             result += [*self._between(result[-1], sample, HALVINGS), sample]
         return result
 
-    def _between(self, first: _Sample, second: _Sample, depth: int) -> list[_Sample]:
+    def _between(self, first: Sample, second: Sample, depth: int) -> list[Sample]:
         if depth == 0 or _pairs(first, second)[1]:
             return []
         width = second.value - first.value
-        middle = self.at(_short((first.value + second.value) / 2, width))
+        middle = self.at(short((first.value + second.value) / 2, width))
         if middle is None:
             return []
         return [*self._between(first, middle, depth - 1), middle, *self._between(middle, second, depth - 1)]
 
 
-def _short(value: Fraction, width: Fraction) -> Fraction:
+def short(value: Fraction, width: Fraction) -> Fraction:
     """A number near a value with few digits, against the width of where it lies."""
     unit = 2**24 * (width.denominator // width.numerator + 1)
     return Fraction(round(value * unit), unit)
 
 
-def _place(pose: Pose) -> _Place:
+def place_of(pose: Pose) -> _Place:
     return (*map(float, pose.cosines_sines), *map(float, pose.reals))
 
 
-def _pairs(first: _Sample, second: _Sample) -> tuple[dict[int, int], bool]:
+def _pairs(first: Sample, second: Sample) -> tuple[dict[int, int], bool]:
     """For the solutions at one value those at the next that are nearest, and whether no other comes near to that."""
-    before, after = ([(p.index, p.stable, _place(p)) for p in s.poses] for s in (first, second))
+    before, after = ([(p.index, p.stable, place_of(p)) for p in s.poses] for s in (first, second))
     distances = sorted(
         (sum((a - b) ** 2 for a, b in zip(p[2], q[2], strict=True)) ** 0.5, i, j)
         for i, p in enumerate(before)
@@ -158,7 +158,7 @@ def _pairs(first: _Sample, second: _Sample) -> tuple[dict[int, int], bool]:
     return pairs, clear and len(pairs) == len(before) == len(after)
 
 
-def _joined(samples: Sequence[_Sample], asked: Sequence[Quantity]) -> list[Branch]:
+def _joined(samples: Sequence[Sample], asked: Sequence[Quantity]) -> list[Branch]:
     """The branches through the samples of an interval; one that finds no continuation ends."""
     if not samples:
         return []

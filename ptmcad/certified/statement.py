@@ -22,11 +22,12 @@ def system_text(model: Model) -> System:
     """The potential, of a mechanism with square roots; gradient and Hessian are its derivatives by the unknowns.
 
     The work of constant moments is in it, so that it has another value after each turn. Of a system without a
-    potential the equations.
+    potential the equations. What is positive at solutions is there as the record says it.
     """
     if isinstance(model, ParametricSystem):
         potential = "" if model.potential is None else to_text(model.potential)
-        return System(tuple(model.unknowns), (), potential, tuple(map(to_text, model.equations)), ())
+        texts = [tuple(map(to_text, trees)) for trees in (model.equations, model.inequalities, model.stability)]
+        return System(tuple(model.unknowns), (), potential, texts[0], (), *texts[1:])
     assert isinstance(model, Mechanism)
     return System(tuple(model.unknowns), (), _energy(model), (), ())
 

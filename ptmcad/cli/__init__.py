@@ -26,6 +26,7 @@ from ptmcad.process.handover import Topic, send, watched
 from ptmcad.version import __version__
 
 COMMANDS = {
+    "animate": "ptmcad.cli.animate",
     "bench": "ptmcad.cli.bench",
     "check": "ptmcad.cli.check",
     "classify": "ptmcad.cli.classify",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
 from pathlib import Path
@@ -12,18 +11,16 @@ from typing import Any
 import click
 
 from ptmcad.answer.field import Field
-from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import pixels_of, share_of
 from ptmcad.cli.formats import formats_of
-from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.maps import made_map, stored_map
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
-from ptmcad.cli.stored import is_result, read_result
 from ptmcad.cli.values import quantity_names
-from ptmcad.errors import ConfigError, PtmcadError, shown_path
+from ptmcad.errors import PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 
@@ -83,26 +80,19 @@ def command(
         ptmcad map --slice rho,L2 --set F3=-10 --set F4=-10 --value barrier --pose stable:2 --pixels 60
         ptmcad map --slice L2,rho --value length:k1 --pose stable:2 --format png,csv --pixels 50
     """
-    stored = _stored(asked)
+    stored = stored_map(asked)
     slice = stored.slice if stored else asked.slice()
-    report_idle([Idle("tolerance", stored is not None, "the map is made already")])
     if not stored and slice.has_free_lengths and (value.strip() == "barrier" or not pose.strip().startswith("stable")):
         slice = asked.slice("index")  # the certified engine finds the others when they are counted
     stem = f"{slice.name}-{_slug(value)}-{_slug(pose)}"
     names = tuple(f"{stem}.{kind}" for kind in formats)
     check_writable(out, names)
     with held(limits), ProgressBar() as progress:
-        from ptmcad.ask.classification import prepare, region_map
         from ptmcad.ask.fields.field import field_of, request_of
 
         request = request_of(slice, value, pose)  # what means nothing is refused before anything is computed
-        result = stored
-        if result is None:
-            options = Options(areas=False, progress=progress, timeout=limits.timeout)
-            if slice.has_free_lengths:
-                options = replace(options, areas=True, tolerance=tolerance)
-            prepare(slice, options)
-            result = region_map(slice, options)
+        options = Options(areas=False, progress=progress, timeout=limits.timeout)
+        result = stored or made_map(slice, options, tolerance)
         field = field_of(result, request, *pixels, checks=checks)
         written = write_files(out, _writers(result, field, names, contours))
     for path in written:
@@ -113,23 +103,6 @@ def command(
             f"{field.checked} pixels were compared with exact poses, and one differs by {field.difference:.2g} of the "
             "largest value: do not trust this map"
         )
-
-
-def _stored(asked: Asked) -> RegionMap | None:
-    """The map where CONFIG is a result.
-
-    Raises
-    ------
-    ConfigError
-        When the file is damaged, or an option would change the slice.
-    """
-    if asked.config is None or not is_result(asked.config):
-        return None
-    given = {"--slice": asked.axes, "--set": asked.sets, "--range": asked.ranges, "--mechanism": asked.mechanism}
-    for option, value in given.items():
-        if value:
-            raise ConfigError("a result has its slice already: give the problem record to change it", key=option)
-    return read_result(asked.config)
 
 
 def _slug(text: str) -> str:

@@ -18,7 +18,7 @@ from ptmcad.cli.idle import idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.paths import file_option
 from ptmcad.cli.pictures import picture
-from ptmcad.cli.points import measured, places, poses_at
+from ptmcad.cli.points import disagreements, measured, places, poses_at
 from ptmcad.cli.stored import read_result
 from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, PictureError, shown_path
@@ -42,6 +42,8 @@ def _with_points(stored: RegionMap, drawing: Drawing, added: Added) -> Drawing:
         drawing = replace(drawing, overlay=found)
         if outside:
             click.echo(f"{outside} of {outside + len(found)} points are outside of the window and left out", err=True)
+        for line in disagreements(stored, found):
+            click.echo(line)
     return replace(drawing, poses=tuple((place, poses_at(stored, place)) for place in chosen))
 
 

@@ -12,6 +12,7 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli.locate import point_of, rows_of
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.question.config import point_from_mapping
+from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import rational
 
 if TYPE_CHECKING:
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 Place = tuple[Fraction, Fraction]
 MAX_ROWS = 10_000
 MAX_LABEL = 40
+MAX_TOLD = 10
+"""Points that are named one by one on the terminal."""
 DIGITS = 10
 """Of the poses' numbers."""
 
@@ -86,6 +89,20 @@ def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:
         else:
             outside += 1
     return tuple(found), outside
+
+
+def disagreements(result: RegionMap, found: Sequence[Measured]) -> list[str]:
+    """The points that have another count than the map, in words; the first `MAX_TOLD` of them."""
+    from ptmcad.show.render.overlay import Agreement
+
+    others = [point for point in found if point.agreement is Agreement.OTHER]
+    lines = []
+    for point in others[:MAX_TOLD]:
+        where = ", ".join(f"{n} = {shortest_text(v)}" for n, v in zip(result.slice.axis_names, point.at, strict=True))
+        lines.append(f"another count than in the map: {f'{point.label}, ' if point.label else ''}at {where}")
+    if len(others) > MAX_TOLD:
+        lines.append(f"and at {len(others) - MAX_TOLD} more points")
+    return lines
 
 
 def _agreement(result: RegionMap, at: Place, count: str) -> Agreement:

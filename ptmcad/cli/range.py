@@ -217,10 +217,11 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
     stem = output.stem(slice)
     with held(limits):
         enclosed = is_enclosed(slice, request)
-        if enclosed and set(output.formats) - {"json"} and not (request.quantities or request.over):
+        drawn = request.quantities or request.over or request.start is not None
+        if enclosed and set(output.formats) - {"json"} and not drawn:
             raise ConfigError(
-                "with a free length there is the table and JSON, and a picture of branches (--quantity NAME) or of a "
-                "band (--over NAME) only",
+                "with a free length there is the table and JSON, and a picture of branches (--quantity NAME), of paths "
+                "(--path VALUE) or of a band (--over NAME) only",
                 key="--format",
             )
         parts = _parts(request, enclosed=enclosed)
@@ -230,7 +231,7 @@ def command(*, asked: AskedLine, wanted: Wanted, output: Output, limits: Limits)
             check_writable(output.out, tuple(names))
         why = "no file is written, see --format"
         report_idle((Idle("out", not names, why), Idle("name", not names, why)))
-        if enclosed and request.start is None and not request.critical:
+        if enclosed and not request.critical:
             from ptmcad.ask.classification import load_certified
 
             # the time that compiling takes is not the computation's

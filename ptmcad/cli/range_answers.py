@@ -62,9 +62,10 @@ def answer(slice: Slice, request: Request) -> Answer:
     from ptmcad.exact.ranges.strips import refuse_free_lengths
     from ptmcad.show.ranges import document, table
 
-    if request.start is None and is_enclosed(slice, request):
+    if is_enclosed(slice, request):
         known = _enclosed(slice, request) if request.at else Answer(slice.heading, {}, {})
-        return _with_branches(_with_bands(known, slice, request) if request.over else known, slice, request)
+        known = _with_bands(known, slice, request) if request.over else known
+        return _with_branches(_with_paths(known, slice, request), slice, request)
     if request.critical:
         raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
     if request.over:
@@ -81,12 +82,8 @@ def answer(slice: Slice, request: Request) -> Answer:
         texts.append(table.width_table(widths, request.digits))
         parts["over"] = document.over_data(widths, request.digits)
         pictures["-over"] = partial(_picture, "over", slice, widths)
-    if request.start is not None:
-        paths = ranges.pose_paths(slice, request.along, request.at, request.start, request.pose)
-        texts.append(table.path_table(paths, min(request.digits, 10)))
-        parts["path"] = document.path_data(paths)
-        pictures["-path"] = partial(_picture, "path", slice, paths)
-    return _with_branches(Answer("\n\n".join(texts), parts, pictures), slice, request)
+    known = Answer("\n\n".join(texts), parts, pictures)
+    return _with_branches(_with_paths(known, slice, request), slice, request)
 
 
 def is_enclosed(slice: Slice, request: Request) -> bool:
@@ -109,6 +106,22 @@ def _with_bands(found: Answer, slice: Slice, request: Request) -> Answer:
         f"{found.text}\n\n{certified.width_table(widths, request.digits)}",
         {**found.parts, "bands": document.bands_data(widths, request.digits)},
         {**found.pictures, "-over": partial(_picture, "over", slice, widths)},
+    )
+
+
+def _with_paths(found: Answer, slice: Slice, request: Request) -> Answer:
+    """The answer with the paths of stable poses, where they were asked for."""
+    if request.start is None:
+        return found
+    from ptmcad.ask.ranges import pose_paths
+    from ptmcad.show.ranges import document, table
+
+    with ProgressBar() as progress:
+        paths = pose_paths(slice, request.along, request.at, request.start, request.pose, progress)
+    return Answer(
+        f"{found.text}\n\n{table.path_table(paths, min(request.digits, 10))}",
+        {**found.parts, "path": document.path_data(paths)},
+        {**found.pictures, "-path": partial(_picture, "path", slice, paths)},
     )
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, PtmcadError, shown
@@ -18,8 +19,6 @@ from ptmcad.text.textfile import read_text
 
 MAX_BYTES = 60_000_000
 """Twice what a certified map with a million rectangles takes."""
-_BEGINNING = 200
-"""Bytes within which a result says that it is one."""
 _OF_A_RECORD = frozenset(("mechanism", "system", "axes"))
 """Keys of which a problem record has one at least, and no result has any at its top."""
 
@@ -43,23 +42,23 @@ def read_result(path: Path) -> RegionMap:
 
 
 def is_result(path: Path) -> bool:
-    """Whether a file begins as a region map does; nothing is said of the rest."""
-    try:
-        if not path.is_file():  # a pipe would be empty for whoever reads the record
-            return False
-        with path.open("rb") as file:
-            return FORMAT.encode() in file.read(_BEGINNING)
-    except OSError:  # whoever reads the file says what is wrong
+    """Whether a file that stands for a record or a result is meant to be a result: JSON, and no record.
+
+    Raises
+    ------
+    ConfigError
+        When it cannot be read.
+    """
+    if path.suffix.lower() != ".json":
         return False
+    recover(path.parent)
+    text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
+    return _format_of(text) is not None or not _is_record(text)
 
 
 def _other_kind(text: str) -> str:
     """What the text is if it is a file of ptmcad of another kind, as a message; empty if it is none."""
-    try:
-        data = json.loads(text)
-    except (ValueError, RecursionError):
-        data = None
-    kind = data.get("format") if isinstance(data, dict) else None
+    kind = _format_of(text)
     if kind is None and _is_record(text):  # which may be written as JSON
         return "this is a problem record, not a result: run `ptmcad classify` on it first"
     own, _, version = FORMAT.partition("/")
@@ -68,6 +67,15 @@ def _other_kind(text: str) -> str:
     if kind.partition("/")[0] == own:
         return f"this is a {shown(kind, 40)} file, and this program reads version {version}: make it anew"
     return f"this is a {shown(kind, 40)} file, not a region map: `ptmcad classify` makes one"
+
+
+def _format_of(text: str) -> Any:
+    """What a JSON text says that its format is."""
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    return data.get("format") if isinstance(data, dict) else None
 
 
 def _is_record(text: str) -> bool:

@@ -14,6 +14,10 @@ NUMBA_MISSING = (
     "which is not installed: pip install numba"
 )
 
+ANYWIDGET_MISSING = (
+    "a living map in a notebook needs the package anywidget, which is not installed: pip install 'ptmcad[notebook]'"
+)
+
 
 def require_numba() -> None:
     """Refuse at once what the certified engine would refuse later.
@@ -25,3 +29,15 @@ def require_numba() -> None:
     """
     if find_spec("numba") is None:
         raise ConfigError(NUMBA_MISSING)
+
+
+def require_anywidget() -> None:
+    """Refuse what a notebook's widget needs.
+
+    Raises
+    ------
+    ConfigError
+        When anywidget is not installed.
+    """
+    if find_spec("anywidget") is None:
+        raise ConfigError(ANYWIDGET_MISSING)

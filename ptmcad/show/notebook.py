@@ -12,8 +12,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from ptmcad.answer.motion import Motion
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.mechanism import Mechanism
+from ptmcad.show.style import DEFAULT
 from ptmcad.show.table import certified_digits, count_text, index_heading
 from ptmcad.text.enclosure import Enclosure
 
@@ -22,6 +25,8 @@ if TYPE_CHECKING:
 
 DIGITS = 6
 MAX_ROWS = 20
+FPS, DPI = 20, 80
+"""Of a film."""
 
 
 def picture(result: RegionMap, kind: str) -> bytes | None:
@@ -70,6 +75,19 @@ def poses_html(poses: Poses) -> str:
     given = ", ".join(f"{name} = {value}" for name, value in poses.parameters.items())
     note = f"<div>{escape(poses.remark)}</div>" if poses.remark else ""
     return f"<div><b>{escape(model.name)}</b>: {escape(given)}, {poses.status.value}</div>{_table(head, rows)}{note}"
+
+
+def motion_html(motion: Motion) -> str:
+    """The film, in place; in words where it cannot be drawn."""
+    if not isinstance(motion.result.slice.model, Mechanism):
+        return text_html(repr(motion))
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render.film import gif_bytes
+
+    data = b64encode(gif_bytes(motion, DEFAULT, FPS, DPI)).decode()
+    return f'<img alt="{escape(repr(motion))}" style="max-width:100%" src="data:image/gif;base64,{data}">'
 
 
 def text_html(text: str) -> str:

@@ -71,9 +71,9 @@ class PlaneCurve:
         """The largest k such that only powers of the variable's k-th power occur."""
         return max(1, gcd(*(t[variable] for t in self.terms)))
 
-    def deflated(self, k: int, m: int) -> list[tuple[int, int, int]]:
+    def deflated(self, k: int, m: int) -> tuple[tuple[int, int, int], ...]:
         """The terms with u for u^k and v for v^m."""
-        return [(i // k, j // m, c) for i, j, c in self.terms]
+        return tuple((i // k, j // m, c) for i, j, c in self.terms)
 
     def flint(self) -> fmpz_mpoly:
         """The polynomial in FLINT's ring."""

@@ -8,27 +8,31 @@ value is FLINT's for polynomials in one variable.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 from math import floor
 
 from flint import fmpz, fmpz_poly
 
-Terms = Sequence[tuple[int, int, int]]
+Terms = tuple[tuple[int, int, int], ...]
 """(i, j, c) for c u^i v^j."""
 
 
+# every critical value asks for them, and so does every further map with the same curves
+@lru_cache(maxsize=256)
 def discriminant(p: Terms) -> fmpz_poly:
     """The discriminant of p, up to sign."""
     n = _degree(p)
     if n < 2:
         return fmpz_poly([1])
-    derivative = [(i, j - 1, j * c) for i, j, c in p if j]
+    derivative = tuple((i, j - 1, j * c) for i, j, c in p if j)
     # res(p, p') is the leading coefficient times the discriminant
     return resultant(p, derivative) // fmpz_poly(_row(p, n))
 
 
+@lru_cache(maxsize=256)
 def resultant(p: Terms, q: Terms) -> fmpz_poly:
     """The resultant of p and q, up to sign."""
     n, m = _degree(p), _degree(q)

@@ -16,7 +16,7 @@ Otherwise, where several roots are multiple, roots are counted of the polynomial
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import combinations, pairwise
 from math import prod
 
@@ -130,18 +130,14 @@ class Heights:
     def _has_multiple_root(self) -> bool:
         """Whether one of the curves has a multiple root over the value, or two have one in common."""
         curves = self.claims.curves
-        return any(is_root(_discriminant(c.terms), self.value) for c in curves) or any(
-            is_root(_resultant(c.terms, d.terms), self.value) for c, d in combinations(curves, 2)
+        return any(is_root(discriminant(c.terms), self.value) for c in curves) or any(
+            is_root(resultant(c.terms, d.terms), self.value) for c, d in combinations(curves, 2)
         )
 
     @cached_property
     def _polynomial(self) -> fmpz_poly:
         """A polynomial in v among whose roots are all points."""
         return prod((points_over(c, self.value) for c in self.claims.curves), start=fmpz_poly([1]))
-
-
-# every critical value asks for them
-_discriminant, _resultant = lru_cache(maxsize=256)(discriminant), lru_cache(maxsize=256)(resultant)
 
 
 def _exact_degree(p: arb_poly, degree: int) -> arb_poly:

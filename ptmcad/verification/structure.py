@@ -9,10 +9,11 @@ Roots are counted by Sturm sequences; the decomposition isolates them by Descart
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import pairwise
 from math import gcd
 
-from flint import fmpq, fmpz_poly
+from flint import fmpq, fmpz, fmpz_poly
 
 from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.text.numerals import text_of
@@ -46,13 +47,18 @@ def points_over(curve: PlaneCurve, value: CriticalValue) -> fmpz_poly:
     k = gcd(curve.exponent_gcd(0), int(q.deflation()[1]))
     m = curve.exponent_gcd(1)
     # eliminated is the second variable, so u and v change places
-    constant = [(0, i // k, int(a)) for i, a in enumerate(q.coeffs()) if a]
-    points = resultant([(j, i, c) for i, j, c in curve.deflated(k, m)], constant).inflate(m)
+    constant = tuple((0, i // k, int(a)) for i, a in enumerate(q.coeffs()) if a)
+    points = resultant(tuple((j, i, c) for i, j, c in curve.deflated(k, m)), constant).inflate(m)
     return points // points.gcd(points.derivative())
 
 
-def _factors(p: fmpz_poly) -> list[fmpz_poly]:
-    return [f for f, _ in p.factor()[1]] if p.degree() > 0 else []
+def _factors(p: fmpz_poly) -> tuple[fmpz_poly, ...]:
+    return _factors_of(tuple(p.coeffs())) if p.degree() > 0 else ()
+
+
+@lru_cache(maxsize=256)
+def _factors_of(coefficients: tuple[fmpz, ...]) -> tuple[fmpz_poly, ...]:
+    return tuple(f for f, _ in fmpz_poly(list(coefficients)).factor()[1])
 
 
 def _projection(claims: Claims) -> dict[tuple[int, ...], tuple[fmpz_poly, set[str]]]:

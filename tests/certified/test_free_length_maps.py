@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("numba")
 
 from support.dense_search import dense_search
-from support.maps import shipped, shipped_certified
+from support.maps import part_of_free02, shipped, shipped_certified
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
@@ -100,6 +100,15 @@ def check_free02(result: RegionMap, tolerance: Fraction) -> None:
     assert differing(result, 12, 3, 40) == []
 
 
+def test_a_dense_search_agrees_on_a_part_of_free02() -> None:
+    result = part_of_free02()
+    assert (result.status, result.undetermined <= Fraction(1, 50)) == (Status.CERTIFIED, True)
+    assert sorted(region.stable for region in result.regions if region.stable) == [1, 1, 2, 2]
+    assert RegionMap.from_json(result.to_json()) == result
+    assert differing(result, 6, 3, 40) == []
+
+
+@pytest.mark.slow
 def test_free02_has_the_known_counts_and_areas() -> None:
     check_free02(shipped_certified("free02", "1/50"), Fraction(1, 50))
 

@@ -256,9 +256,6 @@ def test_what_the_plain_formulas_do_not_take_is_refused_by_name() -> None:
                             "potential": "cos(t0) + a*cos(t1) + b*cos(t2) + cos(t3)"}  # fmt: skip
     with pytest.raises(ConfigError, match="up to 3 unknowns"):
         plain_counter(slice_from_mapping({"name": "four", "system": four, "axes": {"a": [1, 2], "b": [1, 2]}}))
-    positive = {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"], "positive": ["x"]}
-    with pytest.raises(ConfigError, match="no sign conditions"):
-        plain_counter(slice_from_mapping({"name": "cusp", "system": positive, "axes": {"a": [1, 2], "b": [1, 2]}}))
     springs = [{"between": ["A", "P"], "k": 1, "free": "l0 - 1"}]
     upwards = {**PENDULUM, "mechanism": {**PENDULUM["mechanism"], "springs": springs}}
     with pytest.raises(GeometryError, match="stiffness times free length of spring AP"):

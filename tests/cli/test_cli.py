@@ -304,11 +304,13 @@ def help_examples() -> list[str]:
     return examples
 
 
-LONG = ("bench configs", "bench --method", "stress all", "stress --random")
+LONG = ("bench configs", "bench --method", "stress all", "stress --random", "stress stiffness")
+DOCUMENTED = ("--value barrier", "--over L2", "--path 7/10")
+"""In commands that the tests of docs/how-to.md and of `ptmcad range` run too."""
 
 
 @pytest.mark.parametrize("example", [
-    pytest.param(e, marks=pytest.mark.slow) if e.startswith(LONG) else e
+    pytest.param(e, marks=pytest.mark.slow) if e.startswith(LONG) or any(d in e for d in DOCUMENTED) else e
     for e in help_examples() if not e.startswith(("classify", "paper"))
 ])  # fmt: skip
 def test_help_examples_about_a_result_run(
@@ -327,6 +329,21 @@ def test_help_examples_about_a_result_run(
         Path("out").mkdir()
         Path("out/fig4.bench.json").symlink_to(ROOT / "docs" / "benchmarks" / "fig4.bench.json")
     assert run(example.split()) == 0
+
+
+def test_help_examples_have_known_options(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Those too that take long."""
+    monkeypatch.chdir(tmp_path)
+    for folder in ("configs", "docs"):
+        Path(folder).symlink_to(ROOT / folder)
+    for name in ("slice-L2-rho.json", "heavier.json", "measured.csv", "points.csv", "out/fig4.bench.json"):
+        Path(name).parent.mkdir(exist_ok=True)
+        Path(name).touch()
+    for example in help_examples():
+        name, *arguments = example.split()
+        command = group.get_command(None, name)  # type: ignore[arg-type]
+        assert command is not None
+        command.make_context(name, arguments)
 
 
 @pytest.mark.parametrize("example", [e for e in help_examples() if e.startswith("classify")])

@@ -11,18 +11,23 @@ from pathlib import Path
 import pytest
 from support.maps import shipped
 
-from ptmcad.cli import COMMANDS
+from ptmcad.cli import COMMANDS, group
+from ptmcad.cli.completion import answer
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG4 = str(ROOT / "configs" / "fig4.yaml")
 
 
+def request(shell: str, *words: str) -> dict[str, str]:
+    """What the shell puts into the environment."""
+    # fish says what is being typed, the others the place of it
+    place = words[-1] if shell == "fish" else str(len(words))
+    return {"COMP_WORDS": " ".join(("ptmcad", *words)), "COMP_CWORD": place}
+
+
 def asked(shell: str, *words: str, cwd: Path | None = None) -> list[str]:
     """What the program answers; the last word is the one that is being typed."""
-    environment = os.environ | {"_PTMCAD_COMPLETE": f"{shell}_complete"}
-    environment["COMP_WORDS"] = " ".join(("ptmcad", *words))
-    # fish says what is being typed, the others the place of it
-    environment["COMP_CWORD"] = words[-1] if shell == "fish" else str(len(words))
+    environment = os.environ | {"_PTMCAD_COMPLETE": f"{shell}_complete"} | request(shell, *words)
     done = subprocess.run(
         [sys.executable, "-m", "ptmcad"], env=environment, cwd=cwd, capture_output=True, text=True, check=False
     )
@@ -32,7 +37,10 @@ def asked(shell: str, *words: str, cwd: Path | None = None) -> list[str]:
 
 def plain(*words: str, cwd: Path | None = None) -> list[str]:
     """The values that bash is given."""
-    lines = asked("bash", *words, cwd=cwd)
+    return values_in(asked("bash", *words, cwd=cwd))
+
+
+def values_in(lines: list[str]) -> list[str]:
     assert all(line.startswith("plain,") for line in lines)
     return [line.removeprefix("plain,") for line in lines]
 
@@ -78,8 +86,16 @@ def test_no_request_of_a_shell(value: str) -> None:
         (["classify", "missing.yaml", "--slice", ""], []),
     ],
 )
-def test_values(words: list[str], values: list[str]) -> None:
-    found = plain(*words)
+def test_values(
+    words: list[str], values: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What bash is told, asked for in this process."""
+    for name, value in request("bash", *words).items():
+        monkeypatch.setenv(name, value)
+    assert answer(group, "bash_complete", "ptmcad") == 0
+    out, err = capsys.readouterr()
+    found = values_in([line for line in out.splitlines() if line])
+    assert err == ""
     assert found[: len(values)] == values and (values or not found)
 
 

@@ -145,7 +145,9 @@ def test_what_elimination_can_not_do_is_told(
     assert message in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("at", [[], ["--at", "L2=3/2"]], ids=["over alone", "with a line"])
+@pytest.mark.parametrize(
+    "at", [pytest.param([], marks=pytest.mark.slow), ["--at", "L2=3/2"]], ids=["over alone", "with a line"]
+)
 def test_a_band_with_free_lengths(at: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """At L2 = 3/2 the row's ends are those that `ptmcad range --at` gives."""
     pytest.importorskip("numba")
@@ -162,9 +164,3 @@ def test_a_band_with_free_lengths(at: list[str], tmp_path: Path, capsys: pytest.
     assert ("enclosed" in data) == bool(at)
     picture = (tmp_path / "x-over.svg").read_text(encoding="utf-8")
     assert "above: where there are at least two stable equilibria" in picture
-
-
-def test_paths_with_free_lengths_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["--along", "rho", "--over", "L2", "--at", "L2=3/2", "--path", "1", "--set", "l0=1/5"]
-    assert run(["range", FIG4, *arguments]) == 2
-    assert "not computed for springs with a free length" in capsys.readouterr().err

@@ -20,7 +20,7 @@ from fuzz.seeds import records, results
 from fuzz.watch import Tally, watched
 from ptmcad.errors import PtmcadError
 
-FAST = {"record": 250, "options": 200, "points": 100, "small": 6, "result": 50}
+FAST = {"record": 120, "options": 100, "points": 50, "small": 4, "result": 20}
 SLOW = {"record": 5000, "options": 3000, "points": 1500, "small": 200, "result": 2000}
 
 
@@ -42,7 +42,7 @@ def test_some_cases(kind: str, tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_more_cases(kind: str, tmp_path: Path) -> None:
-    assert_clean(watched(kind, range(10_000, 10_000 + SLOW[kind]), tmp_path), SLOW[kind])
+    assert_clean(watched(kind, range(FAST[kind], FAST[kind] + SLOW[kind]), tmp_path), SLOW[kind])
 
 
 @given(st.binary(max_size=300) | st.text(max_size=300).map(lambda text: text.encode("utf-8", "surrogatepass")))

@@ -24,13 +24,13 @@ def own_names(path: Path) -> Iterator[tuple[int, str]]:
         for number, line in enumerate(text.splitlines(), 1):
             yield from ((number, name) for name in TEXT.findall(line.partition("//")[0]))
         return
-    tree = ast.parse(text)
+    nodes = list(ast.walk(ast.parse(text)))
     prose = set()
-    for node in ast.walk(tree):
+    for node in nodes:
         body = getattr(node, "body", None)
         if isinstance(body, list):
             prose |= {id(s.value) for s in body if isinstance(s, ast.Expr) and isinstance(s.value, ast.Constant)}
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in prose:
             yield from ((node.lineno, name) for name in TEXT.findall(node.value))
         for name in (getattr(node, "id", None), getattr(node, "arg", None), getattr(node, "attr", None)):

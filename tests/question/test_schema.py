@@ -156,12 +156,18 @@ RESULT = json.loads(
 )
 
 
+QUICK = ("fig2", "fig4", "forces", "rods")
+"""Of the paper's mechanism, without loads and with them, and of others."""
+
+
 def test_the_schema_of_results_is_valid_and_names_the_format() -> None:
     jsonschema.Draft202012Validator.check_schema(RESULT)
     assert RESULT["properties"]["format"]["const"] == FORMAT
 
 
-@pytest.mark.parametrize("path", EXACT, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", [pytest.param(p, marks=() if p.stem in QUICK else pytest.mark.slow, id=p.stem) for p in EXACT]
+)
 def test_shipped_results_validate(path: Path, shipped: Callable[..., RegionMap]) -> None:
     jsonschema.validate(json.loads(shipped(path.stem).to_json()), RESULT, cls=jsonschema.Draft202012Validator)
 

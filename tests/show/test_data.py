@@ -59,9 +59,10 @@ def test_the_same_text_as_csv() -> None:
     rows = list(csv.DictReader(io.StringIO(data.csv_text(data.region_rows(result)))))
     assert [row["stable"] for row in rows] == ["1", "2"]
     assert [row["total"] for row in rows] == ["", "6"]
-    text = data.csv_text(data.boundary_rows(result, result.boundaries("1/50")))
+    pieces = result.boundaries("1/20")
+    text = data.csv_text(data.boundary_rows(result, pieces))
     table = np.genfromtxt(io.StringIO(text), delimiter=",", names=True, usecols=("piece", "rho", "L2"))
-    assert np.isnan(table["rho"]).sum() == len(result.boundaries("1/50")) - 1
+    assert np.isnan(table["rho"]).sum() == len(pieces) - 1
     assert set(np.genfromtxt(io.StringIO(text), delimiter=",", names=True)["separates"]) == {0.0, 1.0}
 
 

@@ -23,7 +23,8 @@ def results() -> list[object]:
     return [
         slice, slice.model, shipped("fig4"), certified_map(), poses, poses.equilibria[0],
         ptmcad.verify(shipped("fig2")), ptmcad.slice_variety(slice), shipped("fig4").components[0].polynomial,
-        shipped("fig4").boundaries("1/10")[0], shipped("fig4").grid(5), shipped("fig4").field("energy", columns=5),
+        shipped("fig4").boundaries("1/10")[0], shipped("fig4").grid(5),
+        shipped("fig4").field("energy", columns=5),
         ptmcad.intervals(slice, "rho", line), ptmcad.pose_paths(slice, "rho", line, "1"),
     ]  # fmt: skip
 

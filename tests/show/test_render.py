@@ -256,7 +256,9 @@ def test_labels_of_crowded_tips_are_apart() -> None:
 # ----------------------------------------------------------------------------------------------------- the picture
 
 
-@pytest.mark.parametrize(("name", "count", "dpi"), [(*m, 100) for m in MAPS] + [("fig4", "index", 300)])
+@pytest.mark.parametrize(
+    ("name", "count", "dpi"), [(*m, 100) for m in MAPS] + [pytest.param("fig4", "index", 300, marks=pytest.mark.slow)]
+)
 def test_every_colour_is_in_the_picture(name: str, count: str, dpi: int, tmp_path: Path) -> None:
     result = classified(name, count)
     draw(result, tmp_path / "map.png", dpi=dpi)
@@ -383,7 +385,7 @@ def test_another_format_is_refused(tmp_path: Path) -> None:
         draw(classified("fig2", "stable"), tmp_path / "map.gif")
 
 
-@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
+@pytest.mark.parametrize("suffix", ["svg", "png", pytest.param("pdf", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     "result",
     [
@@ -408,6 +410,11 @@ def test_degenerate_maps_are_drawn(result: RegionMap, suffix: str, tmp_path: Pat
     assert (tmp_path / f"map.{suffix}").stat().st_size > 1000
     if suffix == "svg":
         ElementTree.parse(tmp_path / "map.svg")
+
+
+def test_special_characters_are_written_as_pdf(tmp_path: Path) -> None:
+    draw(bands([HALF], title="$5 & <b>x_1^{ \\frac \x07 ü ρ 弹 % #"), tmp_path / "map.pdf", samples=True)
+    assert (tmp_path / "map.pdf").stat().st_size > 1000
 
 
 # ------------------------------------------------------------------------------------------------ colours and names

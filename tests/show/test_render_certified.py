@@ -78,7 +78,7 @@ def test_a_picture_shows_counts_where_they_are_and_grey_elsewhere(result: Region
     assert (same & (raster >= 0)).sum() > 0.5 * n * n
 
 
-@pytest.mark.parametrize("dpi", [100, 150, 300])
+@pytest.mark.parametrize("dpi", [100, 150, pytest.param(300, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("width", [1e-5, 1e-4, 1e-3])
 def test_a_narrow_tube_is_seen_as_a_hairline(dpi: int, width: float, tmp_path: Path) -> None:
     """Some pixel across it is clearly darker, and no more of them than a line of the rim's width touches."""

@@ -65,7 +65,7 @@ def test_what_ptmcad_writes_is_set_by_plain_latex(text: str, tex: str) -> None:
     assert escaped(text) == tex
 
 
-@pytest.mark.parametrize("suffix", ["eps", "pgf"])
+@pytest.mark.parametrize("suffix", [pytest.param("eps", marks=pytest.mark.slow), "pgf"])
 def test_the_same_bytes_twice(suffix: str, tmp_path: Path) -> None:
     assert drawn(tmp_path, suffix) == drawn(tmp_path, suffix)
 

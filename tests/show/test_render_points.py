@@ -110,7 +110,12 @@ def test_the_command_line_draws_measured_points(
     stored: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     table = tmp_path / "points.csv"
-    table.write_text("rho,L2\n1,1\n5,5\n")
+    table.write_text("rho,L2,count,label\n1,1,,\n5,5,,\n1/2,1,2,a\n1,1,2,b\n3/2,1/3,2,\n")
     assert run(["plot", stored, "--format", "svg", "--overlay", str(table)]) == 0
-    assert "1 of 2 points are outside" in capsys.readouterr().err
+    said = capsys.readouterr()
+    assert "1 of 5 points are outside" in said.err
+    assert said.out.splitlines()[:2] == [
+        "another count than in the map: b, at rho = 1, L2 = 1",
+        "another count than in the map: at rho = 1.5, L2 = 1/3",
+    ]
     assert 'id="measured-untold"' in (tmp_path / "fig4.svg").read_text()

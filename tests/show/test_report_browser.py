@@ -1,11 +1,11 @@
 """The HTML report in a real headless Chromium: pointer, touch, keyboard, themes, phones, print, no network, no errors.
 
-Screenshots are kept in out/screenshots; nothing is compared with them.
+Screenshots go where PTMCAD_TESTS_SCREENSHOTS says, if it does; nothing is compared with them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from math import pi
 from pathlib import Path
@@ -23,7 +23,6 @@ from ptmcad.show.report import page
 
 pytestmark = pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
 
-SHOTS = Path(__file__).resolve().parents[2] / "out" / "screenshots"
 PAPER = ("fig2", "fig3", "fig4", "fig5-text", "fig5-caption")
 FEW = """(() => { const shown = document.querySelector('#poses');
   return { head: (shown.querySelector('h3') || {}).textContent || '',
@@ -42,12 +41,6 @@ def written_pages(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], P
         return path
 
     return file
-
-
-@pytest.fixture(scope="module", name="one")
-def one_browser() -> Iterator[Browser]:
-    with chromium.browser() as found:
-        yield found
 
 
 @pytest.fixture(name="view")
@@ -124,7 +117,7 @@ def test_a_click_draws_poses_and_landscape(view: Callable[..., Browser]) -> None
     # each pose: two rods, three springs, four nodes, two loads
     for what, many in (("bar", 2), ("spring", 3), ("node", 4), ("load-head", 2)):
         assert b.run(f"document.querySelectorAll('#poses .pose')[0].querySelectorAll('.{what}').length") == many
-    b.picture(SHOTS / "fig4-light.png")
+    b.picture("fig4-light.png")
     b.run("document.querySelector('#close').click()")
     assert b.run(FEW)["poses"] == 0
     quiet(b, "fig4")
@@ -229,7 +222,7 @@ def test_light_dark_and_the_button(view: Callable[..., Browser]) -> None:
     dark = b.run(background)
     assert light == "rgb(255, 255, 255)" != dark
     b.until(f"{shade} !== {light_shade}")
-    b.picture(SHOTS / "fig3-index-dark.png")
+    b.picture("fig3-index-dark.png")
     assert b.run("document.querySelector('#theme').getAttribute('aria-pressed')") == "true"
     b.run("document.querySelector('#theme').click()")
     assert b.run(background) == light
@@ -265,7 +258,7 @@ def test_text_has_contrast(view: Callable[..., Browser], scheme: str) -> None:
     assert least >= 4.5, where
 
 
-@pytest.mark.parametrize("width", [320, 360, 768])
+@pytest.mark.parametrize("width", [320, pytest.param(360, marks=pytest.mark.slow), 768])
 def test_narrow_screens_need_no_sideways_scrolling(view: Callable[..., Browser], width: int) -> None:
     b = view("fig4")
     b.size(width, 740, phone=True)
@@ -282,7 +275,7 @@ def test_narrow_screens_need_no_sideways_scrolling(view: Callable[..., Browser],
     )
     assert min(small) > 9.0  # CSS pixels
     b.run("document.querySelectorAll('details').forEach((d) => { d.open = false; })")
-    b.picture(SHOTS / f"fig4-phone-{width}.png")
+    b.picture(f"fig4-phone-{width}.png")
     quiet(b, "fig4")
 
 
@@ -349,7 +342,9 @@ def test_the_policy_stops_what_is_not_the_pages_own(view: Callable[..., Browser]
     assert len(sent) == sum(e["params"].get("blockedReason") == "csp" for e in blocked)
 
 
-@pytest.mark.parametrize("name", PAPER)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in ("fig4", "fig5-text") else pytest.mark.slow) for name in PAPER]
+)
 def test_it_opens_within_a_second_and_is_small(view: Callable[..., Browser], name: str) -> None:
     """The least of three: the machine may be doing something else."""
     assert len(page(computed(name)).encode()) < 300_000
@@ -374,8 +369,8 @@ def test_reduced_motion_and_print(view: Callable[..., Browser], tmp_path: Path) 
     assert b.run("getComputedStyle(document.body).color") == "rgb(0, 0, 0)"
     assert b.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     assert b.run("getComputedStyle(document.querySelector('#close')).display") == "none"
-    b.printed(SHOTS / "fig4-print.pdf")
-    assert (SHOTS / "fig4-print.pdf").read_bytes().startswith(b"%PDF")
+    b.printed(tmp_path / "fig4-print.pdf")
+    assert (tmp_path / "fig4-print.pdf").read_bytes().startswith(b"%PDF")
     quiet(b, "fig4")
 
 

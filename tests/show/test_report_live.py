@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from support import browser as chromium
 from support.browser import Browser
-from support.maps import CONFIGS, shipped_certified
+from support.maps import CONFIGS, part_of_free02
 from support.maps import shipped as computed
 
 import ptmcad
@@ -27,15 +27,8 @@ from ptmcad.show.report.tape import tape
 
 pytestmark = pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
 
-SHOTS = Path(__file__).resolve().parents[2] / "out" / "screenshots"
 STATUS = "live.status.textContent"
 SHARE = "live.share"
-
-
-@pytest.fixture(scope="module", name="one")
-def one_browser() -> Iterator[Browser]:
-    with chromium.browser() as found:
-        yield found
 
 
 @pytest.fixture(name="view")
@@ -44,7 +37,7 @@ def page_of_a_map(one: Browser, tmp_path: Path) -> Iterator[Callable[..., Browse
 
     def open_page(result: RegionMap, width: int = 1200, height: int = 1000, phone: bool = False) -> Browser:
         file = tmp_path / "live.html"
-        file.write_text(page(result), encoding="utf-8")
+        file.write_text(page_of(result), encoding="utf-8")
         one.media(prefers_color_scheme="light", prefers_reduced_motion="reduce")
         one.size(width, height, phone)
         one.open(file)
@@ -53,6 +46,17 @@ def page_of_a_map(one: Browser, tmp_path: Path) -> Iterator[Callable[..., Browse
     yield open_page
     assert one.complaints() == []
     assert len(one.requests()) == 1
+
+
+PAGES: list[tuple[RegionMap, str]] = []
+
+
+def page_of(result: RegionMap) -> str:
+    """A map's page, written once for all tests that open it."""
+    found = next((text for known, text in PAGES if known is result), None)
+    if found is None:
+        PAGES.append((result, found := page(result)))
+    return found
 
 
 def move(view: Browser, x: float, y: float) -> None:
@@ -106,7 +110,7 @@ def test_what_is_followed_anywhere_are_the_exact_poses(view: Callable[..., Brows
 
 def test_with_free_lengths_too(view: Callable[..., Browser]) -> None:
     """A certified map's stable poses: at its samples those that it stores, and elsewhere those of `ptmcad.solve`."""
-    result = shipped_certified("free02", "1/50")
+    result = part_of_free02()
     b = view(result)
     for number, cell in enumerate(result.cells):
         b.run(f"choose({number}, false)")
@@ -118,7 +122,7 @@ def test_with_free_lengths_too(view: Callable[..., Browser]) -> None:
         assert max(float(s.radius) for s in cell.solutions) / 10 < slack < 1e-3
         assert sum(same(p, q, slack) for p in shown for q in stored) == len(stored)
     assert b.run("document.querySelectorAll('#poses .landscape').length") == 1
-    b.picture(SHOTS / "free02-light.png")
+    b.picture("free02-light.png")
     chance = random.Random(3)
     compared = 0
     while compared < 4:
@@ -196,7 +200,7 @@ def test_the_mouse_drags_the_point(view: Callable[..., Browser]) -> None:
     assert abs(b.run(SHARE)[0] - 0.3125) < 0.004
     b.until("document.querySelector('#live .landscape') !== null")
     assert b.run("document.querySelectorAll('#live .equilibrium.followed').length") == 1
-    b.picture(SHOTS / "fig4-live.png")
+    b.picture("fig4-live.png")
 
 
 def test_a_finger_drags_the_point_and_scrolls_beside_it(view: Callable[..., Browser]) -> None:
@@ -212,7 +216,7 @@ def test_a_finger_drags_the_point_and_scrolls_beside_it(view: Callable[..., Brow
     assert b.run("getComputedStyle(document.querySelector('#map .cell')).touchAction") == "auto"
     b.tap(*spot(b, 0.75, 0.25))
     b.until(f"Math.abs({SHARE}[0] - 0.75) < 0.02 && Math.abs({SHARE}[1] - 0.25) < 0.02")
-    b.picture(SHOTS / "fig4-live-phone.png")
+    b.picture("fig4-live-phone.png")
 
 
 def test_keys_move_the_point(view: Callable[..., Browser]) -> None:
@@ -265,7 +269,7 @@ def test_a_slider_leads_to_the_snap(view: Callable[..., Browser]) -> None:
     assert b.run("document.querySelectorAll('.fall .marble').length") == 1
     assert b.run("document.querySelectorAll('.fall .level.fallen').length") == 1
     b.until("document.querySelector('#live .landscape .level.fallen') !== null")
-    b.picture(SHOTS / "fig4-snap.png")
+    b.picture("fig4-snap.png")
 
 
 def test_a_fall_is_shown_in_motion_unless_that_is_unwanted(view: Callable[..., Browser]) -> None:
@@ -303,14 +307,14 @@ def test_at_a_degenerate_point_it_says_so(view: Callable[..., Browser]) -> None:
     assert b.run("live.found.length") == result.cells[b.run("live.cell")].total
 
 
-def test_paper_shows_no_controls(view: Callable[..., Browser]) -> None:
+def test_paper_shows_no_controls(view: Callable[..., Browser], tmp_path: Path) -> None:
     b = view(computed("fig4"))
     shown = "[...document.querySelectorAll('button, .axis, .hint, #readout')].filter((e) => e.checkVisibility()).length"
     assert b.run(shown) > 10
     b.media(media="print")
     chips = b.run("[...document.querySelectorAll('.chip')].filter((e) => e.checkVisibility()).length")
     assert b.run(shown) == chips == 22
-    b.printed(SHOTS / "fig4-live-print.pdf")
+    b.printed(tmp_path / "fig4-live-print.pdf")
     # the landscape has light colours on paper, whatever the screen has
     b.media(prefers_color_scheme="dark")
     b.until("document.querySelector('#live .landscape') !== null")

@@ -50,7 +50,8 @@ def test_neighbours_with_as_many_stable_solutions_are_one_range() -> None:
     assert line_data(found, 6)["operation"] == [0, 1]
 
 
-def test_a_system_has_no_operation_range() -> None:
+def test_a_system_has_no_operation_range(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ptmcad.exact.ranges.width._MAX_PIECES", 50)  # where exactly it is widest is not asked
     slice = slice_of(QUINTIC)
     widths = operation_widths(slice, "b", 3)
     text = table(intervals(slice, "b", {"a": "1/3"})) + width_table(widths)

@@ -275,7 +275,13 @@ def test_companion_and_scipy_agree_where_both_are_right() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "n"), [("fig4", 40), ("forces", 30), ("horizontal", 30), ("unequal-springs", 30), ("stiffness", 30)]
+    ("name", "n"),
+    [
+        ("fig4", 40),
+        ("forces", 30),
+        ("horizontal", 30),
+        *(pytest.param(name, 30, marks=pytest.mark.slow) for name in ("unequal-springs", "stiffness")),
+    ],
 )
 def test_companion_is_right_at_centres(name: str, n: int) -> None:
     """A rival worth beating: where no wall is near, floats do."""

@@ -34,8 +34,11 @@ from ptmcad.studies.stress.reference import newton_pose, sextic_poses
 from ptmcad.studies.stress.report import markdown, to_csv, to_json
 
 CASES = named_cases()
-TWINS = ("map-units-force-1e12", "map-units-length-1e9", "map-unloaded-length-1e9", "line-units-force-1e12")
-"""Scaled the other way than a case that the fast tests have."""
+TWINS = (
+    "map-units-force-1e12", "map-units-length-1e9", "map-unloaded-length-1e9", "line-units-force-1e12",
+    "map-units-length-1e-9", "map-forces-1e-6",
+)  # fmt: skip
+"""Scaled the other way than a case that the fast tests have, or of another unit."""
 MARKED = [
     pytest.param(c, id=c.name, marks=[pytest.mark.slow] if c.slow or c.name in TWINS else []) for c in CASES
 ]  # fmt: skip

@@ -22,6 +22,8 @@ from typing import Any
 PROGRAM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 MISSING = "no chromium, chromium-browser or google-chrome is installed"
 PATIENCE = 20.0
+SHOTS = os.environ.get("PTMCAD_TESTS_SCREENSHOTS")
+"""The folder for screenshots, which take as long as the tests themselves and are compared with nothing."""
 _FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run", "--disable-extensions",
     "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
@@ -159,8 +161,11 @@ class Browser:
             self.call("Input.dispatchKeyEvent", type="keyDown", text=text, **base)
             self.call("Input.dispatchKeyEvent", type="keyUp", **base)
 
-    def picture(self, file: Path, whole: bool = True) -> None:
-        """A screenshot, of the whole page or of what is seen."""
+    def picture(self, name: str, whole: bool = True) -> None:
+        """A screenshot for people to look at, of the whole page or of what is seen, if they have asked for it."""
+        if SHOTS is None:
+            return
+        file = Path(SHOTS) / name
         data = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(base64.b64decode(data))

@@ -7,10 +7,15 @@ honest program would keep them so, to make the lie harder to see.
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from functools import lru_cache
+
+import sympy
+from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from ptmcad.answer.regionmap import Cell, Component, Kind, Merge, NonAdjacency, Reason, RegionMap, Solution, Status
 from ptmcad.text.expressions import constant
@@ -467,41 +472,55 @@ def origin(r: RegionMap, rng: random.Random) -> RegionMap:
 
 
 def origins_of(r: RegionMap, k: int) -> set[str]:
-    """Every origin that would be true for a critical value, by SymPy."""
-    import sympy
-
-    names = r.slice.axis_names
-    u, v = sympy.symbols((names[r.base], names[1 - r.base]))
+    """Every origin that would be true for a critical value."""
     value = r.critical_values[k]
-    own = sympy.Poly(list(reversed(value.polynomial)), u)
-    window = r.slice.axes[1 - r.base]
-    edges = [sympy.Rational(e.numerator, e.denominator) for e in (window.low, window.high)]
+    own = fmpz_poly(list(value.polynomial))
+    curves = tuple((n, c.polynomial.terms) for n, c in enumerate(r.components) if not c.left_out)
+    axis = r.slice.axes[1 - r.base]
+    return {
+        text
+        for p, text in projected(curves, r.base, (axis.low, axis.high))
+        if (common := p.gcd(own)).degree() > 0
+        and sympy.Poly([int(c) for c in reversed(common.coeffs())], sympy.Symbol("u")).count_roots(
+            *(sympy.Rational(e.numerator, e.denominator) for e in (value.low, value.high))
+        ) > 0
+    }  # fmt: skip
 
-    def meets(p: sympy.Expr) -> bool:
-        common = sympy.gcd(sympy.Poly(p, u), own) if p != 0 else own
-        ends = [sympy.Rational(e.numerator, e.denominator) for e in (value.low, value.high)]
-        return bool(common.degree() > 0 and common.count_roots(*ends) > 0)
 
-    curves = {n: c.polynomial.to_sympy(names) for n, c in enumerate(r.components) if not c.left_out}
-    true = set()
-    for n, p in curves.items():
-        if not p.has(v):
-            if meets(p):
-                true.add("vertical line")
+@lru_cache(maxsize=32)
+def projected(
+    curves: tuple[tuple[int, tuple[tuple[int, int, int], ...]], ...], base: int, edges: tuple[Fraction, Fraction]
+) -> tuple[tuple[fmpz_poly, str], ...]:
+    """The polynomials of the projection with their origins, by FLINT's eliminations in Z[u, v]."""
+    ring = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
+    found: list[tuple[fmpz_poly, str]] = []
+    plane = {n: ring.from_dict({(m[base], m[1 - base]): c for *m, c in terms}) for n, terms in curves}
+    for n, p in plane.items():
+        high = p.degrees()[1]
+        if not high:
+            found.append((_along(p), "vertical line"))
             continue
-        squares = sympy.Poly(p, v)
-        power = sympy.igcd(0, *(m[0] for m in squares.monoms()))
-        deflated = sympy.Poly.from_dict({(m[0] // power,): c for m, c in squares.terms()}, v)
-        if deflated.degree() > 1 and meets(sympy.discriminant(deflated, v)):
-            true.add(f"component {n}: turning or singular point")
-        if power > 1 and edges[0] < 0 < edges[1] and meets(p.subs(v, 0)):
-            true.add(f"component {n}: turning point on the axis")
-        if any(meets(p.subs(v, e)) for e in edges):
-            true.add(f"component {n}: crosses the window's edge")
-        for m, q in curves.items():
-            if m > n and q.has(v) and meets(sympy.resultant(p, q, v)):
-                true.add(f"components {n} and {m} meet")
-    return true
+        power = math.gcd(*(int(m[1]) for m, _ in p.terms()))
+        deflated = ring.from_dict({(m[0], m[1] // power): c for m, c in p.terms()})
+        if high > power:
+            found.append((_along(deflated.discriminant("v")), f"component {n}: turning or singular point"))
+        if power > 1 and edges[0] < 0 < edges[1]:
+            found.append((_along(p.subs({"v": 0})), f"component {n}: turning point on the axis"))
+        for edge in edges:
+            scaled = {(m[0], 0): 0 for m, _ in p.terms()}
+            for m, c in p.terms():
+                scaled[m[0], 0] += int(c) * edge.numerator ** int(m[1]) * edge.denominator ** (high - int(m[1]))
+            found.append((_along(ring.from_dict(scaled)), f"component {n}: crosses the window's edge"))
+        for other, q in plane.items():
+            if other > n and q.degrees()[1]:
+                found.append((_along(p.resultant(q, "v")), f"components {n} and {other} meet"))
+    return tuple(found)
+
+
+def _along(p: fmpz_mpoly) -> fmpz_poly:
+    """A polynomial in u alone."""
+    row = {int(m[0]): int(c) for m, c in p.to_dict().items()}
+    return fmpz_poly([row.get(i, 0) for i in range(max(row, default=-1) + 1)])
 
 
 def component_invented(r: RegionMap, rng: random.Random) -> RegionMap:

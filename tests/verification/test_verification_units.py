@@ -19,14 +19,14 @@ from ptmcad.errors import LimitReached
 from ptmcad.text.numerals import decimal, fraction_of, integer_of, integer_text, shortest_text, text_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.counts import check_counts
-from ptmcad.verification.elimination import discriminant, resultant
+from ptmcad.verification.elimination import Terms, discriminant, resultant
 from ptmcad.verification.solutions import check_solutions
 
 PLANE = fmpz_mpoly_ctx.get(("u", "v"), Ordering.lex)
 
 polynomials = st.dictionaries(
     st.tuples(st.integers(0, 4), st.integers(0, 4)), st.integers(-9, 9).filter(bool), min_size=1, max_size=8
-).map(lambda terms: [(i, j, c) for (i, j), c in terms.items()])
+).map(lambda terms: tuple((i, j, c) for (i, j), c in terms.items()))
 
 
 def in_u(p: object) -> fmpz_poly:
@@ -35,7 +35,7 @@ def in_u(p: object) -> fmpz_poly:
 
 
 @given(polynomials, polynomials)
-def test_resultants_agree_with_remainder_sequences(p: list, q: list) -> None:  # type: ignore[type-arg]
+def test_resultants_agree_with_remainder_sequences(p: Terms, q: Terms) -> None:
     """FLINT's in Z[u, v] is another algorithm."""
     expected = in_u(PLANE.from_dict({(i, j): c for i, j, c in p}).resultant(
         PLANE.from_dict({(i, j): c for i, j, c in q}), "v"))  # fmt: skip
@@ -43,7 +43,7 @@ def test_resultants_agree_with_remainder_sequences(p: list, q: list) -> None:  #
 
 
 @given(polynomials.filter(lambda p: max(j for _, j, _ in p) > 1))
-def test_discriminants_agree_with_remainder_sequences(p: list) -> None:  # type: ignore[type-arg]
+def test_discriminants_agree_with_remainder_sequences(p: Terms) -> None:
     expected = in_u(PLANE.from_dict({(i, j): c for i, j, c in p}).discriminant("v"))
     assert discriminant(p) in (expected, -expected)
 
@@ -120,7 +120,9 @@ def test_a_false_partial_result_is_rejected() -> None:
 CUSP = {"L1": "1", "L2": "25/39", "rho": "28/169", "F3": "-22400/507", "F4": "-13440/169"}
 
 
-@pytest.mark.parametrize("exponent", [3, pytest.param(12, marks=pytest.mark.slow), 30])
+@pytest.mark.parametrize(
+    "exponent", [pytest.param(3, marks=pytest.mark.slow), 12, pytest.param(30, marks=pytest.mark.slow)]
+)
 def test_boxes_near_a_cusp_are_disjoint_and_verified(exponent: int) -> None:
     """Three equilibria meet in the cusp; next to it their boxes need more digits."""
     stored = map_near_the_cusp(exponent)
@@ -128,7 +130,7 @@ def test_boxes_near_a_cusp_are_disjoint_and_verified(exponent: int) -> None:
     check_solutions(Claims(stored))
 
 
-@pytest.mark.parametrize("exponent", [3, 12, pytest.param(30, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("exponent", [3, *(pytest.param(k, marks=pytest.mark.slow) for k in (12, 30))])
 def test_maps_near_a_cusp_are_verified(exponent: int) -> None:
     """In full where the areas are easiest, and where they need more than the usual precision."""
     report = ptmcad.verify(map_near_the_cusp(exponent))

@@ -23,6 +23,8 @@ from ptmcad.verification.areas import check_areas
 from ptmcad.verification.claims import Claims
 
 CONFIGS = [path.stem for path in EXACT]
+LARGE = ("stiffness", "unequal-springs", "fig5-caption")
+"""Maps with many cells of the kinds that the others have."""
 
 
 def stored(result: RegionMap) -> RegionMap:
@@ -36,9 +38,9 @@ def stored_shipped(shipped: Callable[..., RegionMap], name: str) -> RegionMap:
 
 
 @pytest.mark.parametrize(("name", "tolerance"), [
-    *((name, "1e-4") for name in CONFIGS if name != "stiffness"),
-    ("stiffness", "1/10"),
-    pytest.param("stiffness", "1e-4", marks=pytest.mark.slow),  # its narrow areas take longer than all else of it
+    *((name, "1e-4") for name in CONFIGS if name not in LARGE),
+    *(pytest.param(name, "1e-4", marks=pytest.mark.slow) for name in LARGE),
+    pytest.param("stiffness", "1/10", marks=pytest.mark.slow),  # its narrow areas take longer than all else of it
 ])  # fmt: skip
 def test_shipped_results_are_accepted(name: str, tolerance: str, shipped: Callable[..., RegionMap]) -> None:
     report = ptmcad.verify(stored(shipped(name, area_tolerance=tolerance) if tolerance != "1e-4" else shipped(name)))

@@ -23,6 +23,7 @@ from ptmcad.ask.fields.equations import State, determinant, eigenvalues, newton_
 from ptmcad.ask.fields.jets import Floats
 from ptmcad.mechanism import Model
 from ptmcad.question.doubles import within_doubles
+from ptmcad.question.slice import Slice
 
 Labels = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -55,6 +56,24 @@ class Wanted:
     only_stable: bool
 
 
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Points of the window in rows, such that neighbours lie near each other: a grid's pixels, or steps of a path.
+
+    All arrays have the shape (rows, columns): coordinates, and the number of the cell, `NONE` where there is none.
+    """
+
+    x: Floats
+    y: Floats
+    cell: Labels
+
+
+def places_of(grid: Grid) -> Places:
+    """The centres of a grid's pixels."""
+    x, y = np.broadcast_arrays(grid.x[None, :], grid.y[:, None])
+    return Places(x, y, grid.cell)
+
+
 @dataclass(slots=True)
 class Filling:
     """Solutions at pixels, shape (n, rows, columns, most); nan where there are fewer. ``done`` where they are all."""
@@ -63,12 +82,12 @@ class Filling:
     done: Flags
 
 
-def wanted_of(result: RegionMap, grid: Grid) -> Wanted:
-    """What the exact map says of each pixel."""
+def wanted_of(result: RegionMap, cell: Labels) -> Wanted:
+    """What the exact map says of each pixel, by the numbers of their cells."""
     only_stable = any(c.total is None or len(c.solutions) < c.total for c in result.cells if c.solutions)
     counts = [c.stable if only_stable else c.total for c in result.cells]
     table = np.array([*(NONE if v is None else v for v in counts), NONE], dtype=np.int64)
-    return Wanted(table[grid.cell], grid.cell, tuple(c.index for c in result.cells), only_stable)
+    return Wanted(table[cell], cell, tuple(c.index for c in result.cells), only_stable)
 
 
 def starting_points(model: Model, cell: Cell, only_stable: bool) -> Floats:
@@ -87,12 +106,12 @@ def starting_points(model: Model, cell: Cell, only_stable: bool) -> Floats:
 
 
 class Follower:
-    """Newton's method for a slice's model at any of a grid's pixels."""
+    """Newton's method for a slice's model at any of some places."""
 
-    def __init__(self, result: RegionMap, grid: Grid):
+    def __init__(self, result: RegionMap, places: Places):
         self.model = result.slice.model
-        self.grid, self.wanted = grid, wanted_of(result, grid)
-        self.values = parameters_at(result, grid)
+        self.names, self.places, self.wanted = result.slice.axis_names, places, wanted_of(result, places.cell)
+        self.values = parameters_at(result.slice, places.x, places.y)
         self.angles = len(self.model.angles)
 
     def state(self, rows: Labels, columns: Labels, at: Floats) -> State:
@@ -155,12 +174,11 @@ class Follower:
         return good
 
 
-def parameters_at(result: RegionMap, grid: Grid) -> Mapping[str, Any]:
-    """Every parameter of the model over the grid: a number, or shape (rows, columns)."""
-    x, y = grid.x[None, :], grid.y[:, None]
+def parameters_at(slice: Slice, x: Floats, y: Floats) -> Mapping[str, Any]:
+    """Every parameter of the model at points, given by arrays of coordinates of one shape: a number, or that shape."""
     found: dict[str, Any] = {}
-    with within_doubles(result.slice):
-        for name, e in result.slice.parameters.items():
+    with within_doubles(slice):
+        for name, e in slice.parameters.items():
             sides = [
                 sum((float(c) * x**i * y**j for i, j, c in terms), 0.0 * x * y)
                 for terms in (e.numerator, e.denominator)
@@ -210,8 +228,10 @@ def _begin(result: RegionMap, filling: Filling, follower: Follower, seen: Flags,
             continue
         rows, columns = np.nonzero(seen & ~filling.done & (cells == number))
         x, y = float(cell.sample[0]), float(cell.sample[1])
-        grid = follower.grid
-        away = np.hypot((grid.x[columns] - x) / np.ptp([*grid.x, x]), (grid.y[rows] - y) / np.ptp([*grid.y, y]))
+        away = np.hypot(
+            *((at[rows, columns] - own) / (np.ptp(np.append(at, own)) or 1.0)
+              for at, own in ((follower.places.x, x), (follower.places.y, y)))
+        )  # fmt: skip
         nearest = np.argsort(away, kind="stable")[:9]
         if start.shape[1] == follower.wanted.total[rows[0], columns[0]]:
             guess = np.full((len(start), len(nearest), filling.at.shape[3]), np.nan)

@@ -32,6 +32,7 @@ class State:
     stability : without a potential what is positive at stable ones.
     points : of a mechanism, by name.
     lengths, forces : of its springs, in their order; a force is positive where the spring pulls.
+    work : of moments, shape S; None where none works.
     """
 
     residuals: Floats
@@ -42,6 +43,12 @@ class State:
     points: Mapping[str, tuple[Floats, Floats]] | None = None
     lengths: tuple[Floats, ...] = ()
     forces: tuple[Floats, ...] = ()
+    work: Floats | None = None
+
+    @property
+    def height(self) -> Floats | None:
+        """What descends: the energy less the moments' work, of which the residuals are the slopes; None without one."""
+        return self.energy if self.energy is None or self.work is None else self.energy - self.work
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +120,7 @@ def _mechanism(model: Mechanism, ring: Any, at: Floats) -> State:
             lengths.append(np.sqrt(np.maximum(square.value, 0)))
         forces.append(k * (lengths[-1] - free))
     energy = with_springs(model, ring, points, energy)
+    work = None
     residuals, jacobian = energy.gradient, energy.hessian
     if steady := split_moments(model).steady:
         residuals, jacobian = residuals.copy(), jacobian.copy()
@@ -121,9 +129,10 @@ def _mechanism(model: Mechanism, ring: Any, at: Floats) -> State:
             value = _jet(evaluate(moment.value, ring), at)
             residuals[k] -= value.value
             jacobian[k] -= value.gradient
+            work = value.value * at[k] + (0.0 if work is None else work)
     places = {name: (x.value, y.value) for name, (x, y) in points.items()}
     potential = energy.value if model.has_potential else None
-    return State(residuals, jacobian, potential, points=places, lengths=tuple(lengths), forces=tuple(forces))
+    return State(residuals, jacobian, potential, points=places, lengths=tuple(lengths), forces=tuple(forces), work=work)
 
 
 def _jet(value: Any, at: Floats) -> Jet:

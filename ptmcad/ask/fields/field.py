@@ -16,7 +16,7 @@ from ptmcad.answer.field import Field
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields.barrier import barriers
-from ptmcad.ask.fields.branches import Filling, Follower, filled
+from ptmcad.ask.fields.branches import Filling, Follower, Places, filled, places_of
 from ptmcad.ask.fields.equations import State, eigenvalues
 from ptmcad.ask.fields.jets import Floats
 from ptmcad.ask.fields.quantities import OPTION, Valued, quantity_of
@@ -123,14 +123,14 @@ def field_of(
     """
     model, quantity, choice = result.slice.model, request.quantity, request.choice
     grid = grid_of(result, columns, rows)
-    follower = Follower(result, grid)
+    follower = Follower(result, places_of(grid))
     wanted = follower.wanted
     if wanted.only_stable and choice.kind != "stable":
         raise ConfigError("this map knows the stable equilibria only: ask for stable:1", key="--pose")
     if wanted.only_stable and quantity.is_barrier:
         raise ConfigError("this map knows the stable equilibria only, and a barrier is a saddle's", key=OPTION)
     solutions = filled(result, follower, check)
-    missed = _complete(result, grid, solutions, wanted.total, check)
+    missed = complete(result, lambda r, c: centre(result, grid, r, c), solutions, wanted.total, check)
     values = np.full(grid.region.shape, np.nan)
     places = np.nonzero(solutions.done & (wanted.total > 0))
     batch = LARGE_BATCH if quantity.is_barrier else BATCH
@@ -175,7 +175,8 @@ def _at_pixels(
         values = barriers(evaluate, at, stable, k, len(model.angles))
     else:
         given = {name: v[rows, columns] if np.ndim(v) else v for name, v in follower.values.items()}
-        axes = dict(zip(follower.grid.names, (follower.grid.x[columns], follower.grid.y[rows]), strict=True))
+        coordinates = (follower.places.x[rows, columns], follower.places.y[rows, columns])
+        axes = dict(zip(follower.names, coordinates, strict=True))
         given = {name: np.asarray(v)[:, None] if np.ndim(v) else v for name, v in {**given, **axes}.items()}
         values = quantity.values(state, here, given)[own, k]
     return np.where(found, values, np.nan)
@@ -218,26 +219,35 @@ def _in_order(
     return order, kinds[choice.kind]
 
 
-def _complete(
-    result: RegionMap, grid: Grid, solutions: Filling, total: NDArray[np.int64], check: Callable[[], None]
+def complete(
+    result: RegionMap,
+    point: Callable[[int, int], tuple[Fraction, Fraction]],
+    solutions: Filling,
+    total: NDArray[np.int64],
+    check: Callable[[], None],
 ) -> int:
-    """Exact poses where neighbours led nowhere; the number of pixels that stay without their solutions."""
+    """Exact poses where neighbours led nowhere; the number of places that stay without their solutions.
+
+    Parameters
+    ----------
+    point : gives the exact coordinates of a row and a column.
+    """
     rows, columns = np.nonzero(~solutions.done & (total > 0))
     for row, column in list(zip(rows.tolist(), columns.tolist(), strict=True))[:MAX_LEFT]:
         check()
-        poses = exact_at(result, *centre(result, grid, row, column))
-        points = [_unknowns(p) for p in poses.equilibria]
+        poses = exact_at(result, *point(row, column))
+        points = [unknowns_of(p) for p in poses.equilibria]
         if len(points) != total[row, column]:  # of a map of the stable ones only
-            points = [_unknowns(p) for p in poses.equilibria if p.stable]
+            points = [unknowns_of(p) for p in poses.equilibria if p.stable]
         if len(points) == total[row, column]:
             solutions.at[:, row, column, : len(points)] = np.array(points).T
             solutions.done[row, column] = True
     return int((~solutions.done & (total > 0)).sum())
 
 
-def centre(result: RegionMap, grid: Grid, row: int, column: int) -> tuple[Fraction, Fraction]:
+def centre(result: RegionMap, grid: Grid | Places, row: int, column: int) -> tuple[Fraction, Fraction]:
     """A pixel's centre, exactly."""
-    (x, y), (rows, columns) = result.slice.axes, grid.region.shape
+    (x, y), (rows, columns) = result.slice.axes, grid.cell.shape
     return (
         x.low + (x.high - x.low) * Fraction(2 * column + 1, 2 * columns),
         y.low + (y.high - y.low) * Fraction(2 * row + 1, 2 * rows),
@@ -251,7 +261,7 @@ def exact_at(result: RegionMap, x: Fraction, y: Fraction) -> Poses:
     return poses_at(model, values, DIGITS)
 
 
-def _unknowns(pose: Pose) -> list[float]:
+def unknowns_of(pose: Pose) -> list[float]:
     return [float(e.center) for e in (*pose.angles, *pose.reals)]
 
 
@@ -268,16 +278,19 @@ def _checked(
     size = float(np.nanmax(np.abs(values))) or 1.0
     source = random.Random(f"{result.slice.name} {quantity.name} {choice}")
     picked = source.sample(range(len(rows)), min(checks, len(rows)))
-    worst, number = 0.0, 0
+    compared = []
     for k in picked:
-        row, column = int(rows[k]), int(columns[k])
-        poses = exact_at(result, *centre(result, follower.grid, row, column))
-        if not poses.equilibria:
-            continue
-        number += 1
-        points = np.array([_unknowns(p) for p in poses.equilibria]).T[:, None, :]
-        place = (rows[k : k + 1], columns[k : k + 1])
-        exact = _at_pixels(result.slice.model, quantity, choice, follower, place, points)
-        difference = abs(float(exact[0]) - float(values[row, column])) / size
-        worst = max(worst, np.inf if np.isnan(difference) else difference)
-    return number, worst
+        poses = exact_at(result, *centre(result, follower.places, int(rows[k]), int(columns[k])))
+        if poses.equilibria:
+            compared.append((k, np.array([unknowns_of(p) for p in poses.equilibria]).T))
+    if not compared:
+        return 0, 0.0
+    # all at once: for one pixel alone a barrier takes as long as for a thousand
+    at = np.full((len(compared[0][1]), len(compared), max(p.shape[1] for _, p in compared)), np.nan)
+    for n, (_, points) in enumerate(compared):
+        at[:, n, : points.shape[1]] = points
+    own = [k for k, _ in compared]
+    places = (rows[own], columns[own])
+    exact = _at_pixels(result.slice.model, quantity, choice, follower, places, at)
+    difference = np.abs(exact - values[places]) / size
+    return len(compared), float(np.where(np.isnan(difference), np.inf, difference).max())

@@ -93,7 +93,11 @@ def _expression(text: str, slice: Slice) -> Valued:
                 hint = did_you_mean(name, (*known, *quantities(model)))
                 raise ConfigError(f"{name!r} is neither an unknown nor a parameter{hint}", key=OPTION)
         with np.errstate(all="ignore"):
-            interpret(tree, _Arrays({name: np.float64(0.5) for name in known}))
+            # where no quotient of names is zero by chance
+            generic = {name: np.float64(math.fmod(math.sqrt(2) * (k + 1), 1)) for k, name in enumerate(known)}
+            anywhere = interpret(tree, _Arrays(generic))
+        if np.isinf(anywhere):
+            raise ConfigError(f"{text[:60]!r} divides by zero", key=OPTION)
     except ExpressionError as error:
         raise ConfigError(f"{text!r}: {error.message}", key=OPTION) from error
     except (OverflowError, ValueError) as error:  # an exponent may be infinite, or no number
@@ -103,6 +107,7 @@ def _expression(text: str, slice: Slice) -> Valued:
         unknowns = dict(zip((*model.angles, *model.reals), at, strict=True))
         with np.errstate(all="ignore"):
             found: Floats = np.broadcast_to(interpret(tree, _Arrays({**given, **unknowns})), at.shape[1:]) + 0.0
+        found[np.isinf(found)] = np.nan  # there the expression has no value
         return found
 
     return Valued(text.strip(), "", values)

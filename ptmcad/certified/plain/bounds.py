@@ -1,29 +1,38 @@
 """Ranges of the unknowns that hold all solutions over a window: a full turn of each angle, proved bounds of the others.
 
-Guarantee: over the closed window no solution has a real unknown outside of its range, nor one that comes to infinity.
+Guarantee: over the closed window no solution at which no inequality is violated has a real unknown outside of its
+range, nor comes to infinity. (Lemma 19 of docs/soundness.md.)
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-from math import inf
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations, product
+from math import gcd, inf, isfinite
 
 import numpy as np
 
 from ptmcad.certified.evaluation import Floats, program, run
-from ptmcad.certified.formula import Operation
+from ptmcad.certified.formula import Formula, Graph, Operation
 from ptmcad.certified.plain.chart import chart
+from ptmcad.certified.plain.nested import eliminated, nested, scaled, sharp_squares, times
 from ptmcad.certified.plain.problem import FIRST, Problem
+from ptmcad.certified.plain.trigonometric import TrigonometricPolynomial
 from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Axis
 
 TURN = (-3.0, -3.0 + 6.2832)
 """A little more than a full turn, cut where no symmetric solution lies."""
-DOUBLINGS = range(-10, 41)
-"""Powers of two that are tried as bounds."""
-MAX_BOXES = 400
-"""For one bound; each is halved along an axis or an angle where the equations do not exclude it."""
+LEAST_POWER, MOST_POWER = -10, 40
+"""Of two, tried as bounds."""
+MAX_BOXES = 1000
+"""For one bound; each is halved along an axis or an unknown where nothing excludes it."""
+LEAST_SHARE = 1e-12
+"""Of a range, below which it is not halved again."""
+MAX_WEIGHT = 3
+"""Unknowns that grow together may grow like powers up to this one."""
 
 Range = tuple[float, float]
 
@@ -34,62 +43,196 @@ def ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]:
     Raises
     ------
     ConfigError
-        With the unknown, when no bound of it could be proved.
+        With the unknowns, when no bounds of them could be proved.
     """
     window = [(enclosing_floats(axis.low)[0], enclosing_floats(axis.high)[1]) for axis in axes]
-    everywhere = [(-inf, inf) if name in problem.reals else TURN for name in problem.unknowns]
-    at = chart(problem)
-    tape = _without_squares(record([at.equations]))
-    found = list(everywhere)
-    for k, name in enumerate(problem.unknowns):
-        if name in problem.reals:
-            # the ranges that are known serve to bound the others
-            bound = _bound(tape, np.array([*window, *found]), FIRST + k, name)
-            found[k] = (-bound, bound)
-    return tuple(found)
-
-
-def _without_squares(tape: Tape) -> Tape:
-    """Products in place of squares, of which the evaluator encloses unbounded ones by [0, inf]."""
-    squares = tape.operations == Operation.SQUARE
-    return replace(
-        tape,
-        operations=np.where(squares, Operation.MULTIPLY, tape.operations),
-        second=np.where(squares, tape.first, tape.second),
-    )
-
-
-def _bound(tape: Tape, box: Floats, variable: int, name: str) -> float:
-    """The least power of two beyond which the unknown has no solution."""
-    for power in DOUBLINGS:
-        bound = 2.0**power
-        above, below = box.copy(), box.copy()
-        above[variable] = bound, inf
-        below[variable] = -inf, -bound
-        if _empty(tape, above) and _empty(tape, below):
-            return bound
+    # more polynomials cost more time, and are seldom needed
+    for with_products in (False, True) if len(problem.unknowns) > 1 and not problem.cones else (False,):
+        search = _Search(problem, window, _vanishing(problem, with_products))
+        found = search.ranges()
+        missing = [name for name, bounds in zip(problem.unknowns, found, strict=True) if not isfinite(sum(bounds))]
+        if not missing:
+            return found
     raise ConfigError(
-        f"no bound of the unknown {name} could be proved over the window, and the certified engine searches a bounded "
-        "box: choose exact, or narrow the window",
+        f"no bound of the unknown{'s' * (len(missing) > 1)} {', '.join(missing)} could be proved over the window, and "
+        "the certified engine searches a bounded box: choose exact, or narrow the window",
         key="engine",
     )
 
 
-def _empty(tape: Tape, box: Floats) -> bool:
-    """Whether it is proved that the equations have no zero in a box; shape (variables, 2), infinite ends included."""
+def _vanishing(problem: Problem, with_products: bool) -> list[TrigonometricPolynomial]:
+    """Polynomials that are zero at every solution; none for problems with cones, whose equations are none."""
+    if problem.cones:
+        return []
+    known = [*problem.equations, *problem.multiples]
+    if with_products:
+        reals = [k for k, name in enumerate(problem.unknowns) if name in problem.reals]
+        known += [times(f, k) for f in problem.equations for k in reals]
+    return [*known, *eliminated(known)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Search:
+    """The search for bounds over a window, with some polynomials that vanish at solutions."""
+
+    problem: Problem
+    window: Sequence[Range]
+    vanishing: Sequence[TrigonometricPolynomial]
+
+    def ranges(self) -> tuple[Range, ...]:
+        """The range of each unknown; infinite where no bound of it was found."""
+        problem = self.problem
+        found = [
+            TURN if name not in problem.reals else (0.0, inf) if self._is_positive(k) else (-inf, inf)
+            for k, name in enumerate(problem.unknowns)
+        ]
+        reals = [k for k, name in enumerate(problem.unknowns) if name in problem.reals]
+        tapes = {k: self._alone(k) for k in reals}
+        waiting = list(reals)
+        while waiting:
+            # the ranges that are known serve to bound the others
+            new = next(filter(None, (self._range(tapes[k], found, k) for k in waiting)), None)
+            new = new or next(filter(None, (self._together(found, chosen) for chosen in _subsets(waiting))), None)
+            if new is None:
+                return tuple(found)
+            for k, bounds in new.items():
+                found[k] = bounds
+                waiting.remove(k)
+        for k in reals if len(reals) > 1 else ():
+            # bounds that were found together, or before others were known, are wide
+            start = (0.0 if found[k][0] == 0 else -inf), inf
+            again = self._range(tapes[k], [*found[:k], start, *found[k + 1 :]], k)
+            if again is not None:
+                found[k] = max(found[k][0], again[k][0]), min(found[k][1], again[k][1])
+        return tuple(found)
+
+    def _is_positive(self, k: int) -> bool:
+        """Whether a solution counts only where the unknown itself is positive."""
+        powers = tuple(int(j == k) for j in range(len(self.problem.unknowns)))
+        key = (0,) * len(powers), powers
+        return any(
+            c.value.terms.keys() == {key} and c.value.terms[key][0].is_constant and c.value.terms[key][0].constant() > 0
+            for c in self.problem.inequalities
+        )
+
+    def _alone(self, k: int) -> Tape:
+        """What vanishes at solutions, and what is not negative at those that count, for boxes that may be infinite.
+
+        The same polynomials are nested in several ways: none is the best one in all boxes.
+        """
+        problem = self.problem
+        at = chart(problem)
+        graph = at.equations[0].graph
+        unknowns = [graph.variable(j) for j in problem.variables]
+        others = [(j, True) for j, name in enumerate(problem.unknowns) if name in problem.reals and j != k]
+
+        def ways(polynomials: Iterable[TrigonometricPolynomial]) -> list[Formula]:
+            orders = [(k, False), *others], [*others, (k, False)]
+            return [nested(graph, f, unknowns, order) for f in polynomials for order in orders]
+
+        inequalities = ways(c.value for c in problem.inequalities)
+        return sharp_squares(record([[*at.equations, *ways(self.vanishing)], inequalities]))
+
+    def _range(self, tape: Tape, found: Sequence[Range], k: int) -> _Found | None:
+        """The range of one unknown, whatever those without a range are; each end is a power of two, or it is known."""
+
+        def least(sign: int) -> int | None:
+            def is_empty(power: int) -> bool:
+                box = np.array([*self.window, *found])
+                box[FIRST + k] = (2.0**power, inf) if sign > 0 else (-inf, -(2.0**power))
+                return _is_empty(tape, box)
+
+            return _least(is_empty)
+
+        above, low = least(1), found[k][0]
+        if above is not None and low == -inf:
+            below = least(-1)
+            low = -inf if below is None else -(2.0**below)
+        return None if above is None or low == -inf else {k: (low, 2.0**above)}
+
+    def _together(self, found: Sequence[Range], chosen: tuple[int, ...]) -> _Found | None:
+        """Ranges of unknowns of which one is always the largest: x_j = t_j u^-w_j, |t_j| at most 1, and one 1 or -1.
+
+        Several weights w are tried, equal ones first.
+        """
+        if self.problem.cones:
+            return None
+        for weights in sorted(product(range(1, MAX_WEIGHT + 1), repeat=len(chosen)), key=lambda w: (max(w), sum(w))):
+            if gcd(*weights) == 1:
+                shares = dict(zip(chosen, weights, strict=True))
+                power = self._common_bound(found, shares)
+                if power is not None:
+                    ends = {k: 2.0 ** (power * w) for k, w in shares.items()}
+                    return {k: (0.0 if found[k][0] == 0 else -end, end) for k, end in ends.items()}
+        return None
+
+    def _common_bound(self, found: Sequence[Range], weights: Mapping[int, int]) -> int | None:
+        """The least power p such that no solution has |x_j|^(1/w_j) at least 2^p for some j."""
+        graph = Graph()
+        unknowns = [graph.variable(j) for j in (*self.problem.variables, FIRST + len(self.problem.unknowns))]
+
+        def formulas(polynomials: Iterable[TrigonometricPolynomial]) -> list[Formula]:
+            return [scaled(f, weights).formula(graph, unknowns) for f in polynomials]
+
+        inequalities = formulas(c.value for c in self.problem.inequalities)
+        tape = sharp_squares(record([formulas(self.vanishing), inequalities]))
+        lowest = {k: 0.0 if found[k][0] == 0 else -1.0 for k in weights}
+        faces = [(k, side) for k, low in lowest.items() for side in {1.0, low} if side]
+
+        def is_empty(power: int) -> bool:
+            box = np.array([*self.window, *found, (0.0, 2.0**-power)])
+            for k, low in lowest.items():
+                box[FIRST + k] = low, 1.0
+            return all(_is_empty(tape, _with(box, FIRST + k, side)) for k, side in faces)
+
+        return _least(is_empty)
+
+
+_Found = dict[int, Range]
+"""Ranges by the number of the unknown."""
+
+
+def _with(box: Floats, variable: int, value: float) -> Floats:
+    face = box.copy()
+    face[variable] = value
+    return face
+
+
+def _subsets(waiting: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    return (chosen for size in range(1, len(waiting) + 1) for chosen in combinations(waiting, size))
+
+
+def _least(holds: Callable[[int], bool]) -> int | None:
+    """The least power of two for which something holds that holds for all larger ones; None when for none."""
+    if not holds(MOST_POWER):
+        return None
+    low, high = LEAST_POWER - 1, MOST_POWER
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if holds(middle) else (middle, high)
+    return high
+
+
+def _is_empty(tape: Tape, box: Floats) -> bool:
+    """Whether it is proved that a box has no solution that counts; shape (variables, 2), infinite ends included."""
     low, high = np.empty((2, len(tape)))
     finite = np.isfinite(box).all(axis=1)
+    used = np.isin(np.arange(len(box)), tape.first[tape.operations == Operation.VARIABLE])
+    lengths = np.where(finite & used & (box[:, 1] > box[:, 0]), box[:, 1] - box[:, 0], inf)
+    vanishing, nonnegative = tape.outputs
     waiting, treated = [box], 0
     while waiting:
         part = waiting.pop()
         treated += 1
-        run(program(tape), part[:, 0].copy(), part[:, 1].copy(), low, high, 0, len(tape))
-        if any(low[k] > 0 or high[k] < 0 for k in tape.outputs[0]):
+        # a run that finds two enclosures of one number apart has proved that there is no such point
+        if not run(program(tape), part[:, 0].copy(), part[:, 1].copy(), low, high, 0, len(tape)):
             continue
-        widths = np.zeros(len(box))
-        widths[finite] = (part[finite, 1] - part[finite, 0]) / (box[finite, 1] - box[finite, 0])
+        if (low[vanishing] > 0).any() or (high[vanishing] < 0).any() or (high[nonnegative] < 0).any():
+            continue
+        with np.errstate(invalid="ignore"):
+            widths = np.where(finite, part[:, 1] - part[:, 0], 0.0) / lengths
         widest = int(np.argmax(widths))
-        if treated >= MAX_BOXES or widths[widest] < 1e-3:
+        if treated >= MAX_BOXES or widths[widest] < LEAST_SHARE:
             return False
         middle = part[widest].mean()
         for side in (0, 1):

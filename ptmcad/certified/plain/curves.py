@@ -1,4 +1,5 @@
-"""The curves of a slice at which counts change, for any problem: folds, and equilibria that a spring's cone swallows.
+"""The curves of a slice at which counts change, for any problem: folds, equilibria that a spring's cone swallows, and
+solutions at which a condition stops to hold.
 
 Guarantee: each point of the window at which the chosen count changes lies on the projection of one of the curves
 (docs/soundness.md, "Plain formulas").
@@ -6,7 +7,7 @@ Guarantee: each point of the window at which the chosen count changes lies on th
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -17,7 +18,7 @@ from ptmcad.certified.formula import Formula
 from ptmcad.certified.parameters import expression_formula
 from ptmcad.certified.plain.bounds import TURN, Range, ranges
 from ptmcad.certified.plain.chart import Chart, chart, determinant, extended_determinant, principal_minors
-from ptmcad.certified.plain.problem import FIRST, Problem, problem_of
+from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
 from ptmcad.certified.scales import typical_lengths, variable_weights
 from ptmcad.certified.system import system
 from ptmcad.question.slice import Count, Slice
@@ -37,6 +38,7 @@ class _Search:
     weights: tuple[float, ...]
     short: tuple[Fraction, ...]
     stable: bool
+    conditions: tuple[Condition, ...]
 
 
 def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
@@ -60,8 +62,14 @@ def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) ->
         variable_weights(slice, at.equations, found),
         tuple(_rounded(SHORT_SHARE * x) for x in typical_lengths(slice, at.lengths, found)),
         problem.is_gradient and count is Count.STABLE and "folds-of-saddles" not in without,
+        problem.conditions(count),
     )
-    if len(problem.unknowns) == 1:
+    return (*_smooth(search, at), *_boundaries(search, at))
+
+
+def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
+    """The folds, and the cones."""
+    if len(search.problem.unknowns) == 1:
         return (_fold(search, at), *_points_without_length(search, at))
     return (_fold(search, at), *_short_folds(search), *_cones(search))
 
@@ -88,11 +96,36 @@ def _fold(search: _Search, at: Chart) -> Curve:
             [*at.equations, determinant(at.hessian)],
             (0, 1, *search.problem.variables),
             ((), at.balances),
-            [*long, *semidefinite],
+            [*long, *semidefinite, *_values(search.conditions, at)],
         ),
         search.ranges,
         np.array(search.weights),
     )
+
+
+def _values(conditions: Sequence[Condition], at: Chart) -> list[Formula]:
+    """What is not negative at solutions that count, nor at limits of them."""
+    graph = at.equations[0].graph
+    unknowns = [graph.variable(FIRST + k) for k in range(len(at.equations))]
+    return [condition.value.formula(graph, unknowns) for condition in conditions]
+
+
+def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
+    """Solutions at which a condition is zero and no other one is violated; there one stops or begins to count."""
+    semidefinite = [*principal_minors(at.hessian), determinant(at.hessian)] if search.stable else []
+    for k, condition in enumerate(search.conditions):
+        others = _values([*search.conditions[:k], *search.conditions[k + 1 :]], at)
+        yield Curve(
+            f"boundary {condition.text} = 0",
+            f"solutions count where {condition.text} > 0, and at one of them it is zero",
+            system(
+                [*at.equations, *_values([condition], at)],
+                (0, 1, *search.problem.variables),
+                nonnegative=[*others, *semidefinite],
+            ),
+            search.ranges,
+            np.array(search.weights),
+        )
 
 
 def _short_folds(search: _Search) -> Iterator[Curve]:

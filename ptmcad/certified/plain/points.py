@@ -1,8 +1,8 @@
 """The solutions of a problem at one rational point of a slice, counted with proof.
 
 Guarantee: when a `PointCount` is decided, each solution that the count needs has its own box, proved to hold exactly
-one, and it is proved that there are no others; signs of eigenvalues are those of intervals. What is not proved is
-undecided. Springs without length are no solutions: total counts do not have them.
+one, and it is proved that there are no others; signs of eigenvalues and of conditions are those of intervals. What is
+not proved is undecided. Springs without length are no solutions: total counts do not have them.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from flint import arb, arb_mat, ctx
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
+from ptmcad.certified.evaluation import Indices
 from ptmcad.certified.plain.bounds import Range, ranges
 from ptmcad.certified.plain.chart import chart, principal_minors
 from ptmcad.certified.plain.problem import FIRST, Problem, problem_of
@@ -23,7 +24,12 @@ from ptmcad.certified.points import BUDGET, MAX_OPEN_BOXES, MIN_BOX_WIDTHS, PREC
 from ptmcad.certified.search import Boxes, isolate
 from ptmcad.certified.system import System, system
 from ptmcad.certified.tape import Tape, enclosing_floats, record
+from ptmcad.errors import DegenerateSliceError
 from ptmcad.question.slice import Count, Slice
+from ptmcad.text.numerals import text_of
+
+_WITNESSES = tuple((Fraction(u), Fraction(v)) for u, v in (("10/21", "19/35"), ("2/13", "11/17"), ("15/19", "4/23")))
+"""Shares of the window: points that are rarely on a curve that a person has in mind."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,18 +38,20 @@ class PlainCounter:
 
     Attributes
     ----------
-    all, minima : the systems that a search prunes with.
+    all, stable : the systems that a search prunes with, for all solutions that count and for the stable ones.
     equations : the equations alone.
     hessian : a tape of one stage with the Hessian's entries row by row.
+    conditions : a tape of one stage with the inequalities, then the conditions for stability.
     """
 
     slice: Slice
     problem: Problem
     ranges: tuple[Range, ...]
     all: System
-    minima: System
+    stable: System
     equations: System
     hessian: Tape
+    conditions: Tape
 
     def at(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> PointCount:
         """What ``count`` needs at the point (x, y) of the two axes.
@@ -55,18 +63,22 @@ class PlainCounter:
         ArithmeticError
             When the counts contradict Euler's sum on the torus, which would be a fault of this program.
         """
-        only_minima = self.problem.is_gradient and count is Count.STABLE
-        found = self._zeros(x, y, only_minima, thorough)
-        if found is None:
+        stable_only = count is Count.STABLE
+        found = self._zeros(x, y, stable_only, thorough)
+        counted = None if found is None else self._counted(x, y, found, count)
+        if counted is None:
             return PointCount()
-        unique, narrow = found
         if not self.problem.is_gradient:
-            solutions = tuple(boxed(u, n, "", self.problem.variables) for u, n in zip(unique, narrow, strict=True))
-            return PointCount(total=len(solutions), solutions=solutions, decided=True)
-        size = len(self.problem.unknowns)
+            signs = "+" * len(self.problem.stability) if stable_only else ""
+            solutions = tuple(boxed(wide, box, signs, self.problem.variables) for wide, box in counted)
+            number = len(solutions)
+            if stable_only:
+                return PointCount(stable=number, solutions=solutions, decided=True)
+            return PointCount(total=number, solutions=solutions, decided=True)
+        only_minima, size = stable_only, len(self.problem.unknowns)
         solutions, index = (), [0] * (size + 1)
-        for wide, box in zip(unique, narrow, strict=True):
-            negative = self._index(x, y, wide, box)
+        for wide, box in counted:
+            negative = self._index(x, y, wide)
             if negative is None:
                 return PointCount()
             index[negative] += 1
@@ -75,19 +87,48 @@ class PlainCounter:
                 solutions = (*solutions, boxed(wide, box, signs, self.problem.variables))
         if only_minima:
             return PointCount(stable=index[0], solutions=solutions, decided=True)
-        smooth = not self.problem.cones and not self.problem.reals
+        smooth = not (self.problem.cones or self.problem.reals or self.problem.inequalities)
         if smooth and sum((-1) ** k * number for k, number in enumerate(index)):
             raise ArithmeticError(f"critical points of a function on the torus by index {index} at ({x}, {y})")
         cones = 0 if smooth else None
         return PointCount(len(solutions), index[0], None, tuple(index), cones, solutions, True)
 
-    def _zeros(self, x: Fraction, y: Fraction, only_minima: bool, thorough: bool) -> tuple[Boxes, Boxes] | None:
+    def _counted(
+        self, x: Fraction, y: Fraction, zeros: tuple[Boxes, Boxes], count: Count
+    ) -> list[tuple[Boxes, Boxes]] | None:
+        """The proved zeros at which all conditions are positive; None when that is not decided of some."""
+        asked = self.conditions.outputs[0][: len(self.problem.conditions(count))]
+        found = []
+        for unique, narrow in zip(*zeros, strict=True):
+            counts = self._holds(x, y, unique, asked)
+            if counts is None:
+                return None
+            if counts:
+                found.append((unique, narrow))
+        return found
+
+    def _holds(self, x: Fraction, y: Fraction, unique: Boxes, conditions: Indices) -> bool | None:
+        """Whether all of some conditions are positive at a proved zero."""
+        if not len(conditions):
+            return True
+        for precision in PRECISIONS:
+            with ctx.workprec(precision):
+                narrow = refined(self.equations, self._box(x, y, unique), precision)
+                tape = run_arb(self.conditions, narrow, precision)
+                values = [tape[int(place)] for place in conditions]
+            if any(value < 0 for value in values):
+                return False
+            if all(value > 0 for value in values):
+                return True
+        return None
+
+    def _zeros(self, x: Fraction, y: Fraction, stable: bool, thorough: bool) -> tuple[Boxes, Boxes] | None:
         """Boxes with exactly one solution each, and narrower ones, each solution once; None when undecided."""
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
         low, high = zip(*self.ranges, strict=True)
         start = np.array([[x_low, y_low, *low, x_high, y_high, *high]])
         variables = 2 + len(low)
-        arguments = (self.minima if only_minima else self.all).arguments()
+        arguments = (self.stable if stable else self.all).arguments()
         budget = BUDGET if thorough else QUICK_BUDGET
         for finest in MIN_BOX_WIDTHS if thorough else MIN_BOX_WIDTHS[:1]:
             limits = finest, budget, MAX_OPEN_BOXES
@@ -100,15 +141,27 @@ class PlainCounter:
                 return None if kept is None else (found.unique[kept], found.narrow[kept])
         return None
 
-    def _index(self, x: Fraction, y: Fraction, unique: Boxes, narrow: Boxes) -> int | None:
+    def zero_condition(self, x: Fraction, y: Fraction, count: Count) -> str:
+        """The text of a condition whose sign is not decided at a proved zero, to as many digits as there are."""
+        found = self._zeros(x, y, False, False)
+        conditions = self.problem.conditions(count)
+        for unique in () if found is None or not conditions else found[0]:
+            signs = [self._holds(x, y, unique, self.conditions.outputs[0][k : k + 1]) for k in range(len(conditions))]
+            if None in signs and False not in signs:
+                return conditions[signs.index(None)].text
+        return ""
+
+    def _box(self, x: Fraction, y: Fraction, box: Boxes) -> Box:
+        """A box over the point in balls of the precision that is set."""
+        ends = [(Fraction(float(box[k])), Fraction(float(box[k + len(box) // 2]))) for k in self.problem.variables]
+        return (ball(x, x), ball(y, y), *(ball(low, high) for low, high in ends))
+
+    def _index(self, x: Fraction, y: Fraction, unique: Boxes) -> int | None:
         """The number of negative eigenvalues at a proved zero."""
         size = len(self.problem.unknowns)
         for precision in PRECISIONS:
             with ctx.workprec(precision):
-                box: Box = (ball(x, x), ball(y, y), *(
-                    ball(Fraction(float(unique[k])), Fraction(float(unique[k + 2 + size])))
-                    for k in self.problem.variables
-                ))  # fmt: skip
+                box = self._box(x, y, unique)
                 values = run_arb(self.hessian, refined(self.equations, box, precision), precision)
                 entries = [values[int(place)] for place in self.hessian.outputs[0]]
                 found = inertia(arb_mat(size, size, entries))
@@ -124,19 +177,44 @@ def plain_counter(slice: Slice) -> PlainCounter:
     ------
     ConfigError, GeometryError
         As `problem_of` and `ranges` do.
+    DegenerateSliceError
+        When a condition is zero at a solution wherever one looks, so that nothing would ever be decided.
     """
     problem = problem_of(slice)
     at = chart(problem)
     vanishing = ((), at.balances)
-    return PlainCounter(
+    unknowns = [at.equations[0].graph.variable(k) for k in problem.variables]
+    inequalities, stability = (
+        [c.value.formula(at.equations[0].graph, unknowns) for c in some]
+        for some in (problem.inequalities, problem.stability)
+    )
+    minima = principal_minors(at.hessian) if problem.is_gradient else stability
+    counter = PlainCounter(
         slice,
         problem,
         ranges(problem, slice.axes),
-        system(at.equations, problem.variables, vanishing, (), at.hessian),
-        system(at.equations, problem.variables, vanishing, principal_minors(at.hessian), at.hessian),
+        system(at.equations, problem.variables, vanishing, inequalities, at.hessian),
+        system(at.equations, problem.variables, vanishing, [*minima, *inequalities], at.hessian),
         system(at.equations, problem.variables, jacobian=at.hessian),
         record([[entry for row in at.hessian for entry in row]]),
+        record([[*inequalities, *stability]]),
     )
+    _check_conditions(counter)
+    return counter
+
+
+def _check_conditions(counter: PlainCounter) -> None:
+    slice = counter.slice
+    across, up = slice.axes
+    points = [(across.low + (across.high - across.low) * u, up.low + (up.high - up.low) * v) for u, v in _WITNESSES]
+    idle = {counter.zero_condition(x, y, slice.count) for x, y in points}
+    if len(idle) == 1 and (text := idle.pop()):
+        (x, y), names = points[0], slice.axis_names
+        raise DegenerateSliceError(
+            f"{text} is zero at a solution at {names[0]} = {text_of(x)}, {names[1]} = {text_of(y)}, and at one at each "
+            "other point that was tried: the certified engine decides nothing of such a slice; choose exact, or ask "
+            "for another condition"
+        )
 
 
 def inertia(matrix: arb_mat) -> int | None:

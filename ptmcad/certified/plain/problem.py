@@ -1,5 +1,7 @@
 """The critical points of a slice's potential: a smooth part, and a cone for each spring with a free length.
 
+Or the solutions of a system's equations; and of either, what has to be positive at those that count.
+
 Guarantee: every term is read off the description. Up to a constant the potential is V - sum of K_s |d_s|, with V and
 the coordinates of d_s trigonometric polynomials: a spring of stiffness k and free length l0 between points that are d
 apart has the energy k |d|^2/2 - k l0 |d| + k l0^2/2, so that K = k l0.
@@ -7,6 +9,7 @@ apart has the energy k |d|^2/2 - k l0 |d| + k l0^2/2, so that K = k l0.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from fractions import Fraction
 
@@ -18,7 +21,8 @@ from ptmcad.mechanism.work import split_moments
 from ptmcad.question.positivity import Need, Proved, decide
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
-from ptmcad.text.tree import names_of
+from ptmcad.text.numerals import text_of
+from ptmcad.text.tree import Tree, names_of, to_text
 
 MAX_UNKNOWNS = 3
 """Angles and lengths; the time of a search multiplies with every one."""
@@ -42,6 +46,14 @@ class Cone:
 
 
 @dataclass(frozen=True, slots=True)
+class Condition:
+    """What is positive at solutions that count, or at stable ones; as the record says it, too."""
+
+    text: str
+    value: TrigonometricPolynomial
+
+
+@dataclass(frozen=True, slots=True)
 class Problem:
     """Equations, one for each unknown, and the cones whose slopes are to be taken off them.
 
@@ -51,6 +63,9 @@ class Problem:
     reals : those that are no angles.
     equations : of a potential V the derivatives by the unknowns.
     is_gradient : whether they are; then the Jacobian is a Hessian.
+    inequalities : a solution counts where all are positive.
+    stability : without a potential, it is stable where all of these are, too.
+    multiples : of the equations, which vanish at solutions as well.
     """
 
     unknowns: tuple[str, ...]
@@ -58,6 +73,13 @@ class Problem:
     equations: tuple[TrigonometricPolynomial, ...]
     cones: tuple[Cone, ...]
     is_gradient: bool
+    inequalities: tuple[Condition, ...] = ()
+    stability: tuple[Condition, ...] = ()
+    multiples: tuple[TrigonometricPolynomial, ...] = ()
+
+    def conditions(self, count: Count) -> tuple[Condition, ...]:
+        """What is positive at all solutions that are counted, and at no others."""
+        return self.inequalities + (self.stability if count is Count.STABLE else ())
 
     @property
     def variables(self) -> tuple[int, ...]:
@@ -71,8 +93,8 @@ def problem_of(slice: Slice) -> Problem:
     Raises
     ------
     ConfigError
-        When the plain formulas do not take the model or the count: more than `MAX_UNKNOWNS` unknowns, conditions on
-        solutions, or `Count.ADMISSIBLE`.
+        When the plain formulas do not take the model or the count: more than `MAX_UNKNOWNS` unknowns, or
+        `Count.ADMISSIBLE`; or when a condition on solutions holds nowhere.
     GeometryError
         When it is not proved that k l0 is nowhere negative in the window: only then is a spring without length, whose
         energy has a peak there, no stable equilibrium that is not counted.
@@ -94,14 +116,7 @@ def problem_of(slice: Slice) -> Problem:
             raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key="engine")
     ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
     if isinstance(model, System):
-        if model.inequalities or model.stability:
-            raise ConfigError(
-                f"the certified engine takes no sign conditions, and {model.name} has some: choose exact", key="engine"
-            )
-        if model.potential is None:
-            equations = tuple(evaluate(tree, ring) for tree in model.equations)
-            return Problem(ring.unknowns, ring.reals, equations, (), False)
-        return Problem(ring.unknowns, ring.reals, _gradient(evaluate(model.potential, ring), ring), (), True)
+        return _of_system(model, ring)
     assert isinstance(model, Mechanism)
     smooth, cones = _energy(model, ring)
     for cone in cones:
@@ -121,6 +136,51 @@ def problem_of(slice: Slice) -> Problem:
         k = ring.unknowns.index(unknown)
         gradient[k] = gradient[k] - evaluate(tree, ring)
     return Problem(ring.unknowns, ring.reals, tuple(gradient), cones, True)
+
+
+def _of_system(system: System, ring: Harmonics) -> Problem:
+    inequalities, stability = _conditions(system.inequalities, ring), _conditions(system.stability, ring)
+    if system.potential is not None:
+        gradient = _gradient(evaluate(system.potential, ring), ring)
+        return Problem(ring.unknowns, ring.reals, gradient, (), True, inequalities)
+    equations = tuple(evaluate(tree, ring) for tree in system.equations)
+    # an unknown that is not zero where solutions count is no factor of an equation: without this, the solutions at
+    # which it is zero, say those where a species is extinct, would be undecided all over the window
+    nonzero = [k for k in range(len(ring.unknowns)) if any(_is_multiple(c.value, k) for c in inequalities)]
+    divided = tuple(_without_factors(f, nonzero) for f in equations)
+    multiples = tuple(f for f, g in zip(equations, divided, strict=True) if f != g)
+    return Problem(ring.unknowns, ring.reals, divided, (), False, inequalities, stability, multiples)
+
+
+def _conditions(trees: Sequence[Tree], ring: Harmonics) -> tuple[Condition, ...]:
+    """The conditions that say something.
+
+    Raises
+    ------
+    ConfigError
+        When one holds nowhere.
+    """
+    found = []
+    for tree in trees:
+        value, text = evaluate(tree, ring), to_text(tree)
+        if set(value.terms) - set(ring.constant(Fraction(1)).terms) or not constant_of(value).is_constant:
+            found.append(Condition(text, value))
+        elif (number := constant_of(value).constant()) <= 0:
+            raise ConfigError(f"no solution counts: {text} is {text_of(number)} all over the window", key="engine")
+    return tuple(found)
+
+
+def _is_multiple(f: TrigonometricPolynomial, k: int) -> bool:
+    """Whether a polynomial vanishes wherever a real unknown does."""
+    return all(e[k] for _, e in f.terms)
+
+
+def _without_factors(f: TrigonometricPolynomial, unknowns: Sequence[int]) -> TrigonometricPolynomial:
+    """An equation divided by all powers of these unknowns that divide it."""
+    least = {k: min((e[k] for _, e in f.terms), default=0) for k in unknowns}
+    return TrigonometricPolynomial(
+        {(m, tuple(p - least.get(k, 0) for k, p in enumerate(e))): c for (m, e), c in f.terms.items()}
+    )
 
 
 def _gradient(energy: TrigonometricPolynomial, ring: Harmonics) -> tuple[TrigonometricPolynomial, ...]:

@@ -189,7 +189,8 @@ def _absent(curve: Curve, across: tuple[fmpq, fmpq], up: tuple[fmpq, fmpq]) -> b
     """
     with ctx.workprec(_BITS):
         rest, power = arb(0), arb(1)
-        local = local_coefficients(curve.in_v, *across, up[0])
+        # on a line across, no power of w is left but w^0
+        local = local_coefficients(curve.in_v, *across, up[0], None if up[1] else 1)
         for row in local:
             rest += sum((abs(c) for c in row.coeffs()), arb(0)) * power
             power = power * arb(up[1])

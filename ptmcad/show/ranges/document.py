@@ -15,7 +15,7 @@ from ptmcad.answer.intervals import CertifiedIntervals, CountInterval, CountInte
 from ptmcad.answer.paths import PathEnd, PathPoint, PosePaths
 from ptmcad.answer.widths import CertifiedWidths, OperationWidths
 from ptmcad.question.slice import Axis
-from ptmcad.show.ranges.numbers import enclosure_data, end_data, known, number_data, settled, width_text
+from ptmcad.show.ranges.numbers import enclosure_data, end_data, known, number_data, place_data, settled, width_text
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import text_of
 from ptmcad.version import __version__
@@ -52,8 +52,8 @@ def enclosed_data(found: CertifiedIntervals, digits: int) -> dict[str, Any]:
         "at": {name: text_of(value) for name, value in found.at.items()},
         "intervals": [
             {
-                "low": _place(i.low, digits),
-                "high": _place(i.high, digits),
+                "low": place_data(i.low, digits),
+                "high": place_data(i.high, digits),
                 "total": None if i.index is None else sum(i.index),
                 "stable": None if i.index is None else i.index[0],
                 "index": None if i.index is None else list(i.index),
@@ -62,18 +62,13 @@ def enclosed_data(found: CertifiedIntervals, digits: int) -> dict[str, Any]:
             }
             for i in found.intervals
         ],
-        "changes": [{"at": _place(c.at, digits), "met": list(c.names), "proved": c.proved} for c in found.changes],
+        "changes": [{"at": place_data(c.at, digits), "met": list(c.names), "proved": c.proved} for c in found.changes],
     }
 
 
 def critical_data(found: Sequence[CriticalFreeLength], digits: int) -> list[dict[str, Any]]:
     """Critical free lengths as JSON data."""
-    return [{"at": _place(c.free, digits), "signs": list(c.signs), "fold": c.fold} for c in found]
-
-
-def _place(enclosure: Enclosure, digits: int) -> dict[str, str | None]:
-    low, high = text_of(enclosure.low), text_of(enclosure.high)
-    return {"low": low, "high": high, "decimal": settled(enclosure, digits)}
+    return [{"at": place_data(c.free, digits), "signs": list(c.signs), "fold": c.fold} for c in found]
 
 
 def _axis(axis: Axis) -> dict[str, Any]:
@@ -135,7 +130,9 @@ def bands_data(found: CertifiedWidths, digits: int) -> dict[str, Any]:
         "rows": [
             {
                 "value": text_of(row.value),
-                "operation": [{"low": _place(i.low, digits), "high": _place(i.high, digits)} for i in row.operation],
+                "operation": [
+                    {"low": place_data(i.low, digits), "high": place_data(i.high, digits)} for i in row.operation
+                ],
                 "undecided": row.undecided,
                 "remark": row.remark,
             }
@@ -150,6 +147,7 @@ def path_data(found: PosePaths) -> dict[str, Any]:
         "along": _axis(found.along),
         "at": {name: text_of(value) for name, value in found.at.items()},
         "start": text_of(found.start),
+        **({"joined": True} if found.joined else {}),
         "paths": [
             {
                 "number": path.number,

@@ -17,8 +17,10 @@ MAX_DIGITS = 1000
 """That may be asked for."""
 
 
-def end_text(end: End, digits: int) -> str:
-    """An end as a decimal."""
+def end_text(end: End | Enclosure, digits: int) -> str:
+    """An end as a decimal; of one that is enclosed as many digits as are known."""
+    if isinstance(end, Enclosure):
+        return known(end, digits)
     if isinstance(end, Fraction):
         return Enclosure(end, end).text(digits)
     exact = end.exact
@@ -63,8 +65,10 @@ def width_text(interval: Span, digits: int) -> str:
         bits *= 2
 
 
-def end_data(end: End, digits: int) -> dict[str, Any]:
-    """An end for JSON: the window's edge, or the algebraic number with its decimal."""
+def end_data(end: End | Enclosure, digits: int) -> dict[str, Any]:
+    """An end for JSON: the window's edge, or the algebraic number or the enclosure with its decimal."""
+    if isinstance(end, Enclosure):
+        return place_data(end, digits)
     if isinstance(end, Fraction):
         return {"window": text_of(end), "decimal": end_text(end, digits)}
     return {"decimal": end_text(end, digits), **number_data(end)}
@@ -77,6 +81,12 @@ def number_data(number: AlgebraicNumber) -> dict[str, Any]:
         "low": text_of(number.low),
         "high": text_of(number.high),
     }
+
+
+def place_data(enclosure: Enclosure, digits: int) -> dict[str, str | None]:
+    """An enclosure for JSON, with as much of a decimal as it settles."""
+    low, high = enclosure_data(enclosure)
+    return {"low": low, "high": high, "decimal": settled(enclosure, digits)}
 
 
 def enclosure_data(enclosure: Enclosure) -> list[str]:

@@ -144,14 +144,20 @@ def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
     """What becomes of each pose in both directions."""
     name, model = found.along.name, found.model
     what = "pose" if isinstance(model, Mechanism) else "solution"
+    where = "at all points that were computed" if found.joined else "on the path"
     lines = []
     for path in found.paths:
         place = next(p for p in path.points if p.value == path.start)
-        side = f"; {_side(path, model)} on the path" if isinstance(model, Mechanism) and model.moving else ""
+        side = f"; {_side(path, model)} {where}" if isinstance(model, Mechanism) and model.moving else ""
         at = f"{name} = {shortest_text(path.start)}"
         lines.append(f"{what} {path.number} at {at}: {_unknowns(place, model, digits)}{side}")
         ends = (("down", path.low), ("up", path.high))
         lines += [f"  {direction}: {_end(e, found, digits)}" for direction, e in ends]
+    if found.joined and lines:
+        lines.append(
+            "followed in floating point from one proved solution to the next; where several stable ones are left, "
+            "steepest descent says to which the mechanism snaps"
+        )
     stable = "stable " * model.tells_stability
     return "\n".join(lines) if lines else f"no {stable}{what} at {name} = {shortest_text(found.start)}"
 

@@ -11,8 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any
 
+from matplotlib import rcParams
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -22,7 +24,7 @@ from ptmcad.show.render.axes import Dress, dress
 from ptmcad.show.render.layout import Box, Layout, Texts
 from ptmcad.show.render.legend import STRONG, THIN, Entry, Type
 from ptmcad.show.render.textwidth import ALLOWANCE, wrapped
-from ptmcad.show.render.view import View
+from ptmcad.show.render.view import Same, View
 from ptmcad.show.style import MIN_FONT, Place, Style
 
 LEAST = 11.0
@@ -36,6 +38,7 @@ _COLUMNS = (24.0, 18.0, 14.0, 11.0, 8.5)
 _INSET = (9.0, 6.0)
 """An inset's least sides, in widths of an m."""
 _STEPS, _STEP = 60, 1.05
+_LOOK = ("axes", "font", "mathtext", "text", "xtick", "ytick")
 MAX_TITLE_LINES = 2
 
 
@@ -317,20 +320,26 @@ def overhang(parts: Parts, view: View, sides: tuple[float, float], how: Dress) -
     """Inches that numbers and names take at the left, below, at the right and above axes of these sides."""
     key = (view, how)
     if key not in parts.measured:
-        parts.measured[key] = _measured(parts.slice, view, how)
+        parts.measured[key] = _measured(Same(parts.slice), view, how, _look())
     (left, below, right, above), names = parts.measured[key]
     # a name may be longer than its axis
     beyond = [max(0.0, (name - side) / 2) for name, side in zip(names, sides, strict=True)]
     return max(left, beyond[0]), max(below, beyond[1]), max(right, beyond[0]), max(above, beyond[1])
 
 
-def _measured(slice: Slice, view: View, how: Dress) -> Measured:
-    """The same for axes long enough for their names, and the lengths of these."""
+def _look() -> tuple[str, ...]:
+    """The settings on which it depends how large axes are with all that belongs to them."""
+    return tuple(f"{key}: {value}" for key, value in rcParams.items() if key.startswith(_LOOK))
+
+
+@lru_cache(maxsize=512)
+def _measured(of: Same[Slice], view: View, how: Dress, _: tuple[str, ...]) -> Measured:
+    """The same for axes long enough for their names, and the lengths of these, under such settings."""
     figure = Figure(figsize=(24.0, 24.0), dpi=72)
     canvas: Any = FigureCanvasAgg(figure)
     renderer = canvas.get_renderer()
     axes: Any = figure.add_axes((1 / 3, 1 / 3, 1 / 3, 1 / 3))
-    dress(axes, slice, view.x, view.y, how)
+    dress(axes, of.it, view.x, view.y, how)
     outer, inner = axes.get_tightbbox(renderer), axes.get_window_extent(renderer)
     spaces = (inner.x0 - outer.x0, inner.y0 - outer.y0, outer.x1 - inner.x1, outer.y1 - inner.y1)
     left, below, right, above = (max(0.0, float(space)) / 72 * ALLOWANCE for space in spaces)

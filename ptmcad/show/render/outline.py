@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 from math import cos, pi
 
@@ -22,7 +23,7 @@ from ptmcad.algebra.polynomials import coefficients_in, from_fraction, from_plan
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine
 from ptmcad.answer.regionmap import RegionMap, Stack
 from ptmcad.exact.cad.curves import Curve, by_component, curves_of
-from ptmcad.show.render.view import Floats, Interval, View
+from ptmcad.show.render.view import Floats, Interval, Same, View
 from ptmcad.text.plane import PlanePolynomial
 
 TOLERANCE = 1.5e-4
@@ -146,7 +147,13 @@ class Outline:
 
 def outline(result: RegionMap, view: View | None = None) -> Outline:
     """The outline of a map in a view, the whole window when None."""
-    view = View.whole(result) if view is None else view
+    return _outline(Same(result), View.whole(result) if view is None else view)
+
+
+# a map is drawn into several files, in several sizes and into the report
+@lru_cache(maxsize=32)
+def _outline(of: Same[RegionMap], view: View) -> Outline:
+    result = of.it
     base = result.base
     curves = by_component(curves_of(result.components, base))
     roots = tuple(_Abscissa(result, k) for k in range(len(result.critical_values)))

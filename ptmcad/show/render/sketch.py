@@ -1,13 +1,13 @@
 """The sketch of a pose: bars, zigzag springs, supports, load arrows and labels as lines on paper, in points.
 
-Guarantee: nodes are where the pose has them, at one scale for all poses; a spring has the same number of
-turns at any length. A spring that would lie on a bar or on another spring, or is too short for its turns, is drawn
-aside and led back to its nodes. Labels keep clear of all that is drawn (`ptmcad.show.render.clearance`).
+Guarantee: nodes are where the pose has them, at one scale for all poses. A spring that would lie on a bar or on another
+spring, or is too short for its turns, is drawn aside and led back to its nodes. Labels keep clear of all that is drawn
+(`ptmcad.show.render.clearance`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import hypot
@@ -76,7 +76,7 @@ class Sketch:
     ----------
     rails : what sliders slide on: a telescopic base from a fixed support at their height, else a short one.
     bars : in the order of the mechanism's.
-    springs : polylines in the order of the pose's springs.
+    springs : polylines in the order of the mechanism's.
     """
 
     mechanism: Mechanism
@@ -147,22 +147,35 @@ class Scene:
 
 def sketch(mechanism: Mechanism, pose: Pose, frame: Frame, arrows: Mapping[str, float]) -> Sketch:
     """A pose in a frame, with arrows of these lengths."""
-    nodes = frame.nodes(pose)
+    return sketched(mechanism, frame.nodes(pose), (frame.width, frame.height), arrows)
+
+
+def sketched(
+    mechanism: Mechanism, nodes: Mapping[str, Position], sides: Position, arrows: Mapping[str, float],
+    turns: int | None = None, labels: Callable[[Mapping[str, Position]], Iterable[Label]] | None = None,
+) -> Sketch:  # fmt: skip
+    """A mechanism whose nodes are at places on paper of these sides, with arrows of these lengths.
+
+    Parameters
+    ----------
+    turns : of every spring; as many as its length asks for, where it is None.
+    labels : of the nodes; if not given one for each, or for those that coincide.
+    """
     bars = tuple((nodes[a], nodes[b]) for a, b in mechanism.bars)
     drawn = [Stroke(a, b, bar_width(mechanism, number) / 2) for number, (a, b) in enumerate(bars)]
     springs = []
-    for spring in pose.springs:
-        line = _spring(nodes[spring.start], nodes[spring.end], drawn)
+    for spring in mechanism.springs:
+        line = _spring(nodes[spring.start], nodes[spring.end], drawn, turns)
         springs.append(line)
         drawn += polyline(line, 0.5)
     placed_arrows = tuple(_arrows(mechanism.loads, nodes, arrows))
     rails = tuple(_rails(mechanism, nodes))
     strokes = [*drawn, *(Stroke(a, b, 1.0) for a, b in rails)]
     strokes += [Stroke(arrow.start, arrow.end, 3.0) for arrow in placed_arrows]
-    labels = place(
-        _labels(nodes), strokes, _symbols(mechanism, nodes), (2.0, 2.0, frame.width - 2.0, frame.height - 2.0)
+    placed = place(
+        (labels or _labels)(nodes), strokes, _symbols(mechanism, nodes), (2.0, 2.0, sides[0] - 2.0, sides[1] - 2.0)
     )
-    return Sketch(mechanism, nodes, rails, bars, tuple(springs), placed_arrows, tuple(labels))
+    return Sketch(mechanism, nodes, rails, bars, tuple(springs), placed_arrows, tuple(placed))
 
 
 def _rails(mechanism: Mechanism, nodes: Mapping[str, Position]) -> Iterator[tuple[Position, Position]]:
@@ -188,25 +201,25 @@ def _symbols(mechanism: Mechanism, nodes: Mapping[str, Position]) -> Iterator[Bo
             yield x - wide, y - tall, x + wide, y + tall
 
 
-def _spring(start: Position, end: Position, drawn: Sequence[Stroke]) -> tuple[Position, ...]:
+def _spring(start: Position, end: Position, drawn: Sequence[Stroke], turns: int | None) -> tuple[Position, ...]:
     """The zigzag between two nodes, aside when something is already drawn there or they are too near."""
     length = hypot(end[0] - start[0], end[1] - start[1])
     along = ((end[0] - start[0]) / length, (end[1] - start[1]) / length) if length > 1e-6 else (1.0, 0.0)
     if along[0] < -1e-9 or (abs(along[0]) <= 1e-9 and along[1] < 0):  # aside means above first, not below
-        return _spring(end, start, drawn)[::-1]
-    straight = _zigzag(start, end, along, 0.0)
+        return _spring(end, start, drawn, turns)[::-1]
+    straight = _zigzag(start, end, along, 0.0, turns)
     if length >= _SHORTEST + 2 * _END and not _covered(straight, drawn):
         return straight
-    tried = [_zigzag(start, end, along, aside) for aside in _ASIDE]
+    tried = [_zigzag(start, end, along, aside, turns) for aside in _ASIDE]
     return next((line for line in tried if not _covered(line, drawn)), tried[-1])
 
 
-def _zigzag(start: Position, end: Position, along: Position, aside: float) -> tuple[Position, ...]:
+def _zigzag(start: Position, end: Position, along: Position, aside: float, turns: int | None) -> tuple[Position, ...]:
     length = hypot(end[0] - start[0], end[1] - start[1])
     wound = max(_SHORTEST, length - 2 * _END)
     across = (-along[1], along[0])
     middle = ((start[0] + end[0]) / 2 + across[0] * aside, (start[1] + end[1]) / 2 + across[1] * aside)
-    teeth = 2 * max(MIN_TURNS, round(wound / TURN))
+    teeth = 2 * (max(MIN_TURNS, round(wound / TURN)) if turns is None else turns)
     offsets = [(-wound / 2, 0.0)]
     for k in range(teeth):
         offsets.append((wound * ((k + 0.5) / teeth - 0.5), AMPLITUDE if k % 2 else -AMPLITUDE))
@@ -238,6 +251,13 @@ def _arrows(loads: Sequence[Load], nodes: Mapping[str, Position], lengths: Mappi
         if vertical in lengths:
             sign = 1 if lengths[vertical] > 0 else -1
             yield Arrow(vertical, (x + side, y + sign * PIN), (x + side, y + sign * PIN + lengths[vertical]))
+
+
+def own_labels(nodes: Mapping[str, Position], offsets: Mapping[str, Position]) -> Iterator[Label]:
+    """A label for each node, to lie where these offsets point."""
+    for name, at in nodes.items():
+        text = symbol(name)
+        yield Label(text, at, (max(6.9, 3.45 * len(text)), LABEL_HALF_HEIGHT), offsets.get(text, (0.0, 1.0)))
 
 
 def _labels(nodes: Mapping[str, Position]) -> Iterator[Label]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import Merge, Region, RegionMap
 from ptmcad.question.slice import Count
-from ptmcad.show.render.view import Interval, Shapes, View
+from ptmcad.show.render.view import Interval, Same, Shapes, View
 
 STEPS = 100
 MAX_ZOOMS = 12
@@ -104,6 +105,12 @@ def seen_thin_walls(whole: Shapes, sides: tuple[float, float]) -> bool:
 
 def told_apart(result: RegionMap) -> RegionMap:
     """An exact map whose regions are joined only where all counts of both cells are equal."""
+    return _told_apart(Same(result))
+
+
+@lru_cache(maxsize=32)
+def _told_apart(of: Same[RegionMap]) -> RegionMap:
+    result = of.it
     parent = list(range(len(result.cells)))
 
     def root(n: int) -> int:

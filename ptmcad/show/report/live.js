@@ -118,6 +118,7 @@ function moveProbe(share, quietly = false) {
   if (!quietly && live.marble) follow(before, point);
   solve(point);
   draw();
+  document.dispatchEvent(new CustomEvent("probe", { detail: point }));
 }
 
 function follow(before, point) {

@@ -34,7 +34,7 @@ from ptmcad.show.table import certified_digits
 from ptmcad.text.numerals import text_of
 from ptmcad.version import __version__
 
-SCRIPTS = ("theme.js", "mechanism.js", "landscape.js", "cells.js", "follow.js", "live.js")
+SCRIPTS = ("theme.js", "mechanism.js", "landscape.js", "cells.js", "follow.js", "live.js", "embed.js")
 """In the order in which they run."""
 
 

@@ -52,12 +52,14 @@ class Jet(NamedTuple):
     Attributes
     ----------
     smooth : the equations without the springs' parts.
+    conditions : what is positive at solutions that count.
     """
 
     values: list[arb]
     jacobian: Matrix
     smooth: list[arb]
     springs: tuple[Spring, ...]
+    conditions: list[arb]
 
     @property
     def short(self) -> list[Spring]:
@@ -105,10 +107,11 @@ class Field:
     Parameters
     ----------
     values : a ball for each parameter; no pull of a spring is negative.
+    conditions : of the form's inequalities and conditions for stability those that are asked for.
     """
 
-    def __init__(self, form: Form, values: Mapping[str, arb]):
-        self.form, self.values = form, dict(values)
+    def __init__(self, form: Form, values: Mapping[str, arb], conditions: Sequence[Waves] = ()):
+        self.form, self.values, self._conditions = form, dict(values), len(conditions)
         self.cones: list[tuple[int, Cone, arb]] = []
         for number, cone in enumerate(form.cones):
             pull = arb(evaluated(cone.pull, values))
@@ -118,6 +121,7 @@ class Field:
         for _, cone, _ in self.cones:
             for pair in (cone.vector, *cone.slopes, *cone.bends):
                 rows += pair
+        rows += conditions
         found = sorted({(turned, raised) for row in rows for turned, raised, _ in row})
         self.basis = found
         place = {key: 2 * k for k, key in enumerate(found)}
@@ -159,7 +163,7 @@ class Field:
             values = [value - part for value, part in zip(values, new.part, strict=True)]
             springs.append(new)
             place += 2 + 2 * n + 2 * n * n
-        return Jet(values, jacobian, smooth, tuple(springs))
+        return Jet(values, jacobian, smooth, tuple(springs), rows[len(rows) - self._conditions :])
 
 
 def _spring(number: int, pull: arb, rows: list[arb], jacobian: Matrix) -> Spring:

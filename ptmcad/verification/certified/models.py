@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -25,7 +25,7 @@ from ptmcad.verification.certified.parameters import exact, over
 from ptmcad.verification.certified.ranges import half_widths
 from ptmcad.verification.certified.solving import Spent, zeros
 from ptmcad.verification.certified.vectors import evaluated
-from ptmcad.verification.certified.waves import Form
+from ptmcad.verification.certified.waves import Form, Waves
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.report import Violation
 
@@ -55,8 +55,9 @@ class ModelCounting:
         for bits in PRECISIONS:
             with ctx.workprec(bits):
                 try:
-                    field = _field_at(self.form, values)
-                    found, _ = zeros(field, _only_minima(self.form, count), [_start(field)], self._budget)
+                    field = _field_at(self.form, values, _conditions(self.form, count))
+                    all_found, _ = zeros(field, _only_minima(self.form, count), [_start(field)], self._budget)
+                    found = _counted(field, all_found, count)
                 except Spent:
                     raise  # more digits would not make them fewer
                 except Unproved as unproved:
@@ -95,13 +96,13 @@ class ModelCounting:
         values = {name: arb(0) for name in slice.model.free_lengths} | values
         if not all(evaluated(cone.pull, values) >= 0 for cone in self.form.cones):
             raise Unproved("a stiffness times a free length may be negative")
-        field = Field(self.form, values)
+        field = Field(self.form, values, _conditions(self.form, slice.count))
         # boxes much smaller than the box of parameters are excluded no better than larger ones
         smallest = max(float(max(x.rad(), y.rad())) / 256, 2.0**-32)
         minima = _only_minima(self.form, slice.count)
         budget = self._budget // BOX_BUDGET_SHARE
         found, _ = zeros(field, minima, [_start(field)], budget, smallest, there.found)
-        return counts_of(self.form, found, slice.count)
+        return counts_of(self.form, _counted(field, found, slice.count), slice.count)
 
     @property
     def _budget(self) -> int:
@@ -110,6 +111,32 @@ class ModelCounting:
 
 def _only_minima(form: Form, count: Count) -> bool:
     return form.is_gradient and count in MINIMA
+
+
+def _conditions(form: Form, count: Count) -> tuple[Waves, ...]:
+    """What is positive at the solutions that are counted, and at no others."""
+    return form.inequalities + (form.stability if count is Count.STABLE else ())
+
+
+def _counted(field: Field, found: Sequence[Zero], count: Count) -> list[Zero]:
+    """The solutions at which all conditions of the field are positive; stable ones have the signs of those for it.
+
+    Raises
+    ------
+    Unproved
+        When a condition may be zero at one of them.
+    """
+    kept = []
+    for zero in found:
+        conditions = field(zero.within).conditions
+        if any(c < 0 for c in conditions):
+            continue
+        if not all(c > 0 for c in conditions):
+            where = ", ".join(f"{x:.6g}" for x in zero.center)
+            raise Unproved(f"a condition may be zero at the solution near ({where})")
+        signs = zero.signs if field.form.is_gradient or count is not Count.STABLE else "+" * len(field.form.stability)
+        kept.append(replace(zero, signs=signs))
+    return kept
 
 
 def _is_in_domain(model: Model, name: str, value: Any) -> bool:
@@ -136,8 +163,8 @@ def _values_at(claims: Claims, form: Form, x: Fraction, y: Fraction) -> dict[str
     return values
 
 
-def _field_at(form: Form, values: Mapping[str, Fraction]) -> Field:
-    return Field(form, {name: exact(value) for name, value in values.items()})
+def _field_at(form: Form, values: Mapping[str, Fraction], conditions: Sequence[Waves] = ()) -> Field:
+    return Field(form, {name: exact(value) for name, value in values.items()}, conditions)
 
 
 def _start(field: Field) -> Box:
@@ -155,7 +182,8 @@ def counts_of(form: Form, found: Sequence[Zero], count: Count) -> Counts:
         When the sum is wrong, which would be a fault of this check.
     """
     if not form.is_gradient:
-        return Counts(len(found), None, None, None)
+        number = len(found)
+        return Counts(None, number, None, None) if count is Count.STABLE else Counts(number, None, None, None)
     negative = Counter(zero.signs.count("-") for zero in found)
     index = tuple(negative[k] for k in range(form.size + 1))
     if count is Count.STABLE:

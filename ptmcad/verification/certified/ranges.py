@@ -1,16 +1,22 @@
-"""Bounds of the real unknowns at given parameters, beyond which a model has no solution.
+"""Bounds of the real unknowns at given parameters, beyond which a model has no solution that counts.
 
-Guarantee: for all parameters in the balls no solution has a real unknown beyond its bound.
+Guarantee: for all parameters in the balls no solution at which no inequality is violated has a real unknown beyond its
+bound.
 
-An equation is a polynomial in the unknown h. If all coefficients of its Taylor polynomial at h = R have one sign, and
-the constant one is not zero, it has no zero from R on; the same for h = -R after a reflection. Coefficients are balls
-over all angles and all other real unknowns as far as they are bounded; the part of a spring with a free length is at
-most its pull times the slope, of either sign. The second engine evaluates by Horner's rule on unbounded intervals.
+What is zero at solutions is a polynomial in the unknown h, and in those of which no bound is known yet. Put a number
+that is not negative for each of these, and R and such a number for h: if all coefficients have one sign, and the
+constant one is not zero, there is no solution from R on. All signs of unknowns are tried. Coefficients are balls over
+all angles and all other real unknowns as far as they are bounded; the part of a spring with a free length is at most
+its pull times the slope, of either sign. Where unknowns bound one another, x_j = t_j g^w_j with |t_j| at most 1, and
+the same is tried for g. The second
+engine evaluates by Horner's rule on unbounded intervals.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations, product
 from math import comb
 
 from flint import arb
@@ -27,96 +33,221 @@ POWERS = range(-10, 41)
 FINE_POWERS = (4, 10, 20, 40)
 """... and those that are tried with angles in parts, where none will do for all angles at once."""
 MAX_PARTS = 400
+MAX_WEIGHT = 3
+_MAX_COMBINED = 40
 
-Coefficients = dict[int, arb]
-"""By the power of the unknown."""
-Box = list[arb | None]
-"""A ball for each unknown; None for one of which no bound is known."""
-_Evaluated = list[tuple[Key, arb]]
+Row = Mapping[Key, arb]
+"""A polynomial by its waves."""
+Monomials = dict[tuple[int, ...], arb]
+"""By the powers of what is not bounded."""
+_ZERO, _ANY = arb(0), arb(0, 1)
+
+
+@dataclass(frozen=True, slots=True)
+class _Chart:
+    """Each unknown as a factor times a power of a number that is not negative and not bounded, or a factor alone.
+
+    Attributes
+    ----------
+    variables : which number that is; None for a factor alone.
+    lead : the number that is large.
+    """
+
+    factors: tuple[arb, ...]
+    variables: tuple[int | None, ...]
+    weights: tuple[int, ...]
+    lead: int
+
+    def monomials(self, row: Row) -> Monomials:
+        """A row as a polynomial in the numbers that are not bounded."""
+        total: Monomials = {}
+        for (turned, raised, sine), c in row.items():
+            term, angle, powers = c, _ZERO, [0] * (len(self.factors) + 1)
+            for j, (x, variable, weight) in enumerate(zip(self.factors, self.variables, self.weights, strict=True)):
+                if turned[j]:
+                    angle = angle + turned[j] * x
+                if raised[j]:
+                    term = term * power(x, raised[j])
+                    if variable is not None:
+                        powers[variable] += weight * raised[j]
+            if any(turned):
+                term = term * (angle.sin() if sine else angle.cos())
+            total[*powers] = total.get((*powers,), _ZERO) + term
+        return total
+
+    def halves(self, whole: _Chart) -> tuple[_Chart, _Chart] | None:
+        """Two charts, halved in the factor that is largest as a share of the whole one's; None where there is none."""
+        shares = {
+            j: float((x.rad() / y.rad()).mid())
+            for j, (x, y) in enumerate(zip(self.factors, whole.factors, strict=True))
+            if y.rad() > 0
+        }
+        if not shares:
+            return None
+        widest = max(shares, key=lambda j: shares[j])
+        x = self.factors[widest]
+        one, two = x.lower().union(x.mid()), arb(x.mid()).union(x.upper())
+        return self._with(widest, one), self._with(widest, two)
+
+    def _with(self, k: int, x: arb) -> _Chart:
+        return _Chart((*self.factors[:k], x, *self.factors[k + 1 :]), self.variables, self.weights, self.lead)
 
 
 class _Equation:
     """An equation with balls for its coefficients, and the slopes of the springs by its unknown."""
 
-    def __init__(self, k: int, form: Form, values: Mapping[str, arb]):
-        def row(waves: Waves) -> _Evaluated:
-            return [(key, _value(terms, values)) for key, terms in waves.items()]
+    def __init__(self, smooth: Row, springs: Sequence[tuple[arb, Row, Row]] = ()):
+        self.smooth, self.springs = smooth, springs
 
-        self.smooth = row(form.equations[k])
-        self.springs = [(_value(c.pull, values), row(c.slopes[k][0]), row(c.slopes[k][1])) for c in form.cones]
-
-    def in_powers(self, k: int, box: Box) -> Coefficients | None:
-        """The coefficients as a polynomial in an unknown; None where another one in them has no bound."""
-        total = _coefficients(self.smooth, k, box)
-        if total is None:
-            return None
+    def monomials(self, chart: _Chart) -> Monomials:
+        """All of it; the springs' parts have either sign."""
+        total = chart.monomials(self.smooth)
         for pull, right, above in self.springs:
-            across, up = _coefficients(right, k, box), _coefficients(above, k, box)
-            if across is None or up is None:
-                return None
-            for exponent in across.keys() | up.keys():
-                reach = pull * size(across.get(exponent, _ZERO), up.get(exponent, _ZERO))
-                total[exponent] = total.get(exponent, _ZERO) + reach * _ANY
+            across, up = chart.monomials(right), chart.monomials(above)
+            for powers in across.keys() | up.keys():
+                reach = pull * size(across.get(powers, _ZERO), up.get(powers, _ZERO))
+                total[powers] = total.get(powers, _ZERO) + reach * _ANY
         return total
 
 
-_ZERO, _ANY = arb(0), arb(0, 1)
+class _Bounds:
+    """What is known of the solutions: what is zero, what is positive, and the unknowns' bounds so far."""
+
+    def __init__(self, form: Form, values: Mapping[str, arb], with_products: bool):
+        def row(waves: Waves) -> Row:
+            return {key: _value(terms, values) for key, terms in waves.items()}
+
+        rows = [row(waves) for waves in form.equations]
+        springs = [
+            [(_value(c.pull, values), row(c.slopes[k][0]), row(c.slopes[k][1])) for c in form.cones]
+            for k in range(form.size)
+        ]
+        self.equations = list(map(_Equation, rows, springs))
+        if not form.cones:
+            more = [row(waves) for waves in form.multiples]
+            if with_products:
+                more += [_times(f, k) for f in rows for k in range(form.size) if not form.is_circle[k]]
+            self.equations += [_Equation(f) for f in (*more, *_combined([*rows, *more]))]
+        self.is_smooth = not form.cones
+        self.inequalities = [row(waves) for waves in form.inequalities]
+        unit = [(((0,) * form.size, tuple(int(j == k) for j in range(form.size)), 0), k) for k in range(form.size)]
+        self.positive = {k for key, k in unit for f in self.inequalities if f.keys() == {key} and f[key] > 0}
+        self.found: list[float | None] = [HALF_TURN if circle else None for circle in form.is_circle]
+
+    def _factor(self, k: int) -> arb:
+        """A ball for a bounded unknown."""
+        half = self.found[k]
+        assert half is not None
+        return arb(half / 2, half / 2) if k in self.positive else arb(0, half)
+
+    def _signs(self, k: int) -> tuple[int, ...]:
+        return (1,) if k in self.positive else (1, -1)
+
+    def alone(self, k: int) -> float | None:
+        """A bound of one unknown, whatever those without one are."""
+        return self._bound(list(self._orthants(k)), POWERS)
+
+    def _orthants(self, k: int) -> Iterator[_Chart]:
+        free = [j for j, half in enumerate(self.found) if half is None]
+        for signs in product(*map(self._signs, free)):
+            of = dict(zip(free, signs, strict=True))
+            everything = range(len(self.found))
+            yield _Chart(
+                tuple(arb(of[j]) if j in of else self._factor(j) for j in everything),
+                tuple(j if j in of else None for j in everything),
+                tuple(1 for _ in everything),
+                k,
+            )
+
+    def together(self, chosen: Sequence[int]) -> dict[int, float] | None:
+        """Bounds of some unknowns that bound one another."""
+        if not self.is_smooth:
+            return None
+        for weights in sorted(product(range(1, MAX_WEIGHT + 1), repeat=len(chosen)), key=lambda w: (max(w), sum(w))):
+            of = dict(zip(chosen, weights, strict=True))
+            bound = self._bound(list(self._faces(of)), ())
+            if bound is not None:
+                return {k: bound**w for k, w in of.items()}
+        return None
+
+    def _faces(self, weights: Mapping[int, int]) -> Iterator[_Chart]:
+        lead, everything = len(self.found), range(len(self.found))
+        free = [j for j, half in enumerate(self.found) if half is None and j not in weights]
+        for largest in weights:
+            for side, *signs in product(self._signs(largest), *map(self._signs, free)):
+                of = dict(zip(free, signs, strict=True))
+                shares = {j: arb(0.5, 0.5) if j in self.positive else _ANY for j in weights} | {largest: arb(side)}
+                yield _Chart(
+                    tuple(shares[j] if j in shares else arb(of[j]) if j in of else self._factor(j) for j in everything),
+                    tuple(lead if j in shares else j if j in of else None for j in everything),
+                    tuple(weights.get(j, 1) for j in everything),
+                    lead,
+                )
+
+    def _bound(self, charts: Sequence[_Chart], powers: Sequence[int]) -> float | None:
+        """The least power of two that is a bound in all charts."""
+
+        def holds(exponent: int, parts: int) -> bool:
+            return all(self._is_empty(chart, arb(2) ** exponent, parts) for chart in charts)
+
+        for parts, exponents in ((1, powers), (MAX_PARTS, FINE_POWERS)):
+            # what does not hold far away holds nowhere
+            if exponents and holds(exponents[-1], parts):
+                return float(2.0 ** next(e for e in exponents if e == exponents[-1] or holds(e, parts)))
+        return None
+
+    def _is_empty(self, chart: _Chart, bound: arb, parts: int) -> bool:
+        """Whether no solution has the leading number at the bound or beyond."""
+        waiting, treated = [chart], 0
+        while waiting:
+            part = waiting.pop()
+            treated += 1
+            if any(_is_positive(part.monomials(f), part.lead, bound, -1) for f in self.inequalities) or any(
+                _is_positive(terms, part.lead, bound, sign)
+                for terms in (e.monomials(part) for e in self.equations)
+                for sign in (1, -1)
+            ):
+                continue
+            halves = None if treated + len(waiting) >= parts else part.halves(chart)
+            if halves is None:
+                return False
+            waiting += halves
+        return True
 
 
 def _value(terms: Terms, values: Mapping[str, arb]) -> arb:
     return arb(evaluated(terms, values))
 
 
-def _coefficients(row: _Evaluated, k: int, box: Box) -> Coefficients | None:
-    total: Coefficients = {}
-    for (turned, raised, sine), c in row:
-        term, angle = c, _ZERO
-        for j, x in enumerate(box):
-            if j == k or not (turned[j] or raised[j]):
-                continue
-            if x is None:
-                return None
-            angle = angle + turned[j] * x
-            term = term * power(x, raised[j]) if raised[j] else term
-        if any(turned):
-            term = term * (angle.sin() if sine else angle.cos())
-        total[raised[k]] = total.get(raised[k], _ZERO) + term
-    return total
+def _is_positive(terms: Monomials, lead: int, bound: arb, sign: int) -> bool:
+    """Whether a polynomial times a sign is positive where the leading number is at least the bound."""
+    shifted: Monomials = {}
+    for powers, c in terms.items():
+        i = powers[lead]
+        for j in range(i + 1):
+            lower = (*powers[:lead], j, *powers[lead + 1 :])
+            shifted[lower] = shifted.get(lower, _ZERO) + sign * c * comb(i, j) * bound ** (i - j)
+    return all(c >= 0 if any(powers) else c > 0 for powers, c in shifted.items()) and not all(map(any, shifted))
 
 
-def _has_no_zero_from(coefficients: Coefficients, bound: arb) -> bool:
-    """Whether a polynomial has no zero from a positive number on."""
-    degree = max(coefficients, default=0)
-    shifted = [
-        sum((c * comb(i, j) * bound ** (i - j) for i, c in coefficients.items() if i >= j), _ZERO)
-        for j in range(degree + 1)
-    ]
-    return any(sign * shifted[0] > 0 and all(sign * c >= 0 for c in shifted[1:]) for sign in (1, -1))
+def _times(f: Row, k: int) -> Row:
+    return {
+        (turned, (*raised[:k], raised[k] + 1, *raised[k + 1 :]), sine): c for (turned, raised, sine), c in f.items()
+    }
 
 
-def _empty(equations: list[_Equation], k: int, box: Box, bound: arb, parts: int) -> bool:
-    """Whether no solution has the unknown at the bound or beyond, on either side."""
-    waiting = [box]
-    treated = 0
-    while waiting:
-        part = waiting.pop()
-        treated += 1
-        found = [c for c in (e.in_powers(k, part) for e in equations) if c is not None]
-        mirrored = [{i: -c if i % 2 else c for i, c in coefficients.items()} for coefficients in found]
-        if all(any(_has_no_zero_from(c, bound) for c in side) for side in (found, mirrored)):
-            continue
-        shares = {
-            j: float((x.rad() / y.rad()).mid())
-            for j, (x, y) in enumerate(zip(part, box, strict=True))
-            if j != k and x is not None and y is not None and y.rad() > 0
-        }
-        widest = max(shares, key=lambda j: shares[j], default=k)
-        whole = part[widest]
-        if whole is None or treated + len(waiting) >= parts:
-            return False
-        for side in (whole.lower().union(whole.mid()), arb(whole.mid()).union(whole.upper())):
-            waiting.append([side if j == widest else x for j, x in enumerate(part)])
-    return True
+def _combined(rows: Sequence[Row]) -> list[Row]:
+    """Combinations that lack a term common to two rows; they are zero where these are."""
+    found: list[Row] = []
+    for _ in range(2):
+        for f, g in combinations((*rows, *found), 2):
+            for key in f.keys() & g.keys():
+                others = (f.keys() | g.keys()) - {key}
+                both = {k: f.get(k, _ZERO) * g[key] - g.get(k, _ZERO) * f[key] for k in sorted(others)}
+                both = {k: c for k, c in both.items() if not (c == 0)}  # noqa: SIM201 (a ball that is not exactly zero)
+                if both and len(both) <= max(len(f), len(g)) and len(found) < _MAX_COMBINED:
+                    found.append(both)
+    return found
 
 
 def half_widths(form: Form, values: Mapping[str, arb]) -> tuple[float, ...]:
@@ -127,25 +258,31 @@ def half_widths(form: Form, values: Mapping[str, arb]) -> tuple[float, ...]:
     Unproved
         With the unknown, when no bound of it could be proved.
     """
-    found: list[float | None] = [HALF_TURN if circle else None for circle in form.is_circle]
-    equations = [_Equation(k, form, values) for k in range(form.size)] if None in found else []
-    waiting = [k for k, half in enumerate(found) if half is None]
-    while waiting:
-        box: Box = [None if half is None else arb(0, half) for half in found]
+    if all(form.is_circle):
+        return (HALF_TURN,) * form.size
+    for with_products in (False, True):
+        bounds = _Bounds(form, values, with_products)
+        found = _all_bounds(bounds)
+        if None not in found:
+            return tuple(half for half in found if half is not None)
+    raise Unproved(f"no bound of the unknown {form.unknowns[found.index(None)]} could be proved")
+
+
+def _all_bounds(bounds: _Bounds) -> list[float | None]:
+    """The bounds as far as they are found; those that are known serve to bound the others."""
+    found = bounds.found
+    while waiting := [k for k, half in enumerate(found) if half is None]:
         for k in waiting:
-            bound = _bound(equations, k, box)
-            if bound is not None:
-                found[k] = bound
+            found[k] = bounds.alone(k)
+            if found[k] is not None:
                 break
         else:
-            raise Unproved(f"no bound of the unknown {form.unknowns[waiting[0]]} could be proved")
-        waiting.remove(k)
-    return tuple(half for half in found if half is not None)
-
-
-def _bound(equations: list[_Equation], k: int, box: Box) -> float | None:
-    for powers, parts in ((POWERS, 1), (FINE_POWERS, MAX_PARTS)):
-        for exponent in powers:
-            if _empty(equations, k, box, arb(2) ** exponent, parts):
-                return float(2.0**exponent)
-    return None
+            for chosen in (c for n in range(2, len(waiting) + 1) for c in combinations(waiting, n)):
+                both = bounds.together(chosen)
+                if both is not None:
+                    for k, half in both.items():
+                        found[k] = half
+                    break
+            else:
+                break
+    return found

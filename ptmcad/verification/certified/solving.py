@@ -1,8 +1,9 @@
 """All solutions of any model in a box, for all parameters in balls at once: exclusion, Krawczyk's test, halving.
 
 Guarantee: for every choice of the parameters in the balls of the `Field`, each of the solutions that are returned
-exists, exactly once in its box, and there is no further one in the boxes of the start; when only minima are asked for,
-none that is a minimum or degenerate without a negative eigenvalue. What cannot be proved raises `Unproved`.
+exists, exactly once in its box, and there is no further one in the boxes of the start at which no condition of the
+field is violated; when only minima are asked for, none that is a minimum or degenerate without a negative eigenvalue.
+What cannot be proved raises `Unproved`.
 
 `krawczyk` has the test. `ptmcad.verification.certified.equilibria` is the same for the paper's mechanism, with formulas
 of its own.
@@ -100,7 +101,7 @@ def _balls(box: Box) -> list[arb]:
 
 def _excluded(jet: Jet, box: Box, minima: bool) -> bool:
     """Whether no solution that is asked for lies in the box."""
-    if any(v > 0 or v < 0 for v in jet.values):
+    if any(v > 0 or v < 0 for v in jet.values) or any(c < 0 for c in jet.conditions):
         return True
     short = jet.short
     if minima and not short and is_no_minimum(jet.jacobian):

@@ -16,7 +16,7 @@ from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.verification.certified.sweep import Sweep, sweep
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import MECHANISM, shorthands_of
+from ptmcad.verification.derivation import MECHANISM, shorthands_of, tells_stability
 from ptmcad.verification.report import Violation
 
 MAX_STEPS = 2**40
@@ -114,7 +114,9 @@ def check_form(claims: CertifiedClaims) -> str:
     for one, two in pairwise(r.cover.rectangles):
         if not one < two:
             raise Violation(f"the rectangles {one} and {two} are not sorted")
-    needed = _NEEDED[r.slice.count] if r.slice.model.has_potential else {"total"}
+    needed = {"stable" if r.slice.count is Count.STABLE else "total"}
+    if r.slice.model.has_potential:
+        needed = _NEEDED[r.slice.count]
     for what, items in (("cell", r.cells), ("region", r.regions)):
         for n, item in enumerate(items):
             present = {name for name in _COUNTS if getattr(item, name) is not None}
@@ -139,11 +141,10 @@ def _check_model(slice: Slice) -> None:
         return
     if not 1 <= len(model.unknowns) <= MAX_UNKNOWNS:
         raise Violation(f"no certified map is of {len(model.unknowns)} unknowns")
-    if slice.count is Count.ADMISSIBLE or not (model.has_potential or slice.count is Count.TOTAL):
+    without_index = (Count.TOTAL, Count.STABLE) if tells_stability(model) else (Count.TOTAL,)
+    if slice.count is Count.ADMISSIBLE or not (model.has_potential or slice.count in without_index):
         raise Violation(f"no certified map of {model.name!r} counts {slice.count.value}")
     if isinstance(model, System):
-        if model.inequalities or model.stability:
-            raise Violation("no certified map is of a system with sign conditions")
         if model.potential is None and len(model.equations) != len(model.unknowns):
             raise Violation(f"there are {len(model.equations)} equations for {len(model.unknowns)} unknowns")
     elif not model.has_potential:

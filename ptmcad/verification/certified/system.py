@@ -18,6 +18,7 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 
+from ptmcad.answer.regionmap import System
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.text.tree import names_of
 from ptmcad.verification.certified.refutation import differs_somewhere
@@ -49,8 +50,6 @@ def check_potential(claims: Claims) -> str:
         raise Violation(f"the unknowns are {system.unknowns}, not {unknowns}")
     if system.relations or system.hessian or (model.has_potential and system.gradient):
         raise Violation("a certified map has no relations, and its gradient and Hessian follow from the potential")
-    if system.inequalities or system.stability:
-        raise Violation("a certified map has no conditions")
     text = _Text(model)
     if model.has_potential:
         pairs = [("potential", system.potential, _energy(model))]
@@ -59,11 +58,31 @@ def check_potential(claims: Claims) -> str:
         if system.potential or len(system.gradient) != len(equations):
             raise Violation(f"there are {len(equations)} equations and no potential")
         pairs = [(f"equation {k}", t, e) for k, (t, e) in enumerate(zip(system.gradient, equations, strict=True))]
+    pairs += _conditions(text, system)
     unchecked = [reason for what, stored, true in pairs if (reason := _compared(text, what, stored, true))]
     if unchecked:
         return Unchecked(unchecked[0])
     what = "the potential" if model.has_potential else "the equations"
     return f"{what} in {len(unknowns)} unknowns and {len(model.variables)} parameters"
+
+
+def _conditions(text: _Text, system: System) -> list[tuple[str, str, fmpq_mpoly]]:
+    """The stored inequalities and conditions for stability, with what each of them has to be.
+
+    Raises
+    ------
+    Violation
+        When there are not as many as in the description.
+    """
+    true = ((), ()) if isinstance(text.model, Mechanism) else formulas(text.configuration, text.model)[2:4]
+    pairs = []
+    for what, stored, values in zip(
+        ("inequality", "condition for stability"), (system.inequalities, system.stability), true, strict=True
+    ):
+        if len(stored) != len(values):
+            raise Violation(f"there are {len(values)} of the kind {what}, not {len(stored)}")
+        pairs += [(f"{what} {k}", one, value) for k, (one, value) in enumerate(zip(stored, values, strict=True))]
+    return pairs
 
 
 def _compared(text: _Text, what: str, stored: str, true: fmpq_mpoly) -> str:

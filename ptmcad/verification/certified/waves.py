@@ -50,7 +50,10 @@ class Form(NamedTuple):
     ----------
     is_circle : of each unknown, whether it is an angle.
     is_gradient : whether the equations are the derivatives of a potential, so that the Jacobian is a Hessian.
-    equations, jacobian : without the parts of the cones; the derivatives row by row.
+    equations, jacobian : without the parts of the cones; the derivatives row by row. Equations are divided by powers of
+        real unknowns that are not zero where a solution counts.
+    inequalities, stability : positive at solutions that count, and at stable ones.
+    multiples : of the equations, before they were divided.
     """
 
     unknowns: tuple[str, ...]
@@ -59,6 +62,9 @@ class Form(NamedTuple):
     equations: tuple[Waves, ...]
     jacobian: tuple[Waves, ...]
     cones: tuple[Cone, ...]
+    inequalities: tuple[Waves, ...] = ()
+    stability: tuple[Waves, ...] = ()
+    multiples: tuple[Waves, ...] = ()
 
     @property
     def size(self) -> int:
@@ -68,7 +74,7 @@ class Form(NamedTuple):
     @property
     def is_smooth_on_a_torus(self) -> bool:
         """Whether the alternating sum of the index is zero (Poincare and Hopf; moments do not matter)."""
-        return self.is_gradient and all(self.is_circle) and not self.cones
+        return self.is_gradient and all(self.is_circle) and not (self.cones or self.inequalities)
 
 
 class _Ring:
@@ -152,8 +158,12 @@ def form_of(model: Model) -> Form:
     unknowns = tuple(model.unknowns)
     given = formulas(ring.configuration, model)
     everything = range(len(unknowns))
+    inequalities, stability = ([ring.waves(c) for c in some] for some in (given.inequalities, given.stability))
+    multiples: list[_Polynomials] = []
     if given.energy is None:
-        equations = [ring.waves(e) for e in given.equations]
+        whole = [ring.waves(e) for e in given.equations]
+        equations = [_divided(e, inequalities) for e in whole]
+        multiples = [e for e, f in zip(whole, equations, strict=True) if e != f]
     else:
         potential = ring.waves(given.energy)
         order = model.angles + model.reals
@@ -166,7 +176,22 @@ def form_of(model: Model) -> Form:
         tuple(_kept(e, ring.parameters) for e in equations),
         tuple(_kept(e, ring.parameters) for e in jacobian),
         tuple(_cones(ring, model)) if isinstance(model, Mechanism) else (),
+        *(tuple(_kept(f, ring.parameters) for f in some) for some in (inequalities, stability, multiples)),
     )
+
+
+def _divided(f: _Polynomials, inequalities: Iterable[_Polynomials]) -> _Polynomials:
+    """An equation without the factors h of which it is known that h = 0 makes some inequality's polynomial zero."""
+    found = dict(f)
+    for c in inequalities:
+        for k in range(len(next(iter(c))[1]) if c else 0):
+            power = min((raised[k] for _, raised, _ in found), default=0)
+            if power and all(raised[k] for _, raised, _ in c):
+                found = {
+                    (turned, tuple(e - power * (j == k) for j, e in enumerate(raised)), sine): factor
+                    for (turned, raised, sine), factor in found.items()
+                }
+    return found
 
 
 def _cones(ring: _Ring, mechanism: Mechanism) -> Iterable[Cone]:

@@ -1,0 +1,262 @@
+"""One pose followed along a path of a map, through the folds where it vanishes, to the poses to which it falls.
+
+Guarantee: the counts of a step are the map's at its point or, where a certified map leaves it open, those of an exact
+solution there; a step that has them has as many different equilibria, and the followed pose is one of them. A pose is
+said to vanish only where the map's cell changes or is not known.
+
+Not guaranteed: the rest, which is floating point. From one step to the next the pose is followed by Newton's method in
+as many parts as keep it near itself; where it ends, the energy descends to the next one (`ptmcad.ask.fields.descent`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from ptmcad.answer.boundaries import NONE
+from ptmcad.answer.motion import Fall, Motion, Place, Step
+from ptmcad.answer.poses import Pose
+from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.ask.fields.branches import Follower, Places, filled
+from ptmcad.ask.fields.course import Course, corners_of
+from ptmcad.ask.fields.descent import descent, negatives
+from ptmcad.ask.fields.field import Choice, choice_of, complete, exact_at, unknowns_of
+from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.fields.track import LEAST, Track, followed
+from ptmcad.ask.location import locate
+from ptmcad.errors import ConfigError, PtmcadError
+from ptmcad.options import Progress
+from ptmcad.question.doubles import within_doubles
+
+FRAMES, MOST_FRAMES = 90, 2000
+MOST_FALLS = 20
+SLIP = 0.05
+"""A shorter fall is none to be seen: the pose goes on beside, as where a symmetric one gives way to two."""
+SAME = 1e-6
+_BESIDE = Fraction(1, 10**6)
+"""Of the path, by which a step is moved that lies on a curve of the map."""
+
+
+class LostError(PtmcadError):
+    """A pose that could not be followed although it has to be there."""
+
+
+def motion_of(
+    result: RegionMap, path: str | Mapping[str, Any], pose: str = "stable:1", frames: int = FRAMES,
+    progress: Progress | None = None,
+) -> Motion:  # fmt: skip
+    """The motion of a pose along a path.
+
+    Parameters
+    ----------
+    path : as `corners_of` takes it.
+    pose : of those at the path's start, as `choice_of` takes it.
+    frames : number of steps along the path, beside those of falls, which are a third of that each.
+    progress : called as progress("motion: step", done, total).
+
+    Raises
+    ------
+    ConfigError
+        For a path or pose that has no meaning here, a number of frames that is none, or a map without cells.
+    LostError
+        Where the map has the pose and it was not found.
+    """
+    if isinstance(frames, bool) or not isinstance(frames, int) or not 2 <= frames <= MOST_FRAMES:
+        raise ConfigError(f"{frames!r} is not a number of frames from 2 to {MOST_FRAMES}", key="--frames")
+    if not result.cells:
+        raise ConfigError(f"the map {result.slice.name} was stopped before it had cells: there is nothing to show")
+    choice = choice_of(pose, result.slice.model)
+    corners = corners_of(result.slice, path)
+    with within_doubles(result.slice):
+        walk = _Walk(result, Course.through(result.slice, corners))
+        stops = _stops(walk, frames)
+        start = _start(result, stops[0].step.at, choice)
+        steps, falls, end = _walked(walk, stops, start, max(12, frames // 3), progress)
+    return Motion(result, corners, str(choice), tuple(steps), tuple(falls), end)
+
+
+@dataclass(frozen=True, slots=True)
+class _Stop:
+    """A step before the pose is known, and all solutions there; None where they are not known."""
+
+    share: Fraction
+    step: Step
+    solutions: Floats | None
+
+
+class _Walk(Track):
+    """The model along a course over a map."""
+
+    def __init__(self, result: RegionMap, course: Course):
+        super().__init__(result.slice, course)
+        self.result = result
+
+    def cell(self, at: Place) -> int:
+        """The number of the cell at a point; `NONE` on curves, and where the map leaves it open."""
+        cell = locate(self.result, dict(zip(self.result.slice.axis_names, at, strict=True))).cell
+        return NONE if cell is None else cell
+
+
+def _stops(walk: _Walk, frames: int) -> list[_Stop]:
+    """The steps along the path with their counts and all solutions, each beside any curve on which it would lie."""
+    result, points, cells, shares = walk.result, [], [], []
+    for k in range(frames):
+        share = Fraction(k, frames - 1)
+        inward = 1 if k < frames / 2 else -1
+        for moved in (share + inward * n * _BESIDE for n in range(4)):
+            point, cell = walk.course.at(moved), walk.cell(walk.course.at(moved))
+            if cell != NONE:
+                break
+        else:
+            moved, point = share, walk.course.at(share)
+        shares.append(moved)
+        points.append(point)
+        cells.append(cell)
+    x, y = (np.array([[float(point[k]) for point in points]]) for k in (0, 1))
+    places = Places(x, y, np.array([cells], dtype=np.int64))
+    follower = Follower(result, places)
+    solutions, wanted = filled(result, follower), follower.wanted
+    complete(result, lambda _, column: points[column], solutions, wanted.total, lambda: None)
+    stops = []
+    for k, (share, point, number) in enumerate(zip(shares, points, cells, strict=True)):
+        step = Step(float(share), point, (), None)
+        if number == NONE:
+            stops.append(_open(walk, share, step))
+            continue
+        counts, many = result.cells[number], int(wanted.total[0, k])
+        known = solutions.at[:, 0, k, :many] if solutions.done[0, k] and many >= 0 else None
+        told = replace(step, total=counts.total, stable=counts.stable)
+        stops.append(_Stop(share, _with_others(walk, told, known), known))
+    return stops
+
+
+def _open(walk: _Walk, share: Fraction, step: Step) -> _Stop:
+    """Where the map tells nothing: by an exact solution at the point."""
+    poses = exact_at(walk.result, *step.at)
+    if poses.status not in (Status.EXACT, Status.CERTIFIED):
+        return _Stop(share, step, None)
+    found = np.array([unknowns_of(p) for p in poses.equilibria]).reshape(-1, len(walk.model.unknowns)).T
+    stable = poses.stable if walk.model.tells_stability else None
+    told = replace(step, total=len(poses.equilibria), stable=stable)
+    return _Stop(share, _with_others(walk, told, found), found)
+
+
+def _with_others(walk: _Walk, step: Step, known: Floats | None) -> Step:
+    """The step with the heights of all solutions, where each has one."""
+    if known is None or not known.shape[1]:
+        return step
+    state = walk.state(step.at, known)
+    if state.energy is None or state.work is not None:
+        return replace(step, others=tuple((np.nan, False) for _ in range(known.shape[1])))
+    stable = [negatives(walk.state(step.at, known[:, k : k + 1])) == 0 for k in range(known.shape[1])]
+    return replace(step, others=tuple(zip(map(float, state.energy), stable, strict=True)))
+
+
+def _start(result: RegionMap, at: Place, choice: Choice) -> Floats:
+    """The chosen pose at the path's start, of the exact ones."""
+    model, poses = result.slice.model, exact_at(result, *at)
+    last = len(model.unknowns)
+    kinds: Mapping[str, Callable[[Pose], bool]] = {
+        "pose": lambda pose: True,
+        "stable": lambda pose: pose.stable is True,
+        "unstable": lambda pose: pose.stable is False,
+        "saddle": lambda pose: pose.index is not None and 0 < pose.index < last,
+        "maximum": lambda pose: pose.index == last,
+    }
+    found = [pose for pose in poses.equilibria if kinds[choice.kind](pose)]
+    if len(found) < choice.rank:
+        where = ", ".join(f"{n} = {v}" for n, v in zip(result.slice.axis_names, at, strict=True))
+        raise ConfigError(f"there is no {choice} at the path's start, {where}: only {len(found)} of them", key="--pose")
+    return np.array(unknowns_of(found[choice.rank - 1]))
+
+
+def _walked(
+    walk: _Walk, stops: list[_Stop], start: Floats, fall_frames: int, progress: Progress | None
+) -> tuple[list[Step], list[Fall], str]:
+    """All steps; where the pose vanishes those of its fall, as far as it goes."""
+    at, own = start, negatives(walk.state(stops[0].step.at, start[:, None]))
+    steps: list[Step] = [_taken(walk, stops[0], at)]
+    falls: list[Fall] = []
+    for number, (last, stop) in enumerate(pairwise(stops), 1):
+        if progress is not None:
+            progress("motion: step", number, len(stops))
+        done = float(last.share)
+        while True:
+            at, done = followed(walk, at, done, float(stop.share), own)
+            if done >= float(stop.share):
+                break
+            beyond = min(done + LEAST, float(stop.share))
+            before, after = (walk.cell(walk.course.at(Fraction(share))) for share in (done, beyond))
+            if before == after != NONE:
+                raise LostError(f"the pose was lost at {100 * done:.6g} % of the path, in the middle of a region")
+            if end := _no_fall(walk, own, done):
+                return steps, falls, end
+            way = descent(lambda point, share=beyond: walk.at(share, point), at)  # type: ignore[misc]
+            if way is None or len(falls) == MOST_FALLS:
+                return steps, falls, f"at {_where(walk, done)} the pose vanishes, and no other was reached from there"
+            if _length(way) > SLIP:
+                fallen = _fallen(walk, beyond, way, fall_frames)
+                falls.append(_fall(walk, beyond, way))
+                steps += fallen
+            at, done = way[-1], beyond
+        steps.append(_taken(walk, stop, at))
+    return steps, falls, ""
+
+
+def _no_fall(walk: _Walk, own: int, done: float) -> str:
+    """Why nothing is said about where a pose goes that vanishes; empty where it falls."""
+    where = _where(walk, done)
+    if walk.model.has_potential and own == 0:
+        return ""
+    if walk.model.has_potential:
+        return f"at {where} the pose, which was not stable, vanishes or becomes one of another kind"
+    return f"at {where} the pose vanishes, and without a potential nothing says where it goes"
+
+
+def _where(walk: _Walk, share: float) -> str:
+    at = walk.course.at(Fraction(share))
+    return ", ".join(f"{n} = {float(v):.6g}" for n, v in zip(walk.result.slice.axis_names, at, strict=True))
+
+
+def _taken(walk: _Walk, stop: _Stop, at: Floats) -> Step:
+    """The step with the pose, which has to be one of the solutions there."""
+    if stop.solutions is not None:
+        gap = stop.solutions - at[:, None]
+        turns = len(walk.model.angles)
+        gap[:turns] = np.remainder(gap[:turns] + np.pi, 2 * np.pi) - np.pi
+        if not np.abs(gap).max(axis=0).min(initial=np.inf) < SAME * (1 + np.abs(at).max()):
+            raise LostError(f"at {_where(walk, float(stop.share))} the followed pose is none of those that are counted")
+    return _seen(walk, stop.step, at)
+
+
+def _seen(walk: _Walk, step: Step, at: Floats) -> Step:
+    """The step with unknowns, and with what follows from them."""
+    state = walk.state(step.at, at[:, None])
+    height = None if state.height is None else float(state.height[0])
+    points = tuple((float(np.ravel(x)[0]), float(np.ravel(y)[0])) for x, y in (state.points or {}).values())
+    return replace(step, unknowns=tuple(map(float, at)), height=height, points=points)
+
+
+def _length(way: Floats) -> float:
+    return float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
+
+
+def _fallen(walk: _Walk, share: float, way: Floats, number: int) -> list[Step]:
+    """So many steps of a fall, at equal distances."""
+    done = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1))])
+    places = np.linspace(0.0, done[-1], number)
+    point = walk.course.at(Fraction(share))
+    taken = np.array([np.interp(places, done, along) for along in way.T]).T
+    return [_seen(walk, Step(share, point, (), None, True), at) for at in taken]
+
+
+def _fall(walk: _Walk, share: float, way: Floats) -> Fall:
+    point = walk.course.at(Fraction(share))
+    heights = [_seen(walk, Step(share, point, (), None), at).height or 0.0 for at in (way[0], way[-1])]
+    before, after = (tuple(map(float, at)) for at in (way[0], way[-1]))
+    return Fall(share, (float(point[0]), float(point[1])), before, after, heights[0] - heights[1])

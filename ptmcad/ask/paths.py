@@ -1,0 +1,240 @@
+"""Paths of stable poses along a line where springs have free lengths, from proved solution to proved solution.
+
+Guarantee: critical values are enclosed as `ptmcad.certified.intervals` encloses them; every point of a path is a proved
+solution, the pose at the end of a snap is one of all the proved stable ones there.
+
+Not guaranteed: that the points of a path are one branch. From each to the next it is followed in floating point by
+Newton's method in small parts, and found among the proved solutions again. Where it vanishes and several stable poses
+are left, steepest descent in floating point says to which of them it falls.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import cos, pi
+from typing import Any
+
+import numpy as np
+
+from ptmcad.answer.intervals import CertifiedChange, CertifiedIntervals
+from ptmcad.answer.motion import Place
+from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
+from ptmcad.answer.poses import Pose
+from ptmcad.ask.branches import Sample, SolutionsOnLine, short
+from ptmcad.ask.fields.course import Course
+from ptmcad.ask.fields.descent import descent
+from ptmcad.ask.fields.field import unknowns_of
+from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.fields.track import Track, followed
+from ptmcad.certified.intervals import certified_intervals
+from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Mechanism
+from ptmcad.options import Progress
+from ptmcad.question.doubles import within_doubles
+from ptmcad.question.line import varying_axis
+from ptmcad.question.slice import Axis, Slice, have_moments
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.parsing import number_for
+
+DIGITS = 12
+POINTS = 16
+"""In each interval, closer to its ends, where branches turn."""
+NEAR = Fraction(1, 10**5)
+"""How near to a critical value a path comes, against its interval's length, and to the window's edge."""
+SAME = 1e-5
+_PI = (Fraction(314159265358979323846, 10**20), Fraction(314159265358979323847, 10**20))
+
+
+def joined_paths(
+    slice: Slice, along: str, at: Mapping[str, Any], start: object, number: int | None = None,
+    progress: Progress | None = None,
+) -> PosePaths:  # fmt: skip
+    """Follow stable poses along a line on which springs have free lengths.
+
+    Parameters and errors are those of `ptmcad.exact.ranges.path.pose_paths`; ``progress`` is called as
+    progress("paths: pose", done, total).
+    """
+    varying, other, value = varying_axis(slice, along, at)
+    axis = slice.axes[varying]
+    begin = number_for("--path", start)
+    if not axis.low < begin < axis.high:
+        raise ConfigError(f"{begin} is outside the window of {along}, {axis.low} to {axis.high}", key="--path")
+    intervals = certified_intervals(slice, along, at, DIGITS)
+    line = SolutionsOnLine(slice, varying, value, DIGITS)
+    inside = any(i.low.high < begin < i.high.low for i in intervals.intervals)
+    here = line.at(begin) if inside else None
+    if here is None:
+        raise ConfigError(f"{along} = {begin} is a critical value, or not told from one: start beside it", key="--path")
+    stable = [k for k, pose in enumerate(here.poses) if pose.stable]
+    if number is not None and number - 1 not in stable:
+        raise ConfigError(
+            f"{number} is none of the {len(stable)} stable poses at {along} = {begin}, counted from 1", key="--pose"
+        )
+    walker = _Walker(slice, line, axis, varying, value, intervals)
+    paths = []
+    chosen = stable if number is None else [number - 1]
+    with within_doubles(slice):
+        for done, k in enumerate(chosen):
+            if progress is not None:
+                progress("paths: pose", done, len(chosen))
+            paths.append(walker.path(k + 1, here, here.poses[k]))
+    return PosePaths(
+        slice.name, slice.model, axis, {other: value}, begin, tuple(paths), walker.has_moments, joined=True
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class _Reached:
+    """The followed pose: at a value, in floating point with angles that go on beyond a turn, and as it is proved."""
+
+    value: Fraction
+    at: Floats
+    pose: Pose
+
+
+class _Walker:
+    """A line on which poses are followed."""
+
+    def __init__(
+        self, slice: Slice, line: SolutionsOnLine, axis: Axis, varying: int, fixed: Fraction,
+        intervals: CertifiedIntervals,
+    ):  # fmt: skip
+        self.slice, self.line, self.axis, self.varying, self.fixed = slice, line, axis, varying, fixed
+        self.intervals = intervals
+        self.has_moments = have_moments(slice.model, line.parameters)
+        self.known: dict[Fraction, Sample | None] = {}
+
+    def path(self, number: int, here: Sample, pose: Pose) -> PosePath:
+        """One pose in both directions."""
+        origin = _Reached(here.value, np.array(unknowns_of(pose)), pose)
+        down, low = self._one_way(origin, -1)
+        up, high = self._one_way(origin, 1)
+        points = tuple(self._point(r) for r in (*reversed(down), origin, *up))
+        sides = [set(point.sides) for point in points]
+        upright, reverse = (all(own == {of} for own in sides) for of in (1, -1))
+        return PosePath(number, here.value, points, low, high, upright, reverse)
+
+    def at(self, value: Fraction) -> Sample | None:
+        """All solutions at a value, kept for the next path."""
+        if value not in self.known:
+            self.known[value] = self.line.at(value)
+        return self.known[value]
+
+    def _place(self, value: Fraction) -> Place:
+        return (value, self.fixed) if self.varying == 0 else (self.fixed, value)
+
+    def _one_way(self, origin: _Reached, side: int) -> tuple[list[_Reached], PathEnd]:
+        edge = self.axis.high if side > 0 else self.axis.low
+        course = Course((self._place(origin.value), self._place(edge)), (Fraction(0), Fraction(1)))
+        track = Track(self.slice, course)
+        reached: list[_Reached] = []
+        current, done = origin, 0.0
+        passed: CertifiedChange | None = None
+        for value, ahead in self._values(origin.value, side):
+            change = ahead or passed
+            share = float((value - origin.value) / (edge - origin.value))
+            at, further = followed(track, current.at, done, share, 0)
+            if further < share:
+                return reached, self._ended(track, current, (at, share), value, change)
+            sample = self.at(value)
+            if sample is None:  # one point less: the pose is looked for among those of the next one
+                passed = change
+                continue
+            pose = self._found(sample, at)
+            if pose is None:
+                return reached, self._undecided(current, change)
+            current, done, passed = _Reached(value, at, pose), share, None
+            reached.append(current)
+        return reached, PathEnd(Fate.WINDOW, edge, self._point(current))
+
+    def _values(self, start: Fraction, side: int) -> Iterator[tuple[Fraction, CertifiedChange | None]]:
+        """Values from the start in one direction; with a change the first one beyond it."""
+        stretches = [(i.low.high, i.high.low) for i in self.intervals.intervals]
+        changes = list(self.intervals.changes)
+        if side < 0:
+            stretches = [(b, a) for a, b in reversed(stretches)]
+        crossed: CertifiedChange | None = None
+        for first, last in stretches:
+            if (last - start) * side <= 0:
+                continue
+            width = last - first
+            parts = {NEAR, 1 - NEAR, *(Fraction(round((1 - cos(pi * k / POINTS)) * 2**19), 2**20)
+                                       for k in range(1, POINTS))}  # fmt: skip
+            for part in sorted(parts):
+                value = short(first + part * width, abs(width))
+                if (value - start) * side > 0:
+                    yield value, crossed
+                    crossed = None
+            ahead = [c for c in changes if (c.at.center - last) * side >= 0]
+            crossed = min(ahead, key=lambda c: abs(c.at.center - last), default=None)
+
+    def _found(self, sample: Sample, at: Floats) -> Pose | None:
+        """The proved stable pose that is near, where there is exactly one."""
+        near = [pose for pose in sample.poses if pose.stable and self._apart(at, pose) < SAME]
+        return near[0] if len(near) == 1 else None
+
+    def _apart(self, at: Floats, pose: Pose) -> float:
+        gap = np.array(unknowns_of(pose)) - at
+        turns = len(self.slice.model.angles)
+        gap[:turns] = np.remainder(gap[:turns] + np.pi, 2 * np.pi) - np.pi
+        return float(np.abs(gap).max())
+
+    def _undecided(self, current: _Reached, change: CertifiedChange | None) -> PathEnd:
+        at = Enclosure(current.value, current.value) if change is None else change.at
+        return PathEnd(Fate.UNDECIDED, at, self._point(current))
+
+    def _ended(
+        self,
+        track: Track,
+        current: _Reached,
+        lost: tuple[Floats, float],
+        value: Fraction,
+        change: CertifiedChange | None,
+    ) -> PathEnd:
+        """What becomes of a pose that could not be followed to a value: it has to be missing there."""
+        stopped = self._undecided(current, change)
+        before, after = self.at(current.value), self.at(value)
+        if change is None or before is None or after is None:
+            return stopped
+        counts = [Counter(p.index for p in s.poses if p.index is not None) for s in (before, after)]
+        meeting, leaving = (tuple(sorted((a - b).elements())) for a, b in (counts, counts[::-1]))
+        if 0 not in meeting:
+            return stopped
+        met = replace(stopped, fate=Fate.VANISH, meeting=meeting, leaving=leaving)
+        if self.has_moments or self.slice.model.reals or not self.slice.model.has_potential:
+            return met
+        at, share = lost
+        way = descent(lambda point: track.at(share, point), at)
+        target = None if way is None else self._found(after, way[-1])
+        if way is None or target is None:
+            return met
+        reached = _Reached(value, way[-1], target)
+        return replace(
+            met,
+            fate=Fate.MERGE if 0 in leaving else Fate.SNAP,
+            energy=current.pose.energy,
+            target=self._point(reached),
+            target_energy=target.energy,
+        )
+
+    def _point(self, reached: _Reached) -> PathPoint:
+        model, pose = self.slice.model, reached.pose
+        angles = [_on_turn(angle, float(v)) for angle, v in zip(pose.angles, reached.at, strict=False)]
+        sides = _sides(pose, model.moving) if isinstance(model, Mechanism) else ()
+        return PathPoint(reached.value, tuple(angles), pose.reals, sides)
+
+
+def _on_turn(angle: Enclosure, near: float) -> Enclosure:
+    """The angle with as many whole turns as bring it near a value."""
+    turns = round((near - float(angle)) / (2 * pi))
+    low, high = sorted(2 * turns * end for end in _PI)
+    return Enclosure(angle.low + low, angle.high + high)
+
+
+def _sides(pose: Pose, moving: Sequence[str]) -> tuple[int, ...]:
+    """Of each moving point 1 when it is proved above the x axis, -1 when below, else 0."""
+    heights = [pose.nodes[name][1] for name in moving]
+    return tuple(1 if y.low > 0 else -1 if y.high < 0 else 0 for y in heights)

@@ -1,0 +1,168 @@
+"""``ptmcad animate``: the motion of a mechanism along a path of its map, through the snap, as GIF or MP4."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from math import degrees
+from pathlib import Path
+
+import click
+
+from ptmcad.answer.motion import Fall, Motion
+from ptmcad.cli.drawing import share_of
+from ptmcad.cli.formats import formats_of
+from ptmcad.cli.gathering import gathered
+from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.maps import made_map, stored_map
+from ptmcad.cli.pictures import picture, report_written
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.values import formats as formats_known
+from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Mechanism
+from ptmcad.options import Options
+from ptmcad.process.output import check_writable, write_files
+from ptmcad.question.config import file_name
+from ptmcad.question.slice import Slice
+from ptmcad.show.drawable import no_drawing
+from ptmcad.show.style import Style, styled
+
+FORMATS = ("gif", "mp4")
+MOST_FPS = 60
+
+
+@dataclass(frozen=True, slots=True)
+class Film:
+    """What the film shows and how it looks, as it was typed."""
+
+    path: str
+    pose: str
+    frames: int
+    fps: int
+    style: Style
+    dpi: int
+
+
+def _film(
+    path: str, pose: str, frames: int, fps: int, size: str | None, palette: str | None, title: str | None, dpi: int
+) -> Film:
+    try:
+        style = styled("default", None, size=size, palette=palette, title=title)
+    except ConfigError as error:
+        raise ConfigError(error.message, key=f"--{error.key}") from error
+    return Film(path, pose, frames, fps, style, dpi)
+
+
+@click.command("animate")
+@slice_options
+@click.option("--path", required=True, metavar="NAME=FROM:TO,NAME=VALUE",
+              help="Where the point of the map goes: for each axis one value, or one for each corner, as in "
+                   "rho=3/4:6/5:3/4,L2=3/2.")  # fmt: skip
+@click.option("--pose", default="stable:1", show_default=True, metavar="KIND:N",
+              help="Which pose is followed, as `ptmcad map` numbers them, at the path's start.")  # fmt: skip
+@click.option("--frames", type=click.IntRange(2, 2000), default=90, show_default=True,
+              help="Pictures along the path; each fall has a third of that beside.")  # fmt: skip
+@click.option("--fps", type=click.IntRange(1, MOST_FPS), default=20, show_default=True, help="Pictures in a second.")
+@click.option("--size", metavar="WxH", help="Of the film, as 9x5in.  [default: 9x5.1in]")
+@click.option("--dpi", type=click.IntRange(50, 400), default=100, show_default=True, help="Pixels to the inch.")
+@click.option("--palette", metavar="NAME|COLOUR,..", help="As of `ptmcad plot`.  [default: default]")
+@click.option("--title", metavar="TEXT", help="Title, '' for none.  [default: the slice's heading]")
+@click.option("--tolerance", callback=share_of, default="1/100", show_default=True, metavar="EPS",
+              help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
+@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-motion]")
+@click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), shell_complete=formats_known(FORMATS),
+              default="gif", show_default=True, metavar="LIST",
+              help=f"Files to write, of {', '.join(FORMATS)}; mp4 needs the program ffmpeg.")  # fmt: skip
+@limit_options
+@gathered(film=_film)
+def command(
+    *, asked: Asked, film: Film, tolerance: Fraction, out: Path, name: str | None, formats: tuple[str, ...],
+    limits: Limits,
+) -> None:  # fmt: skip
+    """Show the mechanism moving along a path of parameters, and where it snaps.
+
+    CONFIG is a problem record, or a stored result of `ptmcad classify`. The map is at the left, with the point that
+    moves; at the right the mechanism, and below the energy of its pose. Each picture is an equilibrium, one of as many
+    as the exact map counts there; where the pose vanishes, the pictures show the way down to the next one by steepest
+    descent, and say so.
+
+    \b
+    Examples:
+        ptmcad animate --slice rho,L2 --set F3=-10 --set F4=-10 --path rho=3/4:6/5,L2=3/2 --pose stable:2 --frames 40
+        ptmcad animate --slice L2,rho --path L2=3/2:2/3:3/2,rho=1 --fps 10 --size 8x5in --frames 30
+    """
+    if "mp4" in formats:
+        from ptmcad.show.render.backend import load_matplotlib
+
+        load_matplotlib()
+        from ptmcad.show.render.film import program
+
+        program()  # where it is missing, that is said before anything is computed
+    with held(limits), ProgressBar() as progress:
+        options = Options(areas=False, progress=progress, timeout=limits.timeout)
+        result = stored_map(asked) or made_map(_slice(asked), options, tolerance)
+        model = result.slice.model
+        if not isinstance(model, Mechanism):
+            raise ConfigError(no_drawing(model))
+        stem = f"{result.slice.name}-motion" if name is None else file_name(name, "--name")
+        names = tuple(f"{stem}.{kind}" for kind in formats)
+        check_writable(out, names)
+        from ptmcad.ask.fields.motion import motion_of
+
+        motion = motion_of(result, film.path, film.pose, film.frames, progress)
+        write_files(out, {each: picture(each, partial(_draw, motion, film)) for each in names})
+    click.echo(summary(motion))
+    report_written(out, names)
+
+
+def _slice(asked: Asked) -> Slice:
+    """The slice of a mechanism that can be drawn."""
+    slice = asked.slice()
+    if not isinstance(slice.model, Mechanism):
+        raise ConfigError(no_drawing(slice.model))
+    return slice
+
+
+def _draw(motion: Motion, film: Film, path: Path) -> None:
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render.film import save_film
+
+    save_film(motion, path, film.style, film.fps, film.dpi)
+
+
+def summary(motion: Motion) -> str:
+    """What the film shows, in words."""
+    still = sum(not step.falling for step in motion.steps)
+    counted = "each" if motion.counted == still else f"{motion.counted} of them"
+    lines = [
+        f"{motion.pose}: {len(motion.steps)} pictures, {still} of equilibria, {counted} one of as many as are counted "
+        "exactly there"
+    ]
+    lines += [_in_words(motion, fall) for fall in motion.falls]
+    if motion.end:
+        lines.append(f"the film ends early: {motion.end}")
+    elif not motion.falls:
+        lines.append("the pose does not vanish on this path")
+    return "\n".join(lines)
+
+
+def _in_words(motion: Motion, fall: Fall) -> str:
+    slice = motion.result.slice
+    model = slice.model
+    where = ", ".join(f"{n} = {v:.6g}" for n, v in zip(slice.axis_names, fall.at, strict=True))
+    turns = len(model.angles)
+    unknowns = [f"{n} = {_turned(degrees(v)):.2f}°" for n, v in zip(model.angles, fall.after, strict=False)]
+    unknowns += [f"{n} = {v:.6g}" for n, v in zip(model.reals, fall.after[turns:], strict=True)]
+    return (
+        f"snap at {where}: the pose vanishes and falls to {', '.join(unknowns)}, where the energy is lower by "
+        f"{fall.drop:.4g} (steepest descent, floating point)"
+    )
+
+
+def _turned(angle: float) -> float:
+    return angle - 360 * round(angle / 360)

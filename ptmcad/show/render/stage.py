@@ -1,0 +1,340 @@
+"""The pictures of a motion: the map with the moving point, the mechanism, and the energy of the followed pose.
+
+Guarantee: all pictures of a motion have one scale, and fixed points of the mechanism stand still. A picture of a fall
+says that it shows no equilibrium. What does not move is drawn once.
+
+Not guaranteed: anything that only the pictures show. They are drawn in floating point.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from math import degrees
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from ptmcad.answer.motion import Motion, Step
+from ptmcad.answer.words import counted, noun
+from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism.evaluate import value_at
+from ptmcad.show.drawable import no_drawing
+from ptmcad.show.render.axes import Dress, dress, symbol
+from ptmcad.show.render.clearance import Placed
+from ptmcad.show.render.legend import INK, Entry, Type, draw_legend, head_of
+from ptmcad.show.render.mechanism import PALE, STRONG, draw_sketch
+from ptmcad.show.render.painting import paint_map, paint_of
+from ptmcad.show.render.regionmap import whole_title
+from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Sketch, own_labels, sketched
+from ptmcad.show.render.textwidth import text_width
+from ptmcad.show.render.view import View
+from ptmcad.show.style import Style
+from ptmcad.show.table import count_text
+
+SIZE = (9.0, 5.1)
+LEAST = (5.0, 3.2)
+"""Inches in which all parts have room."""
+LEFT, RIGHT, GAP, TOP, BOTTOM, LINE = 0.72, 0.15, 0.42, 0.62, 0.55, 0.19
+"""Inches: at the map's left, the rim, between the parts, above them, below the map, a line of the legend."""
+CURVE = 0.21
+"""Of the height: the energy's chart."""
+RIM = 27.0
+"""Points around the mechanism, for supports, loads and labels."""
+TURNS = 9
+"""Of a spring, at any length: it is one and the same in all pictures."""
+GLIDE = 4
+"""Steps before and after, over which a label's place is averaged."""
+SIZES = (10.0, 8.5, 7.5)
+"""In points: the title, other text, numbers at the axes."""
+FALLING = "#a4133c"
+FOLLOWED, STABLE, UNSTABLE = "#111111", "#3d6b8c", "#bdbdbd"
+
+Pixels = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True)
+class _World:
+    """From the mechanism's plane to points on paper."""
+
+    scale: float
+    shift: tuple[float, float]
+    sides: tuple[float, float]
+
+    def places(self, mechanism: Mechanism, step: Step) -> dict[str, tuple[float, float]]:
+        (dx, dy), k = self.shift, self.scale
+        return {name: (x * k + dx, y * k + dy) for name, (x, y) in zip(mechanism.points, step.points, strict=True)}
+
+
+def check_drawable(motion: Motion) -> Mechanism:
+    """The mechanism that is drawn.
+
+    Raises
+    ------
+    ConfigError
+        For a system: it has no points to be drawn.
+    """
+    model = motion.result.slice.model
+    if not isinstance(model, Mechanism):
+        raise ConfigError(no_drawing(model))
+    return model
+
+
+class Stage:
+    """The pictures of a motion, one for each of its steps; to be used within `printing.settings`."""
+
+    def __init__(self, motion: Motion, style: Style, dpi: int):
+        self.motion, self.mechanism = motion, check_drawable(motion)
+        size = style.size or SIZE
+        if size[0] < LEAST[0] or size[1] < LEAST[1]:
+            raise ConfigError(f"a film needs at least {LEAST[0]:g}x{LEAST[1]:g}in", key="size")
+        self.figure = Figure(figsize=size, dpi=dpi, facecolor="white")
+        self.canvas = _canvas(self.figure)
+        width, tall = size
+        key = _key(motion, style, 0.5 * width - LEFT)
+        side = min(0.5 * width - LEFT, tall - TOP - BOTTOM - LINE * len(key))
+        bottom = tall - TOP - side
+        title = whole_title(motion.result) if style.title is None else style.title
+        for k, line in enumerate(textwrap.wrap(title, int(11 * width), max_lines=1, placeholder=" …")):
+            self._text(LEFT, tall - 0.2 - 0.2 * k, line, SIZES[0], va="center")
+        self.chart = self._axes((LEFT, bottom, side, side), "map")
+        self._map(style)
+        self._legend(key, bottom - BOTTOM)
+        left = LEFT + side + GAP
+        wide = width - left - RIGHT
+        low = bottom + CURVE * tall if self._has_curve else bottom
+        room = (left, low + 0.55, wide, tall - TOP - low - 0.55)
+        self.panel = self._axes(room, "mechanism")
+        self.panel.set(xlim=(0, room[2] * 72), ylim=(0, room[3] * 72), xticks=[], yticks=[])
+        self.world = _world(motion, (room[2] * 72, room[3] * 72))
+        self.above, self.below = (left, tall - TOP + 0.13), (left, low + 0.4)
+        self.where = (LEFT, tall - TOP + 0.13)
+        self.curve: Any = None
+        if self._has_curve:
+            self.curve = self._axes((left + 0.35, bottom, wide - 0.35, low - bottom), "energy")
+            self._energy()
+        self.sketches = _sketches(motion, self.mechanism, self.world)
+        self.canvas.draw()
+        self.background = self.canvas.copy_from_bbox(self.figure.bbox)
+
+    @property
+    def _has_curve(self) -> bool:
+        return all(step.height is not None for step in self.motion.steps)
+
+    def frames(self) -> Iterator[Pixels]:
+        """The pictures as arrays of red, green and blue, shape (height, width, 3), in the order of the steps."""
+        for number in range(len(self.motion.steps)):
+            yield self.frame(number)
+
+    def frame(self, number: int) -> Pixels:
+        """The picture of a step."""
+        self.canvas.restore_region(self.background)
+        for artists in self._moving(number):
+            for artist in sorted(artists, key=lambda a: a.get_zorder()):
+                artist.draw(self.canvas.get_renderer())
+            for artist in artists:
+                artist.remove()
+        return np.asarray(self.canvas.buffer_rgba())[..., :3].copy()
+
+    def _moving(self, number: int) -> Iterator[list[Any]]:
+        """What is drawn for a step, one after the other."""
+        motion = self.motion
+        step = motion.steps[number]
+        yield self._point(number)
+        before = set(self.panel.get_children())
+        if step.falling:
+            begun = next(k for k in range(number, -1, -1) if k == 0 or not motion.steps[k - 1].falling)
+            draw_sketch(self.panel, replace(self.sketches[begun], labels=()), PALE, "")
+            yield [a for a in self.panel.get_children() if a not in before]
+        draw_sketch(self.panel, self.sketches[number], STRONG, "")
+        yield [a for a in self.panel.get_children() if a not in before]
+        if self.curve is not None:
+            yield self._marble(number)
+        yield list(self._said(step))
+
+    def _point(self, number: int) -> list[Any]:
+        """The way so far, and the point."""
+        steps = self.motion.steps[: number + 1]
+        view = View.whole(self.motion.result)
+        track = [view.approximate_position(step.at) for step in steps]
+        colour = FALLING if steps[-1].falling else FOLLOWED
+        line = Line2D(*zip(*track, strict=True), color=FOLLOWED, linewidth=2.0, transform=self.chart.transAxes,
+                      zorder=7, solid_capstyle="round")  # fmt: skip
+        point = Line2D(
+            *([value] for value in track[-1]), marker="o", markersize=9, markerfacecolor="white",
+            markeredgecolor=colour, markeredgewidth=2.2, linestyle="none", zorder=8, clip_on=False,
+            transform=self.chart.transAxes,
+        )  # fmt: skip
+        return [self.chart.add_artist(artist) for artist in (line, point)]
+
+    def _marble(self, number: int) -> list[Any]:
+        """The followed pose's energy so far, and where it is."""
+        steps = self.motion.steps[: number + 1]
+        shares = [100 * s.share for s in steps]
+        heights = [s.height for s in steps if s.height is not None]
+        line = Line2D(shares, heights, color=FOLLOWED, linewidth=1.4, zorder=4)
+        marble = Line2D(shares[-1:], heights[-1:], marker="o", markersize=7, linestyle="none", zorder=5, clip_on=False,
+                        markerfacecolor=FALLING if steps[-1].falling else "white", markeredgecolor=INK)  # fmt: skip
+        return [self.curve.add_artist(artist) for artist in (line, marble)]
+
+    def _said(self, step: Step) -> Iterator[Any]:
+        """Where the point is, what is drawn, and its unknowns."""
+        names, model = self.motion.result.slice.axis_names, self.mechanism
+        where = ",  ".join(f"{symbol(n)} = {float(v):.4g}" for n, v in zip(names, step.at, strict=True)).replace(
+            "-", "−"
+        )
+        yield self._text(*self.where, where, SIZES[1], va="center")
+        if step.falling:
+            what, colour = "the pose has vanished: steepest descent, no equilibrium", FALLING
+        elif step.total is None and step.stable is None:
+            what, colour = "equilibrium; the number of all is not known here", INK
+        elif step.total is None:
+            what, colour = f"equilibrium; exactly {step.stable} stable here", INK
+        else:
+            stable = f", {step.stable} stable" if step.stable is not None and model.tells_stability else ""
+            what, colour = f"one of exactly {counted(model, step.total)}{stable}", INK
+        yield self._text(*self.above, what, SIZES[1], va="center", color=colour)
+        angles = len(model.angles)
+        texts = [f"{symbol(n)} = {_turned(degrees(v)):.1f}°".replace("-", "−")
+                 for n, v in zip(model.angles, step.unknowns, strict=False)]  # fmt: skip
+        texts += [f"{symbol(n)} = {v:.4g}".replace("-", "−")
+                  for n, v in zip(model.reals, step.unknowns[angles:], strict=True)]  # fmt: skip
+        yield self._text(*self.below, ",  ".join(texts), SIZES[1], va="center")
+
+    def _map(self, style: Style) -> None:
+        result = self.motion.result
+        whole = shapes(result)
+        paint_map(self.chart, whole, "", paint_of(result, style))
+        dress(self.chart, result.slice, whole.view.x, whole.view.y, Dress(SIZES[2], SIZES[1], (6, 6)))
+        track = [whole.view.approximate_position(at) for at in self.motion.path]
+        self.chart.add_artist(
+            Line2D(*zip(*track, strict=True), color=INK, linewidth=0.9, linestyle=(0, (4, 2)),
+                   transform=self.chart.transAxes, zorder=6)
+        )  # fmt: skip
+
+    def _legend(self, key: list[list[tuple[float, Entry]]], top: float) -> None:
+        for k, row in enumerate(key):
+            for left, entry in row:
+                draw_legend(self.figure, (entry,), LEFT + left, top - LINE * k + 0.04, Type(SIZES[1], SIZES[1]))
+
+    def _energy(self) -> None:
+        """The chart's frame, and behind the followed pose all equilibria whose energy lies in it."""
+        steps, axes = self.motion.steps, self.curve
+        heights = [step.height for step in steps if step.height is not None]
+        low, high = min(heights), max(heights)
+        room = 0.1 * (high - low) or 0.1 * abs(high) or 1.0
+        for wanted, colour in ((False, UNSTABLE), (True, STABLE)):
+            dots = [(100 * s.share, h) for s in steps for h, stable in s.others if stable == wanted]
+            inside = [(x, h) for x, h in dots if low - room < h < high + room]
+            if inside:
+                axes.plot(*zip(*inside, strict=True), "o", markersize=1.6, color=colour, zorder=2 + wanted)
+        axes.set(xlim=(0, 100), ylim=(low - room, high + room))
+        from matplotlib.ticker import MaxNLocator
+
+        axes.yaxis.set_major_locator(MaxNLocator(nbins=3))
+        axes.tick_params(labelsize=SIZES[2], length=2.5)
+        axes.set_xlabel("% of the path", fontsize=SIZES[1], labelpad=1)
+        several = any(s.others for s in steps)
+        axes.set_ylabel("energy", fontsize=SIZES[1], labelpad=2)
+        if several:
+            axes.set_title(f"dots: all {noun(self.mechanism)}, stable ones blue", fontsize=SIZES[2], loc="right", pad=2)
+
+    def _axes(self, box: tuple[float, float, float, float], gid: str) -> Any:
+        width, tall = self.figure.get_size_inches()
+        axes = self.figure.add_axes((box[0] / width, box[1] / tall, box[2] / width, box[3] / tall))
+        axes.set_gid(gid)
+        return axes
+
+    def _text(self, x: float, y: float, text: str, size: float, **how: Any) -> Any:
+        how.setdefault("color", INK)
+        return self.figure.text(x, y, text, transform=self.figure.dpi_scale_trans, fontsize=size, **how)
+
+
+def _canvas(figure: Figure) -> Any:
+    return FigureCanvasAgg(figure)
+
+
+def _turned(angle: float) -> float:
+    return angle - 360 * round(angle / 360)
+
+
+def _world(motion: Motion, sides: tuple[float, float]) -> _World:
+    """One scale for all steps, and their middle in the middle."""
+    places = np.array([step.points for step in motion.steps]).reshape(-1, 2)
+    low, high = places.min(axis=0), places.max(axis=0)
+    room = [max(side - 2 * RIM, 10.0) for side in sides]
+    scale = min((r / float(b - a) for r, a, b in zip(room, low, high, strict=True) if b > a), default=1.0)
+    shift = tuple(side / 2 - scale * float(a + b) / 2 for side, a, b in zip(sides, low, high, strict=True))
+    return _World(scale, (shift[0], shift[1]), sides)
+
+
+def _sketches(motion: Motion, mechanism: Mechanism, world: _World) -> list[Sketch]:
+    """The mechanism at each step; labels keep their side while they can, and glide where they cannot."""
+    arrows, sketches = _arrows(motion, mechanism), list[Sketch]()
+    offsets: dict[str, tuple[float, float]] = {}
+    ways: list[dict[str, tuple[float, float]]] = []
+    for step in motion.steps:
+        labels = partial(own_labels, offsets=dict(offsets))
+        seen = sketched(mechanism, world.places(mechanism, step), world.sides, arrows[step.at], TURNS, labels)
+        offsets = {p.label.text: (p.center[0] - p.label.at[0], p.center[1] - p.label.at[1]) for p in seen.labels}
+        sketches.append(seen)
+        ways.append(offsets)
+    return [replace(seen, labels=tuple(_glided(seen.labels, ways, k))) for k, seen in enumerate(sketches)]
+
+
+def _glided(labels: Iterable[Placed], ways: list[dict[str, tuple[float, float]]], number: int) -> Iterator[Placed]:
+    """Labels at the mean of where they stand in the steps around, without lines that lead to them."""
+    near = ways[max(0, number - GLIDE) : number + GLIDE + 1]
+    for placed in labels:
+        x, y = (sum(way[placed.label.text][k] for way in near) / len(near) for k in (0, 1))
+        yield replace(placed, center=(placed.label.at[0] + x, placed.label.at[1] + y), leader=None)
+
+
+def _arrows(motion: Motion, mechanism: Mechanism) -> dict[tuple[Fraction, Fraction], dict[str, float]]:
+    """For each point the lengths of its loads' arrows, in proportion to the largest load of the motion."""
+    slice = motion.result.slice
+    components = [pair for load in mechanism.loads for pair in zip(load.names, (load.x, load.y), strict=True)]
+    loads: dict[tuple[Fraction, Fraction], dict[str, Fraction]] = {}
+    for at in {step.at for step in motion.steps}:
+        values = dict.fromkeys(mechanism.variables, Fraction(0)) | {
+            name: e.evaluate(*at) for name, e in slice.parameters.items()
+        }
+        loads[at] = {name: value_at(tree, values) for name, tree in components}
+    largest = max((abs(v) for own in loads.values() for v in own.values()), default=Fraction(0))
+    return {
+        at: {
+            name: (1 if v > 0 else -1) * max(SHORTEST_ARROW, LONGEST_ARROW * float(abs(v) / largest))
+            for name, v in own.items()
+            if v
+        }
+        for at, own in loads.items()
+    }
+
+
+def _key(motion: Motion, style: Style, width: float) -> list[list[tuple[float, Entry]]]:
+    """The legend in rows: each entry with its distance from the left, in inches."""
+    result = motion.result
+    paint = paint_of(result, style)
+    found = {count_text(r, result.slice.count): paint.fill(r) for r in result.regions}
+    entries = [Entry((head_of(result.slice)[0],))] + [Entry((text,), fill) for text, fill in sorted(found.items())]
+    if result.cover is not None and result.undetermined:
+        entries.append(Entry(("undetermined",), paint.undetermined))
+    rows: list[list[tuple[float, Entry]]] = [[]]
+    left = 0.0
+    for entry in entries:
+        wide = text_width(entry.lines[0], SIZES[1]) + (0.0 if entry.mark is None else Type().indent) + 0.2
+        if rows[-1] and left + wide - 0.2 > width:
+            rows.append([])
+            left = 0.0
+        rows[-1].append((left, entry))
+        left += wide
+    return rows

@@ -1,0 +1,147 @@
+"""Paths of stable poses with free lengths: against exact paths where these are tiny, proved poses, a film's fall."""
+
+from __future__ import annotations
+
+import json
+import re
+from fractions import Fraction
+from itertools import pairwise
+from math import degrees
+from pathlib import Path
+
+import jsonschema
+import pytest
+from support.maps import CONFIGS
+
+import ptmcad
+from ptmcad.answer.paths import Fate, PosePaths
+from ptmcad.ask import paths as module
+from ptmcad.cli import run
+from ptmcad.errors import ConfigError
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+
+pytest.importorskip("numba")
+
+FREE02 = CONFIGS / "free02.yaml"
+SCHEMA = json.loads((CONFIGS.parent / "docs" / "range.schema.json").read_text(encoding="utf-8"))
+
+
+def slice_of(*, free: str = "1/5", window: str = "11/10:13/10") -> ptmcad.Slice:
+    return ptmcad.slice_from_options(FREE02, sets=[f"l0={free}"], ranges=[f"rho={window}"])
+
+
+@pytest.fixture(scope="module")
+def found() -> PosePaths:
+    return ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, "6/5")
+
+
+def test_it_snaps_at_the_fold_to_the_pose_that_is_left(found: PosePaths) -> None:
+    assert [(p.number, p.low.fate, p.high.fate) for p in found.paths] == [
+        (1, Fate.WINDOW, Fate.WINDOW), (2, Fate.WINDOW, Fate.SNAP)]  # fmt: skip
+    end = found.paths[1].high
+    assert isinstance(end.at, Enclosure)
+    assert end.at.text(8) == "1.2316624"
+    assert (end.meeting, end.leaving) == ((0, 1), ())
+    assert end.target is not None
+    (left,) = [p for p in ptmcad.solve(rho=end.target.value, L2="3/2", F3=-10, F4=-10, l0="1/5").equilibria if p.stable]
+    assert [float(a) for a in end.target.angles] == pytest.approx([float(a) for a in left.angles], abs=1e-10)
+    assert end.target_energy is not None
+    assert float(end.target_energy) == pytest.approx(float(left.known_energy), rel=1e-10)
+    assert end.energy is not None
+    assert end.energy.low > end.target_energy.high
+
+
+def test_every_point_is_a_proved_stable_pose_and_neighbours_are_near(found: PosePaths) -> None:
+    assert found.joined
+    for path in found.paths:
+        assert [p.value for p in path.points] == sorted({p.value for p in path.points})
+        assert Fraction(6, 5) in {p.value for p in path.points}
+        assert len(path.points) > 15
+        for point in path.points[::5]:
+            poses = ptmcad.solve(rho=point.value, L2="3/2", F3=-10, F4=-10, l0="1/5").equilibria
+            near = [p for p in poses if all(
+                a.low <= b.high and b.low <= a.high for a, b in zip(p.angles, point.angles, strict=True))]  # fmt: skip
+            assert [p.stable for p in near] == [True]
+        for one, two in pairwise(path.points):
+            assert abs(float(one.angles[0]) - float(two.angles[0])) < 0.1
+    assert (found.paths[0].upright, found.paths[0].reverse) == (False, True)
+    assert (found.paths[1].upright, found.paths[1].reverse) == (True, False)
+
+
+def test_tiny_free_lengths_make_no_difference() -> None:
+    """To the exact paths without, which are proved."""
+    slices = [slice_of(free=free, window="4/5:6/5") for free in ("1/1000000", "0")]
+    free, exact = (ptmcad.pose_paths(slice, "rho", {"L2": "3/2"}, "9/10", 2).paths[0] for slice in slices)
+    assert isinstance(free.high.at, Enclosure)
+    assert isinstance(exact.high.at, AlgebraicNumber)
+    assert (free.low.fate, free.high.fate) == (exact.low.fate, exact.high.fate) == (Fate.WINDOW, Fate.SNAP)
+    assert float(free.high.at) == pytest.approx(float(exact.high.at), abs=1e-4)
+    assert free.high.meeting == exact.high.meeting
+    assert free.high.target is not None
+    assert exact.high.target is not None
+    for a, b in zip(free.high.target.angles, exact.high.target.angles, strict=True):
+        assert degrees(float(a)) == pytest.approx(degrees(float(b)), abs=0.05)
+
+
+def test_a_film_falls_at_the_same_place(found: PosePaths) -> None:
+    slice = ptmcad.slice_from_options(FREE02, ranges=["rho=11/10:13/10", "L2=7/5:8/5"])
+    motion = ptmcad.classify(slice, tolerance="1/5", jobs=1).animate("rho=6/5:5/4,L2=3/2", "stable:2", frames=6)
+    (fall,) = motion.falls
+    end = found.paths[1].high
+    assert isinstance(end.at, Enclosure)
+    assert fall.at[0] == pytest.approx(float(end.at), abs=1e-7)
+
+
+def test_a_value_without_an_answer_leaves_a_point_out(monkeypatch: pytest.MonkeyPatch, found: PosePaths) -> None:
+    """Here the one just beyond a fold of others, which the path passes."""
+    slice = slice_of(window="1:6/5")
+    whole = ptmcad.pose_paths(slice, "rho", {"L2": "3/2"}, "11/10", 2).paths[0]
+    assert whole.low.fate is Fate.WINDOW
+    below = [p.value for p in whole.points if p.value < Fraction(1027, 1000)]
+    assert below
+    own = module.SolutionsOnLine.at
+    hidden = max(below)
+    monkeypatch.setattr(module.SolutionsOnLine, "at", lambda line, v: None if v == hidden else own(line, v))
+    path = ptmcad.pose_paths(slice, "rho", {"L2": "3/2"}, "11/10", 2).paths[0]
+    assert {p.value for p in whole.points} - {p.value for p in path.points} == {hidden}
+    assert path.low.fate is Fate.WINDOW
+
+
+def test_a_pose_that_is_not_found_again_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "SAME", 0.0)
+    path = ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, "6/5", 1).paths[0]
+    assert (path.low.fate, path.high.fate, len(path.points)) == (Fate.UNDECIDED, Fate.UNDECIDED, 1)
+
+
+@pytest.mark.parametrize(
+    ("start", "number", "message", "key"),
+    [
+        ("2", None, "2 is outside the window of rho, 11/10 to 13/10", "--path"),
+        ("1.23166242", None, "", ""),
+        ("6/5", 3, "3 is none of the 2 stable poses at rho = 6/5", "--pose"),
+        ("x", None, "x", "--path"),
+    ],
+)
+def test_starts_that_there_are_not(start: str, number: int | None, message: str, key: str) -> None:
+    if not message:  # beside the fold, however near
+        assert len(ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, start, 1).paths) == 1
+        return
+    with pytest.raises(ConfigError, match=message) as caught:
+        ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, start, number)
+    assert caught.value.key == key
+
+
+def test_the_command_draws_and_tells_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    asked = ["range", str(FREE02), "--along", "rho", "--at", "L2=3/2", "--range", "rho=6/5:5/4", "--path", "61/50"]
+    assert run([*asked, "--pose", "2", "--format", "json,svg", "--out", str(tmp_path), "--name", "x"]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"^pose 2 at rho = 1\.22: .*; y3 > 0 and y4 > 0 at all points that were computed$", out, re.M), out
+    assert "  up: rho = 1.231662423: fold: the stable pose merges with a saddle and both vanish; the mechanism" in out
+    assert "followed in floating point from one proved solution to the next" in out
+    assert {path.name for path in tmp_path.iterdir()} == {"x.json", "x-path.svg"}
+    data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
+    jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)
+    assert data["path"]["joined"] is True
+    assert data["path"]["paths"][0]["high"]["at"]["decimal"].startswith("1.23166242")
+    picture = (tmp_path / "x-path.svg").read_text(encoding="utf-8")
+    assert "saddle, not followed" in picture

@@ -1,0 +1,337 @@
+"""Inequalities and conditions for stability by intervals, and unknowns on the line that bound one another."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+from math import inf
+from typing import Any
+
+import numpy as np
+import pytest
+
+import ptmcad
+from ptmcad.certified.evaluation import program, run
+from ptmcad.certified.formula import Graph
+from ptmcad.certified.formulation import curves, point_counter
+from ptmcad.certified.plain.bounds import ranges
+from ptmcad.certified.plain.nested import eliminated, nested, scaled, sharp_squares, times
+from ptmcad.certified.plain.problem import problem_of
+from ptmcad.certified.plain.trigonometric import Harmonics
+from ptmcad.certified.points import PointCount
+from ptmcad.certified.tape import record
+from ptmcad.errors import ConfigError, DegenerateSliceError
+from ptmcad.question.config import slice_from_mapping
+from ptmcad.question.slice import Count, Slice
+
+PAIR = {"x": "real", "y": "real"}
+SYSTEMS: dict[str, dict[str, Any]] = {
+    "schloegl": {
+        "system": {"unknowns": {"x": "real"}, "equations": ["a*x^2 - x^3 - x + b"], "positive": ["x"],
+                   "stable": ["3*x^2 - 2*a*x + 1"]},
+        "axes": {"a": [0, 4], "b": [-1, 1]},
+    },
+    "brusselator": {
+        "system": {"unknowns": PAIR, "equations": ["a + x^2*y - (b + 1)*x", "b*x - x^2*y"], "positive": ["x", "y"],
+                   "stable": ["1 + x^2 + b - 2*x*y", "x^2*(b + 1) - 2*x^3*y + 2*x^3*y - b*x^2"]},
+        "axes": {"a": ["1/10", 2], "b": ["1/10", 4]},
+    },
+    "selkov": {
+        "system": {"unknowns": PAIR, "equations": ["-x + a*y + x^2*y", "b - a*y - x^2*y"], "positive": ["x", "y"],
+                   "stable": ["1 - 2*x*y + a + x^2", "a + x^2"]},
+        "axes": {"a": ["1/100", "1/5"], "b": ["1/10", "6/5"]},
+    },
+    "competition": {
+        "system": {"unknowns": PAIR, "equations": ["x*(a - x - y/2)", "y*(b - x/3 - y)"], "positive": ["x", "y"]},
+        "axes": {"a": [0, 2], "b": [0, 2]},
+    },
+    "toggle": {
+        "system": {"unknowns": PAIR, "equations": ["x*(1 + y^2) - a", "y*(1 + x^2) - b"], "positive": ["x", "y"],
+                   "stable": ["(1 + y^2)*(1 + x^2) - 4*x^2*y^2"]},
+        "axes": {"a": [0, 4], "b": [0, 4]},
+    },
+    "double well": {
+        "system": {"unknowns": {"x": "real"}, "potential": "x^4/4 - a*x^2/2 + b*x", "positive": ["x + 1/3"]},
+        "axes": {"a": [-1, 2], "b": [-1, 1]},
+    },
+    "torus": {
+        "system": {"unknowns": {"s": "angle", "t": "angle"}, "positive": ["cos(s) + b*sin(t)"],
+                   "potential": "-cos(s) - a*cos(t) - b*cos(s - t) - sin(s)/5"},
+        "axes": {"a": ["1/10", 2], "b": ["-2", 2]},
+    },
+}  # fmt: skip
+WINDOW: dict[str, list[Any]] = {"a": [0, 1], "b": [-3, 3]}
+
+
+def slice_of(name: str, **changes: Any) -> Slice:
+    return slice_from_mapping({"name": "small", **SYSTEMS[name], **changes})
+
+
+def small(system: dict[str, Any], axes: dict[str, list[Any]], **more: Any) -> Slice:
+    return slice_from_mapping({"name": "small", "system": system, "axes": axes, **more})
+
+
+def counts_of(name: str) -> tuple[str, ...]:
+    system = SYSTEMS[name]["system"]
+    return ("total", *(["stable"] if "stable" in system else ["stable", "index"] if "potential" in system else []))
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_counts_at_random_points_are_those_of_the_exact_engine(name: str) -> None:
+    rng, seen = random.Random(name), set[object]()
+    for count in counts_of(name):
+        slice = slice_of(name, count=count)
+        counter = point_counter(slice)
+        for _ in range(12):
+            x, y = (a.low + (a.high - a.low) * Fraction(rng.randint(1, 1008), 1009) for a in slice.axes)
+            found = counter.at(x, y, slice.count)
+            names = zip(slice.axis_names, map(str, (x, y)), strict=True)
+            true = ptmcad.counts_at(slice.model, **dict(names))
+            assert found.decided, (count, x, y)
+            assert getattr(found, count) == getattr(true, count), (count, x, y)
+            assert len(found.solutions) == (found.stable if count == "stable" else found.total)
+            seen.add((count, getattr(found, count)))
+    assert len(seen) > len(counts_of(name))
+
+
+@pytest.mark.parametrize("name", ["schloegl", "selkov", "toggle", "double well"])
+@pytest.mark.parametrize("count", ["total", "stable"])
+def test_maps_agree_with_the_exact_engine(name: str, count: str) -> None:
+    slice = slice_of(name, count=count)
+    exact, certified = ptmcad.classify(slice), ptmcad.classify(slice, engine="certified", tolerance="1/40", jobs=1)
+    for value in {getattr(region, count) for region in exact.regions}:
+        low, high = bounds(certified, count, value)
+        assert low <= sum(r.area[1] for r in exact.regions if getattr(r, count) == value)
+        assert sum(r.area[0] for r in exact.regions if getattr(r, count) == value) <= high
+    for cell in certified.cells:
+        at = exact.locate(**dict(zip(slice.axis_names, cell.sample, strict=True)))
+        assert getattr(at, count) == getattr(cell, count)
+        others = {"total", "stable", "index"} - {count} if not slice.model.has_potential else {"admissible"}
+        assert not any(getattr(cell, other) is not None for other in others)
+
+
+def bounds(result: ptmcad.RegionMap, count: str, value: Any) -> tuple[Fraction, Fraction]:
+    """The area of the regions with a count, when the undetermined part belongs to them or not."""
+    across, up = result.slice.axes
+    area = sum((r.area[0] for r in result.regions if getattr(r, count) == value), Fraction(0))
+    return area, area + result.undetermined * (across.high - across.low) * (up.high - up.low)
+
+
+ROOTS: dict[str, Any] = {"unknowns": {"x": "real"}, "equations": ["x^2 - b"]}
+AT: dict[str, list[Any]] = {"a": [-2, 2], "b": [-1, 2]}
+
+
+def test_a_solution_stops_to_count_where_an_inequality_vanishes_and_nowhere_else() -> None:
+    """The roots of x^2 = b beyond a: on one side of a parabola, whose vertex is the fold's only point that matters."""
+    slice = small({**ROOTS, "positive": ["x - a"]}, AT)
+    assert [curve.name for curve in curves(slice, Count.TOTAL)] == ["fold", "boundary x - a = 0"]
+    result = ptmcad.classify(slice, engine="certified", tolerance="1/100", jobs=1)
+    for number, area in ((1, 2 ** (7 / 2) / 3), (2, 4 - 2 ** (5 / 2) / 3), (0, 8 - 2 ** (5 / 2) / 3)):
+        low, high = bounds(result, "total", number)
+        assert low <= area <= high
+
+
+def test_a_stable_solution_loses_its_stability_where_a_condition_vanishes() -> None:
+    system = {**ROOTS, "positive": ["x"], "stable": ["x - a", "1 - x"]}
+    stable = ptmcad.classify(small(system, AT, count="stable"), engine="certified", tolerance="1/100", jobs=1)
+    low, high = bounds(stable, "stable", 1)
+    assert low <= Fraction(8, 3) <= high  # a < sqrt b < 1
+    assert {s.signs for cell in stable.cells for s in cell.solutions} == {"++"}
+    total = ptmcad.classify(small(system, AT, count="total"), engine="certified", tolerance="1/100", jobs=1)
+    assert {cell.total for cell in total.cells} == {0, 1}
+    low, high = bounds(total, "total", 1)
+    assert low <= 8 <= high  # the conditions for stability are no curves of this map
+    assert total.system.inequalities == ("x",)
+    assert total.system.stability == ("x - a", "1 - x")
+
+
+def test_folds_of_what_does_not_count_are_left_out() -> None:
+    """The cubic's fold at x = -1 lies where the inequality is violated."""
+    system = {"unknowns": {"x": "real"}, "equations": ["x^3 - 3*x + a"], "positive": ["x"]}
+    result = ptmcad.classify(small(system, {"a": [-4, 4], "b": [0, 1]}), engine="certified", tolerance="1/100", jobs=1)
+    assert [result.locate(a=a, b="1/2").total for a in (-3, -1, "9/8", 3)] == [1, 1, 2, 0]
+    assert result.locate(a=-2, b="1/2").total == 1  # in a cell, though x = -1 is a double root
+
+
+@pytest.mark.parametrize(("offset", "total"), [("0", None), ("1/10^40", 1), ("-1/10^40", 2)])
+def test_a_condition_that_is_nearly_zero_is_decided_and_one_that_is_zero_is_not(offset: str, total: int | None) -> None:
+    """x = -1 and x = 1, beyond -1 and a little."""
+    counter = point_counter(small({**ROOTS, "positive": ["x - a"]}, AT))
+    small_one = Fraction(offset.replace("1/10^40", "1")) / 10**40
+    assert counter.at(Fraction(-1) + small_one, Fraction(1), Count.TOTAL).total == total
+
+
+def test_a_condition_that_is_zero_at_a_solution_all_over_the_window_is_named() -> None:
+    for positive in ("x - a", "(x - a)*(x + 5)", "a^2 - x*a"):
+        slice = small(
+            {"unknowns": PAIR, "equations": ["x - a", "y - b"], "positive": [positive]}, {"a": [1, 2], "b": [1, 2]}
+        )
+        with pytest.raises(DegenerateSliceError, match="zero at a solution at a = 31/21"):
+            ptmcad.classify(slice, engine="certified", tolerance="1/10")
+    once = small(
+        {"unknowns": PAIR, "equations": ["x - a", "y - b"], "positive": ["x - 10/21"]}, {"a": [0, 1], "b": [1, 2]}
+    )
+    assert {c.total for c in ptmcad.classify(once, engine="certified", tolerance="1/10", jobs=1).cells} == {0, 1}
+
+
+def test_a_condition_without_unknowns_is_a_curve_and_a_number_is_none() -> None:
+    system = {"unknowns": {"x": "real"}, "equations": ["x - a"], "positive": ["a - b", "2"]}
+    slice = small(system, {"a": [0, 1], "b": [0, 1]})
+    assert [curve.name for curve in curves(slice, Count.TOTAL)] == ["fold", "boundary a - b = 0"]
+    result = ptmcad.classify(slice, engine="certified", tolerance="1/50", jobs=1)
+    assert (result.locate(a="3/4", b="1/4").total, result.locate(a="1/4", b="3/4").total) == (1, 0)
+    for never in ("0", "-1", "x - x"):
+        with pytest.raises(ConfigError, match="no solution counts"):
+            point_counter(small({**system, "positive": [never]}, {"a": [0, 1], "b": [0, 1]}))
+
+
+def test_where_a_species_must_live_its_extinction_is_no_solution() -> None:
+    """Divided by what is not zero; without the inequality, or with one that says less, nothing is."""
+    equations = ["x^2*(x - a)", "y - b"]
+    axes: dict[str, list[Any]] = {"a": [-1, 1], "b": [1, 2]}
+
+    def degrees(*positive: str) -> list[int]:
+        (f, _) = problem_of(
+            small({"unknowns": PAIR, "equations": equations, "positive": list(positive)}, axes)
+        ).equations
+        return sorted(e[0] for _, e in f.terms)
+
+    assert degrees("x") == degrees("b*x*y") == [0, 1]
+    assert degrees() == degrees("y") == degrees("x + 1") == [2, 3]
+    potential = small({"unknowns": {"x": "real"}, "potential": "x^4/4 - a*x^3/3", "positive": ["x"]}, axes)
+    assert sorted(e[0] for _, e in problem_of(potential).equations[0].terms) == [2, 3]  # its Jacobian is a Hessian
+
+
+@pytest.mark.parametrize(
+    ("equations", "axes", "reach"),
+    [
+        (["x^2 + y^2 - 1 - a", "x - b*y"], {"a": [0, 1], "b": [0, 1]}, (1.4, 1.4)),
+        (["x*(1 + y^4) - a", "y*(1 + x^4) - b"], {"a": [-3, 3], "b": [-3, 3]}, (3.0, 3.0)),
+        (["y - x^2 - a", "x*y + x - b"], {"a": [-1, 1], "b": [-1, 1]}, (1.0, 1.0)),
+        (["x - y^3 - a", "y + x^3 - b"], {"a": [-1, 1], "b": [-1, 1]}, (1.0, 1.0)),
+        (["x^3 - 3*x*y^2 - a", "3*x^2*y - y^3 - b"], {"a": [-1, 1], "b": [-1, 1]}, (1.0, 1.0)),
+    ],
+)
+def test_unknowns_that_bound_one_another(equations: list[str], axes: dict[str, Any], reach: tuple[float, ...]) -> None:
+    slice = small({"unknowns": PAIR, "equations": equations}, axes)
+    found = ranges(problem_of(slice), slice.axes)
+    for (low, high), least in zip(found, reach, strict=True):
+        assert least <= high <= 16 * least and -16 * least <= low <= -least / 16
+    certified = ptmcad.classify(slice, engine="certified", tolerance="1/20", jobs=1)
+    assert certified.cells
+    for cell in certified.cells:
+        names = zip(slice.axis_names, map(str, cell.sample), strict=True)
+        assert ptmcad.counts_at(slice.model, **dict(names)).total == cell.total
+
+
+def test_inequalities_bound_what_equations_alone_do_not() -> None:
+    """a x + y = 1 and x = b y + 1/2: without y > 0 a solution leaves to infinity where a b = -1."""
+    linear = {"unknowns": PAIR, "equations": ["a*x + y - 1", "x - b*y - 1/2"]}
+    for positive in ([], ["x"], ["x", "x + 1"]):
+        with pytest.raises(ConfigError, match="no bound of the unknown"):
+            slice = small({**linear, "positive": positive}, WINDOW)
+            ranges(problem_of(slice), slice.axes)
+    slice = small({**linear, "positive": ["x", "y"]}, WINDOW)
+    (x_low, x_high), (y_low, y_high) = ranges(problem_of(slice), slice.axes)
+    assert x_low == y_low == 0
+    assert 3.5 <= x_high <= 8 and 1 <= y_high <= 2
+    result = ptmcad.classify(slice, engine="certified", tolerance="1/50", jobs=1)
+    assert (result.locate(a="1/2", b=1).total, result.locate(a="1/2", b=-1).total) == (1, 0)
+
+
+@pytest.mark.parametrize(
+    ("coefficient", "bounded"),
+    [
+        ("(a - 1/3)^2 + 1/10^4", True),
+        ("(a - 1/3)^2", False),
+        ("(a - 1/3)^2 - 1/10^12", False),
+        ("a", False),
+        ("-a", False),
+    ],
+)
+def test_a_solution_that_leaves_to_infinity_somewhere_in_the_closed_window(coefficient: str, bounded: bool) -> None:
+    slice = small({"unknowns": {"x": "real"}, "equations": [f"({coefficient})*x - 1"]}, WINDOW)
+    if bounded:
+        ((_, high),) = ranges(problem_of(slice), slice.axes)
+        assert 10**4 <= high <= 4 * 10**4
+    else:
+        with pytest.raises(ConfigError, match="no bound of the unknown x"):
+            ranges(problem_of(slice), slice.axes)
+
+
+@pytest.mark.parametrize("name", [n for n in SYSTEMS if n != "torus"])
+def test_no_solution_that_counts_is_outside_of_the_ranges(name: str) -> None:
+    """Solutions of the exact engine, at corners of the window and at random points."""
+    slice = slice_of(name)
+    found, rng = ranges(problem_of(slice), slice.axes), random.Random(name)
+    across, up = slice.axes
+    points = [(x, y) for x in (across.low, across.high) for y in (up.low, up.high)]
+    points += [
+        (across.low + (across.high - across.low) * Fraction(rng.randint(0, 50), 50), up.low + (up.high - up.low) * t)
+        for t in (Fraction(rng.randint(0, 50), 50) for _ in range(4))
+    ]
+    for x, y in points:
+        names = zip(slice.axis_names, map(str, (x, y)), strict=True)
+        for pose in ptmcad.solve(model=slice.model, digits=5, **dict(names)).equilibria:
+            assert all(low <= z.center <= high for z, (low, high) in zip(pose.reals, found, strict=True)), (x, y)
+
+
+def test_other_ways_to_write_polynomials_have_their_values() -> None:
+    ring = Harmonics(("x", "y", "t"), ("x", "y"))
+    x, y, c = ring.parameter("x"), ring.parameter("y"), ring.cos("t")
+    one = ring.constant(Fraction(1))
+    f = x * x * x * y - x * y * y * c + y * y * y * y - c + one
+    graph = Graph()
+    unknowns = [graph.variable(k) for k in (2, 3, 4, 5)]
+    orders = [((0, False), (1, True)), ((1, True), (0, False)), ((0, True), (1, True))]
+    formulas = [f.formula(graph, unknowns[:3]), *(nested(graph, f, unknowns[:3], order) for order in orders)]
+    formulas += [times(f, 1).formula(graph, unknowns[:3]), scaled(f, {0: 2, 1: 1}).formula(graph, unknowns)]
+    values = evaluated(formulas, [0.7, -1.3, 0.4, 0.5])
+    assert values[1:4] == pytest.approx([values[0]] * 3)
+    assert values[4] == pytest.approx(-1.3 * values[0])
+    # x = t u^-2, y = t u^-1, times u^7
+    at = evaluated([f.formula(graph, unknowns[:3])], [0.7 / 0.25, -1.3 / 0.5, 0.4, 0.5])
+    assert values[5] == pytest.approx(at[0] * 0.5**7)
+
+
+def test_combinations_of_equations_vanish_where_the_equations_do() -> None:
+    """At x = 2, y = 3, t = 0; and they lack a term that two of them have."""
+    ring = Harmonics(("x", "y", "t"), ("x", "y"))
+    x, y, c = ring.parameter("x"), ring.parameter("y"), ring.cos("t")
+    equations = [x * x * y * c - x - ring.constant(Fraction(10)), x * x * y * c + y - ring.constant(Fraction(15)),
+                 y * y - x * x - ring.constant(Fraction(5))]  # fmt: skip
+    found = eliminated(equations)
+    assert x + y - ring.constant(Fraction(5)) in [h.scaled(Fraction(k)) for h in found for k in (1, -1)]
+    graph = Graph()
+    formulas = [h.formula(graph, [graph.variable(k) for k in (2, 3, 4)]) for h in found]
+    assert evaluated(formulas, [2.0, 3.0, 0.0]) == pytest.approx([0.0] * len(found), abs=1e-12)
+    assert all(abs(value) > 1e-3 for value in evaluated(formulas, [0.7, 0.3, 0.4]))
+
+
+def evaluated(formulas: list[Any], point: list[float]) -> list[float]:
+    tape = record([formulas])
+    low, high = np.empty((2, len(tape)))
+    at = np.array([0.0, 0.0, *point])
+    assert run(program(tape), at, at, low, high, 0, len(tape))
+    return [float((low[k] + high[k]) / 2) for k in tape.outputs[0]]
+
+
+def test_squares_of_unbounded_intervals_have_both_their_ends() -> None:
+    graph = Graph()
+    x = graph.variable(0)
+    tape = sharp_squares(record([[x.squared() + 1, x.squared() * x - graph.constant(Fraction(1, 3)) * x]]))
+    low, high = np.empty((2, len(tape)))
+    for ends, least in (((2.0, inf), 5.0), ((-inf, -2.0), 5.0), ((-inf, inf), 1.0), ((-inf, 1.0), 1.0)):
+        assert run(program(tape), np.array(ends[:1]), np.array(ends[1:]), low, high, 0, len(tape))
+        place = tape.outputs[0][0]
+        assert low[place] == pytest.approx(least) and high[place] == inf
+    assert tape.constants.keys() == {int(k) for k in np.flatnonzero(tape.operations == 0)}
+
+
+def test_nothing_is_counted_where_a_condition_is_not_decided() -> None:
+    """A solution at which a condition is zero leaves its point undecided, also where others count."""
+    system = {"unknowns": {"x": "real"}, "equations": ["(x - a)*(x - 2)*(x + 2)"], "positive": ["x - 1/2"]}
+    counter = point_counter(small(system, {"a": [0, 1], "b": [0, 1]}))
+    assert counter.at(Fraction(1, 2), Fraction(1, 3), Count.TOTAL) == PointCount()
+    assert counter.at(Fraction(1, 3), Fraction(1, 3), Count.TOTAL).total == 1
+    assert counter.at(Fraction(2, 3), Fraction(1, 3), Count.TOTAL).total == 2
