@@ -17,13 +17,13 @@ import numpy as np
 
 from ptmcad.answer.boundaries import Boundary
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.ask.doubles import within_doubles
 from ptmcad.ask.location import component_cells
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.chains import Chain, chains, critical_shares
 from ptmcad.exact.cad.curves import lines_of
+from ptmcad.question.doubles import within_doubles
 from ptmcad.text.parsing import number_for
 
 TOLERANCE = Fraction(1, 1000)

@@ -89,12 +89,15 @@ def classify(
         resume=resume,
         areas=areas,
     )
+    return region_map(_counted(slice_from(slice), count), options)
+
+
+def _counted(slice: Slice, count: Count | str | None) -> Slice:
+    """The slice with another count, where one is given."""
     try:
-        asked = slice_from(slice)
-        counted = asked if count is None else replace(asked, count=Count(count))
+        return slice if count is None else replace(slice, count=Count(count))
     except ValueError as error:
         raise ConfigError(str(error), key="count") from error
-    return region_map(counted, options)
 
 
 def _names(without: Iterable[str], keep: Iterable[str] | None) -> frozenset[str]:

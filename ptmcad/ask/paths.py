@@ -24,7 +24,6 @@ from ptmcad.answer.motion import Place
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.poses import Pose
 from ptmcad.ask.branches import Sample, SolutionsOnLine, short
-from ptmcad.ask.doubles import within_doubles
 from ptmcad.ask.fields.course import Course
 from ptmcad.ask.fields.descent import descent
 from ptmcad.ask.fields.field import unknowns_of
@@ -34,6 +33,7 @@ from ptmcad.certified.intervals import certified_intervals
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism
 from ptmcad.options import Progress
+from ptmcad.question.doubles import within_doubles
 from ptmcad.question.line import varying_axis
 from ptmcad.question.slice import Axis, Slice, have_moments
 from ptmcad.text.enclosure import Enclosure

@@ -17,12 +17,12 @@ from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.ask.doubles import within_doubles
 from ptmcad.ask.location import component_cells, in_steps, locate, stack_over
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.curves import by_component, curves_of, lines_of
+from ptmcad.question.doubles import within_doubles
 
 MAX_PIXELS = 10**8
 

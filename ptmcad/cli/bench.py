@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import report_written
 from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError
@@ -32,7 +33,7 @@ def _seconds(_context: click.Context, parameter: click.Parameter, value: float) 
 )
 @click.option("--compare", nargs=2, type=click.Path(path_type=Path), metavar="OLD NEW",
               help="Compare two JSON files of earlier runs; measure nothing.")  # fmt: skip
-@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@out_option
 @click.option("--method", "methods", multiple=True, type=click.Choice(METHODS), metavar="NAME",
               help=f"Measure this method only, of {', '.join(METHODS)}; may be repeated.  "
                    "[default: all that are installed]")  # fmt: skip

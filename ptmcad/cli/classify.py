@@ -17,10 +17,10 @@ from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_o
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.paths import file_option, out_option
 from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
-from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import ptm
 from ptmcad.options import Options
@@ -251,7 +251,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @slice_options
 @click.option("--count", type=click.Choice([c.value for c in Count]), help="What distinguishes two regions.")
 @click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
-@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@out_option
 @click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
 @click.option("--without", multiple=True, callback=_names_of_savings, metavar="NAME",
               help="Do without a saving, compute what it leaves out; 'all' for every one. Repeatable.")  # fmt: skip
@@ -269,13 +269,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
     metavar="EPS",
     help="Stop when this share of the window is undetermined (certified engine).",
 )
-@click.option(
-    "--resume",
-    type=click.Path(path_type=Path),
-    shell_complete=files(".json"),
-    metavar="RESULT",
-    help="Go on from a stored certified map of the same slice.",
-)
+@file_option("--resume", ".json", "RESULT", "Go on from a stored certified map of the same slice.")
 @click.option(
     "--area-tolerance", callback=share_of, metavar="EPS", help="Relative width of the areas' bounds (exact engine)."
 )

@@ -15,6 +15,7 @@ from ptmcad.cli.drawing import pixels_of, share_of
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map
+from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
@@ -49,7 +50,7 @@ class DifferenceError(PtmcadError):
               help="Random pixels that are compared with exact poses.")  # fmt: skip
 @click.option("--tolerance", callback=share_of, default="1/100", show_default=True, metavar="EPS",
               help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
-@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@out_option
 @click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="png",
               show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
 @limit_options

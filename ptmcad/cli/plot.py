@@ -16,6 +16,7 @@ from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_o
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.paths import file_option
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.points import disagreements, measured, places, poses_at
 from ptmcad.cli.stored import read_result
@@ -80,24 +81,20 @@ def _draw_comparison(draw: Callable[..., None], found: Comparison, drawing: Draw
 @click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the files.  [default: that of RESULT]")
 @drawing_options((*PICTURES, *DATA), "png", "What to make")
-@click.option(
-    "--overlay",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="A CSV file of points to draw on the map: columns named like the axes, and label and count if there are.",
-)
+@file_option(
+    "--overlay", ".csv", "FILE",
+    "A CSV file of points to draw on the map: columns named like the axes, and label and count if there are.",
+)  # fmt: skip
 @click.option(
     "--at",
     multiple=True,
     metavar="NAME=VALUE,NAME=VALUE",
     help="Draw the stable poses at a point beside the map, with a line to it. Repeatable.",
 )
-@click.option(
-    "--compare",
-    type=click.Path(path_type=Path),
-    metavar="OTHER",
-    help="Draw RESULT, another exact map of the same window, and where their counts differ; print how large that is.",
-)
+@file_option(
+    "--compare", ".json", "OTHER",
+    "Draw RESULT, another exact map of the same window, and where their counts differ; print how large that is.",
+)  # fmt: skip
 @limit_options
 @gathered(added=Added)
 def command(

@@ -15,6 +15,7 @@ from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
+from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.range_answers import Answer, Request, answer, is_enclosed
@@ -174,7 +175,7 @@ class Output:
     "--range", "ranges", multiple=True, metavar="NAME=LO:HI", shell_complete=settings, help="The range of an axis."
 )
 @click.option("--digits", type=click.IntRange(1, 1000), default=10, show_default=True, help="Digits of decimals.")
-@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@out_option
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-range]")
 @click.option("--format", "formats", callback=_formats, shell_complete=formats_known(FORMATS), metavar="LIST",
               help=f"Files to write, of {', '.join(FORMATS)}.  [default: none]")  # fmt: skip

@@ -12,6 +12,7 @@ from ptmcad.cli.formats import formats_of
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.locate import point_of
+from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.values import files, point, settings
@@ -103,7 +104,7 @@ def _write_picture(landscape: bool, poses: Poses, path: Path) -> None:
 @click.option("--format", "formats", callback=partial(formats_of, known=FORMATS),
               shell_complete=formats_known(FORMATS), default="table", show_default=True,
               metavar="LIST", help=f"What to make, of {', '.join(FORMATS)}; the table is printed.")  # fmt: skip
-@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@out_option
 @click.option("--name", metavar="NAME", help="Start of the files' names.  [default: poses]")
 @click.option("--landscape", is_flag=True, help="Draw the energy over one or two unknowns too (NAME-landscape.png).")
 @limit_options

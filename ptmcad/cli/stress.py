@@ -11,6 +11,7 @@ import click
 
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture, report_written, write_result
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.values import formats as formats_known
@@ -76,7 +77,7 @@ def _draw(found: Campaign, path: Path) -> None:
 @click.option("--format", "formats", callback=partial(formats_of, known=FORMATS),
               shell_complete=formats_known(FORMATS), default="table,json,csv,png,svg",
               show_default=True, metavar="LIST", help="What to make; the table is printed.")  # fmt: skip
-@click.option("--out", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.  [default: .]")
+@out_option
 @click.option("--list", "only_list", is_flag=True, help="Print the cases with their sources, and run none.")
 @limit_options
 def command(

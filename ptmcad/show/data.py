@@ -19,6 +19,7 @@ from ptmcad.answer.counts import MorseIndex
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
+from ptmcad.question.doubles import within_doubles
 from ptmcad.show.polynomial_text import Style, polynomial_text
 
 if TYPE_CHECKING:
@@ -41,25 +42,27 @@ def axis_columns(result: RegionMap) -> tuple[str, str]:
 
 def region_rows(result: RegionMap) -> list[Row]:
     """A row for each region, with a point of it and the bounds of its area."""
-    return [
-        {
-            "region": k, "stable": r.stable, "total": r.total, "index": _index(r.index), "admissible": r.admissible,
-            "area_low": _rounded(r.area[0], -inf), "area_high": _rounded(r.area[1], inf), "cells": len(r.cells),
-            **_at(result, r.sample),
-        }
-        for k, r in enumerate(result.regions)
-    ]  # fmt: skip
+    with within_doubles(result.slice):
+        return [
+            {
+                "region": k, "stable": r.stable, "total": r.total, "index": _index(r.index), "admissible": r.admissible,
+                "area_low": _rounded(r.area[0], -inf), "area_high": _rounded(r.area[1], inf), "cells": len(r.cells),
+                **_at(result, r.sample),
+            }
+            for k, r in enumerate(result.regions)
+        ]  # fmt: skip
 
 
 def cell_rows(result: RegionMap) -> list[Row]:
     """A row for each cell, with its sample point."""
-    return [
-        {
-            "cell": k, "region": c.region, "stable": c.stable, "total": c.total, "index": _index(c.index),
-            "admissible": c.admissible, "stack": c.stack, "level": c.level, **_at(result, c.sample),
-        }
-        for k, c in enumerate(result.cells)
-    ]  # fmt: skip
+    with within_doubles(result.slice):
+        return [
+            {
+                "cell": k, "region": c.region, "stable": c.stable, "total": c.total, "index": _index(c.index),
+                "admissible": c.admissible, "stack": c.stack, "level": c.level, **_at(result, c.sample),
+            }
+            for k, c in enumerate(result.cells)
+        ]  # fmt: skip
 
 
 def component_rows(result: RegionMap) -> list[Row]:

@@ -21,6 +21,7 @@ from ptmcad.ask.fields.field import centre, exact_at, field_of, request_of
 from ptmcad.cli import map as command
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
+from ptmcad.show.data import cell_rows, region_rows
 
 
 def of_kind(poses: tuple[Pose, ...], kind: str) -> list[Pose]:
@@ -376,7 +377,9 @@ def test_windows_beyond_doubles_are_refused() -> None:
     }  # fmt: skip
     result = ptmcad.classify(record)
     assert result.boundaries() == ()  # no curve is in the window
-    for ask in (result.grid, lambda: result.field("z", "pose:1")):
+    for ask in (
+        result.grid, lambda: result.field("z", "pose:1"), lambda: region_rows(result), lambda: cell_rows(result),
+    ):  # fmt: skip
         with pytest.raises(ConfigError, match="beyond doubles"):
             ask()
 

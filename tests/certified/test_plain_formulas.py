@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from flint import arb, arb_mat
+from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
@@ -26,25 +27,7 @@ from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.ranges.certified import table as interval_table
 
-VON_MISES: dict[str, Any] = {
-    "name": "von_mises",
-    "mechanism": {
-        "name": "von_mises",
-        "parameters": {
-            "a": {"kind": "base", "default": 1},
-            "k": {"kind": "stiffness", "default": 1},
-            "l0": {"kind": "free length", "default": 1},
-            "f": {"kind": "force"},
-        },
-        "unknowns": {"h": "length"},
-        "points": {"A": ["-a", 0], "B": ["a", 0], "P": [0, "h"]},
-        "springs": [{"between": ["A", "P"], "k": "k", "free": "l0"}, {"between": ["B", "P"], "k": "k", "free": "l0"}],
-        "loads": {"P": [0, "f"]},
-    },
-    "parameters": {"l0": 1},
-    "axes": {"a": [0, 2], "f": [-1, 1]},
-    "count": "index",
-}
+VON_MISES: dict[str, Any] = {"name": "von_mises", **TRUSS}
 CHAIN: dict[str, Any] = {
     "name": "chain",
     "mechanism": {

@@ -259,6 +259,9 @@ def test_a_map_is_drawn_into_axes_in_the_units_of_its_own(tmp_path: Path) -> Non
     result.plot(ax=right, title="second")
     assert (left.get_xlim(), left.get_ylabel(), left.get_legend()) == ((0, 2), "L₂ (length)", None)
     assert [t.get_text() for t in right.get_legend().get_texts()] == ["1", "2"]
+    many = replace(result, regions=tuple(replace(r, stable=8 + (r.stable or 0)) for r in result.regions))
+    legend = many.plot(ax=Figure().subplots()).get_legend()
+    assert [t.get_text() for t in legend.get_texts()] == ["9", "10"]  # as numbers, not as texts
     left.set_xlim(0.5, 1.0)
     canvas = FigureCanvasAgg(page)
     canvas.draw()

@@ -16,6 +16,7 @@ from flint import arb, ctx
 from forger import certified
 from forger.consistency import drop, put
 from support.maps import once_per_run
+from support.records import TRUSS
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution, Status
@@ -44,24 +45,6 @@ pytest.importorskip("numba")
 LONG = Fraction(10) ** 5000
 """Of more digits than Python writes by itself."""
 
-TRUSS: dict[str, Any] = {
-    "mechanism": {
-        "name": "truss",
-        "parameters": {
-            "a": {"kind": "base", "default": 1},
-            "k": {"kind": "stiffness", "default": 1},
-            "l0": {"kind": "free length", "default": 1},
-            "f": {"kind": "force"},
-        },
-        "unknowns": {"h": "length"},
-        "points": {"A": ["-a", 0], "B": ["a", 0], "P": [0, "h"]},
-        "springs": [{"between": ["A", "P"], "k": "k", "free": "l0"}, {"between": ["B", "P"], "k": "k", "free": "l0"}],
-        "loads": {"P": [0, "f"]},
-    },
-    "parameters": {"l0": 1},
-    "axes": {"a": [0, 2], "f": [-1, 1]},
-    "count": "index",
-}
 PENDULUM: dict[str, Any] = {
     "mechanism": {
         "name": "stretched",

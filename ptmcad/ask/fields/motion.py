@@ -22,7 +22,6 @@ from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.motion import Fall, Motion, Place, Step
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.ask.doubles import within_doubles
 from ptmcad.ask.fields.branches import Follower, Places, filled
 from ptmcad.ask.fields.course import Course, corners_of
 from ptmcad.ask.fields.descent import descent, negatives
@@ -32,6 +31,7 @@ from ptmcad.ask.fields.track import LEAST, Track, followed
 from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError, PtmcadError
 from ptmcad.options import Progress
+from ptmcad.question.doubles import within_doubles
 
 FRAMES, MOST_FRAMES = 90, 2000
 MOST_FALLS = 20

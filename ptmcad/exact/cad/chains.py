@@ -100,9 +100,24 @@ def critical_shares(result: RegionMap) -> list[Span]:
 
 
 def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:
-    """A critical value in an interval that is short against its distance from the samples beside it."""
+    """A critical value in an interval that is short against its distance from the samples beside it.
+
+    Raises
+    ------
+    ValueError
+        When it is not between them, as in a damaged result: halving would never part it from them.
+    """
     p = UnivariatePolynomial(list(value.polynomial))
-    root = RealRoot(p, from_fraction(value.low), from_fraction(value.high))
+    low, high = from_fraction(value.low), from_fraction(value.high)
+    signs = sign_at(p, low), sign_at(p, high)
+    if low <= before:
+        low, signs = before, (sign_at(p, before), signs[1])
+    if high >= after:
+        high, signs = after, (signs[0], sign_at(p, after))
+    is_between = low < high and signs[0] * signs[1] < 0 if value.low < value.high else before < low == high < after
+    if not is_between:
+        raise ValueError("a critical value is not between the samples of its stacks")
+    root = RealRoot(p, low, high)
     while root.low <= before or root.high >= after:
         root = halve(root)
     return refine(root, min(root.low - before, after - root.high) * _END)

@@ -27,7 +27,7 @@ from ptmcad.show.render.overlay import Overlay
 from ptmcad.show.render.poses import assigned, in_order
 from ptmcad.show.render.regionmap import draw_parts, fit
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.sketch import Frame, arrow_lengths, frame_of, sketch
+from ptmcad.show.render.sketch import Frame, Scene, arrow_lengths, frame_of
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.style import Place, Style
 
@@ -53,6 +53,16 @@ class _Block:
     head: Sequence[str]
     poses: Poses
     shown: tuple[Pose, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Slot:
+    """Where a block stands, in inches: left end, top and width; ``before`` at the left of the map."""
+
+    left: float
+    top: float
+    width: float
+    before: bool
 
 
 def draw_around(
@@ -103,12 +113,12 @@ def draw_around(
     figure = Figure(figsize=size, dpi=dpi, facecolor="white")
     axes = draw_parts(figure, seen, _moved(layout, left, size), inner_style, False, overlay)
     for number, side in enumerate(sides):
-        corner = (_GAP if number == 0 else size[0] - wide[1] - _GAP, size[1] - _GAP)
+        slot = _Slot(_GAP if number == 0 else size[0] - wide[1] - _GAP, size[1] - _GAP, wide[number], number == 0)
         free = (size[1] - 2 * _GAP - sum(heights[n] for n in side)) / max(1, len(side))
         for n in side:
-            _draw_block(figure, axes, seen.whole.view.approximate_position(points[n][0]), blocks[n], frame,
-                        (corner, wide[number], number == 0), style)  # fmt: skip
-            corner = (corner[0], corner[1] - heights[n] - free)
+            at = seen.whole.view.approximate_position(points[n][0])
+            _lead(axes, _draw_block(figure, blocks[n], frame, slot, style), at, n + 1, style)
+            slot = replace(slot, top=slot.top - heights[n] - free)
     return figure
 
 
@@ -168,31 +178,21 @@ def _moved(layout: Layout, left: float, size: tuple[float, float]) -> Layout:
     )
 
 
-def _draw_block(
-    figure: Figure, axes: Any, at: tuple[float, float], block: _Block, frame: Frame,
-    place: tuple[tuple[float, float], float, bool], style: Style,
-) -> None:  # fmt: skip
-    """A point's head and poses, with a line to the point and a mark there.
-
-    Parameters
-    ----------
-    at : the point, as fractions of the axes' sides.
-    place : the upper left corner, the width, and whether it is at the left of the map.
-    """
-    (left, top), wide, before = place
+def _draw_block(figure: Figure, block: _Block, frame: Frame, slot: _Slot, style: Style) -> tuple[float, float]:
+    """A point's head and poses; where the line to the point begins."""
     width, tall = (float(side) for side in figure.get_size_inches())
     inches, em = figure.dpi_scale_trans, style.base_font / 72
     used = max(1, len(block.shown)) * frame.width / 72
-    left += wide - used if before else 0.0
+    left = slot.left + (slot.width - used if slot.before else 0.0)
     for k, line in enumerate(block.head):
         figure.text(
-            left, top - 1.3 * em * (k + 0.5), line, transform=inches, fontsize=style.base_font, fontweight="bold",
+            left, slot.top - 1.3 * em * (k + 0.5), line, transform=inches, fontsize=style.base_font, fontweight="bold",
             va="center_baseline", color=INK,
         )  # fmt: skip
-    bottom = top - 1.3 * em * len(block.head) - frame.height / 72
+    bottom = slot.top - 1.3 * em * len(block.head) - frame.height / 72
     mechanism = block.poses.model
     assert isinstance(mechanism, Mechanism)  # others have been refused
-    arrows = arrow_lengths(block.poses)
+    scene = Scene(mechanism, frame, arrow_lengths(block.poses))
     for k, pose in enumerate(block.shown):
         box = (left + k * frame.width / 72, bottom, frame.width / 72, frame.height / 72)
         panel = figure.add_axes((box[0] / width, box[1] / tall, box[2] / width, box[3] / tall))
@@ -200,18 +200,24 @@ def _draw_block(
         panel.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
         for spine in panel.spines.values():
             spine.set(color="#b5b5b5", linewidth=0.6)
-        draw_sketch(panel, sketch(mechanism, pose, frame, arrows), STRONG, f"pose-{block.number}-{k + 1}-")
-    chart = axes.get_position()
+        draw_sketch(panel, scene.of(pose), STRONG, f"pose-{block.number}-{k + 1}-")
+    edge = left + used + 0.03 if slot.before else left - 0.05
+    return edge, (bottom + slot.top) / 2 if block.shown else slot.top - 0.65 * em
+
+
+def _lead(axes: Any, start: tuple[float, float], at: tuple[float, float], number: int, style: Style) -> None:
+    """A line to a point of the map, which is given as fractions of the axes' sides, and a mark there."""
+    figure: Any = axes.figure
+    width, tall = (float(side) for side in figure.get_size_inches())
+    inches, chart = figure.dpi_scale_trans, axes.get_position()
     tip = ((chart.x0 + at[0] * chart.width) * width, (chart.y0 + at[1] * chart.height) * tall)
-    edge = left + used + 0.03 if before else left - 0.05
-    start = (edge, (bottom + top) / 2 if block.shown else top - 0.65 * em)
     for thickness, colour in ((2.2, "white"), (0.8, INK)):
         figure.add_artist(
             Line2D(*zip(start, tip, strict=True), transform=inches, color=colour, linewidth=thickness, zorder=8,
-                   gid=f"leader-{block.number}" if colour == INK else None)
+                   gid=f"leader-{number}" if colour == INK else None)
         )  # fmt: skip
     figure.add_artist(
         Line2D((tip[0],), (tip[1],), transform=inches, marker="D", markersize=5.5 * style.base_font / 9,
                markerfacecolor="white", markeredgecolor=INK, markeredgewidth=1.2, linestyle="none", zorder=9,
-               gid=f"point-{block.number}")
+               gid=f"point-{number}")
     )  # fmt: skip

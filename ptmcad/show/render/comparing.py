@@ -21,7 +21,7 @@ from ptmcad.show.render.colours import GREYS, HATCHES, Fill
 from ptmcad.show.render.fitting import LEAST, Parts, overhang, rewrapped
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
-from ptmcad.show.render.printing import printed, settings, suffix_of
+from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.textwidth import wrapped
@@ -49,23 +49,18 @@ class _Panel:
 
 
 def draw_comparison(comparison: Comparison, path: Path, dpi: int, style: Style) -> None:
-    """Write the picture.
+    """Write the picture, as `ptmcad.show.render.printing.save` does.
 
     Raises
     ------
-    ValueError
-        For another suffix than those of `ptmcad.show.render.printing.FORMATS`.
     ConfigError
         When it does not fit into the style's size.
-    OSError
-        When the file cannot be written.
     """
-    suffix = suffix_of(path)
     with settings(style):
         figure = comparison_figure(comparison, dpi, style)
-        title = f"{whole_title(comparison.first)} and {whole_title(comparison.second)}"
-        data = printed(figure, suffix, dpi, title, " ".join(in_words(comparison)))
-    path.write_bytes(data)
+    title = f"{whole_title(comparison.first)} and {whole_title(comparison.second)}"
+    figure.set_label(f"{title}\n{' '.join(in_words(comparison))}")
+    save(figure, path, dpi=dpi, style=style)
 
 
 def in_words(comparison: Comparison) -> list[str]:

@@ -18,7 +18,7 @@ from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import dress, scale_of, symbol
 from ptmcad.show.render.legend import INK, STRONG
-from ptmcad.show.render.printing import printed, settings, suffix_of
+from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.view import Floats, View
 
 LEFT, BOTTOM, SIDE, GAP, BAR, RIGHT, TOP = 0.85, 0.65, 4.6, 0.2, 0.2, 0.95, 0.6
@@ -31,27 +31,16 @@ _EMPTY = "#ffffff"
 def draw_field(
     result: RegionMap, field: Field, boundaries: Sequence[Boundary], path: Path, *, contours: int = 8, dpi: int = 150
 ) -> None:
-    """Write the picture of a field over its map.
+    """Write the picture of a field over its map, as `ptmcad.show.render.printing.save` does.
 
     Parameters
     ----------
     boundaries : of the map.
-    path : its suffix gives the format: png, svg or pdf.
     contours : about so many contour lines; none for 0.
-    dpi : resolution of a PNG.
-
-    Raises
-    ------
-    ValueError
-        For another suffix.
-    OSError
-        When the file cannot be written.
     """
-    suffix = suffix_of(path)
     with settings():
         figure = field_figure(result, field, boundaries, contours, dpi)
-        data = printed(figure, suffix, dpi, title_of(result, field), description(field))
-    path.write_bytes(data)
+    save(figure, path, dpi=dpi)
 
 
 def title_of(result: RegionMap, field: Field) -> str:
@@ -101,6 +90,7 @@ def field_figure(result: RegionMap, field: Field, boundaries: Sequence[Boundary]
         if boundary.separates:
             axes.plot(*_shares(result, boundary.points).T, color=INK, linewidth=STRONG, transform=axes.transAxes)
     dress(axes, result.slice, view.x, view.y)
+    figure.set_label(f"{title_of(result, field)}\n{description(field)}")
     return figure
 
 

@@ -15,7 +15,6 @@ from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import counted, noun
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.render.colours import UNDETERMINED, Fill, counted_by, fill_of
-from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.table import area_by_count, area_text, count_text, index_heading
 from ptmcad.text.numerals import decimal
 
@@ -79,6 +78,8 @@ class Type:
 
     def entry_width(self, entry: Entry) -> float:
         """Of an entry with its mark, in inches."""
+        from ptmcad.show.render.textwidth import text_width  # brings matplotlib, which the report's words do without
+
         indent = 0.0 if entry.mark is None else self.indent
         sizes = [self.head if k < entry.heads else self.detail for k in range(len(entry.lines))]
         texts = (text_width(line, size, entry.strong) for line, size in zip(entry.lines, sizes, strict=True))

@@ -12,6 +12,7 @@ from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.around import Point, draw_around
 from ptmcad.show.render.axes import axis_name
+from ptmcad.show.render.colours import counted_by
 from ptmcad.show.render.legend import INK, head_of
 from ptmcad.show.render.overlay import Overlay
 from ptmcad.show.render.painting import paint_map, paint_of
@@ -60,10 +61,12 @@ def draw_on(axes: Any, result: RegionMap, samples: bool, style: Style) -> None:
     if title:
         axes.set_title(title, loc="left", wrap=True)
     if style.legend is not Place.NONE:
-        found = {count_text(r, result.slice.count): paint.fill(r) for r in result.regions}
+        count = result.slice.count
+        regions = sorted(result.regions, key=lambda r: counted_by(r, count))
+        found = {count_text(r, count): paint.fill(r) for r in regions}
         handles = [
             Patch(facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4, label=text)
-            for text, fill in sorted(found.items())
+            for text, fill in found.items()
         ]
         below = style.legend is Place.BELOW
         axes.legend(

@@ -26,7 +26,7 @@ from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
 from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Frame, arrow_lengths, frame_of, load_values, sketch
+from ptmcad.show.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Frame, Scene, arrow_lengths, frame_of, load_values
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import magnitude, shortest_text
 
@@ -69,13 +69,14 @@ def draw_poses(poses: Poses) -> Figure:
     width = 2 * MARGIN + columns * (wide + GAP) + KEY
     title = heading(poses, round(12.4 * (width - 2 * MARGIN)))
     top = below + MARGIN
+    scene = Scene(poses.model, frame, arrows)
     with settings():
         figure = titled(title, (width, top + TITLE_LINE * len(title) + 0.08 + MARGIN), MARGIN)
         figure.set_label(f"{' '.join(title)}\n{describe(poses)}")
         for number, pose in enumerate(shown):
             down, across = divmod(number, columns)
             corner = (MARGIN + across * (wide + GAP), top - down * (row + GAP) - HEAD - tall)
-            panel(figure, poses.model, pose, number + 1, frame, arrows, corner)
+            panel(figure, scene, pose, number + 1, corner)
         left = MARGIN + columns * (wide + GAP) + 0.1
         draw_legend(figure, entries, left, top)
         scale_bar(figure, frame, left, top - height(entries) - 0.12)
@@ -116,16 +117,9 @@ def below_panel(pose: Pose, model: Model) -> float:
     return BELOW + 0.16 * (len(_lines_below(model, pose)) - 2)
 
 
-def panel(
-    figure: Figure,
-    mechanism: Mechanism,
-    pose: Pose,
-    number: int,
-    frame: Frame,
-    arrows: Mapping[str, float],
-    corner: tuple[float, float],
-) -> Any:
+def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: tuple[float, float]) -> Any:
     """One pose in axes at a place in inches, with its kind above and energy and angles below."""
+    mechanism, frame = scene.mechanism, scene.frame
     width, tall = figure.get_size_inches()
     strong = pose.stable is True or not mechanism.tells_stability
     style = STRONG if strong else PALE
@@ -134,7 +128,7 @@ def panel(
     axes.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
     for spine in axes.spines.values():
         spine.set(color=INK if strong else "#b5b5b5", linewidth=1.0 if strong else 0.6)
-    draw_sketch(axes, sketch(mechanism, pose, frame, arrows), style, f"pose-{number}-")
+    draw_sketch(axes, scene.of(pose), style, f"pose-{number}-")
     inches = figure.dpi_scale_trans
     colour = INK if strong else "#555555"
     flat = ", flat" if pose.flat else ""

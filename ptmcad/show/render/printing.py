@@ -77,13 +77,14 @@ def suffix_of(path: Path) -> str:
     return suffix
 
 
-def save(figure: Figure, path: Path, *, dpi: int = 150) -> None:
+def save(figure: Figure, path: Path, *, dpi: int = 150, style: Style = DEFAULT) -> None:
     """Write a figure whose label is its title and, on further lines, its description.
 
     Parameters
     ----------
     path : its suffix gives the format, one of `FORMATS`.
     dpi : resolution of a PNG.
+    style : with which it was drawn.
 
     Raises
     ------
@@ -94,7 +95,7 @@ def save(figure: Figure, path: Path, *, dpi: int = 150) -> None:
     """
     suffix = suffix_of(path)
     title, _, description = str(figure.get_label()).partition("\n")
-    with settings():
+    with settings(style):
         data = printed(figure, suffix, dpi, title, description)
     path.write_bytes(data)
 

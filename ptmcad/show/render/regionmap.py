@@ -123,23 +123,27 @@ def _seen(whole: Shapes, sides: tuple[float, float], dpi: int, earlier: _Seen | 
     return _Seen(whole, thin, (*views, *unstable), lines)
 
 
-def figure_of(
-    result: RegionMap, samples: bool, dpi: int, beside: float = 0.0, tallest: float = 0.0, style: Style = DEFAULT,
-    overlay: Overlay = (),
-) -> Figure:  # fmt: skip
-    """The picture, to be called within `settings`.
+@dataclass(frozen=True, slots=True)
+class Room:
+    """Inches left free at the right of a picture that grows with what it shows, and how tall it is there at least."""
 
-    Parameters
-    ----------
-    beside, tallest : so many inches are left free at the right, and it is at least so tall there; in a picture that
-        grows with what it shows.
-    """
+    beside: float = 0.0
+    tallest: float = 0.0
+
+
+NO_ROOM = Room()
+
+
+def figure_of(
+    result: RegionMap, samples: bool, dpi: int, room: Room = NO_ROOM, style: Style = DEFAULT, overlay: Overlay = ()
+) -> Figure:
+    """The picture, to be called within `settings`."""
     whole = shapes(result)
     if style.flows:
         seen = _seen(whole, (SIDE, SIDE), dpi)
         type = Type(strong=style.strong, thin=style.strong * THIN / STRONG, thin_lines=style.thin_lines)
         legend = _legend(result, seen, samples, style, overlay)[0]
-        layout = flowing(_title_lines(result, style), legend, type, len(seen.views), beside, tallest)
+        layout = flowing(_title_lines(result, style), legend, type, len(seen.views), room.beside, room.tallest)
     else:
         seen, layout = fit(result, whole, samples, dpi, style, overlay)
     figure = Figure(figsize=layout.size, dpi=dpi, facecolor="white")

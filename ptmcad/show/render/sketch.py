@@ -132,6 +132,19 @@ def bar_width(mechanism: Mechanism, number: int) -> float:
     return BAR_WIDTHS[number] if len(mechanism.bars) <= len(BAR_WIDTHS) else MANY_BARS
 
 
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """What the sketches of several poses have in common; ``arrows`` are lengths of loads."""
+
+    mechanism: Mechanism
+    frame: Frame
+    arrows: Mapping[str, float]
+
+    def of(self, pose: Pose) -> Sketch:
+        """One of them."""
+        return sketch(self.mechanism, pose, self.frame, self.arrows)
+
+
 def sketch(mechanism: Mechanism, pose: Pose, frame: Frame, arrows: Mapping[str, float]) -> Sketch:
     """A pose in a frame, with arrows of these lengths."""
     return sketched(mechanism, frame.nodes(pose), (frame.width, frame.height), arrows)

@@ -32,7 +32,7 @@ class Cone(NamedTuple):
     ----------
     name : of the spring.
     pull : K, the stiffness times the free length.
-    across, up : the vector between the spring's ends.
+    vector : between the spring's ends.
     slopes, bends : first derivatives of both by the unknowns, and the second ones row by row.
     """
 
@@ -153,13 +153,7 @@ def _less(f: _Polynomials, moment: _Polynomials) -> _Polynomials:
 
 @lru_cache(maxsize=8)
 def form_of(model: Model) -> Form:
-    """The form of a model.
-
-    Raises
-    ------
-    Violation
-        For a moment that depends on an unknown.
-    """
+    """The form of a model."""
     ring = _Ring(model)
     unknowns = tuple(model.unknowns)
     given = formulas(ring.configuration, model)
