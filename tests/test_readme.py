@@ -40,7 +40,9 @@ PROGRAM_LINES = [line for line in shell_lines() if not line.startswith("make ")]
 def test_the_parts_are_there() -> None:
     assert MAKE_LINES == ["make demo", "make test"]
     commands = " ".join(shlex.split(line)[1] for line in PROGRAM_LINES)
-    assert commands == "classify classify verify locate report range map animate solve solve variety classify verify solve"
+    assert (
+        commands == "classify classify verify locate report range map animate solve solve variety classify verify solve"
+    )
     assert len(blocks("yaml")) == 2
     assert len(blocks("python")) == 1
 
