@@ -24,6 +24,7 @@ from ptmcad.ask.pixels import grid as grid_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism.moments import acting
 from ptmcad.mechanism.work import split_moments
 
 BATCH, LARGE_BATCH = 300, 20_000
@@ -126,8 +127,9 @@ def _check_request(result: RegionMap, quantity: Quantity, choice: Choice) -> Non
     if choice.kind != "stable":
         raise ConfigError("a barrier is that of a stable pose: ask for stable:1", key="--pose")
     model = result.slice.model
-    if isinstance(model, Mechanism) and split_moments(model).steady:
-        raise ConfigError("where moments work a pose's energy is not what a barrier is counted from", key="--value")
+    if isinstance(model, Mechanism) and (steady := split_moments(model).steady):
+        what = acting(model, [moment.unknown for moment in steady])
+        raise ConfigError(f"under the {what} a pose's energy is not what a barrier is counted from", key="--value")
 
 
 def _at_pixels(
