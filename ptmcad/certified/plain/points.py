@@ -211,9 +211,9 @@ def _check_conditions(counter: PlainCounter) -> None:
     if len(idle) == 1 and (text := idle.pop()):
         (x, y), names = points[0], slice.axis_names
         raise DegenerateSliceError(
-            f"{text} is zero at a solution at {names[0]} = {text_of(x)}, {names[1]} = {text_of(y)}, and at one at each "
-            "other point that was tried: the certified engine decides nothing of such a slice; choose exact, or ask "
-            "for another condition"
+            f"{text} is zero, to 90 digits and more, at a solution at {names[0]} = {text_of(x)}, {names[1]} = "
+            f"{text_of(y)}, and so it is at the other points that were tried: the certified engine decides nothing of "
+            "such a slice; choose exact, or ask for another condition"
         )
 
 
