@@ -141,7 +141,7 @@ RECORDS: dict[str, dict[str, Any]] = {
         "axes": {"a": [-1, 4], "b": [1, 4]},
     },
     "escape": {
-        "system": {"unknowns": {"x": "real"}, "equations": ["a*x^2 - 2*x + b"]},
+        "system": {"unknowns": {"x": "real"}, "equations": ["a*x^3 - x + b"]},
         "axes": {"a": [-1, 1], "b": [-8, 8]},
     },
     "half of a well": {
