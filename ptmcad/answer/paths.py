@@ -28,7 +28,8 @@ class Fate(Enum):
 class PathPoint:
     """The unknowns at a value of the axis (angles not wrapped into one turn, so that they are continuous).
 
-    ``sides`` tells of each moving point of a mechanism whether it is proved to be above the x axis (1) or below (-1).
+    ``sides`` tells of each point of a mechanism whose height an unknown changes whether it is proved to be above the x
+    axis (1) or below (-1).
     """
 
     value: Fraction
@@ -95,7 +96,8 @@ class PosePaths:
     joined : whether the points are solutions that were followed in floating point from one to the next, as those of
         springs with free lengths are: each point is proved, and nothing between them; ``upright`` and ``reverse`` are
         said of the points alone.
-    has_moments : whether a moment works somewhere on the line, so that no energy tells where a pose goes that vanishes.
+    moved : the unknowns on which a moment or a force works somewhere on the line, so that no energy tells where a pose
+        goes that vanishes.
     """
 
     name: str
@@ -104,7 +106,7 @@ class PosePaths:
     at: Mapping[str, Fraction]
     start: Fraction
     paths: tuple[PosePath, ...]
-    has_moments: bool = False
+    moved: tuple[str, ...] = ()
     joined: bool = False
 
     def __repr__(self) -> str:

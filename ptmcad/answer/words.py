@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 
 from ptmcad.mechanism import Mechanism, Model
-from ptmcad.mechanism.moments import moments_at
+from ptmcad.mechanism.moments import acting, foreign, moments_at
 from ptmcad.mechanism.work import split_moments
-
-UNTOLD = "nothing says which are stable, as a moment depends on another unknown"
 
 
 def noun(model: Model, number: int = 2) -> str:
@@ -44,6 +42,11 @@ def index_words(entries: int) -> str:
     return "-".join(["minima", *saddles, "maxima"])
 
 
+def untold(mechanism: Mechanism) -> str:
+    """Why it is not said which equilibria are stable."""
+    return f"nothing says which are stable, as {foreign(mechanism)} depends on another unknown"
+
+
 def of_what(model: Model, parameters: Mapping[str, Fraction]) -> str:
     """What an energy at a point leaves out; empty where no moment works.
 
@@ -52,16 +55,19 @@ def of_what(model: Model, parameters: Mapping[str, Fraction]) -> str:
     model : one that has a potential.
     """
     moments = moments_at(model, parameters)
-    return f"of springs and loads, without the {moments_work(model, len(moments))}" if moments else ""
+    return f"of springs and loads, without the {moments_work(model, moments)}" if moments else ""
 
 
-def moments_work(model: Model, number: int) -> str:
-    """What so many moments do that is in no energy.
+def moments_work(model: Model, unknowns: Collection[str]) -> str:
+    """What the moments on some unknowns do, and the forces on those that are no angles, that is in no energy.
 
     Parameters
     ----------
     model : a mechanism; the work of what varies in a moment is in its energy.
     """
+    what, several = acting(model, unknowns), len(unknowns) > 1
     if isinstance(model, Mechanism) and split_moments(model).energies:
-        return f"work of the constant part{'s' * (number > 1)} of the moment{'s' * (number > 1)}"
-    return "moments' work" if number > 1 else "moment's work"
+        return f"work of the constant part{'s' * several} of the {what}"
+    if not set(unknowns) <= set(model.angles):
+        return f"work of the {what}"
+    return "moments' work" if several else "moment's work"

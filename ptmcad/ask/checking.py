@@ -128,9 +128,11 @@ def check_text(found: Check) -> Iterator[str]:
     yield f"{what:<12}{model.name}"
     yield f"{'unknowns':<12}{', '.join(f'{name} ({kind.value})' for name, kind in model.unknowns.items())}"
     if isinstance(model, Mechanism):
+        turning = sum(moment.unknown in model.angles for moment in model.moments)
         parts = {
             "bars": len(model.bars), "bodies": len(model.bodies), "springs": len(model.springs),
-            "torsion springs": len(model.torsion), "loads": len(model.loads), "moments": len(model.moments),
+            "torsion springs": len(model.torsion), "loads": len(model.loads), "moments": turning,
+            "forces on lengths": len(model.moments) - turning,
         }  # fmt: skip
         yield f"{'parts':<12}{', '.join(f'{number} {name}' for name, number in parts.items() if number)}"
     values = {name: e.to_text(slice.axis_names) for name, e in slice.parameters.items() if name not in slice.axis_names}

@@ -35,7 +35,7 @@ from ptmcad.mechanism import Mechanism
 from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
 from ptmcad.question.line import varying_axis
-from ptmcad.question.slice import Axis, Slice, have_moments
+from ptmcad.question.slice import Axis, Slice, moved
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.parsing import number_for
 
@@ -82,7 +82,7 @@ def joined_paths(
                 progress("paths: pose", done, len(chosen))
             paths.append(walker.path(k + 1, here, here.poses[k]))
     return PosePaths(
-        slice.name, slice.model, axis, {other: value}, begin, tuple(paths), walker.has_moments, joined=True
+        slice.name, slice.model, axis, {other: value}, begin, tuple(paths), walker.moved, joined=True
     )  # fmt: skip
 
 
@@ -104,7 +104,7 @@ class _Walker:
     ):  # fmt: skip
         self.slice, self.line, self.axis, self.varying, self.fixed = slice, line, axis, varying, fixed
         self.intervals = intervals
-        self.has_moments = have_moments(slice.model, line.parameters)
+        self.moved = moved(slice.model, line.parameters)
         self.known: dict[Fraction, Sample | None] = {}
 
     def path(self, number: int, here: Sample, pose: Pose) -> PosePath:
@@ -204,7 +204,7 @@ class _Walker:
         if 0 not in meeting:
             return stopped
         met = replace(stopped, fate=Fate.VANISH, meeting=meeting, leaving=leaving)
-        if self.has_moments or self.slice.model.reals or not self.slice.model.has_potential:
+        if self.moved or self.slice.model.reals or not self.slice.model.has_potential:
             return met
         at, share = lost
         way = descent(lambda point: track.at(share, point), at)

@@ -281,6 +281,11 @@ class Mechanism(Model):
         )
 
     @cached_property
+    def rising(self) -> tuple[str, ...]:
+        """Those of them whose height does, unlike that of a slider on a level."""
+        return tuple(name for name in self.moving if set(names_of(self.points[name][1])) & self.unknowns.keys())
+
+    @cached_property
     def pivots(self) -> Mapping[str, str]:
         """The angles that turn a bar about a point that no unknown moves, to those points."""
         return {

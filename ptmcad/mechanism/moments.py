@@ -7,12 +7,32 @@ has many values on the circle, so that whatever is said of an energy's descent h
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from ptmcad.mechanism.description import Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.work import split_moments
+from ptmcad.text.tree import names_of
+
+
+def acting(model: Model, unknowns: Iterable[str]) -> str:
+    """What works on some unknowns, in words: moments on angles, forces on what is no angle."""
+    names = [name for name in model.unknowns if name in set(unknowns)]
+    angles = [name for name in names if name in model.angles]
+    lengths = [name for name in names if name not in model.angles]
+    parts = ["moments" if len(angles) > 1 else "moment"] if angles else []
+    if lengths:
+        parts.append(f"force{'s' * (len(lengths) > 1)} on {' and '.join(lengths)}")
+    return " and the ".join(parts)
+
+
+def foreign(mechanism: Mechanism) -> str:
+    """What depends on another unknown than its own, so that there is no potential."""
+    found = {m.unknown for m in mechanism.moments if mechanism.unknowns.keys() & set(names_of(m.value)) - {m.unknown}}
+    if any(name in mechanism.angles for name in found):
+        return "a moment"
+    return f"the force on {next(name for name in mechanism.unknowns if name in found)}"
 
 
 def moments_at(model: Model, parameters: Mapping[str, Fraction]) -> dict[str, Fraction]:

@@ -147,14 +147,14 @@ def have_free_lengths(model: Model, parameters: Mapping[str, Expression]) -> boo
     return any(bool(evaluate(spring.free, known).numerator) for spring in model.springs)
 
 
-def have_moments(model: Model, parameters: Mapping[str, Expression]) -> bool:
-    """Whether some moment, or force on an unknown length, does work that is in no stored energy."""
+def moved(model: Model, parameters: Mapping[str, Expression]) -> tuple[str, ...]:
+    """The unknowns on which a moment, or a force on a length, does work that is in no stored energy."""
     if not isinstance(model, Mechanism):
-        return False
+        return ()
     known = _Expressions(parameters)
     # a moment that depends on another unknown is none of the axes alone
     steady = split_moments(model).steady
-    return not model.has_potential or any(bool(evaluate(m.value, known).numerator) for m in steady)
+    return tuple(m.unknown for m in steady if not model.has_potential or evaluate(m.value, known).numerator)
 
 
 class _Expressions:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ptmcad.mechanism import Model, System
+from ptmcad.mechanism import Mechanism, Model, System
+from ptmcad.mechanism.moments import foreign
 
 
 def no_drawing(model: Model) -> str:
@@ -15,9 +16,9 @@ def no_landscape(model: Model) -> str:
     if isinstance(model, System) and model.potential is None:
         return f"the {_named(model)} has equations and no potential: there is no energy to be drawn"
     if not model.has_potential:
-        return (
-            f"a moment of the {_named(model)} depends on another unknown: there is no potential, no energy to be drawn"
-        )
+        assert isinstance(model, Mechanism)
+        what = foreign(model)
+        return f"{what} of the {_named(model)} depends on another unknown: there is no potential, no energy to be drawn"
     if len(model.unknowns) > 2:
         return f"an energy can be drawn over one unknown or two, and the {_named(model)} has {len(model.unknowns)}"
     return ""

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.answer.words import UNTOLD, counted, noun, of_what
+from ptmcad.answer.words import counted, noun, of_what, untold
 from ptmcad.mechanism import Mechanism, Model, built_in
 from ptmcad.question.slice import merged
 from ptmcad.text.enclosure import Enclosure, exact_text
@@ -75,7 +75,7 @@ def _energy_note(poses: Poses) -> str:
     model = poses.model
     if model.has_potential:
         return of_what(model, poses.parameters)
-    return f"none, and {UNTOLD}" if isinstance(model, Mechanism) else ""
+    return f"none, and {untold(model)}" if isinstance(model, Mechanism) else ""
 
 
 _TENSE = "stable, and every spring longer than its free length; a negative force pushes"

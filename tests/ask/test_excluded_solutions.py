@@ -82,7 +82,7 @@ def test_check_refuses_what_the_certified_engine_refuses() -> None:
         "loads": {"P": [0, "F"]},
     }
     slice = slice_from({"mechanism": mechanism, "axes": {"M": [-3, 3], "F": [-3, 3]}})
-    with pytest.raises(ConfigError, match="no moments without a potential") as checked:
+    with pytest.raises(ConfigError, match="no moment without a potential") as checked:
         check(slice)
     with pytest.raises(ConfigError) as classified:
         ptmcad.classify(slice)

@@ -339,7 +339,7 @@ def test_moments_on_their_own_unknown_are_in_the_energy() -> None:
     for row, column in ((0, 0), (4, 7), (8, 3)):
         pose = next(p for p in exact_at(result, *centre(result, result.grid(9), row, column)).equilibria if p.stable)
         assert field.values[row, column] == pytest.approx(float(pose.known_energy.center), abs=1e-9)
-    with pytest.raises(ConfigError, match="where moments work"):
+    with pytest.raises(ConfigError, match="under the moment a pose"):
         result.field("barrier", "stable:1", 9)
 
 

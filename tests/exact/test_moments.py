@@ -76,6 +76,34 @@ def test_a_pose_snaps_where_no_moment_works_and_is_not_said_to_where_one_does() 
     assert "lower by" not in path_table(turned) and "snaps to" not in path_table(turned)
 
 
+def slider(load: str, moments: dict[str, str]) -> ptmcad.Slice:
+    """A slider on a spring, and a bar that turns about it, which another spring holds to a point above."""
+    mechanism = {
+        "parameters": {"M": {"kind": "force"}, "F": {"kind": "force"}},
+        "unknowns": {"s": "length", "th": "angle"},
+        "points": {"O": [0, 0], "A": ["s", 0], "P": ["s + cos(th)", "sin(th)"], "B": [1, 2]},
+        "bars": [["A", "P"]],
+        "springs": [{"between": ["B", "P"], "k": 1}, {"between": ["O", "A"], "k": "1/2"}],
+        "loads": {"P": [0, load]},
+        "moments": moments,
+    }
+    return ptmcad.slice_from_mapping({"name": "s", "mechanism": mechanism, "axes": {"M": [-2, 2], "F": [-2, 2]}})
+
+
+def test_what_works_on_a_length_is_called_a_force() -> None:
+    """And a slider on a level, whose height is 0, is not among the points that are above or below."""
+    along = pose_paths(slider("F", {"s": "M"}), "F", {"M": "1/100"}, "-19/10", 2)
+    told = path_table(along)
+    assert along.moved == ("s",)
+    assert "under the force on s it may never come to rest: where it goes from there is not decided" in told
+    assert "moment" not in told and "y of A" not in told and "y of P" in told
+    assert [len(path.low.last.sides) for path in along.paths if path.low.last] == [1] * len(along.paths)
+    both = pose_paths(slider("F", {"s": "M", "th": "M/50"}), "F", {"M": "1/100"}, "-19/10", 2)
+    assert "under the moment and the force on s it may" in path_table(both)
+    still = pose_paths(slider("F", {"s": "M"}), "F", {"M": 0}, "-19/10", 2)
+    assert still.moved == () and "come to rest" not in path_table(still)
+
+
 def test_a_moment_that_is_the_axis_works_on_the_whole_line() -> None:
     """Also where the axis passes through 0: the pose vanishes where the moment does not."""
     found = pose_paths(arm("M"), "M", {"G": 1}, 0)

@@ -24,6 +24,7 @@ from ptmcad.cli import run
 from ptmcad.cli.pictures import picture
 from ptmcad.errors import ConfigError, PictureError
 from ptmcad.question.config import point_from_mapping
+from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.landscape import draw_landscape, energy_of
 from ptmcad.show.render.poses import draw_poses
 from ptmcad.show.report import page
@@ -115,6 +116,20 @@ def test_a_force_along_a_length_needs_no_cut() -> None:
     record["axes"] = {"M": [-1, 1], "c": [1, 2]}
     figure = draw_landscape(solved(record, M="1/2", c="1"))
     assert "V = U − 0.5\N{NO-BREAK SPACE}s" in words(figure) and "periodic" not in words(figure)
+    assert "energy less the work of the force on s" in words(figure).replace("\n", " ")
+    assert "moment" not in words(figure) + solved(record, M="1/2", c="1").table()
+    assert data_of(record)["work"] == "work of the force on s"
+
+
+def test_a_force_that_depends_on_another_unknown_is_called_so() -> None:
+    record = {**UNTOLD, "mechanism": {**UNTOLD["mechanism"], "moments": {"s": "cos(th) + M"}}}
+    found = solved(record, M="1/2", F="1/5")
+    why = "nothing says which are stable, as the force on s depends on another unknown"
+    assert why in found.table() and why in words(draw_poses(found)).replace("\n", " ")
+    assert data_of(record)["untold"] == why
+    assert no_landscape(found.model).startswith("the force on s of the mechanism depends on another unknown")
+    with pytest.raises(ConfigError, match="the force on s that depends on another unknown has no potential"):
+        ptmcad.slice_from_mapping({"name": "s", **record, "count": "stable"})
 
 
 def marks(figure: Figure) -> list[tuple[float, float]]:
@@ -143,6 +158,7 @@ def test_the_table_says_what_the_energy_leaves_out() -> None:
     assert note not in solved(ANGLE, M="0", F="1").table()
     assert note in solved(FREE, M="1/2", F="1").table()
     assert "without the work of the constant part of the moment" in solved(WAVE, M="1/2", F="1").table()
+    assert "without the work of the moment and the force on s" in solved(MIXED, M="1/2", F="1").table()
     untold = solved(UNTOLD, M="1/2", F="1").table()
     assert "energy  none, and nothing says which are stable" in untold and "solution" not in untold
 

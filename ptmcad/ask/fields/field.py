@@ -24,6 +24,7 @@ from ptmcad.ask.pixels import grid as grid_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism.moments import acting
 from ptmcad.mechanism.work import split_moments
 from ptmcad.question.slice import Slice
 
@@ -95,8 +96,10 @@ def request_of(slice: Slice, value: str, pose: str) -> Request:
     if quantity.is_barrier:
         if choice.kind != "stable":
             raise ConfigError("a barrier is that of a stable pose: ask for stable:1", key="--pose")
-        if isinstance(slice.model, Mechanism) and split_moments(slice.model).steady:
-            raise ConfigError("where moments work a pose's energy is not what a barrier is counted from", key=OPTION)
+        model = slice.model
+        if isinstance(model, Mechanism) and (steady := split_moments(model).steady):
+            what = acting(model, [moment.unknown for moment in steady])
+            raise ConfigError(f"under the {what} a pose's energy is not what a barrier is counted from", key=OPTION)
     return Request(quantity, choice)
 
 

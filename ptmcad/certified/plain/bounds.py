@@ -30,7 +30,7 @@ LEAST_POWER, MOST_POWER = -10, 40
 MAX_BOXES = 1000
 """For one bound; each is halved along an axis or an unknown where nothing excludes it."""
 LEAST_SHARE = 1e-12
-"""Of a range, below which it is not halved again."""
+"""Of a range, or of a number's size, below which it is not halved again."""
 MAX_WEIGHT = 3
 """Unknowns that grow together may grow like powers up to this one."""
 
@@ -45,15 +45,28 @@ def ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]:
     ConfigError
         With the unknowns, when no bounds of them could be proved.
     """
+    found = known_ranges(problem, axes)
+    if not all(isfinite(sum(bounds)) for bounds in found):
+        raise refusal(problem, found)
+    return found
+
+
+def known_ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]:
+    """The range of each unknown; infinite where no bounds could be proved."""
     window = [(enclosing_floats(axis.low)[0], enclosing_floats(axis.high)[1]) for axis in axes]
+    found: tuple[Range, ...] = ()
     # more polynomials cost more time, and are seldom needed
     for with_products in (False, True) if len(problem.unknowns) > 1 and not problem.cones else (False,):
-        search = _Search(problem, window, _vanishing(problem, with_products))
-        found = search.ranges()
-        missing = [name for name, bounds in zip(problem.unknowns, found, strict=True) if not isfinite(sum(bounds))]
-        if not missing:
-            return found
-    raise ConfigError(
+        found = _Search(problem, window, _vanishing(problem, with_products)).ranges()
+        if all(isfinite(sum(bounds)) for bounds in found):
+            break
+    return found
+
+
+def refusal(problem: Problem, found: Sequence[Range]) -> ConfigError:
+    """What to raise where some unknowns have no range, with their names."""
+    missing = [name for name, bounds in zip(problem.unknowns, found, strict=True) if not isfinite(sum(bounds))]
+    return ConfigError(
         f"no bound of the unknown{'s' * (len(missing) > 1)} {', '.join(missing)} could be proved over the window, and "
         "the certified engine searches a bounded box: choose exact, or narrow the window",
         key="engine",
@@ -137,12 +150,12 @@ class _Search:
         """The range of one unknown, whatever those without a range are; each end is a power of two, or it is known."""
 
         def least(sign: int) -> int | None:
-            def is_empty(power: int) -> bool:
+            def holds(power: int) -> bool:
                 box = np.array([*self.window, *found])
                 box[FIRST + k] = (2.0**power, inf) if sign > 0 else (-inf, -(2.0**power))
-                return _is_empty(tape, box)
+                return is_empty(tape, box)
 
-            return _least(is_empty)
+            return _least(holds)
 
         above, low = least(1), found[k][0]
         if above is not None and low == -inf:
@@ -179,13 +192,13 @@ class _Search:
         lowest = {k: 0.0 if found[k][0] == 0 else -1.0 for k in weights}
         faces = [(k, side) for k, low in lowest.items() for side in {1.0, low} if side]
 
-        def is_empty(power: int) -> bool:
+        def holds(power: int) -> bool:
             box = np.array([*self.window, *found, (0.0, 2.0**-power)])
             for k, low in lowest.items():
                 box[FIRST + k] = low, 1.0
-            return all(_is_empty(tape, _with(box, FIRST + k, side)) for k, side in faces)
+            return all(is_empty(tape, _with(box, FIRST + k, side)) for k, side in faces)
 
-        return _least(is_empty)
+        return _least(holds)
 
 
 _Found = dict[int, Range]
@@ -213,12 +226,15 @@ def _least(holds: Callable[[int], bool]) -> int | None:
     return high
 
 
-def _is_empty(tape: Tape, box: Floats) -> bool:
+def is_empty(tape: Tape, box: Floats) -> bool:
     """Whether it is proved that a box has no solution that counts; shape (variables, 2), infinite ends included."""
     low, high = np.empty((2, len(tape)))
     finite = np.isfinite(box).all(axis=1)
     used = np.isin(np.arange(len(box)), tape.first[tape.operations == Operation.VARIABLE])
-    lengths = np.where(finite & used & (box[:, 1] > box[:, 0]), box[:, 1] - box[:, 0], inf)
+    with np.errstate(invalid="ignore"):
+        # what is no more than a rounded number is not halved
+        wide = box[:, 1] - box[:, 0] > LEAST_SHARE * np.abs(box).max(axis=1)
+        lengths = np.where(finite & used & wide, box[:, 1] - box[:, 0], inf)
     vanishing, nonnegative = tape.outputs
     waiting, treated = [box], 0
     while waiting:

@@ -1,5 +1,5 @@
-"""The curves of a slice at which counts change, for any problem: folds, equilibria that a spring's cone swallows, and
-solutions at which a condition stops to hold.
+"""The curves of a slice at which counts change, for any problem: folds, equilibria that a spring's cone swallows,
+solutions at which a condition stops to hold, and such as leave to infinity.
 
 Guarantee: each point of the window at which the chosen count changes lies on the projection of one of the curves
 (docs/soundness.md, "Plain formulas").
@@ -16,8 +16,9 @@ import numpy as np
 from ptmcad.certified.curve import Curve
 from ptmcad.certified.formula import Formula
 from ptmcad.certified.parameters import expression_formula
-from ptmcad.certified.plain.bounds import TURN, Range, ranges
+from ptmcad.certified.plain.bounds import TURN, Range
 from ptmcad.certified.plain.chart import Chart, chart, determinant, extended_determinant, principal_minors
+from ptmcad.certified.plain.infinity import Patch, at_infinity, patches
 from ptmcad.certified.plain.problem import FIRST, Condition, Problem, problem_of
 from ptmcad.certified.scales import typical_lengths, variable_weights
 from ptmcad.certified.system import system
@@ -39,6 +40,7 @@ class _Search:
     short: tuple[Fraction, ...]
     stable: bool
     conditions: tuple[Condition, ...]
+    where: str
 
 
 def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) -> tuple[Curve, ...]:
@@ -51,20 +53,48 @@ def curves(slice: Slice, count: Count, without: frozenset[str] = frozenset()) ->
     Raises
     ------
     ConfigError, GeometryError
-        As `problem_of` and `ranges` do.
+        As `problem_of` and `patches` do.
     """
-    problem = problem_of(slice)
-    found = ranges(problem, slice.axes)
+    found = patches(problem_of(slice), slice.axes)
+    return tuple(curve for patch in found for curve in _of_patch(slice, count, without, patch))
+
+
+def _of_patch(slice: Slice, count: Count, without: frozenset[str], patch: Patch) -> Iterator[Curve]:
+    problem = patch.problem
     at = chart(problem)
     search = _Search(
         problem,
-        found,
-        variable_weights(slice, at.equations, found),
-        tuple(_rounded(SHORT_SHARE * x) for x in typical_lengths(slice, at.lengths, found)),
+        patch.ranges,
+        variable_weights(slice, at.equations, patch.ranges),
+        tuple(_rounded(SHORT_SHARE * x) for x in typical_lengths(slice, at.lengths, patch.ranges)),
         problem.is_gradient and count is Count.STABLE and "folds-of-saddles" not in without,
         problem.conditions(count),
+        "".join(f", {problem.unknowns[k]} large" for k in patch.inverse),
     )
-    return (*_smooth(search, at), *_boundaries(search, at))
+    yield from _smooth(search, at)
+    yield from _boundaries(search, at)
+    yield from _infinite(search, patch)
+
+
+def _infinite(search: _Search, patch: Patch) -> Iterator[Curve]:
+    """Where a solution leaves to infinity."""
+    for k in patch.inverse:
+        equations, conditions = at_infinity(patch, k, search.conditions)
+        if any(f.value is not None and f.value != 0 for f in equations):
+            continue  # nowhere
+        ranges = (*search.ranges[:k], (0.0, 0.0), *search.ranges[k + 1 :])
+        name = search.problem.unknowns[k]
+        yield Curve(
+            f"{name} infinite{search.where}",
+            f"a solution leaves to infinity with {name}",
+            system(
+                equations,
+                (0, 1, *(variable for variable in search.problem.variables if variable != FIRST + k)),
+                nonnegative=conditions,
+            ),
+            ranges,
+            np.array(search.weights),
+        )
 
 
 def _smooth(search: _Search, at: Chart) -> tuple[Curve, ...]:
@@ -116,7 +146,7 @@ def _boundaries(search: _Search, at: Chart) -> Iterator[Curve]:
     for k, condition in enumerate(search.conditions):
         others = _values([*search.conditions[:k], *search.conditions[k + 1 :]], at)
         yield Curve(
-            f"boundary {condition.text} = 0",
+            f"boundary {condition.text} = 0{search.where}",
             f"solutions count where {condition.text} > 0, and at one of them it is zero",
             system(
                 [*at.equations, *_values([condition], at)],
@@ -187,7 +217,7 @@ def _cones(search: _Search) -> Iterator[Curve]:
 
 
 def _name(search: _Search) -> str:
-    return "fold of a stable equilibrium" if search.stable else "fold"
+    return ("fold of a stable equilibrium" if search.stable else "fold") + search.where
 
 
 def _reason(search: _Search) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import isfinite
 
 import numpy as np
 from flint import arb, arb_mat, ctx
@@ -17,19 +18,17 @@ from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.distinct import FULL_TURN, distinct
 from ptmcad.certified.evaluation import Indices
-from ptmcad.certified.plain.bounds import Range, ranges
+from ptmcad.certified.plain.bounds import Range, known_ranges
 from ptmcad.certified.plain.chart import chart, principal_minors
+from ptmcad.certified.plain.infinity import WITNESSES, patches
 from ptmcad.certified.plain.problem import FIRST, Problem, problem_of
 from ptmcad.certified.points import BUDGET, MAX_OPEN_BOXES, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
 from ptmcad.certified.search import Boxes, isolate
 from ptmcad.certified.system import System, system
 from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import DegenerateSliceError
-from ptmcad.question.slice import Count, Slice
+from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.numerals import text_of
-
-_WITNESSES = tuple((Fraction(u), Fraction(v)) for u, v in (("10/21", "19/35"), ("2/13", "11/17"), ("15/19", "4/23")))
-"""Shares of the window: points that are rarely on a curve that a person has in mind."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,6 +37,7 @@ class PlainCounter:
 
     Attributes
     ----------
+    ranges : over the window; None where a solution leaves to infinity somewhere: then those at each point are proved.
     all, stable : the systems that a search prunes with, for all solutions that count and for the stable ones.
     equations : the equations alone.
     hessian : a tape of one stage with the Hessian's entries row by row.
@@ -46,7 +46,7 @@ class PlainCounter:
 
     slice: Slice
     problem: Problem
-    ranges: tuple[Range, ...]
+    ranges: tuple[Range, ...] | None
     all: System
     stable: System
     equations: System
@@ -125,7 +125,13 @@ class PlainCounter:
     def _zeros(self, x: Fraction, y: Fraction, stable: bool, thorough: bool) -> tuple[Boxes, Boxes] | None:
         """Boxes with exactly one solution each, and narrower ones, each solution once; None when undecided."""
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
-        low, high = zip(*self.ranges, strict=True)
+        found_ranges = self.ranges
+        if found_ranges is None:
+            here = known_ranges(self.problem, (Axis("x", x, x), Axis("y", y, y)))
+            if not all(isfinite(sum(bounds)) for bounds in here):
+                return None
+            found_ranges = here
+        low, high = zip(*found_ranges, strict=True)
         start = np.array([[x_low, y_low, *low, x_high, y_high, *high]])
         variables = 2 + len(low)
         arguments = (self.stable if stable else self.all).arguments()
@@ -176,11 +182,12 @@ def plain_counter(slice: Slice) -> PlainCounter:
     Raises
     ------
     ConfigError, GeometryError
-        As `problem_of` and `ranges` do.
+        As `problem_of` and `patches` do.
     DegenerateSliceError
         When a condition is zero at a solution wherever one looks, so that nothing would ever be decided.
     """
     problem = problem_of(slice)
+    found = patches(problem, slice.axes)
     at = chart(problem)
     vanishing = ((), at.balances)
     unknowns = [at.equations[0].graph.variable(k) for k in problem.variables]
@@ -192,7 +199,7 @@ def plain_counter(slice: Slice) -> PlainCounter:
     counter = PlainCounter(
         slice,
         problem,
-        ranges(problem, slice.axes),
+        found[0].ranges if len(found) == 1 else None,
         system(at.equations, problem.variables, vanishing, inequalities, at.hessian),
         system(at.equations, problem.variables, vanishing, [*minima, *inequalities], at.hessian),
         system(at.equations, problem.variables, jacobian=at.hessian),
@@ -206,14 +213,14 @@ def plain_counter(slice: Slice) -> PlainCounter:
 def _check_conditions(counter: PlainCounter) -> None:
     slice = counter.slice
     across, up = slice.axes
-    points = [(across.low + (across.high - across.low) * u, up.low + (up.high - up.low) * v) for u, v in _WITNESSES]
+    points = [(across.low + (across.high - across.low) * u, up.low + (up.high - up.low) * v) for u, v in WITNESSES]
     idle = {counter.zero_condition(x, y, slice.count) for x, y in points}
     if len(idle) == 1 and (text := idle.pop()):
         (x, y), names = points[0], slice.axis_names
         raise DegenerateSliceError(
-            f"{text} is zero at a solution at {names[0]} = {text_of(x)}, {names[1]} = {text_of(y)}, and at one at each "
-            "other point that was tried: the certified engine decides nothing of such a slice; choose exact, or ask "
-            "for another condition"
+            f"{text} is zero, to 90 digits and more, at a solution at {names[0]} = {text_of(x)}, {names[1]} = "
+            f"{text_of(y)}, and so it is at the other points that were tried: the certified engine decides nothing of "
+            "such a slice; choose exact, or ask for another condition"
         )
 
 

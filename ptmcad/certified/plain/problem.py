@@ -129,8 +129,8 @@ def problem_of(slice: Slice) -> Problem:
     for unknown, tree in split_moments(model).steady:
         if others := sorted(set(names_of(tree)) & set(model.unknowns) - {unknown}):
             raise ConfigError(
-                f"the certified engine takes no moments without a potential, and that on {unknown} depends on "
-                f"{others[0]}",
+                f"the certified engine takes no {'moment' if unknown in model.angles else 'force on a length'} without "
+                f"a potential, and that on {unknown} depends on {others[0]}",
                 key="engine",
             )
         k = ring.unknowns.index(unknown)

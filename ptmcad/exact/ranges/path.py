@@ -45,7 +45,7 @@ from ptmcad.exact.ranges.tracking import (
 from ptmcad.mechanism import Mechanism
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.question.line import Line, line_of
-from ptmcad.question.slice import Slice, have_moments
+from ptmcad.question.slice import Slice, moved
 from ptmcad.text.balls import enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.parsing import number_for
@@ -101,7 +101,7 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
         line.at,
         value,
         tuple(_path(family, line, numbers, poses.equilibria[k], k + 1, value) for k in chosen),
-        have_moments(slice.model, line.parameters),
+        moved(slice.model, line.parameters),
     )
 
 
@@ -136,16 +136,16 @@ def _guess(pose: Pose) -> Vector:
 
 
 def _sides(family: Family, low: Fraction, high: Fraction, unknowns: Vector) -> tuple[int, ...]:
-    """Of each moving point of a mechanism, 1 when it is proved above the x axis, -1 when below, else 0."""
+    """Of each rising point of a mechanism, 1 when it is proved above the x axis, -1 when below, else 0."""
     model = family.model
     if not isinstance(model, Mechanism):
         return ()
     with ctx.workprec(BITS):
         span = arb(from_fraction(low)).union(arb(from_fraction(high)))
-        used = {name for point in model.moving for name in names_of(model.points[point][1])}
+        used = {name for point in model.rising for name in names_of(model.points[point][1])}
         values = {name: value_of(family.parameters[name], span) for name in used & family.parameters.keys()}
         within = _Balls(values, dict(zip((*model.angles, *model.reals), unknowns, strict=True)))
-        heights = [evaluate(model.points[name][1], within) for name in model.moving]
+        heights = [evaluate(model.points[name][1], within) for name in model.rising]
         return tuple(1 if y > 0 else -1 if y < 0 else 0 for y in heights)
 
 
@@ -264,7 +264,7 @@ def _meeting(family: Family, line: Line, number: AlgebraicNumber, current: Reach
 def _descends(family: Family, line: Line) -> bool:
     """Whether every descent ends at an equilibrium: solutions are all critical points of one function on a torus."""
     system = family.system
-    return system.has_index and system.is_on_torus and not have_moments(family.model, line.parameters)
+    return system.has_index and system.is_on_torus and not moved(family.model, line.parameters)
 
 
 def _equilibria(family: Family, line: Line, value: Fraction) -> list[tuple[Reached, int]] | None:

@@ -11,7 +11,8 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
-from ptmcad.mechanism import Kind, Model, System
+from ptmcad.mechanism import Kind, Mechanism, Model, System
+from ptmcad.mechanism.moments import foreign
 from ptmcad.question.config.record import Record, Window, read_record
 from ptmcad.question.domain import fault, unproved
 from ptmcad.question.examples import AXES
@@ -127,8 +128,10 @@ def _count(record: Record) -> Count:
     if count is Count.STABLE and not model.tells_stability:
         problem = "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"
         if not isinstance(model, System):
+            assert isinstance(model, Mechanism)
             problem = (
-                "a moment that depends on another unknown has no potential, which says what is stable: count total"
+                f"{foreign(model)} that depends on another unknown has no potential, which says what is stable: count "
+                "total"
             )
     if count is Count.INDEX and not model.has_potential:
         problem = "solutions of equations have no index, which is that of a potential's Hessian: count total"

@@ -16,6 +16,7 @@ from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.widths import Maximum, OperationWidths, Place
 from ptmcad.answer.words import kind_name, noun
 from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism.moments import acting
 from ptmcad.show.ranges.numbers import end_text, known, settled, width_text
 from ptmcad.text.balls import enclosed
 from ptmcad.text.enclosure import Enclosure
@@ -148,7 +149,7 @@ def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
     lines = []
     for path in found.paths:
         place = next(p for p in path.points if p.value == path.start)
-        side = f"; {_side(path, model)} {where}" if isinstance(model, Mechanism) and model.moving else ""
+        side = f"; {_side(path, model)} {where}" if isinstance(model, Mechanism) and model.rising else ""
         at = f"{name} = {shortest_text(path.start)}"
         lines.append(f"{what} {path.number} at {at}: {_unknowns(place, model, digits)}{side}")
         ends = (("down", path.low), ("up", path.high))
@@ -164,7 +165,7 @@ def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
 
 def _heights(model: Mechanism) -> list[str]:
     """What the heights of the moving points are called, such as y3 of A3."""
-    return [f"y{name[1:]}" if name[1:].isdigit() else f"y of {name}" for name in model.moving]
+    return [f"y{name[1:]}" if name[1:].isdigit() else f"y of {name}" for name in model.rising]
 
 
 def _side(path: PosePath, model: Mechanism) -> str:
@@ -185,7 +186,7 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
         return f"could not be followed beyond {name} = {shortest_text(end.last.value)}, before {at}"
     what = f"{at}: {_event(end, model)}"
     if end.target is None:
-        rests = "under the moment it may never come to rest: " if found.has_moments else ""
+        rests = f"under the {acting(model, found.moved)} it may never come to rest: " if found.moved else ""
         return f"{what}; {rests}where it goes from there is not decided" if model.tells_stability else what
     target = _unknowns(end.target, model, digits)
     if end.fate is Fate.MERGE:
@@ -193,7 +194,7 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
     drop = None
     if end.energy is not None and end.target_energy is not None:
         drop = settled(Enclosure(end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low), 5)
-    kind = f" ({posture(end.target, model)})" if isinstance(model, Mechanism) and model.moving else ""
+    kind = f" ({posture(end.target, model)})" if isinstance(model, Mechanism) and model.rising else ""
     whose = "the mechanism" if isinstance(model, Mechanism) else "the state"
     return f"{what}; {whose} snaps to {target}{kind}, where the energy is lower by {drop or 'an undecided amount'}"
 

@@ -107,7 +107,7 @@ def drawn(poses: Poses) -> str:
     if not moments:
         return "Energy"
     cut = ", cut at ±180°, not periodic," if is_cut(poses) else ""
-    return f"Energy less the {moments_work(poses.model, len(moments))}{cut}"
+    return f"Energy less the {moments_work(poses.model, moments)}{cut}"
 
 
 def is_cut(poses: Poses) -> bool:

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ptmcad.answer.poses import Pose, Poses
-from ptmcad.answer.words import UNTOLD, counted, kind_name, noun, of_what
+from ptmcad.answer.words import counted, kind_name, noun, of_what, untold
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model, Support
 from ptmcad.question.slice import merged
@@ -250,7 +250,7 @@ def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
         yield Entry(("stable: strong colours, dark frame",), bar_mark(0, STRONG))
         yield Entry(("unstable or degenerate: pale",), bar_mark(0, PALE))
     else:
-        yield Entry(tuple(textwrap.wrap(UNTOLD, _KEY_COLUMNS)))
+        yield Entry(tuple(textwrap.wrap(untold(poses.model), _KEY_COLUMNS)))
     if poses.model.has_potential:
         left_out = of_what(poses.model, poses.parameters)
         yield Entry(("U: energy, in force · length", *textwrap.wrap(left_out, _KEY_COLUMNS)))

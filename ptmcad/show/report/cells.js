@@ -140,7 +140,7 @@ function fillPanel(number, cell) {
     figures.push(figure);
     grid.append(figure);
   }
-  const without = cell.moments.length ? " U is the energy of springs and loads, without the moments' work." : "";
+  const without = cell.moments.length ? " U is the energy of springs and loads, without the " + DATA.work + "." : "";
   panel.append(grid, html("p", "hint", legendOfParts() + without));
   if (cell.total === null || cell.equilibria.length < cell.total) panel.append(html("p", "hint", "The result stores the stable poses alone."));
   const landscape = DATA.landscape && (cell.potential.length || FOLLOW) ? drawLandscape(cell, pointed) : null;
@@ -165,7 +165,7 @@ function legendOfParts() {
   if (slides.length) held.push(`${points(slides)} ${slides.length > 1 ? "sit on sliders" : "sits on the slider"}`);
   const text = parts.join("; ");
   return `${text.charAt(0).toUpperCase()}${text.slice(1)}. ${held.length ? `${held.join(", ")}. ` : ""}`
-    + `All poses are drawn to one scale; ${DATA.told ? "a strong frame means stable" : "nothing says which are stable, as a moment depends on another unknown"}.`;
+    + `All poses are drawn to one scale; ${DATA.told ? "a strong frame means stable" : DATA.untold}.`;
 }
 theme.changed.push(() => { if (cells.redraw) cells.redraw(); });
 

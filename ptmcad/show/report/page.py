@@ -15,9 +15,10 @@ from string import Template
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.answer.words import index_words
+from ptmcad.answer.words import index_words, moments_work, untold
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model, Support
+from ptmcad.mechanism.work import split_moments
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.shapes import shapes
@@ -157,6 +158,14 @@ def _drawing(model: Model) -> dict[str, Any]:
     }
 
 
+def _work(model: Model) -> str:
+    """What the energies of poses leave out, where moments work; empty where there are none, or no energies."""
+    if not isinstance(model, Mechanism) or not model.has_potential:
+        return ""
+    acted = [moment.unknown for moment in split_moments(model).steady]
+    return moments_work(model, acted) if acted else ""
+
+
 def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
     """What the script shows and draws."""
     names, model = result.slice.axis_names, result.slice.model
@@ -166,6 +175,8 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "axes": [symbol(name) for name in names],
         "drawable": isinstance(model, Mechanism),
         "told": model.tells_stability,
+        "untold": "" if model.tells_stability or not isinstance(model, Mechanism) else untold(model),
+        "work": _work(model),
         "landscape": len(model.angles) == len(model.unknowns) == 2 and model.has_potential,
         "index": index_words(len(model.unknowns) + 1),
         "mechanism": _drawing(model),
