@@ -121,10 +121,12 @@ def test_ffmpeg_gets_every_picture(motion: Motion, tmp_path: Path, monkeypatch: 
     assert (tmp_path / "film.mp4").read_bytes() == b"%d pictures" % (len(motion.steps) + 2 * 8)
 
 
+@pytest.mark.parametrize("reads", [True, False], ids=["at the end", "at once"])
 def test_what_ffmpeg_refuses_is_said(
-    motion: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    reads: bool, motion: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    program(tmp_path, "#!{python}\nimport sys\nsys.stdin.buffer.read()\nsys.exit('no encoder')\n", monkeypatch)
+    read = "sys.stdin.buffer.read()\n" if reads else ""
+    program(tmp_path, f"#!{{python}}\nimport sys\n{read}sys.exit('no encoder')\n", monkeypatch)
     with pytest.raises(OSError, match="ffmpeg failed with status 1: no encoder"):
         motion.save(tmp_path / "film.mp4", dpi=60)
     asked = ["animate", FIG4, "--path", PATH, "--frames", "3", "--dpi", "50", "--format", "gif,mp4"]
