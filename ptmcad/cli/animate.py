@@ -23,6 +23,7 @@ from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism
 from ptmcad.options import Options
+from ptmcad.process.extras import require_ffmpeg
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import file_name
 from ptmcad.question.slice import Slice
@@ -62,7 +63,7 @@ def _film(
                    "rho=3/4:6/5:3/4,L2=3/2.")  # fmt: skip
 @click.option("--pose", default="stable:1", show_default=True, metavar="KIND:N",
               help="Which pose is followed, as `ptmcad map` numbers them, at the path's start.")  # fmt: skip
-@click.option("--frames", type=click.IntRange(2, 2000), default=90, show_default=True,
+@click.option("--frames", type=click.IntRange(2, 600), default=90, show_default=True,
               help="Pictures along the path; each fall has a third of that beside.")  # fmt: skip
 @click.option("--fps", type=click.IntRange(1, MOST_FPS), default=20, show_default=True, help="Pictures in a second.")
 @click.option("--size", metavar="WxH", help="Of the film, as 9x5in.  [default: 9x5.1in]")
@@ -95,12 +96,7 @@ def command(
         ptmcad animate --slice L2,rho --path L2=3/2:2/3:3/2,rho=1 --fps 10 --size 8x5in --frames 30
     """
     if "mp4" in formats:
-        from ptmcad.show.render.backend import load_matplotlib
-
-        load_matplotlib()
-        from ptmcad.show.render.film import program
-
-        program()  # where it is missing, that is said before anything is computed
+        require_ffmpeg()  # where it is missing, that is said before anything is computed
     with held(limits), ProgressBar() as progress:
         options = Options(areas=False, progress=progress, timeout=limits.timeout)
         result = stored_map(asked) or made_map(_slice(asked), options, tolerance)

@@ -1,10 +1,11 @@
-"""Packages that only some questions need: asked for before anything is computed, so that no work is lost.
+"""Packages and programs that only some questions need: asked for before anything is computed, so that no work is lost.
 
 Guarantee: nothing is imported to find out; a package counts as there when Python would find it.
 """
 
 from __future__ import annotations
 
+import shutil
 from importlib.util import find_spec
 
 from ptmcad.errors import ConfigError
@@ -41,3 +42,19 @@ def require_anywidget() -> None:
     """
     if find_spec("anywidget") is None:
         raise ConfigError(ANYWIDGET_MISSING)
+
+
+def require_ffmpeg() -> str:
+    """Where the program is that makes MP4.
+
+    Raises
+    ------
+    ConfigError
+        When it is not on the PATH.
+    """
+    found = shutil.which("ffmpeg")
+    if found is None:
+        raise ConfigError(
+            "mp4 is made by the program ffmpeg, which is not on the PATH: install it, or ask for gif", key="--format"
+        )
+    return found

@@ -19,7 +19,7 @@ from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.stage import Stage
-from ptmcad.show.style import DEFAULT
+from ptmcad.show.style import DEFAULT, styled
 
 FIG4 = str(CONFIGS / "fig4.yaml")
 PATH = "rho=3/4:6/5,L2=3/2"
@@ -78,12 +78,29 @@ def test_pictures_do_not_depend_on_their_order(stage: Stage, motion: Motion) -> 
         assert picture[round(y - 0.5), round(x - 0.5)].min() > 240
 
 
+@pytest.mark.parametrize("size", ["6.5x3.4in", "6.5x8in", "12x6in"])
+def test_all_words_are_within_the_picture(motion: Motion, size: str) -> None:
+    style = styled("default", None, size=size)
+    with settings(style):
+        stage = Stage(motion, style, 100)
+        wide, tall = stage.figure.get_size_inches() * 100
+        for number in (0, next(k for k, step in enumerate(motion.steps) if step.falling)):
+            texts = list(stage._said(motion.steps[number]))
+            for text in (*texts, *stage.figure.texts):
+                box = text.get_window_extent(stage.canvas.get_renderer())
+                assert 0 <= box.x0 < box.x1 <= wide and 0 <= box.y0 < box.y1 <= tall, text.get_text()
+                assert text.get_fontsize() >= 6
+            for text in texts:
+                text.remove()
+    assert (stage.curve is None) == (size == "6.5x3.4in")
+
+
 def test_a_gif_has_all_pictures_and_rests_at_its_ends(motion: Motion, tmp_path: Path) -> None:
-    motion.save(tmp_path / "one.gif", fps=10, dpi=60, size="6x4in")
-    motion.save(tmp_path / "two.gif", fps=10, dpi=60, size="6x4in")
+    motion.save(tmp_path / "one.gif", fps=10, dpi=60, size="7x4in")
+    motion.save(tmp_path / "two.gif", fps=10, dpi=60, size="7x4in")
     assert (tmp_path / "one.gif").read_bytes() == (tmp_path / "two.gif").read_bytes()
     with Image.open(tmp_path / "one.gif") as film:
-        assert (film.size, film.n_frames) == ((360, 240), len(motion.steps))
+        assert (film.size, film.n_frames) == ((420, 240), len(motion.steps))
         durations = []
         for k in range(film.n_frames):
             film.seek(k)
@@ -100,9 +117,9 @@ def test_a_notebook_shows_the_film(motion: Motion) -> None:
 FAKE = """#!{python}
 import sys
 data = sys.stdin.buffer.read()
-if len(data) % (360 * 240 * 3) or "360x240" not in sys.argv:
+if len(data) % (420 * 240 * 3) or "420x240" not in sys.argv:
     sys.exit("odd input")
-open(sys.argv[-1], "wb").write(b"%d pictures" % (len(data) // (360 * 240 * 3)))
+open(sys.argv[-1], "wb").write(b"%d pictures" % (len(data) // (420 * 240 * 3)))
 """
 
 
@@ -117,14 +134,16 @@ def program(folder: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_ffmpeg_gets_every_picture(motion: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     program(tmp_path, FAKE, monkeypatch)
-    motion.save(tmp_path / "film.mp4", fps=10, dpi=60, size="6x4in")
+    motion.save(tmp_path / "film.mp4", fps=10, dpi=60, size="7x4in")
     assert (tmp_path / "film.mp4").read_bytes() == b"%d pictures" % (len(motion.steps) + 2 * 8)
 
 
+@pytest.mark.parametrize("reads", [True, False], ids=["at the end", "at once"])
 def test_what_ffmpeg_refuses_is_said(
-    motion: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    reads: bool, motion: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    program(tmp_path, "#!{python}\nimport sys\nsys.stdin.buffer.read()\nsys.exit('no encoder')\n", monkeypatch)
+    read = "sys.stdin.buffer.read()\n" if reads else ""
+    program(tmp_path, f"#!{{python}}\nimport sys\n{read}sys.exit('no encoder')\n", monkeypatch)
     with pytest.raises(OSError, match="ffmpeg failed with status 1: no encoder"):
         motion.save(tmp_path / "film.mp4", dpi=60)
     asked = ["animate", FIG4, "--path", PATH, "--frames", "3", "--dpi", "50", "--format", "gif,mp4"]
@@ -158,7 +177,7 @@ def test_the_command_writes_a_film_and_says_where_it_snaps(tmp_path: Path, capsy
         (["--path", PATH, "--pose", "best"], "--pose: 'best' is not a pose such as stable:1"),
         (["--path", PATH, "--pose", "stable:3"], "--pose: there is no stable:3 at the path's start"),
         (["--path", PATH, "--size", "9"], "--size: '9' is not a size such as"),
-        (["--path", PATH, "--size", "2x2in"], "a film needs at least 5x3.2in"),
+        (["--path", PATH, "--size", "2x2in"], "a film needs at least 6.5x3.4in"),
         (["--path", PATH, "--format", "mp4"], "mp4 is made by the program ffmpeg, which is not on the PATH"),
         (["--path", PATH, "--format", "avi"], "avi is not among gif, mp4"),
     ],

@@ -33,7 +33,7 @@ from ptmcad.errors import ConfigError, PtmcadError
 from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
 
-FRAMES, MOST_FRAMES = 90, 2000
+FRAMES, MOST_FRAMES = 90, 600
 MOST_FALLS = 20
 SLIP = 0.05
 """A shorter fall is none to be seen: the pose goes on beside, as where a symmetric one gives way to two."""

@@ -3,7 +3,8 @@
 Guarantee: two different counts of a torus of two unknowns (where saddles = minima + maxima) never have the same fill,
 nor have others of one or two unknowns with up to three maxima. Of three unknowns few have: hatches would be too dense.
 Along a row of the palette the lightness falls by at least six units of CIE L* a step; the hues start from those of
-Okabe & Ito.
+Okabe & Ito. Seen with deuteranopia neighbours of a row are apart by at least 15 units of CIE Lab, and each
+colour is from what is undetermined.
 
 Not guaranteed: as many for a caller's own colours, which are taken in turn for the counts of one map.
 
@@ -37,8 +38,8 @@ class Fill:
 
 UNKNOWN = Fill("#ffffff")
 NONE = Fill("#ffffff", "////")
-UNDETERMINED = Fill("#8f8f8f")
-"""L* = 59; the only grey, so that its lightness need not differ from all others'."""
+UNDETERMINED = Fill("#c4c4c4")
+"""L* = 79, between the palette's steps; the only grey, and one that no colour comes near to without red and green."""
 GREYS = ("#ffffff", "#e2e2e2", "#bcbcbc", "#979797", "#757575", "#545454")
 """L* = 100, 90, 76, 62, 49, 36."""
 UNDETERMINED_IN_GREY = Fill("#ffffff", "xxxxxxxx")

@@ -42,12 +42,12 @@ from ptmcad.show.style import Style
 from ptmcad.show.table import count_text
 
 SIZE = (9.0, 5.1)
-LEAST = (5.0, 3.2)
+LEAST = (6.5, 3.4)
 """Inches in which all parts have room."""
 LEFT, RIGHT, GAP, TOP, BOTTOM, LINE = 0.72, 0.15, 0.42, 0.62, 0.55, 0.19
 """Inches: at the map's left, the rim, between the parts, above them, below the map, a line of the legend."""
-CURVE = 0.21
-"""Of the height: the energy's chart."""
+CURVE, LEAST_PANEL = 0.21, 1.4
+"""The energy's chart, against the height, where so many inches are left for the mechanism."""
 RIM = 27.0
 """Points around the mechanism, for supports, loads and labels."""
 TURNS = 9
@@ -100,35 +100,38 @@ class Stage:
         self.figure = Figure(figsize=size, dpi=dpi, facecolor="white")
         self.canvas = _canvas(self.figure)
         width, tall = size
-        key = _key(motion, style, 0.5 * width - LEFT)
-        side = min(0.5 * width - LEFT, tall - TOP - BOTTOM - LINE * len(key))
-        bottom = tall - TOP - side
         title = whole_title(motion.result) if style.title is None else style.title
-        for k, line in enumerate(textwrap.wrap(title, int(11 * width), max_lines=1, placeholder=" …")):
-            self._text(LEFT, tall - 0.2 - 0.2 * k, line, SIZES[0], va="center")
-        self.chart = self._axes((LEFT, bottom, side, side), "map")
+        for line in textwrap.wrap(title, int(11 * width), max_lines=1, placeholder=" …"):
+            self._text(LEFT, tall - 0.2, line, SIZES[0], va="center")
+        top = tall - (TOP if title else TOP - 0.28)
+        key = _key(motion, style, width - LEFT - RIGHT)
+        foot = BOTTOM + LINE * len(key)
+        side = min(0.5 * width - LEFT, top - foot)
+        self.chart = self._axes((LEFT, top - side, side, side), "map")
         self._map(style)
-        self._legend(key, bottom - BOTTOM)
-        left = LEFT + side + GAP
-        wide = width - left - RIGHT
-        low = bottom + CURVE * tall if self._has_curve else bottom
-        room = (left, low + 0.55, wide, tall - TOP - low - 0.55)
-        self.panel = self._axes(room, "mechanism")
-        self.panel.set(xlim=(0, room[2] * 72), ylim=(0, room[3] * 72), xticks=[], yticks=[])
-        self.world = _world(motion, (room[2] * 72, room[3] * 72))
-        self.above, self.below = (left, tall - TOP + 0.13), (left, low + 0.4)
-        self.where = (LEFT, tall - TOP + 0.13)
-        self.curve: Any = None
-        if self._has_curve:
-            self.curve = self._axes((left + 0.35, bottom, wide - 0.35, low - bottom), "energy")
-            self._energy()
+        self._legend(key, foot - BOTTOM)
+        self._right(LEFT + side + GAP, top, foot)
+        self.where = (LEFT, top + 0.13)
         self.sketches = _sketches(motion, self.mechanism, self.world)
         self.canvas.draw()
         self.background = self.canvas.copy_from_bbox(self.figure.bbox)
 
-    @property
-    def _has_curve(self) -> bool:
-        return all(step.height is not None for step in self.motion.steps)
+    def _right(self, left: float, top: float, foot: float) -> None:
+        """The mechanism and, where there is an energy and room for it, its chart below."""
+        width, tall = (float(side) for side in self.figure.get_size_inches())
+        wide, chart = width - left - RIGHT, CURVE * tall
+        has_energy = all(step.height is not None for step in self.motion.steps)
+        curved = has_energy and top - foot - chart - 0.55 >= LEAST_PANEL
+        low = foot + chart + 0.55 if curved else foot
+        sides = (wide * 72, (top - low) * 72)
+        self.panel = self._axes((left, low, wide, top - low), "mechanism")
+        self.panel.set(xlim=(0, sides[0]), ylim=(0, sides[1]), xticks=[], yticks=[])
+        self.world = _world(self.motion, sides)
+        self.above, self.below = (left, top + 0.13), (left, low - 0.15)
+        self.curve: Any = None
+        if curved:
+            self.curve = self._axes((left + 0.35, foot, wide - 0.35, chart), "energy")
+            self._energy()
 
     def frames(self) -> Iterator[Pixels]:
         """The pictures as arrays of red, green and blue, shape (height, width, 3), in the order of the steps."""
@@ -202,7 +205,9 @@ class Stage:
         else:
             stable = f", {step.stable} stable" if step.stable is not None and model.tells_stability else ""
             what, colour = f"one of exactly {counted(model, step.total)}{stable}", INK
-        yield self._text(*self.above, what, SIZES[1], va="center", color=colour)
+        wide = self.world.sides[0] / 72
+        size = min(SIZES[1], SIZES[1] * wide / text_width(what, SIZES[1]))
+        yield self._text(*self.above, what, size, va="center", color=colour)
         angles = len(model.angles)
         texts = [f"{symbol(n)} = {_turned(degrees(v)):.1f}°".replace("-", "−")
                  for n, v in zip(model.angles, step.unknowns, strict=False)]  # fmt: skip
