@@ -19,6 +19,7 @@ from ptmcad.cli.paths import out_option
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.stored import stored_in
 from ptmcad.cli.values import quantity_names
 from ptmcad.errors import PtmcadError, shown_path
 from ptmcad.options import Options
@@ -93,8 +94,9 @@ def command(
         request = request_of(slice, value, pose)  # what means nothing is refused before anything is computed
         options = Options(areas=False, progress=progress, timeout=limits.timeout)
         result = stored or made_map(slice, options, tolerance)
-        field = field_of(result, request, *pixels, checks=checks)
-        written = write_files(out, _writers(result, field, names, contours))
+        with stored_in(asked.config if stored else None):
+            field = field_of(result, request, *pixels, checks=checks)
+            written = write_files(out, _writers(result, field, names, contours))
     for path in written:
         click.echo(shown_path(path))
     click.echo(_summary(field))

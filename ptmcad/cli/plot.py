@@ -19,9 +19,9 @@ from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.paths import file_option
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.points import disagreements, measured, places, poses_at
-from ptmcad.cli.stored import read_result
+from ptmcad.cli.stored import read_result, stored_in
 from ptmcad.cli.values import files
-from ptmcad.errors import ConfigError, PictureError, shown_path
+from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import portable_file
 
@@ -120,15 +120,7 @@ def command(
         portable_file(f"{stem}.{formats[0]}", "RESULT")
         check_writable(folder, names_of(stem, formats))
         writers = _writers(stored, stem, formats, _with_points(stored, drawing, added), added)
-        try:
+        with stored_in(result):
             written = write_files(folder, writers)
-        except PictureError as error:
-            cause = error.__cause__
-            if isinstance(cause, ConfigError):
-                raise ConfigError(cause.message, file=str(result)) from error
-            if not isinstance(cause, (ValueError, IndexError, ArithmeticError)):
-                raise
-            reason = f"the map contradicts itself ({cause}); check it with ptmcad verify"
-            raise ConfigError(reason, file=str(result)) from error
     for path in written:
         click.echo(shown_path(path))

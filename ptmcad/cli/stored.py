@@ -8,11 +8,13 @@ may.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.errors import ConfigError, PtmcadError, shown
+from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown
 from ptmcad.process.commit import recover
 from ptmcad.show.document import FORMAT
 from ptmcad.text.textfile import read_text
@@ -39,6 +41,28 @@ def read_result(path: Path) -> RegionMap:
         reason = shown(" ".join(str(error).split()), 300)
         what = _other_kind(text) or f"is damaged or not a {FORMAT} file: {reason}"
         raise ConfigError(what, file=str(path)) from error
+
+
+@contextmanager
+def stored_in(path: Path | None) -> Iterator[None]:
+    """What is asked of the map in a file, if it is in one: where the map contradicts itself, that is said of the file.
+
+    Raises
+    ------
+    ConfigError
+    """
+    try:
+        yield
+    except (PictureError, ValueError, IndexError, ArithmeticError) as error:
+        cause = error.__cause__ if isinstance(error, PictureError) else error
+        if path is None:
+            raise
+        if isinstance(cause, ConfigError):
+            raise ConfigError(cause.message, file=str(path)) from error
+        if not isinstance(cause, (ValueError, IndexError, ArithmeticError)):
+            raise
+        reason = f"the map contradicts itself ({cause}); check it with ptmcad verify"
+        raise ConfigError(reason, file=str(path)) from error
 
 
 def is_result(path: Path) -> bool:

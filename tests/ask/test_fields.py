@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -264,7 +265,12 @@ def test_the_command_takes_a_result_whose_map_is_not_made_again(
         assert np.array_equal(arrays["values"], shipped("fig2").field("energy", "stable:1", 12, 9).values)
     assert run(["map", str(result), "--set", "L1=2"]) == 2
     assert "--set: a result has its slice already" in capsys.readouterr().err
-    result.write_text(result.read_text()[:500])
+    first = shipped("fig2").critical_values[0]
+    moved = replace(first, polynomial=(-3, 1), low=Fraction(3), high=Fraction(3))
+    result.write_text(replace(shipped("fig2"), critical_values=(moved,)).to_json())
+    assert run(["map", str(result), *wanted, "--format", "png"]) == 2
+    assert "stored.json: the map contradicts itself" in capsys.readouterr().err
+    result.write_text(shipped("fig2").to_json()[:500])
     assert run(["map", str(result), *wanted]) == 2
     assert "stored.json: is damaged or not a ptmcad-region-map/" in capsys.readouterr().err
 
