@@ -26,6 +26,7 @@ from ptmcad.options import Options
 from ptmcad.process.extras import require_ffmpeg
 from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import file_name
+from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Slice
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.style import Style, styled
@@ -60,7 +61,7 @@ def _film(
 @slice_options
 @click.option("--path", required=True, metavar="NAME=FROM:TO,NAME=VALUE",
               help="Where the point of the map goes: for each axis one value, or one for each corner, as in "
-                   "rho=3/4:6/5:3/4,L2=3/2.")  # fmt: skip
+                   f"{SECOND}=3/4:6/5:3/4,{FIRST}=3/2.")  # fmt: skip
 @click.option("--pose", default="stable:1", show_default=True, metavar="KIND:N",
               help="Which pose is followed, as `ptmcad map` numbers them, at the path's start.")  # fmt: skip
 @click.option("--frames", type=click.IntRange(2, 600), default=90, show_default=True,

@@ -71,7 +71,7 @@ def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
     parameters = without_free_lengths(
         slice.model,
         parameters,
-        "exact ends and paths of poses are",
+        "exact ends are",
         "ptmcad range with --at alone encloses the ends",
     )
     return Line(slice.axes[varying], {other: value}, parameters, slice.model)

@@ -11,6 +11,7 @@ from typing import Any
 
 from ptmcad.answer.motion import Place
 from ptmcad.errors import ConfigError, shown
+from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Slice
 from ptmcad.text.parsing import number_for
 
@@ -67,7 +68,8 @@ def _of_text(text: str) -> dict[str, list[str]]:
         listed = [value.strip() for value in values.split(":")]
         if not (name and equals and all(listed)) or name in found:
             raise ConfigError(
-                f"'{shown(part, 60)}' is neither NAME=VALUE nor NAME=FROM:TO, as in rho=1/2:6/5,L2=3/2", key=OPTION
+                f"'{shown(part, 60)}' is neither NAME=VALUE nor NAME=FROM:TO, as in {SECOND}=1/2:6/5,{FIRST}=3/2",
+                key=OPTION,
             )
         found[name] = listed
     return found
