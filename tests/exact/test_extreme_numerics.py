@@ -295,7 +295,6 @@ def test_areas_next_to_a_limit_take_little_more_work(force: Fraction) -> None:
     assert work_of(nearly) <= 3 * usual_work()
 
 
-@pytest.mark.slow
 def test_a_vast_window_takes_at_most_five_times_the_work() -> None:
     vast = SliceQuestion(LOADED, {"rho": (Fraction(0), ten(12)), "L2": (Fraction(0), ten(12))})
     assert work_of(vast) <= 5 * usual_work()
