@@ -49,8 +49,21 @@ def test_every_shell_is_answered() -> None:
     assert asked("bash", "cl") == ["plain,classify"]
     assert asked("zsh", "cl")[:2] == ["plain", "classify"]
     assert [line.partition("\t")[0] for line in asked("fish", "cl")] == ["plain,classify"]
-    assert plain("") == list(COMMANDS)
-    assert plain("verify", "--bo") == ["--boxes"]
+
+
+def told(words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> list[str]:
+    """What bash is told, asked for in this process."""
+    for name, value in request("bash", *words).items():
+        monkeypatch.setenv(name, value)
+    assert answer(group, "bash_complete", "ptmcad") == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    return values_in([line for line in out.splitlines() if line])
+
+
+def test_all_commands_and_one_option(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert told([""], monkeypatch, capsys) == list(COMMANDS)
+    assert told(["verify", "--bo"], monkeypatch, capsys) == ["--boxes"]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
@@ -89,13 +102,7 @@ def test_no_request_of_a_shell(value: str) -> None:
 def test_values(
     words: list[str], values: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What bash is told, asked for in this process."""
-    for name, value in request("bash", *words).items():
-        monkeypatch.setenv(name, value)
-    assert answer(group, "bash_complete", "ptmcad") == 0
-    out, err = capsys.readouterr()
-    found = values_in([line for line in out.splitlines() if line])
-    assert err == ""
+    found = told(words, monkeypatch, capsys)
     assert found[: len(values)] == values and (values or not found)
 
 

@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cache
 
 import pytest
+from support.few import few
 from support.maps import shipped
 from support.programs import ProgramError, needs_qepcad, needs_singular, qepcad_session
 from support.qepcad_cells import DISPLAY, Decomposition, compare, decided, decomposition, exactly, indices, window_cad
@@ -177,7 +178,7 @@ def points(name: str) -> list[tuple[Fraction, Fraction]]:
 
 
 @needs_singular
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", few(SHIPPED, "fig2", "fig4", "forces", "rods"))
 def test_index_at_every_sample_by_singular_and_qepcad(name: str) -> None:
     """Exactly so many minima, saddles and maxima as stored; no cell is left out."""
     assert axes(name) == shipped(name).slice.axis_names
@@ -220,7 +221,7 @@ def sextic_counts(name: str, counts: list[tuple[int, int]]) -> list[bool]:
     return decided(problems)
 
 
-@pytest.mark.parametrize("name", WITH_SEXTIC)
+@pytest.mark.parametrize("name", few(WITH_SEXTIC, "fig3", "fig4", "forces", "rods"))
 def test_counts_at_every_sample_by_the_sextic(name: str) -> None:
     assert all(sextic_counts(name, [(cell.total or 0, cell.stable or 0) for cell in shipped(name).cells]))
 

@@ -117,6 +117,7 @@ def test_a_tiny_window_across_the_curve() -> None:
     assert sorted(r.stable for r in result.regions) == [1, 2]  # type: ignore[type-var]
 
 
+@pytest.mark.slow
 def test_forty_digits() -> None:
     digits = "1.414213562373095048801688724209698078569"
     result = region_map(RHO_L2, L1=digits, F3="-10.000000000000000000000000000000000000001", F4=-10)

@@ -303,7 +303,7 @@ def test_signals_at_any_moment_of_the_start(tmp_path: Path) -> None:
     )
     arguments = [sys.executable, "-c", program, "classify", str(FIG2), "--out", str(tmp_path), "--format", "json"]
     moments = random.Random(2)
-    for _ in range(16):
+    for _ in range(10):
         number = moments.choice((signal.SIGINT, signal.SIGTERM))
         process = subprocess.Popen(arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         assert process.stdout is not None

@@ -216,16 +216,15 @@ def test_a_users_own_settings_count_less_than_options(mplstyle: Path, tmp_path: 
 
 def test_a_users_matplotlibrc_counts_when_it_is_asked_for_only(mplstyle: Path, tmp_path: Path) -> None:
     environment = {**os.environ, "MATPLOTLIBRC": str(mplstyle)}
-    found = {}
-    for name in ("default", "user"):
-        code = (
-            "from pathlib import Path; import ptmcad; from ptmcad.show.render import draw; "
-            "from ptmcad.show.render.usersettings import user_styled; "
-            "result = ptmcad.classify(ptmcad.slice_from_options(slice='L2,rho')); "
-            f"draw(result, Path({str(tmp_path / name)!r} + '.png'), style=user_styled({name!r}))"
-        )
-        subprocess.run([sys.executable, "-c", code], check=True, env=environment)
-        found[name] = imread(tmp_path / f"{name}.png").shape[:2]
+    code = (
+        "from pathlib import Path; import ptmcad; from ptmcad.show.render import draw; "
+        "from ptmcad.show.render.usersettings import user_styled; "
+        "result = ptmcad.classify(ptmcad.slice_from_options(slice='L2,rho')); "
+        f"[draw(result, Path({str(tmp_path)!r}) / (name + '.png'), style=user_styled(name)) "
+        "for name in ('user', 'default')]"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
+    found = {name: imread(tmp_path / f"{name}.png").shape[:2] for name in ("default", "user")}
     assert found == {"default": (865, 1267), "user": (450, 600)}
 
 

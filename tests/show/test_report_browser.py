@@ -258,7 +258,7 @@ def test_text_has_contrast(view: Callable[..., Browser], scheme: str) -> None:
     assert least >= 4.5, where
 
 
-@pytest.mark.parametrize("width", [320, pytest.param(360, marks=pytest.mark.slow), 768])
+@pytest.mark.parametrize("width", [320, *(pytest.param(w, marks=pytest.mark.slow) for w in (360, 768))])
 def test_narrow_screens_need_no_sideways_scrolling(view: Callable[..., Browser], width: int) -> None:
     b = view("fig4")
     b.size(width, 740, phone=True)

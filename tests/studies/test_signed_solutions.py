@@ -38,7 +38,7 @@ def solutions(numbers: Numbers) -> SignedSolutions:
 @pytest.mark.parametrize(("numbers", "total", "real", "equilibria"), [
     pytest.param(PAPER, 128, 48, 6, id="section 5.2: 128, 6 equilibria"),
     pytest.param(UNLOADED, 124, 48, 6, id="unloaded: 124"),
-    pytest.param(THIRTY, 124, 72, 30, id="30 equilibria", marks=pytest.mark.slow),
+    pytest.param(THIRTY, 124, 72, 30, id="30 equilibria"),
 ])  # fmt: skip
 def test_numbers_of_solutions(numbers: Numbers, total: int, real: int, equilibria: int) -> None:
     found = solutions(numbers)

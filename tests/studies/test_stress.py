@@ -271,6 +271,15 @@ def test_the_command_lists_its_cases(capsys: pytest.CaptureFixture[str]) -> None
     assert all(c.name in out for c in CASES)
 
 
+def test_a_table_alone_leaves_no_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(["stress", "fold-few-1e-6", "--format", "table"]) == 0
+    assert "fold-few-1e-6" in capsys.readouterr().out
+    assert not list(tmp_path.iterdir())
+
+
 def test_the_command_runs_cases_and_writes_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["stress", "fold-many-1e-30", "--random", "2", "--repeats", "1", "--out", str(tmp_path)]
     assert run([*arguments, "--format", "table,json,csv,svg"]) == 0

@@ -8,7 +8,7 @@ FAST, THOROUGH = "fast", "thorough"
 """The names of the profiles."""
 ALL = 100
 """What a test draws in the thorough profile that asks for no number of its own."""
-FEW = 40
+FEW = 25
 """The same in the fast one."""
 
 

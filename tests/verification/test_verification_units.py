@@ -12,6 +12,7 @@ import pytest
 from flint import Ordering, fmpz_mpoly_ctx, fmpz_poly
 from hypothesis import given
 from hypothesis import strategies as st
+from support.few import few
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
@@ -120,9 +121,7 @@ def test_a_false_partial_result_is_rejected() -> None:
 CUSP = {"L1": "1", "L2": "25/39", "rho": "28/169", "F3": "-22400/507", "F4": "-13440/169"}
 
 
-@pytest.mark.parametrize(
-    "exponent", [pytest.param(3, marks=pytest.mark.slow), 12, pytest.param(30, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("exponent", few([3, 12, 30], 30))
 def test_boxes_near_a_cusp_are_disjoint_and_verified(exponent: int) -> None:
     """Three equilibria meet in the cusp; next to it their boxes need more digits."""
     stored = map_near_the_cusp(exponent)
@@ -130,7 +129,7 @@ def test_boxes_near_a_cusp_are_disjoint_and_verified(exponent: int) -> None:
     check_solutions(Claims(stored))
 
 
-@pytest.mark.parametrize("exponent", [3, *(pytest.param(k, marks=pytest.mark.slow) for k in (12, 30))])
+@pytest.mark.parametrize("exponent", few([3, 12, 30], 12))
 def test_maps_near_a_cusp_are_verified(exponent: int) -> None:
     """In full where the areas are easiest, and where they need more than the usual precision."""
     report = ptmcad.verify(map_near_the_cusp(exponent))

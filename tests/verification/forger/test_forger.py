@@ -78,6 +78,7 @@ def test_areas_next_to_one_of_their_bounds_are_confirmed(shipped: Callable[..., 
         assert violation(make(), "areas") is None
 
 
+@pytest.mark.slow
 def test_areas_within_rounding_of_one_of_their_bounds_are_confirmed() -> None:
     """Random slice 89: a region's upper bound is 2e-16 above its area, and its lower one is taken away."""
     r = named("89")
