@@ -178,7 +178,7 @@ def test_a_certified_map_and_its_stable_poses(monkeypatch: pytest.MonkeyPatch) -
         "axes": {"rho": ["1", "6/5"], "L2": ["1", "6/5"]},
     }  # fmt: skip
     result = ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/10", jobs=1)
-    field = field_of(result, "energy", "stable:1", 12, checks=10)
+    field = field_of(result, request_of(result.slice, "energy", "stable:1"), 12, checks=10)
     assert (field.missed, field.checked > 0, field.difference < 1e-9) == (0, True, True)
     assert (np.isnan(field.values) == (result.grid(12).stable < 1)).all()
     monkeypatch.setattr("ptmcad.ask.fields.field.filled", None)  # refused before anything is followed
