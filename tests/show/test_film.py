@@ -167,7 +167,7 @@ def test_the_command_writes_a_film_and_says_where_it_snaps(tmp_path: Path, capsy
     assert run(["animate", stored, "--path", PATH, "--set", "F3=0", "--out", str(tmp_path)]) == 2
     assert "--set: a result has its slice already" in capsys.readouterr().err
     with Image.open(io.BytesIO((tmp_path / "a.gif").read_bytes())) as film:
-        assert film.size == (450, 255)
+        assert film.size in ((450, 255), (450, 254))  # older matplotlib cuts half a pixel off
 
 
 @pytest.mark.parametrize(
