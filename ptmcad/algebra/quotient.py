@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from operator import add
@@ -267,6 +266,8 @@ def _points() -> Iterator[tuple[int, int]]:
     Any do, but at large ones values have more primes of their own. They grow, so that any curve is left in the end.
     """
     yield from ((1_000_003, 998_244_353), (2_147_483_647, 179_424_673))
+    import random  # which few need
+
     source = random.Random("points")
     for bits in itertools.count(32):
         yield source.getrandbits(bits), source.getrandbits(bits)

@@ -20,11 +20,12 @@ from typing import NoReturn
 
 import click
 
-from ptmcad.cli.completion import VARIABLE, answer
 from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.version import __version__
 
+COMPLETION = "_PTMCAD_COMPLETE"
+"""The variable in which a shell asks for what could be typed next, as click has it."""
 COMMANDS = {
     "animate": "ptmcad.cli.animate",
     "bench": "ptmcad.cli.bench",
@@ -105,8 +106,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
         click.echo(f"error: {given} arguments are given, more than {MAX_ARGUMENTS}: write a problem record", err=True)
         return 2
     try:
-        if VARIABLE in os.environ:
-            return answer(group, os.environ[VARIABLE], "ptmcad")
+        if COMPLETION in os.environ:
+            from ptmcad.cli.completion import answer
+
+            return answer(group, os.environ[COMPLETION], "ptmcad", COMPLETION)
         status = group.main(args=arguments, prog_name="ptmcad", standalone_mode=False)
         if sys.stdout is not None:  # None when it was closed by the caller
             sys.stdout.flush()

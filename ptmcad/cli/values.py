@@ -12,40 +12,48 @@ import json
 import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
-from click.shell_completion import CompletionItem
 
 from ptmcad.errors import PtmcadError
 
-Proposals = list[CompletionItem]
-Complete = Callable[[click.Context, click.Parameter, str], Proposals]
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
+Complete = Callable[[click.Context, click.Parameter, str], "list[CompletionItem]"]
 MAX_BYTES = 20_000_000
 """Of a result whose axes are looked up: of a larger one nothing is proposed."""
 _FILE = "file"
 
 
+def _item(name: str, type: str = "plain") -> CompletionItem:
+    from click.shell_completion import CompletionItem  # which commands that run do not need
+
+    return CompletionItem(name, type=type)
+
+
 def formats(known: Iterable[str]) -> Complete:
     """The formats that a list, separated by commas, does not have yet."""
 
-    def propose(_context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+    def propose(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
         return _next_of_list(typed, known)
 
     return propose
 
 
-def mechanisms(_context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+def mechanisms(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """The built-in mechanisms and systems; else a file."""
     from ptmcad.question.config.starters import NAMES
 
-    found = [CompletionItem(name) for name in NAMES if name.startswith(typed)]
-    return found or [CompletionItem(typed, type=_FILE)]
+    found = [_item(name) for name in NAMES if name.startswith(typed)]
+    return found or [_item(typed, type=_FILE)]
 
 
 def files(*suffixes: str) -> Complete:
     """The files of these suffixes, and folders to look in; whatever there is where there are none of them."""
 
-    def propose(_context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+    def propose(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
         folder, _, start = typed.rpartition("/")
         base = f"{folder}/" if "/" in typed else ""
         try:
@@ -55,42 +63,40 @@ def files(*suffixes: str) -> Complete:
         seen = [e for e in entries if e.name.startswith(start) and (start or not e.name.startswith("."))]
         found = [f"{base}{e.name}" for e in seen if e.name.endswith(suffixes) and e.is_file()]
         found += [f"{base}{e.name}/" for e in seen if e.is_dir()]
-        return [CompletionItem(name) for name in found] or [CompletionItem(typed, type=_FILE)]
+        return [_item(name) for name in found] or [_item(typed, type=_FILE)]
 
     return propose
 
 
-def names(context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+def names(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """An axis or a parameter of the question's model."""
-    return [CompletionItem(name) for name in _names(context) if name.startswith(typed)]
+    return [_item(name) for name in _names(context) if name.startswith(typed)]
 
 
-def pair_of_names(context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+def pair_of_names(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """Two axes, such as rho,L2."""
     if typed.count(",") > 1:
         return []
-    return [item if typed.count(",") else CompletionItem(f"{item.value},")
+    return [item if typed.count(",") else _item(f"{item.value},")
             for item in _next_of_list(typed, _names(context))]  # fmt: skip
 
 
-def settings(context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+def settings(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """NAME=, of which the value is for the user to say."""
-    return (
-        [CompletionItem(f"{name}=") for name in _names(context) if name.startswith(typed)] if "=" not in typed else []
-    )
+    return [_item(f"{name}=") for name in _names(context) if name.startswith(typed)] if "=" not in typed else []
 
 
-def point(context: click.Context, _parameter: click.Parameter, typed: str) -> Proposals:
+def point(context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """NAME=VALUE,NAME=VALUE, as far as names go."""
     before, comma, last = typed.rpartition(",")
     if "=" in last:
         return []
     given = {part.partition("=")[0].strip() for part in before.split(",")}
-    return [CompletionItem(f"{before}{comma}{name}=") for name in _names(context)
+    return [_item(f"{before}{comma}{name}=") for name in _names(context)
             if name.startswith(last) and name not in given]  # fmt: skip
 
 
-def quantity_names(context: click.Context, parameter: click.Parameter, typed: str) -> Proposals:
+def quantity_names(context: click.Context, parameter: click.Parameter, typed: str) -> list[CompletionItem]:
     """What a pose of the record's model, or of the default one, can be asked for; barriers by ``--value`` alone."""
     from ptmcad.ask.quantities import quantities
     from ptmcad.mechanism import ptm
@@ -102,13 +108,13 @@ def quantity_names(context: click.Context, parameter: click.Parameter, typed: st
     except PtmcadError:  # the command itself will say what is wrong with the file
         return []
     further = ("barrier",) if "--value" in parameter.opts and model.has_potential else ()
-    return [CompletionItem(name) for name in (*quantities(model), *further) if name.startswith(typed)]
+    return [_item(name) for name in (*quantities(model), *further) if name.startswith(typed)]
 
 
-def _next_of_list(typed: str, known: Iterable[str]) -> Proposals:
+def _next_of_list(typed: str, known: Iterable[str]) -> list[CompletionItem]:
     before, comma, last = typed.rpartition(",")
     given = set(before.split(","))
-    return [CompletionItem(f"{before}{comma}{name}") for name in known if name.startswith(last) and name not in given]
+    return [_item(f"{before}{comma}{name}") for name in known if name.startswith(last) and name not in given]
 
 
 def _names(context: click.Context) -> tuple[str, ...]:

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import json
 import os
-import shlex
 import stat
 import sys
 from collections.abc import Callable, Iterable, Mapping
@@ -254,6 +253,8 @@ def _stored(path: Path) -> dict[str, Any] | None:
 
 def how_to_go_on(place: Path) -> str:
     """What goes on from a stopped result that can be gone on from, as the end of a sentence."""
+    import shlex  # which a run that ends well does not need
+
     return f"; go on with --resume {shlex.quote(str(place))}"
 
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
 from typing import Any, TypeVar
-from unicodedata import category
 
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import Mechanism, Model
@@ -20,13 +19,18 @@ from ptmcad.mechanism.work import split_moments
 from ptmcad.text.expressions import Expression, constant
 
 
+def _is_control(c: str) -> bool:
+    """Whether a character is of Unicode's categories Cc or Cs; a line break or a tab is allowed."""
+    return (c < " " and c not in "\n\r\t") or "\x7f" <= c <= "\x9f" or "\ud800" <= c <= "\udfff"
+
+
 def unstorable(data: Any) -> str | None:
     """A character that a result has no place for, in the texts and keys of a reference; None when there is none.
 
     Those are control characters, but for line breaks and tabs, and halves of surrogate pairs, which are not in UTF-8.
     """
     if isinstance(data, str):
-        return next((c for c in data if category(c) in ("Cc", "Cs") and c not in "\n\r\t"), None)
+        return next(filter(_is_control, data), None)
     if isinstance(data, Mapping):
         parts: Iterable[Any] = (part for entry in data.items() for part in entry)
     else:

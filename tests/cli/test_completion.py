@@ -55,7 +55,7 @@ def told(words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captu
     """What bash is told, asked for in this process."""
     for name, value in request("bash", *words).items():
         monkeypatch.setenv(name, value)
-    assert answer(group, "bash_complete", "ptmcad") == 0
+    assert answer(group, "bash_complete", "ptmcad", "_PTMCAD_COMPLETE") == 0
     out, err = capsys.readouterr()
     assert err == ""
     return values_in([line for line in out.splitlines() if line])
