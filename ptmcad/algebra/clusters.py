@@ -8,9 +8,8 @@ the polynomial of coefficients c has k roots of modulus less than r (Pellet 1881
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import acb, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_poly
 
@@ -20,8 +19,7 @@ _RADII = 8
 """Numbers of radii that are tried, the least first, in geometric progression."""
 
 
-@dataclass(frozen=True, slots=True)
-class Cluster:
+class Cluster(NamedTuple):
     """An open disc.
 
     Attributes

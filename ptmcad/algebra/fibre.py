@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 from flint import (
     Ordering,
@@ -33,8 +33,7 @@ from ptmcad.algebra.real_roots import sign
 RationalPolynomial = Mapping[Monomial, fmpq]
 
 
-@dataclass(frozen=True, slots=True)
-class Fibre:
+class Fibre(NamedTuple):
     """The quotient algebra at a rational point.
 
     Attributes
@@ -135,8 +134,7 @@ def evaluate(algebra: Fibre, p: RationalPolynomial) -> fmpq_mat:
     return total
 
 
-@dataclass(frozen=True, slots=True)
-class UnivariateRepresentation:
+class UnivariateRepresentation(NamedTuple):
     """The points of a fibre as values of quotients of polynomials at the roots of one.
 
     Attributes

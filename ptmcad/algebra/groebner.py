@@ -12,16 +12,15 @@ The bases of this package have about seven elements; the whole computation takes
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from operator import add
+from typing import NamedTuple
 
 from ptmcad.algebra.polynomials import Coefficient, UnknownPolynomial, common_factor
 
 Monomial = tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class MonomialOrder:
+class MonomialOrder(NamedTuple):
     """Graded reverse lexicographic order for the unknowns taken in the order of ``permutation``."""
 
     permutation: tuple[int, ...]
@@ -33,8 +32,7 @@ class MonomialOrder:
         return max(p, key=self.key)
 
 
-@dataclass(frozen=True, slots=True)
-class GroebnerBasis:
+class GroebnerBasis(NamedTuple):
     """A reduced Groebner basis over Q(x, y); ``leading`` holds each element's leading monomial."""
 
     order: MonomialOrder

@@ -11,8 +11,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from operator import add
+from typing import NamedTuple
 
 from flint import fmpq, fmpq_mat
 
@@ -48,8 +48,7 @@ def standard_monomials(leading: Sequence[Monomial], unknowns: int) -> tuple[Mono
     return tuple(found)
 
 
-@dataclass(frozen=True, slots=True)
-class QuotientAlgebra:
+class QuotientAlgebra(NamedTuple):
     """Monomial basis and normal forms; ``table`` grows as normal forms are asked for."""
 
     basis: tuple[Monomial, ...]

@@ -7,7 +7,7 @@ are disjoint and contain one root each, an interval of length zero being the roo
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from flint import arb, arb_poly, ctx, fmpq, fmpz, fmpz_poly
 
@@ -17,8 +17,7 @@ _LONG_BITS = 1000
 """Bits of coefficients from which on values are not computed exactly where a ball will do."""
 
 
-@dataclass(frozen=True, slots=True)
-class RealRoot:
+class RealRoot(NamedTuple):
     """The only root of the squarefree ``polynomial`` in the open interval (low, high), or low itself if low == high."""
 
     polynomial: fmpz_poly

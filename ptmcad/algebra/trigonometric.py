@@ -6,7 +6,7 @@ true gradient.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
@@ -14,8 +14,7 @@ TrigonometricPolynomial = fmpq_mpoly
 """An element of a `TrigonometricRing`."""
 
 
-@dataclass(frozen=True, slots=True)
-class TrigonometricRing:
+class TrigonometricRing(NamedTuple):
     """The ring Q[parameters][cos a, sin a for each angle a; x for each real unknown x].
 
     The coordinates of the unknowns come after the parameters, those of the angles first.

@@ -44,7 +44,7 @@ def discriminant_variety(question: Question) -> SliceVariety:
     ----------
     Lazard & Rouillier, Solving parametric polynomial systems, J. Symb. Comp. 42 (2007).
     """
-    from ptmcad.exact.engine import slice_variety
+    from ptmcad.exact.slicevariety import slice_variety
 
     return slice_variety(slice_from(question))
 

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ptmcad.answer.poses import Poses
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.pictures import picture
@@ -26,6 +25,7 @@ from ptmcad.show.style import DEFAULT, LINES, PALETTES, STYLES, USER, Place, Sty
 from ptmcad.text.parsing import rational
 
 if TYPE_CHECKING:
+    from ptmcad.answer.poses import Poses
     from ptmcad.show.render.overlay import Measured
 
 F = TypeVar("F", bound=Callable[..., Any])

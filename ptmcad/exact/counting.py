@@ -13,8 +13,8 @@ A condition that is zero at a solution is not positive there; it is found to be 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import combinations
+from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
@@ -31,8 +31,7 @@ from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
 from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_point
 
 
-@dataclass(frozen=True, slots=True)
-class Equilibrium:
+class Equilibrium(NamedTuple):
     """A real solution: the only one within ``radius`` of ``center`` in every coordinate, and what is stable about it.
 
     Attributes
@@ -47,8 +46,7 @@ class Equilibrium:
     signs: str
 
 
-@dataclass(frozen=True, slots=True)
-class Equilibria:
+class Equilibria(NamedTuple):
     """All real solutions that count at a rational point, in disjoint boxes.
 
     Attributes

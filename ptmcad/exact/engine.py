@@ -11,17 +11,14 @@ from functools import partial
 from time import perf_counter
 
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.answer.slicevariety import SliceVariety
 from ptmcad.errors import LimitReached
-from ptmcad.exact.assembly import Reached, assemble, versions
-from ptmcad.exact.models.elimination import elimination_system
+from ptmcad.exact.assembly import Reached, assemble
 from ptmcad.exact.stages import (
     Cells,
     SliceProblem,
     areas_of,
     counts_of,
     crossings_of,
-    domain_limits,
     neighbours_of,
     problem_of,
     projection_of,
@@ -122,36 +119,3 @@ def _stages(problem: SliceProblem, options: Options, clock: _Clock) -> Iterator[
         areas = areas_of(problem, variety, cells, options.area_tolerance or AREA_TOLERANCE, without, clock.check)
         clock.stage("areas")
         yield Reached(variety, cells, areas)
-
-
-def slice_variety(slice: Slice, without: frozenset[str] = frozenset()) -> SliceVariety:
-    """The discriminant variety of a slice, the first stage of `exact_map` alone.
-
-    Parameters
-    ----------
-    without : names of savings to switch off, of `ptmcad.question.savings`.
-
-    Raises
-    ------
-    ConfigError
-        When springs have a free length: then the variety is out of algebra's reach.
-    HypothesisError
-        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
-    """
-    without_free_lengths(slice.model, slice.parameters, "the discriminant variety is")
-    prove_slice(slice)
-    problem = problem_of(slice)
-    variety = variety_of(problem, without)
-    return SliceVariety(
-        slice,
-        variety.components,
-        variety.complex_solutions,
-        elimination_system(
-            problem.system,
-            problem.parameters,
-            slice.axis_names,
-            domain_limits(problem.system, problem.parameters),
-            variety.excludes,
-        ),
-        versions(),
-    )

@@ -6,8 +6,8 @@ Guarantee: exact.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from math import prod
+from typing import NamedTuple
 
 from flint import fmpq
 
@@ -29,8 +29,7 @@ class DegeneratePoint(HypothesisError):
     """Some solution at the point has a singular Jacobian, or there are infinitely many."""
 
 
-@dataclass(frozen=True, slots=True)
-class PointSystem:
+class PointSystem(NamedTuple):
     """The system and its quotient algebra at one rational point.
 
     Attributes

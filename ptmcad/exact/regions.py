@@ -8,11 +8,10 @@ not depend on which axis was the base.
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, slots=True)
-class Link:
+class Link(NamedTuple):
     """Cells ``first`` and ``second`` share an open arc; ``component`` is the variety's component on it, or None."""
 
     first: int

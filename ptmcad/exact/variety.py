@@ -21,7 +21,6 @@ the latter also vanishes where the monomial basis degenerates; `hermite_determin
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
@@ -53,8 +52,7 @@ from ptmcad.exact.models.system import ParametricSystem, SliceSystem, leading_mi
 from ptmcad.text.plane import PlanePolynomial
 
 
-@dataclass(frozen=True, slots=True)
-class DiscriminantVariety:
+class DiscriminantVariety(NamedTuple):
     """The variety's components and the number of complex solutions at a generic point.
 
     Attributes

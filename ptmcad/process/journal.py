@@ -10,8 +10,8 @@ import json
 import os
 import re
 import stat
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 HIDDEN = re.compile(r"\.(?P<stem>.*)\.[0-9a-f]{8}\.(?P<kind>tmp|old)(?P<suffix>\.[^.]+)?", re.DOTALL)
 REDO, UNDO = ".redo", ".undo"
@@ -20,8 +20,7 @@ _FORMAT = "ptmcad-journal-1"
 _MAX_BYTES = 1_000_000
 
 
-@dataclass(frozen=True, slots=True)
-class Move:
+class Move(NamedTuple):
     """One file: ``new`` becomes ``target``, and what is there now is ``old`` meanwhile (empty: there is nothing)."""
 
     target: Path
@@ -29,8 +28,7 @@ class Move:
     old: Path | None
 
 
-@dataclass(frozen=True, slots=True)
-class Journal:
+class Journal(NamedTuple):
     """The moves of a set, the voucher's last, and where they are written down."""
 
     path: Path

@@ -14,9 +14,9 @@ import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
+from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
 from ptmcad.process.handover import Topic, send, watched
@@ -38,8 +38,7 @@ _GROUPS = Path("/sys/fs/cgroup")
 _CONTAINER_LIMITS = ("memory.max", "memory/memory.limit_in_bytes")
 
 
-@dataclass(frozen=True, slots=True)
-class Bound:
+class Bound(NamedTuple):
     """A number of bytes, and how to name it to the user."""
 
     size: int

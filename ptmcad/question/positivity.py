@@ -21,6 +21,7 @@ from functools import lru_cache
 from heapq import heappop, heappush
 from itertools import count, pairwise
 from math import comb, lcm
+from typing import NamedTuple
 
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, Term
@@ -57,8 +58,7 @@ class Proved:
     """The function is what was asked for at every point of the open window."""
 
 
-@dataclass(frozen=True, slots=True)
-class Witness:
+class Witness(NamedTuple):
     """A point of the open window at which the function is not what was asked for.
 
     Attributes
@@ -75,8 +75,7 @@ class Witness:
     other: Point | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Undecided:
+class Undecided(NamedTuple):
     """Neither: a dip to zero or below may be hidden in these boxes, and nowhere else."""
 
     boxes: tuple[Box, ...]
@@ -160,8 +159,7 @@ def _decided(terms: tuple[Term, ...], window: Box, strict: bool, max_work: int |
 # --------------------------------------------------------------------------------------------------- by halving
 
 
-@dataclass(frozen=True, slots=True)
-class _Part:
+class _Part(NamedTuple):
     """A box with the Bernstein coefficients of the polynomial on it, times 2^shift and a constant: row i is for x^i."""
 
     box: Box

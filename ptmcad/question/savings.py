@@ -7,10 +7,8 @@ areas overlap. Names are stable; a result's plan says which savings were made an
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from enum import Enum
-from importlib import import_module
-from importlib.util import find_spec
+from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Kind, ptm
@@ -32,8 +30,7 @@ class Engine(Enum):
     ANY = "both engines"
 
 
-@dataclass(frozen=True, slots=True)
-class Saving:
+class Saving(NamedTuple):
     """One saving.
 
     Attributes
@@ -122,6 +119,9 @@ def check_names(names: Iterable[str]) -> None:
 
 def load_all() -> None:
     """Import what is left out otherwise, as far as it is installed."""
+    from importlib import import_module
+    from importlib.util import find_spec
+
     for module in IMPORTED:
         if find_spec(module.partition(".")[0]) is not None:
             import_module(module)

@@ -18,7 +18,6 @@ most one point of the line u = a that branches run into, because then separators
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -45,8 +44,7 @@ _LONG_COEFFICIENT_BITS = 64
 bits beyond ``_LONG_COEFFICIENT_BITS`` 2^ROUNDS, as the cost of the exact separation grows with them far faster."""
 
 
-@dataclass(frozen=True, slots=True)
-class Separator:
+class Separator(NamedTuple):
     """Cells ``left`` and ``right`` (levels in their stacks) joined by the open segment [low, high] x {height}."""
 
     left: int
@@ -56,8 +54,7 @@ class Separator:
     height: fmpq
 
 
-@dataclass(frozen=True, slots=True)
-class Gap:
+class Gap(NamedTuple):
     """Heights between two separators (None at the window's edge) which branches enter, and why no other separator fits.
 
     Attributes
@@ -72,8 +69,7 @@ class Gap:
     reason: Reason
 
 
-@dataclass(frozen=True, slots=True)
-class Crossing:
+class Crossing(NamedTuple):
     """What happens between two neighbouring stacks: one separator for each adjacent pair, and the gaps between them."""
 
     separators: tuple[Separator, ...]
@@ -160,8 +156,7 @@ def _separators(curves: Sequence[Curve], sides: _Sides, fibre: Interval, extra: 
     return result
 
 
-@dataclass(frozen=True, slots=True)
-class _OpenGap:
+class _OpenGap(NamedTuple):
     """Heights between two separators, or a separator and the window's edge, or both edges."""
 
     bottom: fmpq

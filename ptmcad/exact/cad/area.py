@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
+from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
@@ -78,8 +79,7 @@ class RegionStacks:
             ]
 
 
-@dataclass(frozen=True, slots=True)
-class _Strips:
+class _Strips(NamedTuple):
     """What is left to any region around each critical abscissa.
 
     Attributes
@@ -93,8 +93,7 @@ class _Strips:
     own: bool
 
 
-@dataclass(frozen=True, slots=True)
-class _Frame:
+class _Frame(NamedTuple):
     """What the areas are without walls: the exact contributions of the window's edges, and the area in the strips."""
 
     fixed: Sequence[fmpq]

@@ -6,8 +6,8 @@ Guarantee: exact. ``u`` is the coordinate on the base axis, ``v`` the one on the
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from math import gcd
+from typing import NamedTuple
 
 from flint import fmpq
 
@@ -15,8 +15,7 @@ from ptmcad.algebra.polynomials import Coefficient, UnivariatePolynomial, coeffi
 from ptmcad.answer.regionmap import Component
 
 
-@dataclass(frozen=True, slots=True)
-class Curve:
+class Curve(NamedTuple):
     """An irreducible polynomial that involves v.
 
     Attributes

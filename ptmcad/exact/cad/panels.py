@@ -7,8 +7,8 @@ Guarantee: the integral lies in the enclosure, whichever way it was found: by th
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
@@ -26,8 +26,7 @@ _MAX_CUTS = 10
 """The fastest cut is to the part 2^-32 of a panel."""
 
 
-@dataclass(frozen=True, slots=True)
-class Effort:
+class Effort(NamedTuple):
     """Degree of the polynomial on a panel, what is worth trying on panels of which width, and what is known already.
 
     Attributes
@@ -47,8 +46,7 @@ class Effort:
     roots: Callable[[int, fmpq], tuple[RealRoot, ...]]
 
 
-@dataclass(frozen=True, slots=True)
-class Border:
+class Border(NamedTuple):
     """A wall, the ``root``-th real root of a curve, that separates region ``below`` from region ``above``."""
 
     curve: Curve
@@ -61,8 +59,7 @@ class Border:
         return effort.roots(self.curve.component, u)[self.root]
 
 
-@dataclass(frozen=True, slots=True)
-class Panel:
+class Panel(NamedTuple):
     """The part of a border over [low, high], with the enclosure of its integral.
 
     ``smooth`` shows whether the branch was enclosed by its Taylor series or by arcs; ``singular`` is not zero when that
@@ -117,11 +114,11 @@ def halves(p: Panel, effort: Effort, wanted: fmpq) -> tuple[Panel, Panel]:
     left = panel(p.border, p.low, middle, effort, wanted, min(p.singular, 0))
     right = panel(p.border, middle, p.high, effort, wanted, max(p.singular, 0))
     if left.smooth and not right.smooth:
-        right = replace(right, singular=min(max(p.singular, 0) + 1, _MAX_CUTS))
+        right = right._replace(singular=min(max(p.singular, 0) + 1, _MAX_CUTS))
     elif right.smooth and not left.smooth:
-        left = replace(left, singular=max(min(p.singular, 0) - 1, -_MAX_CUTS))
+        left = left._replace(singular=max(min(p.singular, 0) - 1, -_MAX_CUTS))
     elif abs(p.singular) > _HALVING_CUTS:
-        left, right = (replace(q, singular=(q.singular > 0) - (q.singular < 0)) for q in (left, right))
+        left, right = (q._replace(singular=(q.singular > 0) - (q.singular < 0)) for q in (left, right))
     return left, right
 
 

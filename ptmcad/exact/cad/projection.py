@@ -13,8 +13,8 @@ v = 0, of p(u, 0). References: McCallum, J. Symb. Comp. 5 (1988); Strzebonski, J
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import gcd
+from typing import NamedTuple
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import RealRoot, disjoint, inside, isolate, refine
@@ -23,8 +23,7 @@ from ptmcad.algebra.window import Interval
 from ptmcad.exact.cad.curves import Curve, base_deflation, deflation
 
 
-@dataclass(frozen=True, slots=True)
-class Projection:
+class Projection(NamedTuple):
     """Irreducible polynomials in Z[u], each with its origin, and their roots in the base interval."""
 
     polynomials: tuple[tuple[UnivariatePolynomial, str], ...]

@@ -7,8 +7,8 @@ in the order given, and every part of a curve in the window over it is one of th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 from flint import fmpq
 
@@ -19,8 +19,7 @@ from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.curves import Curve
 
 
-@dataclass(frozen=True, slots=True)
-class BaseEnd:
+class BaseEnd(NamedTuple):
     """An end of a stack: the window's edge (``root`` None, at ``value``) or a critical abscissa."""
 
     value: fmpq
@@ -28,8 +27,7 @@ class BaseEnd:
     critical: int | None
 
 
-@dataclass(frozen=True, slots=True)
-class StackData:
+class StackData(NamedTuple):
     """A stack with its rational sample abscissa and the rational sample heights of its cells, from below."""
 
     left: BaseEnd
@@ -61,12 +59,14 @@ def roots_over(curves: Sequence[Curve], u: fmpq, fibre: Interval) -> tuple[tuple
     return tuple(result)
 
 
-@dataclass(frozen=True, slots=True)
-class Avoided:
+class Avoided(NamedTuple):
     """Curves, and lines by their polynomials in u, that are no walls but on which no sample may lie."""
 
     curves: Sequence[Curve] = ()
     lines: Sequence[UnivariatePolynomial] = ()
+
+
+NOTHING_AVOIDED = Avoided()
 
 
 def lift(
@@ -74,7 +74,7 @@ def lift(
     abscissae: Sequence[RealRoot],
     base: Interval,
     fibre: Interval,
-    avoided: Avoided = Avoided(),
+    avoided: Avoided = NOTHING_AVOIDED,
 ) -> tuple[StackData, ...]:
     """The stacks over the open intervals between consecutive critical abscissae."""
     ends = [BaseEnd(base[0], None, None)]

@@ -7,10 +7,9 @@ equation is typed in. Springs are of free length zero: their energy is a polynom
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import fmpq
 
@@ -26,8 +25,7 @@ from ptmcad.text.tree import Tree
 Vector = tuple[TrigonometricPolynomial, TrigonometricPolynomial]
 
 
-@dataclass(frozen=True, slots=True)
-class Geometry:
+class Geometry(NamedTuple):
     """What has a place in a mechanism, as elements of its system's ring.
 
     Attributes
@@ -42,8 +40,7 @@ class Geometry:
     loads: tuple[tuple[str, Vector], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class _Evaluation:
+class _Evaluation(NamedTuple):
     """A trigonometric ring as one in which trees have values."""
 
     ring: TrigonometricRing
@@ -134,7 +131,7 @@ def _equilibria_of(mechanism: Mechanism) -> ParametricSystem:
         moments={m.unknown: ring.reduce(evaluate(m.value, _Evaluation(ring))) for m in split_moments(mechanism).steady},
     )
     # another unknown that cancels out of a moment counts as the description says, to which the question was put
-    return system if mechanism.has_potential else replace(system, potential=None)
+    return system if mechanism.has_potential else system._replace(potential=None)
 
 
 def _squared(geometry: Geometry, start: str, end: str) -> TrigonometricPolynomial:

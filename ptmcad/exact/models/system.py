@@ -6,8 +6,7 @@ Guarantee: the equations of a potential, and every Jacobian, are derived by exac
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import fmpq
 
@@ -31,8 +30,7 @@ Terms = tuple[tuple[tuple[int, ...], tuple[tuple[tuple[tuple[int, int], ...], fm
 """(exponents of the unknowns, ((parameter number, exponent) pairs, coefficient) for each term) for each monomial."""
 
 
-@dataclass(frozen=True, slots=True)
-class ParametricSystem:
+class ParametricSystem(NamedTuple):
     """As many equations as unknowns, and what is asked of a solution.
 
     Attributes
@@ -141,8 +139,7 @@ def _terms(ring: TrigonometricRing, p: TrigonometricPolynomial) -> Terms:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class SliceSystem:
+class SliceSystem(NamedTuple):
     """The equations of a slice with polynomial coefficients: what elimination works on.
 
     Attributes
@@ -214,8 +211,7 @@ def saturated(equations: SliceSystem, condition: UnknownPolynomial) -> SliceSyst
         return {(*m, power): c for m, c in p.items()}
 
     inverse = {**lifted(condition, 1), (0,) * (equations.unknowns + 1): -ONE}
-    return replace(
-        equations,
+    return equations._replace(
         equations=(*map(lifted, equations.equations), inverse),
         jacobian=lifted(equations.jacobian),
         inequalities=tuple(map(lifted, equations.inequalities)),

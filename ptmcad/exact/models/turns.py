@@ -9,8 +9,8 @@ equations takes minutes for three bars, that of the same equations in the bars' 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from itertools import permutations
+from typing import NamedTuple
 
 from ptmcad.algebra.fibre import Fibre, combined_angles
 from ptmcad.algebra.trigonometric import TrigonometricPolynomial, TrigonometricRing
@@ -21,8 +21,7 @@ MIN_ANGLES = 3
 Matrix = tuple[tuple[int, ...], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Turns:
+class Turns(NamedTuple):
     """The equations in new angles.
 
     Attributes
@@ -60,7 +59,7 @@ def with_turns(system: ParametricSystem) -> ParametricSystem:
                     equations, cost, improved = found, other, True
     if best == identity:
         return system
-    return replace(system, turns=Turns(_moved(system, equations, best), best))
+    return system._replace(turns=Turns(_moved(system, equations, best), best))
 
 
 def in_old_angles(system: ParametricSystem, algebra: Fibre, turns: Turns) -> Fibre:

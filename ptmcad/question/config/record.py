@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ptmcad.errors import Faults, shown
 from ptmcad.mechanism import Model, ptm
@@ -27,8 +27,7 @@ _DEVICES = frozenset(("CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$", *_PORTS))
 """Windows takes a file of such a name, in any case and with any suffix, for a device."""
 
 
-@dataclass(frozen=True, slots=True)
-class Window:
+class Window(NamedTuple):
     """The range of an axis as written."""
 
     low: Scalar
