@@ -6,6 +6,7 @@ stay without effect where the caller has had them ignored (``nohup``, a shell's 
 Nothing is imported here but what the signals need, because a signal that comes during an import must find its handler.
 """
 
+import gc
 import os
 import signal
 
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 
 _ROOM = [bytearray(96 << 10)]
 """Given back where there is none left, for the few lines that say so."""
+
+_YOUNG_OBJECTS = 100_000
+"""More than a short run makes: the collector looks at those made since its last look when they are so many."""
 
 STOPPING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
@@ -68,6 +72,9 @@ def _low_memory_limits() -> str:
 def _command_line() -> int:
     # pictures go to files, by the program's own settings: the caller's backend or settings may not work here
     os.environ["MPLBACKEND"], os.environ["MATPLOTLIBRC"] = "agg", os.devnull
+    # The collector would visit what is imported, which lives to the end, again and again: a tenth of a short run.
+    # Only garbage in cycles waits for it, of which there is little.
+    gc.set_threshold(_YOUNG_OBJECTS)
     from ptmcad.cli import run
 
     return run()

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from operator import add
 from typing import NamedTuple
 
-from flint import fmpq, fmpq_mat
+from flint import fmpz_mat
 
 from ptmcad.algebra.groebner import GroebnerBasis, Monomial, shifted
 from ptmcad.algebra.polynomials import (
@@ -275,15 +275,19 @@ def _points() -> Iterator[tuple[int, int]]:
 def _trace_denominator(algebra: QuotientAlgebra, k: int, point: tuple[int, int]) -> int:
     """The common denominator of trace(u^j), j = 1 ... dimension, at a point, for the unknown number k."""
     size = algebra.dimension
-    entries = []
+    rows, scales = [], []
     for m in algebra.basis:
         numerators, denominator = algebra.table[shifted(m, k)]
-        scale = denominator(*point)
-        entries += [fmpq(c(*point), scale) for c in numerators]
-    matrix = fmpq_mat(size, size, entries)
+        rows.append([int(c(*point)) for c in numerators])
+        scales.append(int(denominator(*point)))
+    scale = math.lcm(*scales)
+    # powers of an integer matrix, which need no greatest common divisors on the way
+    matrix = fmpz_mat(size, size, [c * (scale // s) for row, s in zip(rows, scales, strict=True) for c in row])
     power, common = matrix, 1
-    for _ in range(size):
-        common = math.lcm(common, int(sum((power[i, i] for i in range(size)), fmpq(0)).q))
+    for j in range(1, size + 1):
+        denominator_of_power = scale**j
+        trace = int(sum(power[i, i] for i in range(size)))
+        common = math.lcm(common, denominator_of_power // math.gcd(denominator_of_power, trace))
         power = power * matrix
     return common
 

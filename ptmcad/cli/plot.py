@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -39,12 +38,12 @@ def _with_points(stored: RegionMap, drawing: Drawing, added: Added) -> Drawing:
     chosen = places(stored, added.at)
     if added.overlay is not None:
         found, outside = measured(stored, added.overlay)
-        drawing = replace(drawing, overlay=found)
+        drawing = drawing._replace(overlay=found)
         if outside:
             click.echo(f"{outside} of {outside + len(found)} points are outside of the window and left out", err=True)
         for line in disagreements(stored, found):
             click.echo(line)
-    return replace(drawing, poses=tuple((place, poses_at(stored, place)) for place in chosen))
+    return drawing._replace(poses=tuple((place, poses_at(stored, place)) for place in chosen))
 
 
 def _writers(

@@ -8,7 +8,6 @@ Guarantee: no stage decides anything by rounding without an error bound, and non
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from typing import NamedTuple
@@ -52,8 +51,7 @@ def unreported(_done: int, _total: int) -> None:
     """The report that nobody asked for."""
 
 
-@dataclass(frozen=True, slots=True)
-class SliceProblem:
+class SliceProblem(NamedTuple):
     """A slice as the stages read it.
 
     Attributes
@@ -77,7 +75,7 @@ class SliceProblem:
         """A point in words, for messages."""
         return ", ".join(f"{name} = {value}" for name, value in zip(self.slice.axis_names, at, strict=True))
 
-    def count(self, at: Sample) -> Equilibria:
+    def solved_at(self, at: Sample) -> Equilibria:
         """The equilibria at a point off the variety; raises what `count_at` does."""
         return count_at(self.place(at), self.system, self.parameters, at)
 
@@ -214,7 +212,7 @@ def counts_of(problem: SliceProblem, stacks: Stacks, report: Report = unreported
     found = []
     for k, at in enumerate(stacks.points):
         report(k, len(stacks.points))
-        found.append(problem.count(at))
+        found.append(problem.solved_at(at))
     return with_keys(problem, found)
 
 

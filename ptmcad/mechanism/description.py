@@ -65,8 +65,7 @@ class Support(Enum):
     SLIDER_Y = "slider y"
 
 
-@dataclass(frozen=True, slots=True)
-class Parameter:
+class Parameter(NamedTuple):
     """A parameter of a mechanism.
 
     Attributes

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Any
+from typing import Any, NamedTuple
 
 from ptmcad.errors import ConfigError
 
@@ -52,8 +51,7 @@ PALETTES = ("default", "grey")
 LINES = ("solid", "dashed", "dotted")
 
 
-@dataclass(frozen=True, slots=True)
-class Style:
+class Style(NamedTuple):
     """How a picture of a map looks; what is None is chosen to fit.
 
     Attributes
@@ -155,10 +153,10 @@ def styled(name: str | Style = "default", settings: Mapping[str, Any] | None = N
     if settings is not None:
         base = _with_settings(base, settings)
     given = {key: _READERS[key](value) for key, value in options.items() if value is not None}
-    made = replace(base, **given)
+    made = base._replace(**given)
     if "size" in given and "font_size" not in given and made.font_size is not None:
         # a preset's font is for its size: on a narrower one it stays, on a much wider one it would be lost
-        return replace(made, font_size=max(made.font_size, round(1.06 * given["size"][0], 1)))
+        return made._replace(font_size=max(made.font_size, round(1.06 * given["size"][0], 1)))
     return made
 
 
@@ -166,10 +164,10 @@ def _with_settings(base: Style, settings: Mapping[str, Any]) -> Style:
     """A style with settings of matplotlib's, of which some are options of a style."""
     options = {key: settings[name] for key, name in _SETTINGS.items() if name in settings}
     try:
-        made = replace(base, **{key: _READERS[key](value) for key, value in options.items()})
+        made = base._replace(**{key: _READERS[key](value) for key, value in options.items()})
     except ConfigError as error:
         raise ConfigError(f"{_SETTINGS[error.key or 'size']}: {error.message}", key="mpl_style") from error
-    return replace(made, mpl=tuple(settings.items()))
+    return made._replace(mpl=tuple(settings.items()))
 
 
 def _size(value: Any) -> Size:

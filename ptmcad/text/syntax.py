@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from difflib import get_close_matches
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -85,6 +84,8 @@ def names_in(text: str) -> tuple[str, ...]:
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """``"; did you mean 'rho'?"``, or the empty string when nothing known is close."""
+    from difflib import get_close_matches  # for messages only
+
     names = list(known)
     close = get_close_matches(name[:100], names, n=1)
     if not close:

@@ -69,7 +69,7 @@ def texts(made: Figure) -> list[Text]:
 def test_everything_is_on_the_page_apart_and_legible(legend: str | None, preset: str, name: str) -> None:
     style = styled(preset, legend=legend)
     if legend == "below" and style.size is not None:
-        style = replace(style, size=(style.size[0], 1.5 * style.size[1]))
+        style = style._replace(size=(style.size[0], 1.5 * style.size[1]))
     with settings(style):
         made = figure_of(MAPS[name](), samples=True, dpi=100, style=style)
         canvas = FigureCanvasAgg(made)

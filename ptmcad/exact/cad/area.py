@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
@@ -42,8 +41,7 @@ _ROUGH_HEIGHT_BITS = 20
 """Bits to which the height of a branch is asked for before the regions' areas are known roughly."""
 
 
-@dataclass(frozen=True, slots=True)
-class RegionStacks:
+class RegionStacks(NamedTuple):
     """A window cut into stacks whose cells belong to regions.
 
     Attributes
@@ -59,7 +57,7 @@ class RegionStacks:
     fibre: Interval
 
     @property
-    def count(self) -> int:
+    def number(self) -> int:
         """The number of regions."""
         return 1 + max(max(row) for row in self.regions)
 
@@ -128,7 +126,7 @@ def region_areas(
     """
     width = parts.base[1] - parts.base[0]
     whole = to_fraction(width * parts.height)
-    if parts.count == 1:
+    if parts.number == 1:
         return ((whole, whole),), 0
     digits = len(str(tolerance.denominator // tolerance.numerator))
     # at first not much more for long coefficients: where they cancel, `branch_integral` says so, and arcs may do
@@ -229,7 +227,7 @@ def _span(stack: StackData, left_strip: fmpq, right_strip: fmpq) -> Interval:
 
 def _rough(spans: Sequence[Interval], parts: RegionStacks, effort: Effort) -> list[fmpq]:
     """Each region's area as if its cells were as high everywhere as in the middle; it proves nothing."""
-    total = [fmpq(0)] * parts.count
+    total = [fmpq(0)] * parts.number
     for (low, high), borders, row in zip(spans, parts.borders(), parts.regions, strict=True):
         bottom = parts.fibre[0]
         for border in borders:
@@ -242,7 +240,7 @@ def _rough(spans: Sequence[Interval], parts: RegionStacks, effort: Effort) -> li
 
 def _edges(spans: Sequence[Interval], parts: RegionStacks) -> list[fmpq]:
     """The exact contributions of the window's edges to each region's area."""
-    total = [fmpq(0)] * parts.count
+    total = [fmpq(0)] * parts.number
     for (low, high), row in zip(spans, parts.regions, strict=True):
         total[row[0]] -= parts.fibre[0] * (high - low)
         total[row[-1]] += parts.fibre[1] * (high - low)

@@ -13,7 +13,6 @@ The other one needs nothing but time: all real roots of res_u(q, p), q being a's
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
@@ -30,13 +29,11 @@ _BITS = (128, 512)
 """Of the critical abscissa, until all discs are told apart; with more of them the other way is the shorter one."""
 
 
-@dataclass(frozen=True)
 class PointsOver:
     """The points of curves on the line over a root."""
 
-    curves: tuple[Curve, ...]
-    root: RealRoot
-    check: Check = nothing
+    def __init__(self, curves: tuple[Curve, ...], root: RealRoot, check: Check = nothing) -> None:
+        self.curves, self.root, self.check = curves, root, check
 
     def between(self, bottom: fmpq, top: fmpq, edges: Sequence[fmpq]) -> list[Interval]:
         """Intervals that hold the points in the open interval (bottom, top), from below.

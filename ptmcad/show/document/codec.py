@@ -7,7 +7,6 @@ ValueError that names its place.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 from operator import attrgetter
@@ -20,8 +19,7 @@ T = TypeVar("T")
 Choice = TypeVar("Choice", bound=Enum)
 
 
-@dataclass(frozen=True, slots=True)
-class Codec(Generic[T]):
+class Codec(NamedTuple, Generic[T]):
     """From a value to what `json` writes, and from a place in a document to the value."""
 
     write: Callable[[T], Any]

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ptmcad.answer.poses import Poses
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model, System, built_in, described, described_system, known_of, recognised
 from ptmcad.question.slice import Slice
 from ptmcad.show.document.codec import Codec, Key
 from ptmcad.show.document.node import Node
+
+if TYPE_CHECKING:
+    from ptmcad.answer.poses import Poses
 
 MAX_NAME = 100
 

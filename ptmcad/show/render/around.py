@@ -108,7 +108,7 @@ def draw_around(
     taken = [_taken(number, panel) for number in most]
     left = taken[0]
     inner = (size[0] - sum(taken), size[1])
-    inner_style = replace(style, size=inner, font_size=style.base_font, legend=style.legend or Place.BELOW)
+    inner_style = style._replace(size=inner, font_size=style.base_font, legend=style.legend or Place.BELOW)
     seen, layout = fit(result, shapes(result), False, dpi, inner_style, overlay)
     figure = Figure(figsize=size, dpi=dpi, facecolor="white")
     axes = draw_parts(figure, seen, _moved(layout, left, size), inner_style, False, overlay)

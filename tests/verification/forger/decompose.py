@@ -71,7 +71,7 @@ def decomposed(r: RegionMap, components: Sequence[Component], without: frozenset
 def _equilibria(problem: SliceProblem, at: Sample) -> Equilibria | None:
     """The equilibria at a sample; None on a curve of the variety, which may be missing, or outside of the domain."""
     try:
-        return problem.count(at)
+        return problem.solved_at(at)
     except HypothesisError:
         return None
 
