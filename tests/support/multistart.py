@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import prod
-from typing import Any
+from typing import Any, NamedTuple
 
 import mpmath
 import numpy as np
@@ -23,27 +22,26 @@ SEPARATE = 1e-7
 """Solutions nearer to each other than this are taken for one by the search; degenerate points are not asked for."""
 
 
-Evaluation = Callable[[Mapping[str, Any], Any], Any]
-"""An expression at names' values, in mpmath's context of numbers or of intervals."""
+class Functions(NamedTuple):
+    """What is asked of a model at a point, as functions of the unknowns and then the parameters: in numbers of 50
+    digits, in intervals, or in NumPy's arrays. The Jacobian comes row by row."""
+
+    equations: Callable[..., Sequence[Any]]
+    jacobian: Callable[..., Sequence[Any]]
+    positive: Callable[..., Sequence[Any]]
 
 
 @dataclass(frozen=True)
 class Model:
-    """Equations, their Jacobian and the conditions of a record.
-
-    Attributes
-    ----------
-    arrays : equations and Jacobian, row by row, as functions of NumPy arrays: unknowns, then parameters.
-    """
+    """Equations, their Jacobian and the conditions of a record."""
 
     unknowns: tuple[str, ...]
     parameters: tuple[str, ...]
     angles: frozenset[str]
-    equations: tuple[Evaluation, ...]
-    jacobian: tuple[tuple[Evaluation, ...], ...]
-    positive: tuple[Evaluation, ...]
     is_potential: bool
-    arrays: tuple[Any, Any]
+    numbers: Functions
+    intervals: Functions
+    arrays: Functions
 
 
 def model_of(record: Mapping[str, Any]) -> Model:
@@ -101,41 +99,21 @@ def _model(
     free = set().union(*(e.free_symbols for e in (*equations, *positive))) - set(symbols)
     parameters = sorted(free, key=str)
     given = [*symbols, *parameters]
+    asked = list(equations), [d for row in jacobian for d in row], list(positive)
+    of_intervals = {"mpf": mpmath.iv.mpf, "cos": mpmath.iv.cos, "sin": mpmath.iv.sin}
+
+    def functions(modules: Any) -> Functions:
+        return Functions(*(sympy.lambdify(given, e, modules=modules, cse=True) for e in asked))
+
     return Model(
         tuple(unknowns),
         tuple(map(str, parameters)),
         frozenset(u for u, kind in unknowns.items() if kind == "angle"),
-        tuple(map(_evaluation, equations)),
-        tuple(tuple(map(_evaluation, row)) for row in jacobian),
-        tuple(map(_evaluation, positive)),
         is_potential,
-        (
-            sympy.lambdify(given, list(equations), modules="numpy", cse=True),
-            sympy.lambdify(given, [d for row in jacobian for d in row], modules="numpy", cse=True),
-        ),
+        numbers=functions("mpmath"),
+        intervals=functions([of_intervals, "mpmath"]),
+        arrays=functions("numpy"),
     )
-
-
-def _evaluation(e: Any) -> Evaluation:
-    """An expression as nested functions, so that it is taken apart once."""
-    if e.is_Symbol:
-        name = str(e)
-        return lambda at, _: at[name]
-    if e.is_Rational:
-        p, q = int(e.p), int(e.q)
-        return lambda _, context: context.mpf(p) / q
-    parts = tuple(map(_evaluation, e.args))
-    if e.is_Add:
-        return lambda at, context: sum((part(at, context) for part in parts), context.mpf(0))
-    if e.is_Mul:
-        return lambda at, context: prod((part(at, context) for part in parts), start=context.mpf(1))
-    if e.is_Pow and e.exp.is_Integer:
-        n = int(e.exp)
-        return lambda at, context: parts[0](at, context) ** n
-    if e.func in (sympy.cos, sympy.sin):
-        function = e.func.__name__
-        return lambda at, context: getattr(context, function)(parts[0](at, context))
-    raise NotImplementedError(str(e))
 
 
 @dataclass(frozen=True)
@@ -150,7 +128,7 @@ class Found:
 def solutions(model: Model, values: Mapping[str, Fraction], starts: int, seed: int) -> list[Found]:
     """What Newton's method reaches from so many random starts, each solution once and certified."""
     generator = np.random.default_rng(seed)
-    equations, jacobian = model.arrays
+    equations, jacobian = model.arrays.equations, model.arrays.jacobian
     numbers = [float(values[name]) for name in model.parameters]
     n = len(model.unknowns)
     x = np.empty((n, starts))
@@ -204,31 +182,29 @@ def _certified(model: Model, values: Mapping[str, Fraction], end: Sequence[float
     """Polished in 50 digits and proved by Krawczyk's test; None when it converges to nothing."""
     n = len(model.unknowns)
     with mpmath.workdps(50):
-        exact = {m: mpmath.mpf(values[m].numerator) / values[m].denominator for m in model.parameters}
-        wide = {m: mpmath.iv.mpf(values[m].numerator) / values[m].denominator for m in model.parameters}
+        exact = [mpmath.mpf(values[m].numerator) / values[m].denominator for m in model.parameters]
+        wide = [mpmath.iv.mpf(values[m].numerator) / values[m].denominator for m in model.parameters]
 
-        def numbers(functions: Sequence[Evaluation], at: Sequence[Any]) -> list[Any]:
-            known = {**exact, **dict(zip(model.unknowns, at, strict=True))}
-            return [f(known, mpmath.mp) for f in functions]
-
-        def intervals(functions: Sequence[Evaluation], at: Sequence[Any]) -> list[Any]:
-            known = {**wide, **dict(zip(model.unknowns, at, strict=True))}
-            return [f(known, mpmath.iv) for f in functions]
+        def slope(functions: Functions, *at: Any) -> list[list[Any]]:
+            flat = functions.jacobian(*at)
+            return [list(flat[k * n : (k + 1) * n]) for k in range(n)]
 
         x = [mpmath.mpf(c) for c in end]
         try:
             for _ in range(8):
-                slope = mpmath.matrix([numbers(row, x) for row in model.jacobian])
-                step = mpmath.lu_solve(slope, mpmath.matrix(numbers(model.equations, x)))
+                at = mpmath.matrix(model.numbers.equations(*x, *exact))
+                step = mpmath.lu_solve(mpmath.matrix(slope(model.numbers, *x, *exact)), at)
                 x = [c - d for c, d in zip(x, step, strict=True)]
-            matrix = mpmath.matrix([numbers(row, x) for row in model.jacobian])
+                if max(abs(d) / (1 + abs(c)) for c, d in zip(x, step, strict=True)) < 1e-40:
+                    break  # what it has come to is proved below
+            matrix = mpmath.matrix(slope(model.numbers, *x, *exact))
             inverse = matrix**-1
         except ZeroDivisionError:
             return None
         radius = mpmath.mpf(10) ** -35
         hull = [_interval(c, radius * (1 + abs(c))) for c in x]
-        slopes = [intervals(row, hull) for row in model.jacobian]
-        here = intervals(model.equations, [_interval(c, mpmath.mpf(0)) for c in x])
+        slopes = slope(model.intervals, *hull, *wide)
+        here = model.intervals.equations(*(_interval(c, mpmath.mpf(0)) for c in x), *wide)
         inside = _interval(mpmath.mpf(0), radius / 2)
         for i in range(n):
             moved = -sum((mpmath.iv.mpf(inverse[i, m]) * here[m] for m in range(n)), mpmath.iv.mpf(0))
@@ -243,7 +219,7 @@ def _certified(model: Model, values: Mapping[str, Fraction], end: Sequence[float
             eigenvalues = mpmath.eigsy((matrix + matrix.T) / 2, eigvals_only=True)
             assert min(abs(e) for e in eigenvalues) > mpmath.mpf(10) ** -20
             negative = sum(e < 0 for e in eigenvalues)
-        return Found(tuple(x), negative, all(c > 0 for c in numbers(model.positive, x)))
+        return Found(tuple(x), negative, all(c > 0 for c in model.numbers.positive(*x, *exact)))
 
 
 def _interval(center: Any, radius: Any) -> Any:
