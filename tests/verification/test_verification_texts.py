@@ -242,7 +242,7 @@ FALSE = [
     ("$", " + rho**2", "not a formula in the names"),
     ("$", " + (", "cannot be read"),
     ("$", " + " + "(" * 2000 + "1" + ")" * 2000, "cannot be read"),
-    ("$", " + " + "-" * 4000 + "rho", "cannot be read|nested too deeply"),
+    ("$", " + " + "-" * 4000 + "rho", "cannot be read|nested too deeply|too many parts within each other"),
     ("$", " + rho" * 700, "differs from the mechanism's|nested too deeply|cannot be read"),
 ]
 
