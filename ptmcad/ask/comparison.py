@@ -16,6 +16,7 @@ from flint import fmpq
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.comparison import Change, Comparison
+from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Cell, Component, Region, RegionMap, Status
 from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError
@@ -54,7 +55,8 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
     cut = _cut(components, others, (x, y))
     points = _points(first, cut)
     pairs = [(_region(first, at), _region(second, at)) for at in points]
-    keys = [tuple(_key(m, n) for m, n in zip((first, second), pair, strict=True)) for pair in pairs]
+    count = first.slice.count
+    keys = [(counted_by(first.regions[a], count), counted_by(second.regions[b], count)) for a, b in pairs]
     numbers = {key: n for n, key in enumerate(dict.fromkeys(keys))}
     of_cell = [numbers[key] for key in keys]
     rest = iter(of_cell)
@@ -117,16 +119,6 @@ def _region(result: RegionMap, at: Point) -> int:
     if found is None:
         raise ConfigError(f"the map {result.slice.name} contradicts itself; check it with ptmcad verify")
     return found
-
-
-def _key(result: RegionMap, number: int) -> Any:
-    region = result.regions[number]
-    return {
-        Count.STABLE: region.stable,
-        Count.TOTAL: region.total,
-        Count.INDEX: region.index,
-        Count.ADMISSIBLE: region.admissible,
-    }[result.slice.count]
 
 
 def _as_map(
