@@ -17,7 +17,7 @@ GRID = 100
 
 
 def path_data(line: NDArray[np.float64], *, closed: bool = False) -> str:
-    """The data of a polyline, or of a polygon; corners within or at the end of a straight side are left out.
+    """The data of a polyline, or of a polygon; corners within a side along an axis are left out.
 
     >>> path_data(np.array([[0, 10], [2.5, 10], [3, 10], [3, 9.75], [2, 9.125], [1.5, 8.5]]))
     'M0 10H3V9.75L2 9.12 1.5 8.5'
@@ -39,7 +39,8 @@ def _needed(corners: NDArray[np.int64]) -> NDArray[np.int64]:
         return corners
     steps = np.sign(np.diff(corners, axis=0))
     straight = (steps[1:] == steps[:-1]).all(axis=1) & (steps[1:] == 0).any(axis=1)
-    return corners[np.concatenate([[True], ~straight, [True]])]
+    kept: NDArray[np.int64] = corners[np.concatenate([[True], ~straight, [True]])]
+    return kept
 
 
 def _text(steps: int) -> str:
