@@ -34,7 +34,7 @@ def test_pgf_is_balanced_and_holds_all_text(tmp_path: Path) -> None:
     assert depth == 0
     title = r"100 \% of \$x\_1\textasciicircum{}2\$ \& \textbackslash{}alpha\{\ensuremath{\rho}\} \#\textasciitilde{}"
     assert title in commands
-    assert r"\bfseries\selectfont Stable equilibria" in commands
+    assert r"\bfseries\boldmath\selectfont Stable equilibria" in commands
     assert commands.isascii()
 
 

@@ -110,7 +110,7 @@ class _Renderer(RendererPgf):  # type: ignore[misc, no-any-unimported, unused-ig
         options = [f"x={x / self.dpi:f}in", f"y={y / self.dpi:f}in", "base", *([] if align == "center" else [align])]
         options += [f"rotate={angle:f}"] if angle else []
         size = prop.get_size_in_points() * 72.27 / 72  # a point of TeX is smaller
-        strong = r"\bfseries" if prop.get_weight() in ("bold", "heavy", "semibold") else ""
+        strong = r"\bfseries\boldmath" if prop.get_weight() in ("bold", "heavy", "semibold") else ""
         red, green, blue = tuple(gc.get_rgb())[:3]
         write = self.fh.write
         write(f"\\begin{{pgfscope}}\n\\definecolor{{textcolor}}{{rgb}}{{{red:f},{green:f},{blue:f}}}\n")
