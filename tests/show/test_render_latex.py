@@ -9,8 +9,9 @@ import re
 import subprocess
 from collections.abc import Callable
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 from support.certified_maps import circle
@@ -63,7 +64,7 @@ def compared(path: Path) -> None:
     draw_comparison(found, path, 150, styled(size="7x4in", font_size="8"))
 
 
-INCHES = {
+INCHES: dict[str, tuple[Callable[[Path], None], tuple[float, float]]] = {
     "exact-ieee": (partial(exact, style="ieee"), (3.5, 2.6)),
     "exact-elsevier": (partial(exact, style="elsevier"), (90 / 25.4, 68 / 25.4)),
     "exact-grey": (partial(exact, style="ieee", palette="grey", thin_lines="dotted"), (3.5, 2.6)),
@@ -74,12 +75,17 @@ INCHES = {
 }
 
 
-@pytest.mark.parametrize(("make", "size"), [pytest.param(*v, id=k) for k, v in INCHES.items()])
-def test_a_picture_can_be_read_without_tex(
-    make: Callable[[Path], None], size: tuple[float, float], tmp_path: Path
-) -> None:
-    make(tmp_path / "map.pgf")
-    text = (tmp_path / "map.pgf").read_text(encoding="utf-8")
+@cache
+def text_of(name: str) -> str:
+    """The picture, drawn once."""
+    with TemporaryDirectory() as folder:
+        INCHES[name][0](Path(folder) / "map.pgf")
+        return (Path(folder) / "map.pgf").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", INCHES)
+def test_a_picture_can_be_read_without_tex(name: str) -> None:
+    text = text_of(name)
     commands = "\n".join(line for line in text.splitlines() if not line.startswith("%"))
     for kind in ("pgfscope", "pgfpicture"):
         assert commands.count(rf"\begin{{{kind}}}") == commands.count(rf"\end{{{kind}}}") > 0
@@ -104,13 +110,11 @@ def typeset(folder: Path, body: str) -> tuple[list[float], str]:
 
 
 @needs_latex
-@pytest.mark.parametrize(("make", "size"), [pytest.param(*v, id=k) for k, v in INCHES.items()])
-def test_latex_sets_a_picture_at_its_size(
-    make: Callable[[Path], None], size: tuple[float, float], tmp_path: Path
-) -> None:
-    make(tmp_path / "map.pgf")
+@pytest.mark.parametrize("name", INCHES)
+def test_latex_sets_a_picture_at_its_size(name: str, tmp_path: Path) -> None:
+    (tmp_path / "map.pgf").write_text(text_of(name), encoding="utf-8")
     sides, log = typeset(tmp_path, r"\input{map.pgf}")
-    assert sides == pytest.approx([*size, 0.0], abs=1e-3)
+    assert sides == pytest.approx([*INCHES[name][1], 0.0], abs=1e-3)
     assert "Missing character" not in log
     assert "Output written on document.pdf (1 page" in log
 
