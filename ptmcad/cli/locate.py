@@ -141,7 +141,8 @@ def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str], 
             note = "" if name != "index" or location.index is None else f" ({index_words(len(location.index))})"
             yield f"{name:{width}}{value}{note}"
         elif name == "stable" and unknown and location.cell is not None:
-            yield f"{name:{width}}not known: it may change within the cell; `ptmcad solve` tells it of a point"
+            note = "not known: it may change within the cell; `ptmcad solve` tells it of a point"
+            yield f"{name:{width}}{note if location.total else 0}"
 
 
 @click.command("locate")
