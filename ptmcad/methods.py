@@ -294,7 +294,7 @@ def _map_plot(
 
 
 def _map_compare(self: RegionMap, other: RegionMap) -> Comparison:
-    """Where two exact maps of the same axes, window and count differ, and the certified area of that.
+    """Where two maps of the same axes, window and count, both exact or both certified, differ: with certified areas.
 
     Raises
     ------

@@ -1,6 +1,7 @@
 """Two maps of the same window compared: where they have different counts, and how large that is.
 
-Guarantee: areas are certified bounds, in the product of the axes' units.
+Guarantee: areas are certified bounds, in the product of the axes' units. What a certified map leaves undetermined is in
+upper bounds only.
 """
 
 from __future__ import annotations
@@ -31,25 +32,29 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What is different between two exact maps.
+    """What is different between two exact maps, or two certified ones.
 
     Attributes
     ----------
     decomposition : the window cut along the curves of both maps; its regions, which need not be connected, are where
-        both maps have the same pair of counts. It has neither equations nor counts of its own.
+        both maps have the same pair of counts. It has neither equations nor counts of its own; of certified maps it has
+        the rectangles of both covers as its own.
     changes : the pairs of counts that differ.
+    undetermined : the area where one of the maps is undetermined, or both; None of exact maps.
     """
 
     first: RegionMap
     second: RegionMap
     decomposition: RegionMap
     changes: tuple[Change, ...]
+    undetermined: Fraction | None = None
 
     @property
     def area(self) -> Bounds:
-        """Of all changes together."""
-        lows, highs = ([change.area[k] for change in self.changes] for k in (0, 1))
-        return sum(lows, Fraction(0)), sum(highs, Fraction(0))
+        """Of all changes together: between what is certain, and that with all that is undetermined."""
+        low, high = (sum((change.area[k] for change in self.changes), Fraction(0)) for k in (0, 1))
+        # upper bounds of several changes hold the same undetermined parts
+        return low, high if self.undetermined is None else low + self.undetermined
 
     @property
     def share(self) -> Bounds:

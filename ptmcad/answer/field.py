@@ -21,7 +21,7 @@ class Field:
     Attributes
     ----------
     quantity, pose : as they were asked for.
-    unit : of the values, in words; empty where it is not known.
+    unit : of the values, as the record declares it or in words; empty where it is not known.
     x, y : shapes (columns,) and (rows,): the centres' coordinates.
     names : of the two axes.
     values : shape (rows, columns), from the bottom.

@@ -18,7 +18,7 @@ from ptmcad.answer.branches import Branch, Branches, BranchPoint
 from ptmcad.answer.intervals import End, lower, upper
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
-from ptmcad.ask.quantities import Quantity, of_pose, quantity
+from ptmcad.ask.quantities import Quantity, of_pose, quantity, unit_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.options import Progress
 from ptmcad.question.line import has_free_lengths, restricted, varying_axis
@@ -71,7 +71,7 @@ def branch_diagram(
             progress("branches: interval", number, len(stretches))
         branches += _joined(line.samples(low, high), asked)
     fixed = {other: value}
-    shown, units = (q.name for q in asked), (q.unit for q in asked)
+    shown, units = (q.name for q in asked), (unit_of(q, slice) for q in asked)
     undecided = tuple(line.undecided)
     return Branches(
         slice.name, slice.model, slice.axes[varying], fixed, tuple(shown), tuple(units), tuple(branches), undecided

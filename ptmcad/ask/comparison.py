@@ -1,12 +1,14 @@
-"""Where two exact maps of the same window differ.
+"""Where two maps of the same window differ.
 
 Guarantee: exact. The window is cut along the curves of both maps into cells in which neither count changes; each cell's
-counts are those of both maps at its sample, and areas are integrated as a map's own.
+counts are those of both maps at its sample, and areas are integrated as a map's own. Certified maps have no curves: see
+`ptmcad.ask.coverdifference`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -16,8 +18,10 @@ from flint import fmpq
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.comparison import Change, Comparison
+from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Cell, Component, Region, RegionMap, Status
 from ptmcad.ask.location import locate
+from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.exact.assembly import critical_values_of, stacks_of_cells
 from ptmcad.exact.cad.area import RegionStacks, region_areas
@@ -40,21 +44,28 @@ class _Cut:
 
 
 def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE) -> Comparison:
-    """The difference of two exact maps with the same axes, window and count.
+    """The difference of two maps with the same axes, window and count, both exact or both certified.
 
     Raises
     ------
     ConfigError
-        When they are not such maps.
+        When they are not such maps; where one of them contradicts itself, the error's key is ``first`` or ``second``.
     """
     _check(first, second)
+    if first.cover is not None and second.cover is not None:
+        return _certified(first, first.cover, second, second.cover)
     components = _union([c for m in (first, second) for c in m.components if c.separates])
     others = _union([replace(c, left_out="") for m in (first, second) for c in m.components if not c.separates])
     x, y = ((from_fraction(a.low), from_fraction(a.high)) for a in first.slice.axes)
     cut = _cut(components, others, (x, y))
     points = _points(first, cut)
-    pairs = [(_region(first, at), _region(second, at)) for at in points]
-    keys = [tuple(_key(m, n) for m, n in zip((first, second), pair, strict=True)) for pair in pairs]
+    with _asked("first"):
+        befores = [_region(first, at) for at in points]
+    with _asked("second"):
+        afters = [_region(second, at) for at in points]
+    pairs = list(zip(befores, afters, strict=True))
+    count = first.slice.count
+    keys = [(counted_by(first.regions[a], count), counted_by(second.regions[b], count)) for a, b in pairs]
     numbers = {key: n for n, key in enumerate(dict.fromkeys(keys))}
     of_cell = [numbers[key] for key in keys]
     rest = iter(of_cell)
@@ -71,16 +82,45 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
     return Comparison(first, second, decomposition, tuple(sorted(changes, key=lambda c: -c.area[0])))
 
 
+def _certified(first: RegionMap, one: Cover, second: RegionMap, other: Cover) -> Comparison:
+    from ptmcad.ask.coverdifference import cover_difference, side  # brings numpy
+
+    with _asked("first"):
+        before = side(first, one)
+    with _asked("second"):
+        after = side(second, other)
+    return cover_difference(before, after)
+
+
+@contextmanager
+def _asked(which: str) -> Iterator[None]:
+    """What is asked of one of the maps: where it contradicts itself, the error's key says of which."""
+    try:
+        yield
+    except ConfigError as error:
+        raise ConfigError(error.message, key=which) from error
+    except (ValueError, IndexError, ArithmeticError) as error:
+        reason = f"the map contradicts itself ({error}); check it with ptmcad verify"
+        raise ConfigError(reason, key=which) from error
+
+
 def _check(first: RegionMap, second: RegionMap) -> None:
+    if (first.cover is None) != (second.cover is None):
+        raise ConfigError(
+            "one map is exact and the other certified: classify the exact one again with --engine certified"
+        )
     for result in (first, second):
-        if result.cover is not None or result.status is not Status.EXACT or not result.cells:
-            raise ConfigError(f"{result.slice.name} is no complete exact map; only such are compared")
+        if not result.cells or (result.cover is None and result.status is not Status.EXACT):
+            raise ConfigError(f"{result.slice.name} is no complete map; only such are compared")
     for what, one, other in (
         ("axes", first.slice.axes, second.slice.axes),
         ("count", first.slice.count, second.slice.count),
     ):
         if one != other:
             raise ConfigError(f"the maps have not the same {what}: {_shown(one)}, and {_shown(other)}")
+    ours, others = first.slice.units, second.slice.units
+    if any(others.get(quantity, name) != name for quantity, name in ours.items()):
+        raise ConfigError("the maps have not the same units: one window is not the other")
 
 
 def _shown(what: Any) -> str:
@@ -117,16 +157,6 @@ def _region(result: RegionMap, at: Point) -> int:
     if found is None:
         raise ConfigError(f"the map {result.slice.name} contradicts itself; check it with ptmcad verify")
     return found
-
-
-def _key(result: RegionMap, number: int) -> Any:
-    region = result.regions[number]
-    return {
-        Count.STABLE: region.stable,
-        Count.TOTAL: region.total,
-        Count.INDEX: region.index,
-        Count.ADMISSIBLE: region.admissible,
-    }[result.slice.count]
 
 
 def _as_map(

@@ -14,10 +14,12 @@ from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.description import UnknownKind
+from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.syntax import did_you_mean
 
 OPTION = "--quantity"
+_TIMES = " × "
 
 
 class Kind(Enum):
@@ -48,7 +50,7 @@ class Quantity:
     Attributes
     ----------
     name : as it is shown.
-    unit : in words; empty where none is known.
+    unit : in words; empty where none is known. `unit_of` has it in the units of a record.
     part : the point's name.
     number : that of the spring, or of the unknown, angles first.
     """
@@ -116,6 +118,12 @@ def quantities(model: Model) -> dict[str, Quantity]:
     return {q.name: q for q in found if q is not None}
 
 
+def unit_of(quantity: Quantity, slice: Slice) -> str:
+    """The unit, where the record declares units in those: such as ``N·mm`` for ``force × length``."""
+    words = quantity.unit.split(_TIMES)
+    return ("·" if all(w in slice.units for w in words) else _TIMES).join(slice.units.get(w, w) for w in words)
+
+
 def of_pose(quantity: Quantity, pose: Pose) -> Enclosure | None:
     """The value, enclosed; None where the pose has none."""
     match quantity.kind:
@@ -148,7 +156,7 @@ def unknown(model: Model, name: str) -> Quantity | None:
 def _of_energy(model: Model, kind: Kind, key: str) -> Quantity:
     if not model.has_potential:
         raise ConfigError(f"solutions of {model.name} have no energy{_there_are(tuple(quantities(model)))}", key=key)
-    return Quantity(kind.value, kind, "force × length" if isinstance(model, Mechanism) else "")
+    return Quantity(kind.value, kind, f"force{_TIMES}length" if isinstance(model, Mechanism) else "")
 
 
 def _of_part(model: Model, kind: Kind, name: str, key: str) -> Quantity:

@@ -26,6 +26,7 @@ from ptmcad.certified.loading import load
 from ptmcad.certified.pace import SAFETY, Pace
 from ptmcad.certified.refinement import Enclosure, begin, refine
 from ptmcad.certified.search import Boxes
+from ptmcad.certified.specks import without_specks
 from ptmcad.certified.statement import plan_of
 from ptmcad.certified.tape import enclosing_floats
 from ptmcad.certified.tiling import COMPILED
@@ -144,6 +145,7 @@ class _Run:
             if thin is not None:
                 cover = thin
             if (thin is not None or undetermined <= tolerance) and self._affordable(cover):
+                cover = without_specks(cover, self.enclosures, self.lattice, self.area * 4.0**-level)
                 result = self.map(cover, Status.CERTIFIED)
                 undetermined = result.undetermined
                 if undetermined <= tolerance:

@@ -6,7 +6,9 @@ the time that a limit allows.
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from time import perf_counter
 
 import numpy as np
@@ -25,6 +27,9 @@ from ptmcad.cover.rectangles import Cover
 
 STAGE = "compiling the certified engine, once on this machine:"
 Progress = Callable[[str, int, int], None]
+MIN_GARBAGE = 20_000
+"""New objects between two collections while numba compiles, which makes millions that live: a seventh of its time went
+into looking for garbage among them. More would gain nothing and take memory."""
 _done: list[bool] = []
 
 
@@ -42,11 +47,22 @@ def load(progress: Progress | None = None) -> float:
     if _done:
         return 0.0
     compiling = _Compiling(progress)
-    with install_listener("numba:compile", compiling):
+    with install_listener("numba:compile", compiling), _fewer_collections():
         for _ in _functions():
             pass
     _done.append(True)
     return compiling.seconds
+
+
+@contextmanager
+def _fewer_collections() -> Iterator[None]:
+    """Without most of the garbage collector's rounds, unless a caller has switched it off or made them fewer yet."""
+    youngest, *older = gc.get_threshold()
+    gc.set_threshold(max(youngest, MIN_GARBAGE) if youngest else 0, *older)
+    try:
+        yield
+    finally:
+        gc.set_threshold(youngest, *older)
 
 
 class _Compiling(Listener):

@@ -19,6 +19,7 @@ from ptmcad.cli.maps import made_map, stored_map
 from ptmcad.cli.pictures import picture, report_written
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.stored import stored_in
 from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism
@@ -100,7 +101,8 @@ def command(
         require_ffmpeg()  # where it is missing, that is said before anything is computed
     with held(limits), ProgressBar() as progress:
         options = Options(areas=False, progress=progress, timeout=limits.timeout)
-        result = stored_map(asked) or made_map(_slice(asked), options, tolerance)
+        stored = stored_map(asked)
+        result = stored or made_map(_slice(asked), options, tolerance)
         model = result.slice.model
         if not isinstance(model, Mechanism):
             raise ConfigError(no_drawing(model))
@@ -109,8 +111,9 @@ def command(
         check_writable(out, names)
         from ptmcad.ask.fields.motion import motion_of
 
-        motion = motion_of(result, film.path, film.pose, film.frames, progress)
-        write_files(out, {each: picture(each, partial(_draw, motion, film)) for each in names})
+        with stored_in(asked.config if stored else None):
+            motion = motion_of(result, film.path, film.pose, film.frames, progress)
+            write_files(out, {each: picture(each, partial(_draw, motion, film)) for each in names})
     click.echo(summary(motion))
     report_written(out, names)
 

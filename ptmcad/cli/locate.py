@@ -18,6 +18,7 @@ from ptmcad.cli.values import point as propose_point
 from ptmcad.errors import ConfigError, shown
 from ptmcad.process.streams import reader_left
 from ptmcad.question.examples import POINT
+from ptmcad.show.table import stability_in_words
 from ptmcad.text.textfile import lines_of
 
 MAX_ROW = 100_000
@@ -131,13 +132,17 @@ def _table(result: RegionMap, points: Iterator[dict[str, str]], path: Path) -> N
             return
 
 
-def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str]) -> Iterator[str]:
+def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str], unknown: bool = False) -> Iterator[str]:
+    """What is said of a point; ``unknown`` is whether the map does not know how many solutions are stable."""
     width = max(map(len, fields)) + 2
     yield f"{'point':{width}}{', '.join(f'{name} = {value}' for name, value in point.items())}"
     for name, value in zip(fields, answer(location, fields), strict=True):
         if value:
             note = "" if name != "index" or location.index is None else f" ({index_words(len(location.index))})"
             yield f"{name:{width}}{value}{note}"
+        elif name == "stable" and unknown and location.cell is not None:
+            note = "not known: it may change within the cell; `ptmcad solve` tells it of a point"
+            yield f"{name:{width}}{note if location.total else 0}"
 
 
 @click.command("locate")
@@ -174,5 +179,5 @@ def command(*, result: Path, at: str | None, table: Path | None, limits: Limits)
         elif at is not None:
             point = point_of(at)
             location = stored.locate(**point)
-            for line in _lines(location, point, fields_of(stored)):
+            for line in _lines(location, point, fields_of(stored), bool(stability_in_words(stored))):
                 click.echo(line)

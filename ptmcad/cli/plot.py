@@ -46,26 +46,42 @@ def _with_points(stored: RegionMap, drawing: Drawing, added: Added) -> Drawing:
     return drawing._replace(poses=tuple((place, poses_at(stored, place)) for place in chosen))
 
 
-def _writers(
-    stored: RegionMap, stem: str, formats: tuple[str, ...], drawing: Drawing, added: Added
-) -> Mapping[str, Writer]:
-    """A writer for each file; where two maps are compared, after the difference has been printed."""
+def _check_compared(added: Added, formats: tuple[str, ...]) -> None:
     if added.compare is None:
-        return drawing.writers(stored, stem, formats)
+        return
     if added.at or added.overlay is not None:
         raise ConfigError("two maps are drawn without further points: leave out --at and --overlay", key="--compare")
     if any(kind in DATA for kind in formats):
         raise ConfigError(f"of a difference there are pictures only: {', '.join(PICTURES)}", key="--format")
+
+
+def _compared(
+    stored: RegionMap, result: Path, other: Path, stem: str, formats: tuple[str, ...], drawing: Drawing
+) -> Mapping[str, Writer]:
+    """A writer for each picture of two maps, after their difference has been printed.
+
+    Raises
+    ------
+    ConfigError
+        With the file of the map that cannot be read or contradicts itself.
+    """
     from ptmcad.ask.comparison import compare
     from ptmcad.show.render.backend import load_matplotlib
 
+    second = read_result(other)
     try:
-        found = compare(stored, read_result(added.compare))
+        found = compare(stored, second)
     except ConfigError as error:
-        raise ConfigError(error.message, key="--compare", file=error.file) from error
+        blamed = {"first": result, "second": other}.get(error.key or "")
+        if blamed is not None:
+            raise ConfigError(error.message, file=str(blamed)) from error
+        raise ConfigError(error.message, key="--compare") from error
     load_matplotlib()
-    from ptmcad.show.render.comparing import draw_comparison, in_words
+    from ptmcad.show.render.comparing import draw_comparison, in_words, traced
 
+    for path, each in ((result, stored), (other, second)):
+        with stored_in(path):
+            traced(each)  # so that of two maps the one that contradicts itself is named
     for line in in_words(found):
         click.echo(line)
     names = names_of(stem, formats)
@@ -92,7 +108,7 @@ def _draw_comparison(draw: Callable[..., None], found: Comparison, drawing: Draw
 )
 @file_option(
     "--compare", ".json", "OTHER",
-    "Draw RESULT, another exact map of the same window, and where their counts differ; print how large that is.",
+    "Draw RESULT, another map of the same window, and where their counts differ; print how large that is.",
 )  # fmt: skip
 @limit_options
 @gathered(added=Added)
@@ -117,9 +133,13 @@ def command(
         folder = result.parent if out is None else out
         stem = result.stem if added.compare is None else f"{result.stem}-and-{added.compare.stem}"
         portable_file(f"{stem}.{formats[0]}", "RESULT")
+        _check_compared(added, formats)
         check_writable(folder, names_of(stem, formats))
-        writers = _writers(stored, stem, formats, _with_points(stored, drawing, added), added)
-        with stored_in(result):
-            written = write_files(folder, writers)
+        drawing = _with_points(stored, drawing, added)
+        if added.compare is not None:
+            written = write_files(folder, _compared(stored, result, added.compare, stem, formats, drawing))
+        else:
+            with stored_in(result):
+                written = write_files(folder, drawing.writers(stored, stem, formats))
     for path in written:
         click.echo(shown_path(path))

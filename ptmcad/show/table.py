@@ -183,11 +183,31 @@ def table(result: RegionMap) -> str:
             f"regions   {len(result.regions)} of {len(result.cells)} cells, {result.status.value}",
             f"counts    {counts or 'none yet'}",
             f"areas     {areas or 'none yet'}",
+            *(f"stable    {words}" for words in [stability_in_words(result)] if words),
             _curves(result) if result.cover is None else _covered(result.cover),
             *_vanishing(result),
             f"time      {_time(result)}; {wrong}; {bound}",
         ]
     )
+
+
+def stability_in_words(result: RegionMap) -> str:
+    """Of how many solutions are stable where a certified map does not say it of its cells; empty where there is none.
+
+    Where all solutions are counted, no curve is enclosed across which one of them loses its stability.
+    """
+    model = result.slice.model
+    if result.slice.count is not Count.TOTAL or not model.tells_stability or model.has_potential or not result.cells:
+        return ""
+    if result.cover is None:
+        return ""
+    found = []
+    for cell in result.cells:
+        if cell.solutions and all(solution.signs for solution in cell.solutions):
+            stable = sum(not solution.signs.strip("+") for solution in cell.solutions)
+            found.append(f"{stable} of {len(cell.solutions)}")
+    at = f"at the samples {', '.join(sorted(set(found)))}; " if found else ""
+    return f"{at}it may change within a region, see --count stable"
 
 
 def _vanishing(result: RegionMap) -> list[str]:

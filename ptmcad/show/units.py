@@ -1,4 +1,4 @@
-"""Units of axes and areas: those that the record declares, else what they are units of.
+"""Units of axes, areas and unknowns: those that the record declares, else what they are units of.
 
 Guarantee: an axis has the unit of the parameters which are a number times it, or none.
 """
@@ -6,6 +6,7 @@ Guarantee: an axis has the unit of the parameters which are a number times it, o
 from __future__ import annotations
 
 from ptmcad.mechanism import Kind
+from ptmcad.mechanism.description import UnknownKind
 from ptmcad.question.slice import Slice
 
 _LENGTH, _FORCE, _STIFFNESS = ("length",), ("force",), ("force", "length")
@@ -27,6 +28,17 @@ def _quantities(slice: Slice, axis: int) -> tuple[str, ...]:
 def unit(slice: Slice, axis: int) -> str:
     """The unit of an axis, such as ``mm``, or ``length`` where the record declares none; empty when not known."""
     return "/".join(slice.units.get(quantity, quantity) for quantity in _quantities(slice, axis))
+
+
+def unit_of_unknown(slice: Slice, name: str) -> str:
+    """The unit of an unknown: degrees of an angle, and none of a number."""
+    kind = slice.model.unknowns[name]
+    return {UnknownKind.ANGLE: "degrees", UnknownKind.LENGTH: slice.units.get("length", "length")}.get(kind, "")
+
+
+def with_unit(name: str, unit: str) -> str:
+    """A name with its unit in brackets, if it has one."""
+    return f"{name} ({unit})" if unit else name
 
 
 def area_unit(slice: Slice) -> str:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import random
+import re
+from dataclasses import replace
 from fractions import Fraction
 from math import inf
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,9 +23,11 @@ from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.trigonometric import Harmonics
 from ptmcad.certified.points import PointCount
 from ptmcad.certified.tape import record
+from ptmcad.cli import run as run_command
 from ptmcad.errors import ConfigError, DegenerateSliceError
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
+from ptmcad.show.report import page
 
 PAIR = {"x": "real", "y": "real"}
 SYSTEMS: dict[str, dict[str, Any]] = {
@@ -108,6 +113,50 @@ def test_maps_agree_with_the_exact_engine(name: str, count: str) -> None:
         assert getattr(at, count) == getattr(cell, count)
         others = {"total", "stable", "index"} - {count} if not slice.model.has_potential else {"admissible"}
         assert not any(getattr(cell, other) is not None for other in others)
+
+
+@pytest.mark.parametrize("name", ["schloegl", "brusselator", "toggle"])
+def test_where_all_are_counted_the_samples_say_which_are_stable(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    slice = slice_of(name, count="total")
+    result = ptmcad.classify(slice, engine="certified", tolerance="1/20", jobs=1)
+    exact = ptmcad.classify(slice)
+    pairs = set()
+    for cell in result.cells:
+        stable = sum(set(s.signs) == {"+"} for s in cell.solutions)
+        assert stable == exact.locate(**dict(zip(slice.axis_names, cell.sample, strict=True))).stable
+        pairs |= {f"{stable} of {cell.total}"} if cell.total else set()
+    assert name == "brusselator" or any(stable < total for stable, total in (map(int, p.split(" of ")) for p in pairs))
+    said = f"at the samples {', '.join(sorted(pairs))}; it may change within a region, see --count stable"
+    assert f"stable    {said}" in result.table() and said in page(result)
+    kinds = re.findall(r'"kind":"(\w+)"', page(result))
+    assert kinds.count("stable") == sum(set(s.signs) == {"+"} for c in result.cells for s in c.solutions)
+    assert kinds.count("unstable") == sum(len(c.solutions) for c in result.cells) - kinds.count("stable")
+
+    (tmp_path / "map.json").write_text(result.to_json())
+    for cell in result.cells:
+        at = ",".join(f"{n}={v}" for n, v in zip(slice.axis_names, cell.sample, strict=True))
+        assert run_command(["locate", str(tmp_path / "map.json"), "--at", at]) == 0
+        words = "not known: it may change within the cell; `ptmcad solve` tells it of a point" if cell.total else "0"
+        assert f"stable      {words}\n" in capsys.readouterr().out
+
+
+def test_false_signs_of_conditions_are_rejected() -> None:
+    result = ptmcad.classify(slice_of("schloegl", count="total"), engine="certified", tolerance="1/20", jobs=1)
+    assert ptmcad.verify(result).ok
+
+    def altered(signs: str) -> ptmcad.RegionMap:
+        cells = tuple(
+            replace(c, solutions=tuple(replace(s, signs=signs) if "-" in s.signs else s for s in c.solutions))
+            for c in result.cells
+        )
+        return replace(result, cells=cells)
+
+    assert ptmcad.verify(altered("")).ok  # as older files are
+    for false in ("+", "0", "--"):
+        found = ptmcad.verify(altered(false))
+        assert not found.ok and "the conditions for stability at the solution" in str(found)
 
 
 def bounds(result: ptmcad.RegionMap, count: str, value: Any) -> tuple[Fraction, Fraction]:

@@ -6,8 +6,9 @@ import pytest
 
 pytest.importorskip("numba")
 
+import gc
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Any
 
@@ -200,6 +201,27 @@ def test_what_is_compiled_is_counted_and_timed() -> None:
     assert compiling.seconds > 0
     loading.load()
     assert loading.load() == 0
+
+
+@pytest.mark.parametrize(("before", "during"), [(700, loading.MIN_GARBAGE), (10**6, 10**6), (0, 0)])
+def test_garbage_is_looked_for_less_while_compiling(before: int, during: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A caller's own threshold comes back, also when compiling ends by an exception; 0 is a collector switched off."""
+    usual = gc.get_threshold()
+
+    def functions() -> Iterator[None]:
+        assert gc.get_threshold()[0] == during
+        yield
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(loading, "_functions", functions)
+    monkeypatch.setattr(loading, "_done", [])
+    gc.set_threshold(before, 7, 8)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            loading.load()
+        assert gc.get_threshold() == (before, 7, 8)
+    finally:
+        gc.set_threshold(*usual)
 
 
 def test_nothing_is_compiled_after_loading() -> None:

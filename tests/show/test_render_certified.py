@@ -190,7 +190,7 @@ def test_the_page_tells_status_undetermined_area_and_bounds() -> None:
     data = json.loads(text.partition('<script type="application/json" id="data">')[2].partition("</script>")[0])
     assert [cell["stack"] for cell in data["cells"]] == [None, None]
     assert text.count('class="cell" data-cell=') == 2
-    assert 'class="undetermined"' in text and 'class="rim"' in text
+    assert 'class="undetermined"' in text and 'class="fill rim"' in text
 
 
 def test_a_partial_map_says_so_on_its_page() -> None:

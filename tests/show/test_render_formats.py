@@ -34,7 +34,7 @@ def test_pgf_is_balanced_and_holds_all_text(tmp_path: Path) -> None:
     assert depth == 0
     title = r"100 \% of \$x\_1\textasciicircum{}2\$ \& \textbackslash{}alpha\{\ensuremath{\rho}\} \#\textasciitilde{}"
     assert title in commands
-    assert r"\bfseries\selectfont Stable equilibria" in commands
+    assert r"\bfseries\boldmath\selectfont Stable equilibria" in commands
     assert commands.isascii()
 
 
@@ -57,7 +57,9 @@ def test_pgf_needs_no_tex(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     ("text", "tex"),
     [
         ("A−1", r"A\ensuremath{-}1"),
-        ("F₃ₓ", r"F\textsubscript{3x}"),
+        ("F₃ₓ", r"\ensuremath{F_{3x}}"),
+        ("θ₁ of AL₂", r"\ensuremath{\theta_{1}} of AL\textsubscript{2}"),
+        ('2 → 1, "mm²"', r"2 \ensuremath{\rightarrow} 1, \symbol{34}mm\ensuremath{^{2}}\symbol{34}"),
         ("2·10⁻⁷", r"2\ensuremath{\cdot}10\ensuremath{^{-7}}"),
     ],
 )

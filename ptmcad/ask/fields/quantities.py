@@ -14,7 +14,7 @@ import numpy as np
 
 from ptmcad.ask.fields.equations import State, eigenvalues
 from ptmcad.ask.fields.jets import Floats
-from ptmcad.ask.quantities import Kind, Quantity, named, quantities, unknown
+from ptmcad.ask.quantities import Kind, Quantity, named, quantities, unit_of, unknown
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.question.slice import Slice
 from ptmcad.text.syntax import did_you_mean, parse
@@ -27,7 +27,7 @@ Values = Callable[[State, Floats, Mapping[str, Any]], Floats]
 
 @dataclass(frozen=True, slots=True)
 class Valued:
-    """What is shown: its name, its unit in words, and its values.
+    """What is shown: its name, its unit, and its values.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ def quantity_of(text: str, slice: Slice) -> Valued:
     known = named(slice.model, text, OPTION) or unknown(slice.model, text.strip())
     if known is None or known.name in slice.model.angles:  # by itself an angle is in radians, as in any expression
         return _expression(text, slice)
-    return Valued(known.name, known.unit, _values(known), known.kind is Kind.BARRIER)
+    return Valued(known.name, unit_of(known, slice), _values(known), known.kind is Kind.BARRIER)
 
 
 def _values(quantity: Quantity) -> Values:

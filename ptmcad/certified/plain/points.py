@@ -69,8 +69,14 @@ class PlainCounter:
         if counted is None:
             return PointCount()
         if not self.problem.is_gradient:
-            signs = "+" * len(self.problem.stability) if stable_only else ""
-            solutions = tuple(boxed(wide, box, signs, self.problem.variables) for wide, box in counted)
+            # where all are counted, which of them are stable is known here only: it may change within the cell
+            solutions = tuple(
+                boxed(
+                    wide, box, "+" * len(self.problem.stability) if stable_only else self._stability(x, y, wide),
+                    self.problem.variables,
+                )
+                for wide, box in counted
+            )  # fmt: skip
             number = len(solutions)
             if stable_only:
                 return PointCount(stable=number, solutions=solutions, decided=True)
@@ -106,6 +112,12 @@ class PlainCounter:
             if counts:
                 found.append((unique, narrow))
         return found
+
+    def _stability(self, x: Fraction, y: Fraction, unique: Boxes) -> str:
+        """The signs of the conditions for stability at a proved zero; empty where there are none, or one is open."""
+        asked = self.conditions.outputs[0][len(self.problem.inequalities) :]
+        holds = [self._holds(x, y, unique, asked[k : k + 1]) for k in range(len(asked))]
+        return "" if None in holds else "".join("+" if h else "-" for h in holds)
 
     def _holds(self, x: Fraction, y: Fraction, unique: Boxes, conditions: Indices) -> bool | None:
         """Whether all of some conditions are positive at a proved zero."""

@@ -12,6 +12,7 @@ from ptmcad.answer.words import kind_name, noun
 from ptmcad.mechanism import Model
 from ptmcad.show.ranges.numbers import known
 from ptmcad.show.ranges.table import aligned
+from ptmcad.show.units import with_unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text, text_of
 
@@ -27,14 +28,9 @@ def kind(branch: Branch, model: Model) -> str:
     return noun(model, 1) if branch.stable is None else "unstable"
 
 
-def heading(name: str, unit: str) -> str:
-    """A quantity with its unit."""
-    return f"{name} ({unit})" if unit else name
-
-
 def table(found: Branches) -> str:
     """One row for each branch: where it begins and ends, and the quantities there."""
-    heads = [heading(*pair) for pair in zip(found.quantities, found.units, strict=True)]
+    heads = [with_unit(*pair) for pair in zip(found.quantities, found.units, strict=True)]
     rows = [["from", "to", "kind", *heads]]
     for branch in found.branches:
         first, last = branch.points[0], branch.points[-1]

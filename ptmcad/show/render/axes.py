@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.question.slice import Slice
-from ptmcad.show.units import unit
+from ptmcad.show.units import unit, with_unit
 from ptmcad.text.numerals import magnitude
 
 _GREEK = {
@@ -84,8 +84,7 @@ def symbol(name: str) -> str:
 
 def axis_name(slice: Slice, axis: int) -> str:
     """An axis's symbol with its unit, such as ``L₂ (length)``."""
-    name, known = symbol(slice.axes[axis].name), unit(slice, axis)
-    return f"{name} ({known})" if known else name
+    return with_unit(symbol(slice.axes[axis].name), unit(slice, axis))
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +121,7 @@ def dress(
         matplotlib_axis.set_major_formatter(formatter)
         text = scale.name(_cut(symbol(slice.axes[number].name), 10 if small else 40), 9 if small else 24)
         known = "" if small else unit(slice, number)
-        matplotlib_axis.set_label_text(f"{text} ({known})" if known else text, fontsize=how.names)
+        matplotlib_axis.set_label_text(with_unit(text, known), fontsize=how.names)
         axes.tick_params(
             axis="y" if number else "x",
             labelsize=how.ticks,

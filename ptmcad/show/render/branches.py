@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from ptmcad.answer.branches import Branch, Branches
 from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Slice
-from ptmcad.show.ranges.branches import heading, kind
+from ptmcad.show.ranges.branches import kind
 from ptmcad.show.render.axes import scale_of, symbol
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
 from ptmcad.show.render.printing import settings
@@ -30,6 +30,7 @@ from ptmcad.show.render.ranges import (
     _short,
     draw_paths,
 )
+from ptmcad.show.units import with_unit
 
 PANEL, GAP, FOOT = 2.0, 0.25, 0.55
 _LOOKS: dict[str, dict[str, Any]] = {
@@ -62,12 +63,12 @@ def draw_branches(slice: Slice, found: Branches) -> Figure:
             axes = _axes(figure, (LEFT, bottom, WIDE, PANEL))
             for branch in sorted(found.branches, key=lambda b: bool(b.stable)):  # the stable ones on top
                 look = _look(kind(branch, found.model))
-                for xs, ys in _strokes(branch, number, found, turns=unit == "degrees"):
+                for xs, ys in _strokes(branch, number, found):
                     axes.plot(xs, ys, **look)
             axes.set_xlim(scale.low, scale.high)
             axes.margins(y=0.08)
             axes.tick_params(labelsize=SIZE, labelbottom=number == last)
-            axes.set_ylabel(heading(symbol(name) if name in found.model.unknowns else name, unit), fontsize=SIZE + 2)
+            axes.set_ylabel(with_unit(symbol(name) if name in found.model.unknowns else name, unit), fontsize=SIZE + 2)
             if number == last:
                 axes.set_xlabel(_axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=2)
         draw_legend(figure, entries, LEFT + WIDE + RIGHT, tall - 0.05)
@@ -80,15 +81,16 @@ def draw_paths_and_branches(slice: Slice, paths: PosePaths, found: Branches) -> 
     kinds = sorted({kind(branch, found.model) for branch in unstable}, key=_rank)
     further = [Entry((f"{name}, not followed",), _mark(name, **_BEHIND)) for name in kinds]
     figure = draw_paths(slice, paths, further)
-    for number, unit in enumerate(found.units):
+    for number in range(len(found.quantities)):
         for branch in unstable:
-            for xs, ys in _strokes(branch, number, found, turns=unit == "degrees"):
+            for xs, ys in _strokes(branch, number, found):
                 figure.axes[number].plot(xs, ys, zorder=1.5, **(_look(kind(branch, found.model)) | _BEHIND))
     return figure
 
 
-def _strokes(branch: Branch, number: int, found: Branches, *, turns: bool) -> Iterator[tuple[list[float], list[float]]]:
+def _strokes(branch: Branch, number: int, found: Branches) -> Iterator[tuple[list[float], list[float]]]:
     """The line of a quantity, cut where it has none, and where an angle comes round."""
+    turns = found.quantities[number].removeprefix("angle:") in found.model.angles
     xs: list[float] = []
     ys: list[float] = []
     for point in branch.points:

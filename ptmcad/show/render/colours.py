@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from ptmcad.answer.counts import Counts, MorseIndex
+from ptmcad.answer.counts import Counts, MorseIndex, counted_by
 from ptmcad.answer.regionmap import Region
 from ptmcad.question.slice import Count
 
@@ -80,17 +80,6 @@ def filler(regions: Sequence[Region], count: Count, palette: str | tuple[str, ..
         return UNKNOWN if step is None else _of(faces, step, 0)
 
     return fill
-
-
-def counted_by(region: Region, count: Count) -> tuple[int, ...]:
-    """The count that distinguishes regions, as something to sort by; (-1,) where it is not known."""
-    value = {
-        Count.STABLE: region.stable,
-        Count.TOTAL: region.total,
-        Count.INDEX: region.index,
-        Count.ADMISSIBLE: region.admissible,
-    }[count]
-    return (-1,) if value is None else value if isinstance(value, tuple) else (value,)
 
 
 def undetermined_fill(palette: str | tuple[str, ...]) -> Fill:

@@ -5,6 +5,7 @@ Guarantee: every area shown is certified; changes of count are told apart by col
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,12 +15,13 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from ptmcad.answer.comparison import Change, Comparison
+from ptmcad.answer.comparison import Bounds, Change, Comparison
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress
-from ptmcad.show.render.colours import GREYS, HATCHES, Fill
+from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
 from ptmcad.show.render.fitting import LEAST, Parts, overhang, rewrapped
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries
+from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries, percent
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import whole_title
@@ -27,7 +29,7 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, Place, Style
-from ptmcad.show.table import certified_digits, count_text
+from ptmcad.show.table import area_text, certified_digits, count_text, interval_text
 
 SIDE = 2.7
 """Inches of a map in 9 points, in a picture that grows with what it shows."""
@@ -63,14 +65,47 @@ def draw_comparison(comparison: Comparison, path: Path, dpi: int, style: Style) 
     save(figure, path, dpi=dpi, style=style)
 
 
+def traced(result: RegionMap) -> None:
+    """Make ready what the picture takes of a map.
+
+    Raises
+    ------
+    ValueError, IndexError, ArithmeticError
+        When the map contradicts itself.
+    """
+    seen = shapes(result)
+    for number in range(len(result.regions)):
+        deque(seen.polygons(number), maxlen=0)
+    deque(seen.walls(), maxlen=0)
+
+
 def in_words(comparison: Comparison) -> list[str]:
     """The areas of all changes, and of each kind, as sentences."""
+    open_part = _undetermined(comparison)
     if not comparison.changes:
-        return ["The maps have the same counts everywhere."]
-    low, high = comparison.share
-    share = certified_digits((100 * low, 100 * high), 4)
-    lines = [f"The counts differ on an area of {certified_digits(comparison.area)}, {share} % of the window."]
-    return lines + [f"{change_text(comparison, c)}: area {certified_digits(c.area)}." for c in comparison.changes]
+        where = f" where both are determined; {open_part} is not" if open_part else ""
+        return [f"The maps have the same counts everywhere{where}."]
+    lines = [
+        f"The counts differ on an area of {_area(comparison, comparison.area)}, {_share(comparison)} of the window."
+    ]
+    lines += [f"{change_text(comparison, c)}: area {_area(comparison, c.area)}." for c in comparison.changes]
+    return lines + ([f"One map or both leave {open_part} undetermined."] if open_part else [])
+
+
+def _area(comparison: Comparison, bounds: Bounds) -> str:
+    return area_text(comparison.decomposition, bounds)
+
+
+def _share(comparison: Comparison) -> str:
+    """How much of the window is different."""
+    low, high = (100 * share for share in comparison.share)
+    certified = comparison.undetermined is not None
+    return f"{interval_text((low, high)) if certified else certified_digits((low, high), 4)} %"
+
+
+def _undetermined(comparison: Comparison) -> str:
+    """How much of the window is undetermined; empty of exact maps."""
+    return percent(comparison.decomposition.undetermined) if comparison.undetermined else ""
 
 
 def change_text(comparison: Comparison, change: Change) -> str:
@@ -124,7 +159,7 @@ def _panels(comparison: Comparison, first: Shapes, style: Style, side: float, ty
     decomposition = comparison.decomposition
     of_cells = {region.cells: fills.get(n, _EQUAL) for n, region in enumerate(decomposition.regions)}
     strong = style.strong / 4
-    bare = Paint(lambda region: of_cells[region.cells], _EQUAL, strong, strong)
+    bare = Paint(lambda region: of_cells[region.cells], undetermined_fill(style.palette), strong, strong)
     found.append((shapes(decomposition), bare, "Difference", _told(comparison, style), fills))
     return [
         _Panel(
@@ -151,16 +186,18 @@ def _fills(comparison: Comparison, style: Style) -> dict[int, Fill]:
 
 
 def _told(comparison: Comparison, style: Style) -> list[Entry]:
-    fills = _fills(comparison, style)
-    if not comparison.changes:
-        return [Entry(("The counts are the same everywhere",), strong=True)]
-    low, high = comparison.share
-    share = certified_digits((100 * low, 100 * high), 4)
-    told = [Entry((f"Counts differ on {share} %", f"area {certified_digits(comparison.area)}"), strong=True)]
+    fills, open_part = _fills(comparison, style), _undetermined(comparison)
+    if comparison.changes:
+        area = _area(comparison, comparison.area)
+        told = [Entry((f"Counts differ on {_share(comparison)}", f"area {area}"), strong=True)]
+    else:
+        where = "where both are determined" if open_part else "everywhere"
+        told = [Entry(("The counts are the same", where), strong=True)]
     for change in comparison.changes:
-        told.append(
-            Entry((change_text(comparison, change), f"area {certified_digits(change.area)}"), fills[change.region])
-        )
+        area = _area(comparison, change.area)
+        told.append(Entry((change_text(comparison, change), f"area {area}"), fills[change.region]))
+    if open_part:
+        told.append(Entry((f"undetermined {open_part}", "by one map or both"), undetermined_fill(style.palette)))
     return told
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from ptmcad.cover.complement import Components, components
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
-from ptmcad.show.render.view import Floats, View
+from ptmcad.show.render.view import Floats, Same, View
 
 TOLERANCE = 1.5e-4
 """Of the view's side; 0.05 pt where the side is 4.6 inches."""
@@ -103,13 +104,19 @@ class CoverOutline:
 
 
 def cover_outline(result: RegionMap, cover: Cover) -> CoverOutline:
-    """The outlines of a certified map over its whole window.
+    """The outlines of a certified map over its whole window; traced once for several pictures of it.
 
     Raises
     ------
     ValueError
         When the map contradicts itself: a sample is in no component of its own, or a rectangle is none.
     """
+    return _cover_outline(Same(result), Same(cover))
+
+
+@lru_cache(maxsize=8)
+def _cover_outline(of: Same[RegionMap], covered: Same[Cover]) -> CoverOutline:
+    result, cover = of.it, covered.it
     complement = components(cover)
     number_of = _components_of(result, complement)
     region_at = np.full(len(complement.areas) + 1, -1, dtype=np.int64)

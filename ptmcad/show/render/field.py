@@ -20,6 +20,7 @@ from ptmcad.show.render.axes import dress, scale_of, symbol
 from ptmcad.show.render.legend import INK, STRONG
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.view import Floats, View
+from ptmcad.show.units import with_unit
 
 LEFT, BOTTOM, SIDE, GAP, BAR, RIGHT, TOP = 0.85, 0.65, 4.6, 0.2, 0.2, 0.95, 0.6
 """In inches: the space at the map's left and below, its side, the space before the scale, the scale, its numbers."""
@@ -97,7 +98,7 @@ def field_figure(result: RegionMap, field: Field, boundaries: Sequence[Boundary]
 def _label(field: Field) -> str:
     kind, colon, name = field.quantity.partition(":")
     text = f"{kind} {symbol(name)}" if colon else field.quantity
-    return f"{text} ({field.unit})" if field.unit else text
+    return with_unit(text, field.unit)
 
 
 def _shares(result: RegionMap, points: Floats) -> Floats:

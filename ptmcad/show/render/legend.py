@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import counted, noun
 from ptmcad.question.slice import Count, Slice
-from ptmcad.show.render.colours import UNDETERMINED, Fill, counted_by, fill_of
+from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
 from ptmcad.show.table import area_by_count, area_text, count_text, index_heading
 from ptmcad.text.numerals import decimal
 

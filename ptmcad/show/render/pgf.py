@@ -9,6 +9,7 @@ whichever it was aligned by, so that another font moves nothing.
 
 from __future__ import annotations
 
+import re
 from io import StringIO
 from math import cos, radians, sin
 from typing import Any
@@ -28,16 +29,27 @@ _HEAD = r"""%% A figure of ptmcad: {title}
 _SPECIAL = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "_": r"\_", "%": r"\%",
     "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\ensuremath{<}", ">": r"\ensuremath{>}",
-    "|": r"\ensuremath{|}", '"': r"\textquotedbl{}",
+    "|": r"\ensuremath{|}", '"': r"\symbol{34}",  # a name of its own for it is not in each encoding
     "\N{NO-BREAK SPACE}": "~", "−": r"\ensuremath{-}", "…": r"\ldots{}", "·": r"\ensuremath{\cdot}",
-    "×": r"\ensuremath{\times}", "≈": r"\ensuremath{\approx}", "°": r"\ensuremath{^\circ}", "–": "--",
+    "×": r"\ensuremath{\times}", "≈": r"\ensuremath{\approx}", "°": r"\ensuremath{^\circ}", "–": "--", "—": "---",
+    "→": r"\ensuremath{\rightarrow}", "±": r"\ensuremath{\pm}", "≤": r"\ensuremath{\leq}", "≥": r"\ensuremath{\geq}",
+    "≠": r"\ensuremath{\neq}", "∞": r"\ensuremath{\infty}", "√": r"\ensuremath{\surd}",
+    "\N{MICRO SIGN}": r"\ensuremath{\mu}",
 }  # fmt: skip
 _GREEK = {
-    "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "θ": "theta", "κ": "kappa", "λ": "lambda", "μ": "mu",
-    "ρ": "rho", "φ": "varphi",
+    "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "varepsilon", "ζ": "zeta", "η": "eta", "θ": "theta",
+    "ι": "iota", "κ": "kappa", "λ": "lambda", "μ": "mu", "ν": "nu", "ξ": "xi", "π": "pi", "ρ": "rho", "σ": "sigma",
+    "τ": "tau", "υ": "upsilon", "φ": "varphi", "χ": "chi", "ψ": "psi", "ω": "omega", "Γ": "Gamma", "Δ": "Delta",
+    "Θ": "Theta", "Λ": "Lambda", "Ξ": "Xi", "Π": "Pi", "Σ": "Sigma", "Υ": "Upsilon", "Φ": "Phi", "Ψ": "Psi",
+    "Ω": "Omega",
 }  # fmt: skip
 _SUBSCRIPTS = dict(zip("₀₁₂₃₄₅₆₇₈₉ₓ", "0123456789x", strict=True))
 _SUPERSCRIPTS = dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True))
+_INDICES = "".join(_SUBSCRIPTS)
+_PIECES = re.compile(
+    rf"((?<![^\W\d_])[A-Za-z{''.join(_GREEK)}])?([{_INDICES}]+)|([{''.join(_SUPERSCRIPTS)}]+)|(.)", re.S
+)
+"""A letter with an index, an index, a power, or any character."""
 
 
 def pgf_text(figure: Figure, title: str) -> str:
@@ -51,31 +63,29 @@ def pgf_text(figure: Figure, title: str) -> str:
     text.write("\\pgfusepath{use as bounding box, clip}\n")
     make: Any = _Renderer
     figure.draw(make(figure, text))
-    text.write("\\end{pgfpicture}\n\\makeatother\n\\endgroup\n")
+    text.write("\\end{pgfpicture}%\n\\makeatother\n\\endgroup\n")  # without a space after the picture
     return text.getvalue()
 
 
 def escaped(text: str) -> str:
-    r"""A text for LaTeX.
+    r"""A text for LaTeX; a letter with an index is a symbol of mathematics, as Greek letters are.
 
     >>> print(escaped("L₂ / 10⁻³ & 50 %"))
-    L\textsubscript{2} / 10\ensuremath{^{-3}} \& 50 \%
+    \ensuremath{L_{2}} / 10\ensuremath{^{-3}} \& 50 \%
     """
-    parts: list[str] = []
-    run, kind = "", ""
-    for c in [*text, ""]:
-        of = "sub" if c and c in _SUBSCRIPTS else "super" if c and c in _SUPERSCRIPTS else ""
-        if of != kind and run:
-            parts.append(rf"\textsubscript{{{run}}}" if kind == "sub" else rf"\ensuremath{{^{{{run}}}}}")
-            run = ""
-        kind = of
-        if of:
-            run += _SUBSCRIPTS[c] if of == "sub" else _SUPERSCRIPTS[c]
-        elif c in _GREEK:
-            parts.append(rf"\ensuremath{{\{_GREEK[c]}}}")
-        else:
-            parts.append(_SPECIAL.get(c, c))
-    return "".join(parts)
+    return "".join(_set(*match.groups()) for match in _PIECES.finditer(text))
+
+
+def _set(letter: str | None, index: str | None, power: str | None, other: str | None) -> str:
+    if other is not None:
+        return rf"\ensuremath{{\{_GREEK[other]}}}" if other in _GREEK else _SPECIAL.get(other, other)
+    if power is not None:
+        return rf"\ensuremath{{^{{{''.join(_SUPERSCRIPTS[c] for c in power)}}}}}"
+    below = "".join(_SUBSCRIPTS[c] for c in index or "")
+    if letter is None:
+        return rf"\textsubscript{{{below}}}"
+    symbol = "\\" + _GREEK[letter] if letter in _GREEK else letter
+    return rf"\ensuremath{{{symbol}_{{{below}}}}}"
 
 
 class _Renderer(RendererPgf):  # type: ignore[misc, no-any-unimported, unused-ignore]
@@ -100,7 +110,7 @@ class _Renderer(RendererPgf):  # type: ignore[misc, no-any-unimported, unused-ig
         options = [f"x={x / self.dpi:f}in", f"y={y / self.dpi:f}in", "base", *([] if align == "center" else [align])]
         options += [f"rotate={angle:f}"] if angle else []
         size = prop.get_size_in_points() * 72.27 / 72  # a point of TeX is smaller
-        strong = r"\bfseries" if prop.get_weight() in ("bold", "heavy", "semibold") else ""
+        strong = r"\bfseries\boldmath" if prop.get_weight() in ("bold", "heavy", "semibold") else ""
         red, green, blue = tuple(gc.get_rgb())[:3]
         write = self.fh.write
         write(f"\\begin{{pgfscope}}\n\\definecolor{{textcolor}}{{rgb}}{{{red:f},{green:f},{blue:f}}}\n")

@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from ptmcad.answer.counts import counted_by
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.around import Point, draw_around
 from ptmcad.show.render.axes import axis_name
-from ptmcad.show.render.colours import counted_by
 from ptmcad.show.render.legend import INK, head_of
 from ptmcad.show.render.overlay import Overlay
 from ptmcad.show.render.painting import paint_map, paint_of
 from ptmcad.show.render.poses import describe
-from ptmcad.show.render.printing import printed, settings, suffix_of
+from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import description, figure_of, whole_title
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.usersettings import user_styled
@@ -89,9 +89,8 @@ def draw_with_poses(
     OSError
         When the file cannot be written.
     """
-    suffix = suffix_of(path)
     told = " ".join(f"At point {n}: {describe(poses)}" for n, (_, poses) in enumerate(points, 1))
     with settings(style):
         figure = draw_around(result, points, style, dpi, overlay)
-        data = printed(figure, suffix, dpi, whole_title(result), f"{description(result)} {told}")
-    path.write_bytes(data)
+    figure.set_label(f"{whole_title(result)}\n{description(result)} {told}")
+    save(figure, path, dpi=dpi, style=style)

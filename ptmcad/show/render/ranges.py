@@ -33,7 +33,7 @@ from ptmcad.show.render.colours import fill_of_counts, fill_of_index
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.textwidth import wrapped
-from ptmcad.show.units import unit
+from ptmcad.show.units import unit, unit_of_unknown, with_unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
 
@@ -180,7 +180,8 @@ def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figur
         upper.set_ylim(fibre.low, fibre.high)
         upper.set_ylabel(_axis_name(slice, along), fontsize=SIZE + 2)
         range_name = "operation range" if isinstance(found.model, Mechanism) else "range"
-        lower.set_ylabel(f"width of the\n{range_name}", fontsize=SIZE + 1)
+        known = unit(slice, slice.axis_names.index(along.name))
+        lower.set_ylabel(f"width of the\n{with_unit(range_name, known)}", fontsize=SIZE + 1)
         lower.set_ylim(bottom=0)
         lower.margins(y=0.12)
         for axes in (upper, lower):
@@ -307,8 +308,7 @@ def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) ->
             axes.set_xlim(scale.low, scale.high)
             axes.margins(y=0.08)
             axes.tick_params(labelsize=SIZE, labelbottom=number == last)
-            degrees_note = " (degrees)" if number < len(model.angles) else ""
-            axes.set_ylabel(f"{symbol(name)}{degrees_note}", fontsize=SIZE + 2)
+            axes.set_ylabel(with_unit(symbol(name), unit_of_unknown(slice, name)), fontsize=SIZE + 2)
             if number == last:
                 axes.set_xlabel(_axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=2)
         draw_legend(figure, tuple(entries), LEFT + WIDE + RIGHT, tall - 0.05)
@@ -385,8 +385,7 @@ def _angle(point: PathPoint, number: int) -> float:
 
 def _axis_name(slice: Slice, axis: Axis) -> str:
     name = scale_of(axis.low, axis.high).name(symbol(axis.name))
-    known = unit(slice, slice.axis_names.index(axis.name))
-    return f"{name} ({known})" if known else name
+    return with_unit(name, unit(slice, slice.axis_names.index(axis.name)))
 
 
 def _short(value: Fraction) -> str:

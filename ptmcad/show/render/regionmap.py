@@ -36,7 +36,7 @@ from ptmcad.show.render.legend import (
 )
 from ptmcad.show.render.overlay import Overlay, draw_overlay, overlay_entries
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
-from ptmcad.show.render.printing import printed, settings, suffix_of
+from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
 from ptmcad.show.render.view import Shapes
@@ -75,11 +75,10 @@ def draw(
     ---------
     No region is invisible.
     """
-    suffix = suffix_of(path)
     with settings(style):
         figure = figure_of(result, samples, dpi, style=style, overlay=overlay)
-        data = printed(figure, suffix, dpi, " ".join(_title(result)), description(result))
-    path.write_bytes(data)
+    figure.set_label(f"{' '.join(_title(result))}\n{description(result)}")
+    save(figure, path, dpi=dpi, style=style)
 
 
 @dataclass(frozen=True, slots=True)

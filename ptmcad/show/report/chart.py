@@ -23,6 +23,7 @@ from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.slivers import thin_regions, zooms
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.report.frame import BOTTOM, LEFT, RIM, SIDE, frame
+from ptmcad.show.report.pathdata import path_data
 from ptmcad.show.table import count_text
 from ptmcad.text.numerals import shortest_text
 
@@ -120,12 +121,11 @@ def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[La
         if not outline:
             continue
         fill = fill_of(region, count)
-        parts.append(f'<path class="fill" fill="{fill.face}" d="{outline}"/>')
-        if fill.hatch:
-            parts.append(f'<path class="fill" fill="url(#{hatch_id(fill.hatch)})" d="{outline}"/>')
-    rim = "".join(_open(line) for line in seen.edges())
-    if rim:
-        parts.append(f'<path class="rim" d="{rim}"/>')
+        paints = [fill.face, *([f"url(#{hatch_id(fill.hatch)})"] if fill.hatch else [])]
+        # between the regions of a certified map is what is undetermined, however narrow: it is seen by their rims
+        kinds = ["fill"] * (len(paints) - 1) + ["fill" if result.cover is None else "fill rim"]
+        for kind, paint in zip(kinds, paints, strict=True):
+            parts.append(f'<path class="{kind}" fill="{paint}" d="{outline}"/>')
     lines: dict[tuple[bool, int], list[str]] = {}
     for component, separates, line in seen.walls():
         lines.setdefault((separates, component), []).append(_open(line))
@@ -161,16 +161,18 @@ def _shortened(value: Fraction) -> str:
     return text if len(text) <= 12 else f"{float(value):.6g}" if abs(value) < 10**300 else text[:12] + "…"
 
 
-def _position(point: NDArray[np.float64]) -> str:
-    return f"{point[0] * SIDE:.2f} {(1 - point[1]) * SIDE:.2f}"
+def _placed(line: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Fractions of the view's sides in the picture's units, from above."""
+    placed: NDArray[np.float64] = np.stack([line[:, 0], 1 - line[:, 1]], axis=1) * SIDE
+    return placed
 
 
 def _open(line: NDArray[np.float64]) -> str:
-    return "M" + "L".join(_position(p) for p in line)
+    return path_data(_placed(line))
 
 
 def _closed(polygon: NDArray[np.float64]) -> str:
-    return _open(polygon) + "Z"
+    return path_data(_placed(polygon), closed=True)
 
 
 def _cells(seen: Shapes) -> Iterator[str]:

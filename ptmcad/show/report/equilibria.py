@@ -90,7 +90,8 @@ def coordinates(model: Model) -> tuple[str, ...]:
 def kind_of(solution: Solution, model: Model) -> str:
     """What the signs of the Hessian's eigenvalues say, or those of the conditions for stability."""
     if not model.has_potential:
-        return "solution" if not model.tells_stability else "unstable" if solution.signs.strip("+") else "stable"
+        told = model.tells_stability and solution.signs
+        return "solution" if not told else "unstable" if solution.signs.strip("+") else "stable"
     if set(solution.signs) - set("+-") or len(solution.signs) != len(model.unknowns):
         return "degenerate"
     negative = solution.signs.count("-")

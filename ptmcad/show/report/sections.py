@@ -19,7 +19,7 @@ from ptmcad.show.report.bounds import exactly
 from ptmcad.show.report.chart import Chart, counts_text, hatch_id
 from ptmcad.show.report.equilibria import both, distinct_parameters
 from ptmcad.show.report.reproduction import reproduction
-from ptmcad.show.table import certified_digits
+from ptmcad.show.table import certified_digits, stability_in_words
 from ptmcad.text.numerals import decimal, text_of
 
 _COUNTED = {
@@ -105,6 +105,7 @@ def question(result: RegionMap) -> str:
         ("Parameters", shown + (f"{'; ' if shown else ''}zero: {zero}" if zero else "") or "none"),
         ("Count", f"regions are distinguished by {counted_by}"),
         ("Answer", answer(result)),
+        *(("Stable", words) for words in [stability_in_words(result)] if words),
     ]
     return "<dl>" + "".join(f"<dt>{escape(a)}</dt><dd>{escape(b)}</dd>" for a, b in items) + "</dl>"
 

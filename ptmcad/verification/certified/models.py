@@ -58,6 +58,8 @@ class ModelCounting:
                     field = _field_at(self.form, values, _conditions(self.form, count))
                     all_found, _ = zeros(field, _only_minima(self.form, count), [_start(field)], self._budget)
                     found = _counted(field, all_found, count)
+                    if count is Count.TOTAL and self.form.stability:
+                        found = _with_signs(_field_at(self.form, values, self.form.stability), found)
                 except Spent:
                     raise  # more digits would not make them fewer
                 except Unproved as unproved:
@@ -136,6 +138,16 @@ def _counted(field: Field, found: Sequence[Zero], count: Count) -> list[Zero]:
             raise Unproved(f"a condition may be zero at the solution near ({where})")
         signs = zero.signs if field.form.is_gradient or count is not Count.STABLE else "+" * len(field.form.stability)
         kept.append(replace(zero, signs=signs))
+    return kept
+
+
+def _with_signs(field: Field, found: Sequence[Zero]) -> list[Zero]:
+    """The solutions with the signs of the field's conditions; empty where one is not certain."""
+    kept = []
+    for zero in found:
+        conditions = field(zero.within).conditions
+        certain = all(c > 0 or c < 0 for c in conditions)
+        kept.append(replace(zero, signs="".join("+" if c > 0 else "-" for c in conditions) if certain else ""))
     return kept
 
 

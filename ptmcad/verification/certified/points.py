@@ -100,12 +100,27 @@ def _check_cell(claims: CertifiedClaims, counting: Counting, cell: Cell) -> int:
         if len(match) != 1 or match[0] in taken:
             near = ", ".join(f"{x:.6g}" for x in e.center)
             raise Violation(f"the solution {k} near ({near}) is stored twice, or not asked for")
-        if kept[match[0]].signs != solution.signs:
-            raise Violation(
-                f"the Hessian at the solution {k} has eigenvalues of signs {e.signs}, not {solution.signs!r}"
-            )
+        _check_signs(claims, kept[match[0]].signs, solution.signs, k)
         taken.add(match[0])
     return len(kept)
+
+
+def _check_signs(claims: CertifiedClaims, true: str, said: str, k: int) -> None:
+    """The signs of the Hessian's eigenvalues at a solution, or of the conditions for stability.
+
+    Raises
+    ------
+    Violation, Unproved
+    """
+    if claims.result.slice.count is Count.TOTAL and not claims.model.has_potential:
+        if not said:
+            return  # of solutions that are all counted nothing need be said
+        if not true and len(said) == len(claims.result.system.stability):
+            raise Unproved(f"a condition for stability may be zero at the solution {k}")
+    if true != said:
+        if not claims.model.has_potential:
+            raise Violation(f"the conditions for stability at the solution {k} have the signs {true!r}, not {said!r}")
+        raise Violation(f"the Hessian at the solution {k} has eigenvalues of signs {true}, not {said!r}")
 
 
 def _is_all_flat(claims: CertifiedClaims, cell: Cell) -> bool:

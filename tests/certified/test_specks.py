@@ -1,0 +1,109 @@
+"""Specks of a cover: those that no curve enters are taken away, and nothing of a curve is."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("numba")
+
+from ptmcad.certified import specks
+from ptmcad.certified.covering import Lattice, box_rectangles, thinning
+from ptmcad.certified.curve import Curve
+from ptmcad.certified.formula import Graph
+from ptmcad.certified.refinement import Enclosure, begin, refine
+from ptmcad.certified.search import Boxes
+from ptmcad.certified.specks import without_specks
+from ptmcad.certified.system import system
+from ptmcad.cover.rectangles import Cover
+
+LATTICE = Lattice(((Fraction(-2), Fraction(2)), (Fraction(-2), Fraction(2))), 2**20)
+AREA = 16 * 4.0**-9
+SMALL, AT = 0.01, 0.2
+"""Radius and place of a circle as small as a speck: 2e-5 of the window."""
+EMPTY = np.array([[0.5, 0.5, 0.501, 0.51], [-0.3, 0.1, -0.299, 0.1001], [1.5, -2.0, 1.501, -1.99]])
+"""Boxes in which there is nothing; the last one is at the window's edge."""
+
+
+def curves() -> list[Enclosure]:
+    """The unit circle with the small one, and a line, all of them enclosed; with boxes that hold nothing."""
+    graph = Graph()
+    x, y = graph.variable(0), graph.variable(1)
+
+    def circle(at: float, radius: float) -> Any:
+        middle, square = graph.constant(at), graph.constant(radius * radius)
+        return (x - middle).squared() + (y - middle).squared() - square
+
+    both = circle(0.0, 1.0) * circle(AT, SMALL)
+    line = x - graph.constant(1.75)
+    made = [Curve(name, "", system([f], (0, 1)), ()) for name, f in (("circles", both), ("line", line))]
+    found = begin(made, np.array([[-2.0, -2.0, 2.0, 2.0]]))
+    assert refine(found, AREA, 1)
+    for enclosure in found:
+        enclosure.small = [*enclosure.small, EMPTY]
+    return found
+
+
+def points() -> np.ndarray:
+    angles = np.linspace(0, 2 * np.pi, 500)
+    around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    upright = np.stack([np.full(500, 1.75), np.linspace(-1.999, 1.999, 500)], axis=1)
+    return np.concatenate([around, AT + SMALL * around, upright])
+
+
+def covered(cover: Cover, at: np.ndarray) -> np.ndarray:
+    """Which points lie in a rectangle; points are a hundredth of a lattice step off at worst."""
+    steps = (at + 2) / 4 * cover.steps
+    low, high = (np.array(cover.rectangles)[:, k] for k in ([0, 2], [1, 3]))
+    inside = (low[None] <= steps[:, None] + 0.01) & (steps[:, None] - 0.01 <= high[None])
+    return np.asarray(inside.all(axis=2).any(axis=1))
+
+
+def middles(boxes: Boxes) -> np.ndarray:
+    return np.asarray((boxes[:, :2] + boxes[:, 2:]) / 2)
+
+
+def test_what_meets() -> None:
+    """All intervals with ends from 0 to 3, against closed intervals by definition; a third variable does not count."""
+    spans = [(a, b) for a, b in product(range(4), repeat=2) if a <= b]
+    sides = np.array(list(product(spans, repeat=2)), dtype=float)  # of shape (k, axis, end)
+    rectangles = np.concatenate([sides[:, :, 0], sides[:, :, 1]], axis=1)
+    third = np.full((len(sides), 1), 7.0)
+    boxes = np.concatenate([sides[:, :, 0], third, sides[:, :, 1], third], axis=1)
+    found = specks._meeting(rectangles, boxes)
+    for i, j in product(range(0, len(sides), 3), range(len(sides))):
+        common = [range(max(a[0], b[0]), min(a[1], b[1]) + 1) for a, b in zip(*sides[[i, j]].astype(int), strict=True)]
+        assert found[i, j] == all(map(len, common))
+
+
+@pytest.mark.parametrize("thin", [False, True])
+def test_what_no_curve_enters_is_taken_away_and_nothing_else(thin: bool) -> None:
+    enclosures = curves()
+    cover = LATTICE.cover(box_rectangles(enclosures))
+    if thin:
+        strips = thinning(enclosures, LATTICE, 1).cover(0.01)
+        cover = Cover(cover.steps, tuple(sorted({*strips.rectangles, *LATTICE.cover(EMPTY).rectangles})))
+    assert covered(cover, points()).all() and covered(cover, middles(EMPTY)).all()
+    found = without_specks(cover, enclosures, LATTICE, AREA)
+    assert covered(found, points()).all()
+    assert not covered(found, middles(EMPTY)).any()
+    assert set(found.rectangles) < set(cover.rectangles)
+    assert len(found.rectangles) >= len(cover.rectangles) - len(EMPTY)
+
+
+def test_where_the_budget_ends_all_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    enclosures = curves()
+    cover = LATTICE.cover(box_rectangles(enclosures))
+    for name, value in (("BUDGET", 0), ("MAX_PAIRS", 0), ("MAX_SHARE", Fraction(0))):
+        with monkeypatch.context() as patched:
+            patched.setattr(specks, name, value)
+            assert without_specks(cover, enclosures, LATTICE, AREA) == cover
+
+
+def test_a_cover_without_rectangles_stays() -> None:
+    empty = Cover(LATTICE.steps, ())
+    assert without_specks(empty, curves(), LATTICE, AREA) == empty
