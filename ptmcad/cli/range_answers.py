@@ -188,7 +188,7 @@ MAX_UNKNOWNS = 2
 def _paths_and_branches(slice: Slice, found: Any) -> Any:
     from ptmcad.ask.branches import branch_diagram
     from ptmcad.show.render.branches import draw_paths_and_branches
-    from ptmcad.show.render.ranges import draw_paths
+    from ptmcad.show.render.paths import draw_paths
 
     model = found.model
     if len(model.unknowns) > MAX_UNKNOWNS or not model.tells_stability:

@@ -17,19 +17,9 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.branches import kind
 from ptmcad.show.render.axes import scale_of, symbol
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height, width
+from ptmcad.show.render.paths import draw_paths
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.ranges import (
-    LEFT,
-    RIGHT,
-    SIZE,
-    WIDE,
-    _axes,
-    _axis_name,
-    _beside,
-    _scaled,
-    _short,
-    draw_paths,
-)
+from ptmcad.show.render.rangeplate import LEFT, RIGHT, SIZE, WIDE, axes_in, axis_name, beside, scaled, short
 from ptmcad.show.units import with_unit
 
 PANEL, GAP, FOOT = 2.0, 0.25, 0.55
@@ -48,7 +38,7 @@ _TURN = 180
 
 def draw_branches(slice: Slice, found: Branches) -> Figure:
     """A panel for each quantity."""
-    fixed = ", ".join(f"{symbol(n)} = {_short(v)}" for n, v in found.at.items())
+    fixed = ", ".join(f"{symbol(n)} = {short(v)}" for n, v in found.at.items())
     kinds = list(dict.fromkeys(kind(b, found.model) for b in found.branches))
     kinds.sort(key=_rank)
     entries = (Entry(("branches",), strong=True), *(Entry((name,), _mark(name)) for name in kinds))
@@ -56,11 +46,11 @@ def draw_branches(slice: Slice, found: Branches) -> Figure:
     tall = max((last + 1) * PANEL + last * GAP + FOOT, height(entries) + 0.2)
     words = f"{', '.join(found.quantities)} of all solutions along {found.along.name}: {', '.join(kinds)}."
     with settings():
-        figure = _beside(f"{slice.heading}; {fixed}", width(entries), tall, words)
+        figure = beside(f"{slice.heading}; {fixed}", width(entries), tall, words)
         scale = scale_of(found.along.low, found.along.high)
         for number, (name, unit) in enumerate(zip(found.quantities, found.units, strict=True)):
             bottom = tall - (number + 1) * PANEL - number * GAP
-            axes = _axes(figure, (LEFT, bottom, WIDE, PANEL))
+            axes = axes_in(figure, (LEFT, bottom, WIDE, PANEL))
             for branch in sorted(found.branches, key=lambda b: bool(b.stable)):  # the stable ones on top
                 look = _look(kind(branch, found.model))
                 for xs, ys in _strokes(branch, number, found):
@@ -70,7 +60,7 @@ def draw_branches(slice: Slice, found: Branches) -> Figure:
             axes.tick_params(labelsize=SIZE, labelbottom=number == last)
             axes.set_ylabel(with_unit(symbol(name) if name in found.model.unknowns else name, unit), fontsize=SIZE + 2)
             if number == last:
-                axes.set_xlabel(_axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=2)
+                axes.set_xlabel(axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=2)
         draw_legend(figure, entries, LEFT + WIDE + RIGHT, tall - 0.05)
     return figure
 
@@ -96,7 +86,7 @@ def _strokes(branch: Branch, number: int, found: Branches) -> Iterator[tuple[lis
     for point in branch.points:
         value = point.numbers[number]
         y = None if value is None else float(value)
-        x = _scaled(point.value, found.along)
+        x = scaled(point.value, found.along)
         if xs and y is None:
             yield xs, ys
             xs, ys = [], []
