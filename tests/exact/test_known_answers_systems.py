@@ -334,6 +334,7 @@ def test_numbers_of_complex_solutions(record: dict[str, Any], number: int) -> No
     [
         pytest.param(chain(2), 24, 313, id="chain of two bars [REFERENCE]"),
         pytest.param(FOUR_BAR, 18, 100, id="four-bar [two eliminations, REFERENCE]", marks=pytest.mark.slow),
+        pytest.param(OSCILLATORS, 42, 809, id="four Kuramoto oscillators [REFERENCE]", marks=pytest.mark.slow),
     ],
 )
 def test_sizes_of_critical_curves(record: dict[str, Any], degree: int, terms: int) -> None:
