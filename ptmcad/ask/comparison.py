@@ -58,14 +58,15 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
     others = _union([replace(c, left_out="") for m in (first, second) for c in m.components if not c.separates])
     x, y = ((from_fraction(a.low), from_fraction(a.high)) for a in first.slice.axes)
     cut = _cut(components, others, (x, y))
-    points = _points(first, cut)
+    points, count = _points(first, cut), first.slice.count
     with _asked("first"):
         befores = [_region(first, at) for at in points]
+        olds = [counted_by(first.regions[a], count) for a in befores]
     with _asked("second"):
         afters = [_region(second, at) for at in points]
+        news = [counted_by(second.regions[b], count) for b in afters]
     pairs = list(zip(befores, afters, strict=True))
-    count = first.slice.count
-    keys = [(counted_by(first.regions[a], count), counted_by(second.regions[b], count)) for a, b in pairs]
+    keys = list(zip(olds, news, strict=True))
     numbers = {key: n for n, key in enumerate(dict.fromkeys(keys))}
     of_cell = [numbers[key] for key in keys]
     rest = iter(of_cell)

@@ -22,6 +22,7 @@ from ptmcad.cover.complement import Components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.samples import samples
 from ptmcad.cover.subdivision import FREE
+from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Point
 
 Key = tuple[int, ...]
@@ -60,9 +61,10 @@ def side(result: RegionMap, cover: Cover) -> Side:
         When it contradicts itself.
     """
     complement, cells = component_cells(result, cover)
-    return Side(
-        result, complement, {place: result.cells[cell].region for place, cell in cells.items() if place is not None}
-    )
+    region_of = {place: result.cells[cell].region for place, cell in cells.items() if place is not None}
+    if not all(region < len(result.regions) for region in region_of.values()):
+        raise ConfigError("the map contradicts itself (a cell is in no region); check it with ptmcad verify")
+    return Side(result, complement, region_of)
 
 
 def cover_difference(first: Side, second: Side) -> Comparison:

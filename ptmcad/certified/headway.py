@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import log
+from sys import float_info
 
 PARTS = 1000
 """Of the whole way, from a window of which all is undetermined to the tolerance."""
@@ -23,6 +24,10 @@ class Headway:
 
     tolerance: float
     reached: int = 0
+
+    def __post_init__(self) -> None:
+        # one below all floats has become zero, which has no logarithm
+        self.tolerance = max(self.tolerance, float_info.min)
 
     def at(self, share: float, level: float) -> int:
         """The part of the way that is behind when a level that began at a share is done to the part ``level``.

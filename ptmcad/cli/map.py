@@ -139,7 +139,7 @@ def _summary(field: Field) -> str:
 
     known = field.values[~np.isnan(field.values)]
     if not known.size:
-        return f"{field.pose} is nowhere in this window"
+        return f"{field.pose} is nowhere in this window, or {field.quantity} has no value where it is"
     unit = f" {field.unit}" if field.unit else ""
     lines = [
         f"{field.quantity} of {field.pose}: {known.min():.6g} to {known.max():.6g}{unit}, "

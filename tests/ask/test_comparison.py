@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from ptmcad.show.render.printing import settings
 from ptmcad.show.style import styled
 
 
-def parabola(shift: str, top: str = "1", **further: object) -> RegionMap:
+def parabola(shift: str, top: str = "1", engine: str = "exact", **further: object) -> RegionMap:
     """x^2 = a - shift has two solutions above a line, none below: areas are known."""
     return ptmcad.classify(
         {
@@ -25,7 +26,8 @@ def parabola(shift: str, top: str = "1", **further: object) -> RegionMap:
             "axes": {"a": [0, 1], "b": [0, top]},
             "count": "total",
             **further,
-        }
+        },
+        engine=engine,
     )
 
 
@@ -107,3 +109,16 @@ def test_the_command_line_compares(tmp_path: Path, capsys: pytest.CaptureFixture
     assert run(["plot", one, "--compare", two, "--format", "csv"]) == 2
     assert run(["plot", one, "--compare", two, "--at", "a=1,b=1"]) == 2
     assert run(["plot", one, "--compare", str(tmp_path / "none.json")]) == 2
+
+
+@pytest.mark.parametrize("engine", ["exact", "certified"])
+@pytest.mark.parametrize("which", ["first", "second"])
+def test_a_map_whose_cells_are_in_no_region_is_named(engine: str, which: str) -> None:
+    if engine == "certified":
+        pytest.importorskip("numba")
+    maps = [parabola(shift, engine=engine) for shift in ("1/2", "1/3")]
+    place = ("first", "second").index(which)
+    maps[place] = replace(maps[place], regions=maps[place].regions[:1])
+    with pytest.raises(ConfigError, match="contradicts itself") as caught:
+        maps[0].compare(maps[1])
+    assert caught.value.key == which

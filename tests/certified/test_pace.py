@@ -19,7 +19,7 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.certified import assembly, engine, loading, refinement
 from ptmcad.certified.compiled import FUNCTIONS
-from ptmcad.certified.headway import PARTS
+from ptmcad.certified.headway import PARTS, Headway
 from ptmcad.certified.pace import ALLOWANCE, MAP_TIME_SHARE, MIN_RESERVE, SAFETY, Pace
 from ptmcad.errors import LimitReached
 from ptmcad.options import Options
@@ -245,3 +245,8 @@ def test_nothing_is_compiled_after_loading() -> None:
     assert before["ptmcad.certified.strips.strips"] == 1
     ptmcad.classify(window(), count="total", tolerance="1/5", jobs=1)
     assert signatures() == before
+
+
+def test_a_tolerance_below_all_floats_has_a_way_to_it() -> None:
+    way = Headway(0.0)
+    assert [way.at(share, 0.0) for share in (1.0, 1e-300, 0.0)] == [0, 975, PARTS]  # of 307.65 powers of ten

@@ -96,7 +96,13 @@ def test_quantities_have_the_declared_units(
 
 @pytest.mark.parametrize(
     ("units", "words"),
-    [({"lenght": "mm"}, "length"), ("mm", "mapping"), ({"length": "x" * 30}, "20"), ({"force": ""}, "short text")],
+    [
+        ({"lenght": "mm"}, "length"),
+        ("mm", "mapping"),
+        ({"length": "x" * 30}, "20"),
+        ({"force": ""}, "short text"),
+        ({"force": "-2.5"}, "short text"),
+    ],
 )
 def test_bad_units_are_refused(units: object, words: str) -> None:
     with pytest.raises(ConfigError, match=words):

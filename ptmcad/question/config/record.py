@@ -5,6 +5,7 @@ Guarantee: what is wrong with keys and shapes is a `ConfigError` with file, line
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -253,7 +254,8 @@ def _units(node: Node) -> dict[str, str]:
         if key not in QUANTITIES:
             hint = did_you_mean(key, QUANTITIES) or f"; units are those of {' and '.join(QUANTITIES)}"
             raise _node_place(unit, key, node).error(f"unknown quantity{hint}")
-        if not _text(unit, MAX_UNIT).strip().isprintable() or not _text(unit, MAX_UNIT).strip():
+        text = _text(unit, MAX_UNIT).strip()
+        if not text.isprintable() or re.fullmatch(r"[-+.\d]*", text):  # empty, or a number
             raise unit.place.error("a unit is a short text such as mm")
     return {key: _text(unit, MAX_UNIT).strip() for key, unit in node.entries.items()}
 
