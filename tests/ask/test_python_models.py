@@ -105,3 +105,10 @@ def test_sympy_is_not_loaded() -> None:
         "ptmcad.classify({'system': s, 'axes': {'a': [-1, 1], 'b': [0, 1]}}); sys.exit('sympy' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False, timeout=100).returncode == 0
+
+
+def test_counts_are_of_a_model_and_not_of_a_slice() -> None:
+    slice = ptmcad.slice_from_mapping({"mechanism": PENDULUM, "axes": AXES})
+    assert ptmcad.counts_at(slice.model, H=0, W=2).total == 2
+    with pytest.raises(ConfigError, match="give the slice's model"):
+        ptmcad.counts_at(slice, H=0, W=0)  # type: ignore[arg-type]

@@ -107,6 +107,13 @@ def test_a_heading_names_the_free_length_once() -> None:
 BAD = [
     ("unknown key", AXES + "paramters: {F3: 1}", 2, "paramters", "did you mean 'parameters'?"),
     ("unknown key, nothing close", AXES + "zzz: 1", 2, "zzz", "the keys are"),
+    (
+        "equations misspelt",
+        "system:\n  unknowns: {x: real}\n  equation: [x - rho]\n" + AXES,
+        3,
+        "system.equation",
+        "did you mean 'equations'?",
+    ),
     ("unknown parameter", AXES + "parameters:\n  Rho: 1", 3, "parameters.Rho", "did you mean 'rho'?"),
     ("unknown parameter, nothing close", AXES + "parameters: {F5: 1}", 2, "parameters.F5", "the parameters are L1"),
     ("duplicate key", AXES + AXES, 2, "axes", "twice; first in line 1"),

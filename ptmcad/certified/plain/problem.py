@@ -15,10 +15,10 @@ from fractions import Fraction
 
 from ptmcad.certified.plain.trigonometric import Harmonics, TrigonometricPolynomial
 from ptmcad.errors import ConfigError, GeometryError
-from ptmcad.mechanism import Mechanism, System
+from ptmcad.mechanism import Kind, Mechanism, System
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.mechanism.work import split_moments
-from ptmcad.question.positivity import Need, Proved, decide
+from ptmcad.question.domain import fault, unproved
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import text_of
@@ -120,11 +120,9 @@ def problem_of(slice: Slice) -> Problem:
     assert isinstance(model, Mechanism)
     smooth, cones = _energy(model, ring)
     for cone in cones:
-        if not isinstance(decide(cone.pull, slice.axes, Need.NOT_NEGATIVE), Proved):
-            raise GeometryError(
-                f"it is not proved that stiffness times free length of spring {cone.name} is nowhere negative in the "
-                "window: narrow the window"
-            )
+        asked = f"stiffness times free length of spring {cone.name}", Kind.FREE_LENGTH, cone.pull, slice.axes
+        if problem := fault(*asked) or unproved(*asked):
+            raise GeometryError(problem)
     gradient = list(_gradient(smooth, ring))
     for unknown, tree in split_moments(model).steady:
         if others := sorted(set(names_of(tree)) & set(model.unknowns) - {unknown}):

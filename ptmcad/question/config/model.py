@@ -23,7 +23,8 @@ def model_of(record: Tree) -> Model:
     if system is not None:
         if not isinstance(system, Tree):
             raise system.place.error("expected a mapping with unknowns and equations, or a potential")
-        return _read(system, record.place.file)
+        # what has points is meant for a mechanism; anything else that is not right is wrong with a system
+        return _read(system, record.place.file, "points" not in system.entries)
     if mechanism is None:
         return ptm()
     if isinstance(mechanism, Tree):
@@ -83,9 +84,9 @@ def _from_tree(tree: Tree) -> Model:
     return _read(inner, tree.place.file)
 
 
-def _read(node: Tree, file: str | None) -> Model:
+def _read(node: Tree, file: str | None, is_system: bool = False) -> Model:
     """What a mapping describes; a fault is put where it stands in the file."""
-    is_system = "equations" in node.entries or "potential" in node.entries
+    is_system = is_system or "equations" in node.entries or "potential" in node.entries
     data = {key: _plain(entry) for key, entry in node.entries.items()}
     try:
         # written down again, the built-in one is the same one
