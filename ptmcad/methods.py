@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from ptmcad.answer.boundaries import Boundary, Grid
     from ptmcad.answer.comparison import Comparison
+    from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.field import Field
     from ptmcad.answer.motion import Motion
     from ptmcad.answer.poses import Poses
@@ -311,6 +312,46 @@ def _map_compare(self: RegionMap, other: RegionMap) -> Comparison:
     return compare(self, other)
 
 
+def _family_table(self: FamilyMap) -> str:
+    """A line for each member, for the terminal: its value, regions, counts and areas."""
+    from ptmcad.show.familytable import family_table
+
+    return family_table(self)
+
+
+def _family_plot(
+    self: FamilyMap, style: Any = "default", *, solid: bool = False, dpi: int = 150, **options: Any
+) -> Any:
+    """The members' maps side by side, all alike, as a `Figure` of matplotlib's.
+
+    Parameters
+    ----------
+    solid : draw the maps one above the other in three dimensions, between them the surfaces at which they change.
+    style, dpi, options : as of `RegionMap.plot`.
+
+    Raises
+    ------
+    ConfigError
+        For an unknown style or option, or what does not fit into the size.
+    """
+    from ptmcad.show.render.usersettings import user_styled
+
+    made = user_styled(style, **options)
+    if solid:
+        from ptmcad.show.render.solid import solid_figure
+
+        return solid_figure(self, dpi, made)
+    from ptmcad.show.render.multiples import multiples_figure
+
+    return multiples_figure(self, dpi, made)
+
+
+def _family_repr_html(self: FamilyMap) -> str:
+    from ptmcad.show.notebook import text_html
+
+    return text_html(self.table())
+
+
 def _variety_text(self: SliceVariety, format: str = "text") -> str:
     """The variety in one of the formats of `ptmcad.show.export.FORMATS`.
 
@@ -368,6 +409,7 @@ METHODS["RegionMap"] = {
     "animate": _map_animate,
     "explore": _map_explore,
 }
+METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "_repr_html_": _family_repr_html}
 METHODS["SliceVariety"] = {"text": _variety_text, "_repr_html_": _variety_repr_html}
 METHODS["Poses"] = {
     "table": _poses_table,

@@ -15,7 +15,7 @@ from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.regionmap import RegionMap, Status, with_compilation
 from ptmcad.ask.engines import is_certified
@@ -27,6 +27,9 @@ from ptmcad.question.config import slice_from
 from ptmcad.question.savings import load_all, switched_off
 from ptmcad.question.slice import Count, Slice, without_free_lengths
 from ptmcad.text.numerals import exactly
+
+if TYPE_CHECKING:
+    from ptmcad.exact.variety import Known
 
 
 def classify(
@@ -110,12 +113,13 @@ def _names(without: Iterable[str], keep: Iterable[str] | None) -> frozenset[str]
     return frozenset((without,) if isinstance(without, str) else without)
 
 
-def region_map(slice: Slice, options: Options) -> RegionMap:
+def region_map(slice: Slice, options: Options, known: Known | None = None) -> RegionMap:
     """The region map of a slice as `classify` gives it.
 
     Parameters
     ----------
     options : whose ``deadline`` is set here, from ``timeout``, once the engine is loaded.
+    known : what the exact engine knows of the equations from a family that the slice is of.
 
     Raises
     ------
@@ -147,7 +151,7 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
         load_all()
     from ptmcad.exact.engine import exact_map
 
-    return exact_map(slice, options)
+    return exact_map(slice, options, known)
 
 
 def _check_no_areas(options: Options) -> None:

@@ -9,7 +9,7 @@ import click
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.values import files
 from ptmcad.errors import MAX_FAULTS, ConfigError
-from ptmcad.question.config import load
+from ptmcad.question.config import Family, question_from_options
 
 
 @click.command("check")
@@ -26,7 +26,7 @@ def command(*, record: Path, limits: Limits) -> int:
         ptmcad check configs/fig4.yaml
     """
     try:
-        slice = load(record)
+        asked = question_from_options(record)
     except ConfigError as error:
         for fault in error.faults:
             click.echo(f"error: {fault}", err=True)
@@ -36,6 +36,10 @@ def command(*, record: Path, limits: Limits) -> int:
     with held(limits):
         with clock_stopped(limits.timeout):  # the time that the import takes is not the computation's
             from ptmcad.ask.checking import check, check_text
+        slice = asked.member(asked.values[len(asked.values) // 2]) if isinstance(asked, Family) else asked
         for line in check_text(check(slice)):
             click.echo(line)
+        if isinstance(asked, Family):
+            click.echo(f"{'family':<12}of {len(asked.values)} such slices, {asked.free.name} from {asked.free.low} to "
+                       f"{asked.free.high}; above is the one in the middle")  # fmt: skip
     return 0

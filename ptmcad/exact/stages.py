@@ -38,7 +38,7 @@ from ptmcad.exact.counting import Equilibria, equilibria
 from ptmcad.exact.models import ParametricSystem, system_from
 from ptmcad.exact.point_system import DegeneratePoint, solutions_at
 from ptmcad.exact.regions import Link, members, merge
-from ptmcad.exact.variety import discriminant_variety
+from ptmcad.exact.variety import Known, discriminant_variety
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.numerals import decimal, fraction_of
 
@@ -58,12 +58,14 @@ class SliceProblem(NamedTuple):
     ----------
     parameters : each parameter as a ratio of polynomials in Z[x, y].
     window : the ranges of x and y.
+    known : what is known of the equations from a family that the slice is of.
     """
 
     slice: Slice
     system: ParametricSystem
     parameters: dict[str, Ratio]
     window: tuple[Interval, Interval]
+    known: Known | None = None
 
     @property
     def area(self) -> Fraction:
@@ -168,7 +170,7 @@ def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset(), base: 
     """
     system, parameters, window = problem.system, problem.parameters, problem.window
     try:
-        found = discriminant_variety(system, parameters, window, domain_limits(system, parameters), keep)
+        found = discriminant_variety(system, parameters, window, domain_limits(system, parameters), keep, problem.known)
     except NothingToCountError:
         raise
     except (DegenerateSliceError, InfiniteSolutionsError) as error:

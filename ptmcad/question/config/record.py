@@ -20,7 +20,8 @@ from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count, unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
-RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "count", "units", "reference")
+RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "free", "members", "count",
+               "units", "reference")  # fmt: skip
 _MAX_NAME = 100
 _MAX_TITLE = 300
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -45,6 +46,8 @@ class Record:
     model: Model = field(default_factory=ptm)
     values: Mapping[str, Scalar] = field(default_factory=dict)
     axes: Mapping[str, Window] = field(default_factory=dict)
+    free: tuple[str, Window] | None = None
+    members: Node | None = None
     count: Count | None = None
     units: Mapping[str, str] = field(default_factory=dict)
     reference: Mapping[str, Any] = field(default_factory=dict)
@@ -93,6 +96,8 @@ def read_record(tree: Tree, faults: Faults) -> Record:
         "title": _title,
         "parameters": lambda node: _values(node, model, faults),
         "axes": lambda node: _axes(node, faults),
+        "free": _free,
+        "members": lambda node: node,
         "count": count_of,
         "units": _units,
         "reference": _reference,
@@ -103,6 +108,10 @@ def read_record(tree: Tree, faults: Faults) -> Record:
                 read["values" if key == "parameters" else key] = reader(tree.entries[key])
             elif key == "name":
                 read[key] = _name_of_file(tree.place.file)
+    if "members" in tree.entries and "free" not in tree.entries:
+        with faults:
+            place = _node_place(tree.entries["members"], "members", tree)
+            raise place.error("there are members where a parameter is free: add one, such as free: {F: [-20, 0]}")
     return Record(**read)
 
 
@@ -223,6 +232,14 @@ def _axes(node: Node, faults: Faults) -> dict[str, Window]:
         with faults:
             axes[name] = _window(name, entry)
     return axes
+
+
+def _free(node: Node) -> tuple[str, Window]:
+    """The third parameter of a family with its range."""
+    if not isinstance(node, Tree) or len(node.entries) != 1:
+        raise node.place.error("expected one parameter with its range, such as {F: [-20, 0]}")
+    ((name, entry),) = node.entries.items()
+    return name, _window(name, entry)
 
 
 def _window(name: str, node: Node) -> Window:

@@ -50,9 +50,21 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
     faults : what was found in the record before, and is raised with the rest.
     """
     faults = faults or Faults()
+    if record.free is not None:
+        with faults:
+            refuse_free(*record.free)
+        faults.check()
     axes, resolved = _resolved(record, faults)
     faults.check()
     return _slice(record, axes, resolved)
+
+
+def refuse_free(name: str, window: Window) -> None:
+    """Refuse a record of a family where one slice is asked for."""
+    raise window.place.error(
+        f"{name} is free, and the record is one of a family: give it a value with --set {name}=VALUE, or ask for its "
+        "members with ptmcad classify or ptmcad.family"
+    )
 
 
 def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression]]:
@@ -68,7 +80,7 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
     axes = []
     for name, window in record.axes.items():
         with faults:
-            axes.append(_axis(name, window, record.model))
+            axes.append(axis_of(name, window, record.model))
     resolution = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)})
     for name in record.model.parameters:
         with faults:
@@ -190,6 +202,19 @@ def _texts(
     return {name: texts[name] for name in record.model.parameters if name in texts}
 
 
+def written_in(record: Record, member: Slice) -> dict[str, str]:
+    """Each parameter of a family's members as the record writes it, and every parameter that such a text names."""
+    texts = {}
+    waiting = [*member.parameters]
+    while waiting:
+        name = waiting.pop()
+        if name not in texts and name in record.model.parameters and name not in record.axes:
+            free = record.free is not None and name == record.free[0]
+            texts[name] = name if free else _written(name, record)
+            waiting += names_in(texts[name])
+    return texts
+
+
 def _written(name: str, record: Record) -> str:
     if name in record.axes:
         return name
@@ -201,7 +226,8 @@ def _written(name: str, record: Record) -> str:
     return parameter.default
 
 
-def _axis(name: str, window: Window, model: Model) -> Axis:
+def axis_of(name: str, window: Window, model: Model) -> Axis:
+    """An axis with its range, which is not empty and has no length below zero."""
     low, high = number_of(window.low), number_of(window.high)
     if low == high:
         raise window.place.error(f"the range of {name} is empty: {low} to {high}")
