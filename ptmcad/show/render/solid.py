@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
@@ -47,6 +48,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     font = style.base_font
     em = font / 72
     wide, tall = style.size or SIZE
+    slice = family.members[0].slice
     figure = Figure(figsize=(wide, tall), dpi=dpi, facecolor="white")
     title = title_of(family) if style.title is None else style.title
     paint = paint_of_family(family, style)
@@ -60,10 +62,10 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     axes.set_proj_type("ortho")
     axes.view_init(elev=22, azim=-62)
     axes.computed_zorder = False
+    least = min(counted_by(r, slice.count) for result in family.members for r in result.regions)
     floors = set(np.linspace(0, len(family.values) - 1, min(MAX_FLOORS, len(family.values))).round().astype(int))
     for number, (value, result) in enumerate(family):
-        _floor(axes, result, float(value), paint, number if number in floors else None)
-    slice = family.members[0].slice
+        _floor(axes, result, float(value), paint, least if number in floors else None)
     how = {"fontsize": 0.95 * font, "labelpad": 0.3 * font}
     axes.set(
         xlim=_ends(slice.axes[0]), ylim=_ends(slice.axes[1]), zlim=_ends(family.free),
@@ -88,8 +90,8 @@ def _ends(axis: Any) -> tuple[float, float]:
     return float(axis.low), float(axis.high)
 
 
-def _floor(axes: Any, result: RegionMap, height: float, paint: Paint, floor: int | None) -> None:
-    """A member's map at its height, filled, or its curves alone."""
+def _floor(axes: Any, result: RegionMap, height: float, paint: Paint, least: tuple[int, ...] | None) -> None:
+    """A member's map at its height, filled so that one sees through where the count is least, or its curves alone."""
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
     seen = shapes(result)
@@ -99,15 +101,14 @@ def _floor(axes: Any, result: RegionMap, height: float, paint: Paint, floor: int
     def lifted(points: Any) -> Any:
         return np.column_stack([points * scale + origin, np.full(len(points), height)])
 
-    if floor is not None:
-        widest = max(range(len(result.regions)), key=lambda n: result.regions[n].area, default=None)
+    if least is not None:
         for number, region in enumerate(result.regions):
             polygons = [lifted(polygon) for polygon in seen.polygons(number)]
             if polygons:
                 axes.add_collection3d(
                     Poly3DCollection(
-                        polygons, facecolors=paint.fill(region).face, alpha=0.3 if number == widest else 0.85,
-                        linewidths=0, zorder=height, antialiaseds=False,
+                        polygons, facecolors=paint.fill(region).face, linewidths=0, zorder=height, antialiaseds=False,
+                        alpha=0.3 if counted_by(region, result.slice.count) == least else 0.85,
                     )
                 )  # fmt: skip
     strong = [lifted(line) for _, separates, line in seen.walls() if separates]
@@ -115,7 +116,7 @@ def _floor(axes: Any, result: RegionMap, height: float, paint: Paint, floor: int
     if strong:
         axes.add_collection3d(
             Line3DCollection(
-                strong, colors=INK, linewidths=paint.strong if floor is not None else 0.4 * paint.strong,
-                alpha=1.0 if floor is not None else 0.55, zorder=height + 1e-9 * (1 + abs(height)),
+                strong, colors=INK, linewidths=paint.strong if least is not None else 0.4 * paint.strong,
+                alpha=1.0 if least is not None else 0.55, zorder=height + 1e-9 * (1 + abs(height)),
             )
         )  # fmt: skip
