@@ -145,7 +145,8 @@ def slice_from_options(
         record = replace(record, title="", reference={})
     if count is not None:
         text = count.value if isinstance(count, Count) else count
-        record = replace(record, count=count_of(Scalar(text, Place("--count"))))
+        place = Place("--count")
+        record = replace(record, count=count_of(Scalar(text, place)), count_place=place)
     return slice_of(record)
 
 
