@@ -17,7 +17,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import ConfigError
+from ptmcad.errors import A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
@@ -65,6 +65,7 @@ def load(path: str | Path) -> Slice:
     ConfigError
         For anything wrong in it, with file, line and key; its ``faults`` are all there are.
     """
+    expect(path, (str, Path), "path", "the file of a record")
     return checked_slice(read_file(path))
 
 
@@ -78,9 +79,9 @@ def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
     >>> slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["0", "2"]}, "parameters": {"F3": "-0.1"}}).axis_names
     ('rho', 'L2')
     """
+    expect(mapping, Mapping, "mapping", "a mapping like a record")
     node = from_python(plain(mapping), Place())
-    if not isinstance(node, Tree):
-        raise ConfigError("a record is a mapping")
+    assert isinstance(node, Tree)
     return checked_slice(node)
 
 
@@ -88,6 +89,7 @@ def slice_from(question: str | Path | Mapping[str, Any] | Slice) -> Slice:
     """The slice that is meant by a record's file, by a mapping like a record, or by itself."""
     if isinstance(question, Slice):
         return question
+    expect(question, (str, Path, Mapping), "slice", f"{A_SLICE}, the file of a record, or a mapping like a record")
     return slice_from_mapping(question) if isinstance(question, Mapping) else load(question)
 
 
