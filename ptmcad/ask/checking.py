@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING
 
 from ptmcad.ask.classification import check_taken
 from ptmcad.ask.engines import is_certified
-from ptmcad.errors import ConfigError, GeometryError
+from ptmcad.errors import ConfigError, GeometryError, shown
 from ptmcad.mechanism import Mechanism, ptm
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
+from ptmcad.text.numerals import short_text
 
 if TYPE_CHECKING:
     from flint import fmpq
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 MAX_UNKNOWNS = 4
 """Beyond, even one point takes too long for a question that should be answered at once."""
+MAX_SHOWN = 60
+"""Characters of a parameter's value."""
 MAX_PROVED = 8
 """Complex solutions: of more it is not proved that the slice is degenerate, which takes seconds and more."""
 MAX_DEGREE, MAX_BOUND = 12, 400
@@ -176,11 +179,15 @@ def check_text(found: Check) -> Iterator[str]:
         }  # fmt: skip
         yield f"{'parts':<12}{', '.join(f'{number} {name}' for name, number in parts.items() if number)}"
     values = {name: e.to_text(slice.axis_names) for name, e in slice.parameters.items() if name not in slice.axis_names}
-    fixed = [f"{name} = {value}" for name, value in merged(values, model).items()]
+    fixed = [
+        f"{name} = {value if len(value) <= MAX_SHOWN else shown(slice.text.get(name, value), MAX_SHOWN)}"
+        for name, value in merged(values, model).items()
+    ]
     yield f"{'parameters':<12}{', '.join(fixed) or 'none but the axes'}"
-    yield f"{'axes':<12}{', '.join(f'{a.name} from {a.low} to {a.high}' for a in slice.axes)}"
+    ends = (f"{a.name} from {short_text(a.low)} to {short_text(a.high)}" for a in slice.axes)
+    yield f"{'axes':<12}{', '.join(ends)}"
     yield f"{'count':<12}{slice.count.value}"
-    at = ", ".join(f"{a.name} = {value}" for a, value in zip(slice.axes, found.sample, strict=True))
+    at = ", ".join(f"{a.name} = {short_text(value)}" for a, value in zip(slice.axes, found.sample, strict=True))
     number = "not counted" if found.complex_solutions is None else f"{found.complex_solutions} complex ones at {at}"
     if found.bound is not None:
         number = f"at most {found.bound} complex ones, by the equations' degrees"

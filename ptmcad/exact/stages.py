@@ -40,7 +40,7 @@ from ptmcad.exact.regions import Link, members, merge
 from ptmcad.exact.variety import check_hypotheses, discriminant_variety
 from ptmcad.exact.witness import with_witness
 from ptmcad.question.slice import Count, Slice
-from ptmcad.text.numerals import decimal, fraction_of
+from ptmcad.text.numerals import decimal, fraction_of, short_text
 
 Sample = tuple[fmpq, fmpq]
 Report = Callable[[int, int], None]
@@ -73,7 +73,9 @@ class SliceProblem(NamedTuple):
 
     def place(self, at: Sample) -> str:
         """A point in words, for messages."""
-        return ", ".join(f"{name} = {value}" for name, value in zip(self.slice.axis_names, at, strict=True))
+        return ", ".join(
+            f"{name} = {short_text(to_fraction(value))}" for name, value in zip(self.slice.axis_names, at, strict=True)
+        )
 
     def solved_at(self, at: Sample) -> Equilibria:
         """The equilibria at a point off the variety; raises what `count_at` does."""
