@@ -10,6 +10,7 @@ from ptmcad.errors import A_MODEL, ConfigError, expect, shown
 from ptmcad.mechanism import Mechanism, Model, ptm
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import point_from_mapping
+from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import have_free_lengths
 from ptmcad.text.expressions import constant
 
@@ -36,7 +37,7 @@ def solve(digits: int = DIGITS, model: Model | None = None, **parameters: object
     """
     if not isinstance(digits, int | float | str):
         raise ConfigError(
-            "expected the parameters' values by name, as in solve(rho=1, L2='3/2'), and what they are of as "
+            f"expected the parameters' values by name, as in solve({FIRST}=1, {SECOND}='3/2'), and what they are of as "
             f"model=slice.model, not an object of type {type(digits).__name__}"
         )
     if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MAX_DIGITS:

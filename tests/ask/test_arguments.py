@@ -21,7 +21,7 @@ def slice_and_map() -> tuple[ptmcad.Slice, ptmcad.RegionMap]:
 
 
 CALLS: dict[str, tuple[Callable[..., Any], str]] = {
-    "solve a slice": (lambda s, r: ptmcad.solve(s), r"^expected the parameters' values by name, as in solve\(rho=1"),
+    "solve a slice": (lambda s, r: ptmcad.solve(s), r"^expected the parameters' values by name, as in solve\(L1=1"),
     "solve a mapping": (lambda s, r: ptmcad.solve({"rho": 1}), "not an object of type dict"),
     "solve for a slice": (lambda s, r: ptmcad.solve(model=s, L1=1), "^model: expected a mechanism or a system.*Slice$"),
     "solve for nothing": (lambda s, r: ptmcad.solve(model={}, L1=1), "^model: expected a mechanism"),
