@@ -173,11 +173,13 @@ def check_text(found: Check) -> Iterator[str]:
     if isinstance(model, Mechanism):
         turning = sum(moment.unknown in model.angles for moment in model.moments)
         parts = {
-            "bars": len(model.bars), "bodies": len(model.bodies), "springs": len(model.springs),
-            "torsion springs": len(model.torsion), "loads": len(model.loads), "moments": turning,
-            "forces on lengths": len(model.moments) - turning,
+            ("bar", "bars"): len(model.bars), ("body", "bodies"): len(model.bodies),
+            ("spring", "springs"): len(model.springs), ("torsion spring", "torsion springs"): len(model.torsion),
+            ("load", "loads"): len(model.loads), ("moment", "moments"): turning,
+            ("force on a length", "forces on lengths"): len(model.moments) - turning,
         }  # fmt: skip
-        yield f"{'parts':<12}{', '.join(f'{number} {name}' for name, number in parts.items() if number)}"
+        words = (f"{number} {one if number == 1 else many}" for (one, many), number in parts.items() if number)
+        yield f"{'parts':<12}{', '.join(words)}"
     values = {name: e.to_text(slice.axis_names) for name, e in slice.parameters.items() if name not in slice.axis_names}
     fixed = [
         f"{name} = {value if len(value) <= MAX_SHOWN else shown(slice.text.get(name, value), MAX_SHOWN)}"

@@ -7,6 +7,7 @@ from textwrap import dedent
 
 import pytest
 
+import ptmcad
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load, slice_from_mapping
 
@@ -215,7 +216,12 @@ PENDULUM = {
 
 def test_a_parameter_that_a_records_expression_uses_is_used() -> None:
     record = {"mechanism": PENDULUM, "parameters": {"W": "2*m*g"}, "axes": {"L": [0, 2], "g": [0, 1]}}
-    assert slice_from_mapping(record).parameters["W"].to_text(("L", "g")) == "2*g"
+    slice = slice_from_mapping(record)
+    assert slice.parameters["W"].to_text(("L", "g")) == "2*g"
+    assert "m" not in slice.parameters  # an engine has no use for it
+    assert ptmcad.verify(ptmcad.classify(slice)).ok
+    poses = ptmcad.solve(model=slice.model, W="2*m", m=2, L=1)
+    assert (poses.parameters["W"], "m" in poses.parameters) == (4, False)
     with pytest.raises(ConfigError, match=r"mechanism\.parameters\.m: nothing uses m: leave it out"):
         slice_from_mapping({**record, "parameters": {"W": "2*g", "m": 3}})
 

@@ -32,7 +32,7 @@ from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError, PtmcadError, expect
 from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
-from ptmcad.question.examples import FIRST
+from ptmcad.question.examples import FIRST, SECOND
 
 FRAMES, MOST_FRAMES = 90, 600
 MOST_FALLS = 20
@@ -67,7 +67,7 @@ def motion_of(
     LostError
         Where the map has the pose and it was not found.
     """
-    expect(path, (str, Mapping), "path", f"corners, as '{FIRST}=3/4:6/5' or {{'{FIRST}': ['3/4', '6/5']}}")
+    expect(path, (str, Mapping), "path", f"corners, as '{FIRST}=3/4:6/5,{SECOND}=3/2'")
     expect(pose, str, "pose", "one of the poses as text, such as stable:1")
     if isinstance(frames, bool) or not isinstance(frames, int) or not 2 <= frames <= MOST_FRAMES:
         raise ConfigError(f"{frames!r} is not a number of frames from 2 to {MOST_FRAMES}", key="--frames")

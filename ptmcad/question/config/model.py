@@ -181,10 +181,10 @@ def _check_use(model: Model, used: set[str], faults: Faults) -> None:
     """Note each parameter that nothing uses, neither the description nor the record's own expressions."""
     if {(fault.key or "").partition(".")[0] for fault in faults.found} - {"name", "bars", "supports", "unknowns"}:
         return  # what could not be read may use it
-    used |= {*model.variables, *model.shorthands}
-    for name, parameter in model.parameters.items():
+    for name in model.idle:
         with faults:
             if name not in used:
+                parameter = model.parameters[name]
                 where = "an equation" if isinstance(model, System) else "a point, a spring or a load"
                 raise ConfigError(
                     f"nothing uses {name}: leave it out, or use it in {where}, or in an expression under the record's "

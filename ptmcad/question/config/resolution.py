@@ -103,7 +103,7 @@ def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expre
     mechanism = record.model
     given = {*record.values, *record.axes}
     without_free_lengths = not any(resolved[name].numerator for name in mechanism.free_lengths)
-    left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)}
+    left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)} | {*mechanism.idle}
     if without_free_lengths:
         left_out.update(mechanism.free_lengths)
     effective = {name: expression for name, expression in resolved.items() if name not in left_out}
@@ -167,7 +167,7 @@ def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fracti
         _check_number(name, mechanism.kind(name), value, place)
         values[name] = value
     _check_shorthands_are_used(record, mechanism, set(record.values))
-    left_out = {*mechanism.shorthands}  # the parameters that they stand for are there
+    left_out = {*mechanism.shorthands, *mechanism.idle}  # the parameters that they stand for are there
     if not any(values[name] for name in mechanism.free_lengths):
         left_out.update(mechanism.free_lengths)
     return {name: value for name, value in values.items() if name not in left_out}
