@@ -14,6 +14,7 @@ from importlib.resources import files
 from string import Template
 from typing import Any
 
+from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words, moments_work, untold
 from ptmcad.errors import ConfigError
@@ -25,7 +26,6 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.report import sections
 from ptmcad.show.report.chart import SLACK, Chart, chart, counts_text, pattern_defs
-from ptmcad.show.report.consistency import check_numbers
 from ptmcad.show.report.equilibria import at_sample, both
 from ptmcad.show.report.error_curve import ErrorCurve, error_section
 from ptmcad.show.report.formulas import curves
