@@ -442,3 +442,24 @@ def test_the_command_says_at_how_many_pixels_a_value_is_beyond_doubles(
     assert "1e-400*rho of stable:1 is beyond doubles wherever it has a value" in out and "49 pixels" in err
     assert run([*asked, "rho^2"]) == 0
     assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("value", "title", "nothing"),
+    [
+        ("stiffness", "Stiffness of stable pose 1: fig4", ""),
+        ("angle:th1", "Angle θ₁ of stable pose 1: fig4", ""),
+        ("rho*th1", "rho*th1 of stable pose 1: fig4", ""),
+        ("1e-400*rho", "1e-400*rho of stable pose 1: fig4", "1e-400*rho is beyond doubles"),
+        ("1/(rho-1)", "1/(rho-1) of stable pose 1: fig4", "no stable:1 in this window"),
+    ],
+)
+def test_a_picture_names_its_quantity_as_the_bar_beside_it(value: str, title: str, nothing: str) -> None:
+    from ptmcad.show.render.field import field_figure
+    from ptmcad.show.render.printing import settings
+
+    result = shipped("fig4")
+    field = result.field(value, "stable:1", 1 if "-1)" in value else 3)
+    with settings():
+        texts = [t.get_text() for t in field_figure(result, field, (), 0, 50).axes[0].texts]
+    assert texts == [title, *([nothing] if nothing else [])]
