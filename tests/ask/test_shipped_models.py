@@ -18,6 +18,7 @@ import pytest
 import yaml
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 from support.few import few
+from support.shipped_records import OTHER
 
 from ptmcad import RegionMap, Slice, classify, load
 from ptmcad.answer.counts import Counts
@@ -32,7 +33,7 @@ ROOT = Path(__file__).resolve().parents[2]
 VALIDATOR = jsonschema.Draft202012Validator(
     json.loads((ROOT / "ptmcad" / "record.schema.json").read_text(encoding="utf-8"))
 )
-RECORDS = sorted((ROOT / "configs").glob("*/*.yaml"))
+RECORDS = list(OTHER)
 LINES_ONLY = {"three-bar-chain"}
 """Too large for an exact map."""
 MAPPED = [path for path in RECORDS if path.stem not in LINES_ONLY]
