@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
-from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.enclosure import Enclosure, settled
 
 _GUARD = 6
 """Digits of the enclosure's middle beyond those asked for, at first."""
@@ -56,7 +56,7 @@ def _in_units(mantissa: int, exponent: int, place: int) -> tuple[int, int]:
 def _settles(near: int, far: int, digits: int) -> bool:
     """What `Enclosure.settles` says of two positive multiples of a power of ten, given by their factors."""
     unit = 10 ** max(len(str(near)) - digits, 0)  # of the last digit; less than one where all digits are whole
-    return len(str(near)) > digits and near > 0 and -(-2 * near // unit) - 1 == 2 * far // unit
+    return len(str(near)) > digits and near > 0 and settled(-(-2 * near // unit), 2 * far // unit)
 
 
 def ball_of(value: Fraction) -> arb:
