@@ -33,6 +33,7 @@ from ptmcad.question.config.record import (
     record_of,
 )
 from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, point_of, slice_of
+from ptmcad.question.config.sweeps import Sweeping, load_sweep, settled, swept_names, sweep_from
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
@@ -44,8 +45,10 @@ __all__ = [
     "RECORD_KEYS",
     "Kind",
     "Parameter",
+    "Sweeping",
     "file_name",
     "load",
+    "load_sweep",
     "make_mechanism",
     "make_system",
     "point_from_mapping",
@@ -54,6 +57,7 @@ __all__ = [
     "slice_from",
     "slice_from_mapping",
     "slice_from_options",
+    "sweep_from",
 ]
 
 
@@ -127,11 +131,13 @@ def slice_from_options(
     record = record_of(read_file(config)) if config is not None else Record()
     if mechanism is not None:
         record = Record(model=named_model(Scalar(mechanism, Place("--mechanism"))))
-    given_sets, given_ranges = settings_of(sets, record.model), ranges_of(ranges)
+    given_sets, given_ranges = settings_of(sets, record.model, swept_names(record)), ranges_of(ranges)
     if slice is not None:
         record = with_axes(record, slice, given_sets, given_ranges)
     elif config is None:
         raise ConfigError(f"give a problem record (a YAML file), or two axes such as --slice {FIRST},{SECOND}")
+    if record.sweep is not None:
+        record, given_sets = settled(record, given_sets)
     for name, value in given_sets.items():
         if name in record.axes:
             raise value.place.error(f"{name} is an axis and cannot be fixed too: choose other axes with --slice")
@@ -141,7 +147,7 @@ def slice_from_options(
             axes = " and ".join(record.axes)
             raise window.place.error(f"{name} is not an axis; the axes are {axes}{did_you_mean(name, record.axes)}")
         record = replace(record, axes={**record.axes, name: window})
-    if slice is not None or given_sets or given_ranges:
+    if slice is not None or sets or given_ranges:
         record = replace(record, title="", reference={})
     if count is not None:
         text = count.value if isinstance(count, Count) else count
@@ -193,7 +199,7 @@ def point_from_options(
         For anything wrong, with file, line and key, or the option.
     """
     record = record_of(read_file(config)) if config is not None else Record()
-    given = settings_of(sets, record.model)
+    given = settings_of(sets, record.model, swept_names(record))
     axes: dict[str, Expression] = {}
     for name, text in (at or {}).items():
         scalar = Scalar(text, Place(f"--at {name[:40]}"))
@@ -201,10 +207,14 @@ def point_from_options(
             raise scalar.place.error("is given with --set too: leave one out")
         if name in record.model.parameters:
             given[name] = scalar
+        elif name in swept_names(record):
+            given[name] = scalar
         elif name in record.axes:
             axes[name] = constant(number_of(scalar, "the value of this axis"))
         else:
             raise scalar.place.error(unknown_parameter(name, record.model))
+    if record.sweep is not None:
+        record, given = settled(record, given)
     for name in record.axes:
         if name not in given and name not in axes:
             raise ConfigError(

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,7 +21,10 @@ from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count, unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
-RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "count", "units", "reference")
+RECORD_KEYS = (
+    "name", "title", "notes", "mechanism", "system", "parameters", "axes", "sweep", "count", "units",
+    "reference",
+)
 _MAX_NAME = 100
 _MAX_TITLE = 300
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -38,7 +42,13 @@ class Window(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """A record whose keys are known and whose values are still text."""
+    """A record whose keys are known and whose values are still text.
+
+    Attributes
+    ----------
+    sweep : what is swept, as it is written; `ptmcad.question.config.sweeps` reads it.
+    constants : values of swept names that are no parameters, and which expressions use.
+    """
 
     name: str = ""
     title: str = ""
@@ -49,6 +59,8 @@ class Record:
     units: Mapping[str, str] = field(default_factory=dict)
     reference: Mapping[str, Any] = field(default_factory=dict)
     place: Place = field(default_factory=Place)
+    sweep: Node | None = None
+    constants: Mapping[str, Fraction] = field(default_factory=dict)
 
 
 def record_of(tree: Tree) -> Record:
@@ -93,6 +105,7 @@ def read_record(tree: Tree, faults: Faults) -> Record:
         "title": _title,
         "parameters": lambda node: _values(node, model, faults),
         "axes": lambda node: _axes(node, faults),
+        "sweep": lambda node: node,
         "count": count_of,
         "units": _units,
         "reference": _reference,
