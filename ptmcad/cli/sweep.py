@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import State, Sweep
 from ptmcad.cli.drawing import share_of
 from ptmcad.cli.formats import formats_of
@@ -22,11 +22,13 @@ from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.extras import require_distributed, require_ffmpeg
 from ptmcad.process.handover import Topic, send
-from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import Sweeping, load_sweep
 
 FORMATS = ("csv", "html", "gif", "mp4")
 RETRIES = 2
+MAX_FRAMES = 240
+"""Pictures of a film; of more members some at equal distances are shown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +84,7 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str | No
 @click.option("--format", "formats", callback=_formats, shell_complete=formats_known(FORMATS), metavar="LIST",
               help="What to write of the whole sweep beside the index and the results: csv (a line for each member), "
                    "html (an atlas), gif or mp4 (a film of the maps).  [default: none]")  # fmt: skip
+@click.option("--fps", type=click.IntRange(1, 60), default=8, show_default=True, help="Pictures of a film in a second.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N",
               help="Number of worker processes on this machine.  [default: all processors]")  # fmt: skip
 @click.option("--scheduler", metavar="URL",
@@ -103,7 +106,7 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str | No
 @limit_options
 @gathered(asked=Asked, how=How)
 def command(
-    *, config: Path, out: Path | None, formats: tuple[str, ...], asked: Asked, how: How, limits: Limits
+    *, config: Path, out: Path | None, formats: tuple[str, ...], fps: int, asked: Asked, how: How, limits: Limits
 ) -> int:  # fmt: skip
     """Classify every member of a sweep.
 
@@ -135,22 +138,74 @@ def command(
         check_writable(folder, wanted_files)
         send(Topic.RESUMABLE, f"what is done is in {folder}; the same command goes on")
         found = sweep(question, folder, how.jobs, how.scheduler, wanted, how.retries, limits.timeout, progress)
-        writers: dict[str, Writer] = {}
-        for kind in formats:
-            writers[f"{question.name}.{kind}"] = picture(f"{question.name}.{kind}", partial(_write, found, kind))
-        if writers:
-            write_files(folder, writers)
+        if wanted_files:
+            made = Made(found, how.jobs, fps, progress)
+            write_files(folder, {name: picture(name, made.write) for name in wanted_files})
     click.echo(found.table())
     report_written(folder, wanted_files)
     return _status(found)
 
 
-def _write(found: Sweep, kind: str, path: Path) -> None:
-    """One of the files of the whole sweep."""
-    if kind == "csv":
-        text_writer(found.to_csv())(path)
-    else:
-        raise NotImplementedError(kind)
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A sweep that has run, of which files are written."""
+
+    sweep: Sweep
+    jobs: int | None
+    fps: int
+    progress: ProgressBar
+
+    def write(self, path: Path) -> None:
+        """The file of the whole sweep whose format the suffix says."""
+        kind = path.suffix.removeprefix(".")
+        if kind == "csv":
+            text_writer(self.sweep.to_csv())(path)
+        elif kind == "html":
+            self._atlas(path)
+        else:
+            self._film(path)
+
+    def _atlas(self, path: Path) -> None:
+        from ptmcad.show.report.atlas import atlas, chosen, frame_of
+        from ptmcad.sweeping.index import members
+        from ptmcad.sweeping.sketches import sketches
+
+        shown = list(members(self.sweep, chosen(self.sweep)))
+        done = [member.number for member in shown if member.state is State.DONE]
+        drawn = dict(sketches(self.sweep.folder, done, self.jobs, self.progress))
+        frame = frame_of(self.sweep, self._some().slice)
+        text_writer(atlas(self.sweep, frame, shown, drawn))(path)
+
+    def _film(self, path: Path) -> None:
+        from ptmcad.show.render.backend import load_matplotlib
+
+        load_matplotlib()
+        from ptmcad.show.render.sweepfilm import save_sweep_film
+        from ptmcad.show.style import DEFAULT
+
+        done = [member for member in self.sweep if member.state is State.DONE]
+        every = -(-len(done) // MAX_FRAMES)
+        shown = done[::every]
+
+        def seen(number: int) -> RegionMap:
+            self.progress("pictures", number, len(shown))
+            return self.sweep.result(shown[number].number)
+
+        self._some()
+        save_sweep_film(seen, [member.parameters for member in shown], path, DEFAULT, self.fps)
+
+    def _some(self) -> RegionMap:
+        """The map of the first member that has one.
+
+        Raises
+        ------
+        ConfigError
+            When none has.
+        """
+        first = next((member for member in self.sweep if member.state is State.DONE), None)
+        if first is None:
+            raise ConfigError("no member has a map, so there is nothing to draw", key="--format")
+        return self.sweep.result(first.number)
 
 
 def _status(found: Sweep) -> int:

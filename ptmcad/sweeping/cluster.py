@@ -16,8 +16,8 @@ from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError, shown
 from ptmcad.process.extras import require_distributed
-from ptmcad.sweeping.member import Failed, Work, compute
-from ptmcad.sweeping.tasks import Answer
+from ptmcad.sweeping.member import Failed
+from ptmcad.sweeping.tasks import Answer, Task
 
 CONNECT_SECONDS = 15
 _LOOK_SECONDS = 2.0
@@ -35,13 +35,14 @@ class Cluster:
         When distributed is not installed, or no scheduler answers at the address.
     """
 
-    def __init__(self, work: Work, address: str) -> None:
+    def __init__(self, work: Task, address: str) -> None:
         require_distributed()
-        from distributed import Client
+        import distributed
 
+        client: Any = distributed.Client
         self.work, self.address = work, address
         try:
-            self.client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
+            self.client: Any = client(address, timeout=CONNECT_SECONDS, set_as_default=False)
         except (OSError, ValueError) as error:
             reason = shown(" ".join(str(error).split()), 200)
             raise ConfigError(f"no Dask scheduler answers at {address}: {reason}", key="--scheduler") from error
@@ -62,7 +63,7 @@ class Cluster:
         return bool(self._under_way)
 
     def submit(self, number: int) -> None:
-        future = self.client.submit(compute, self.work, number, pure=False)
+        future = self.client.submit(_answer, self.work, number, pure=False)
         self._under_way[number] = future
         future.add_done_callback(lambda done: self._answers.put((number, done)))
 
@@ -97,3 +98,8 @@ class Cluster:
         with suppress(OSError, TimeoutError):  # it may be gone already
             self.client.cancel(list(self._under_way.values()))
             self.client.close(timeout=2)
+
+
+def _answer(work: Task, number: int) -> Any:
+    """What a worker of the cluster does."""
+    return work.answer(number)

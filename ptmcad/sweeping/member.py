@@ -63,6 +63,15 @@ class Work:
     wanted: Wanted
     version: str = __version__
 
+    @property
+    def timeout(self) -> float | None:
+        """Seconds that a member may take."""
+        return self.wanted.timeout
+
+    def answer(self, number: int) -> Outcome:
+        """What becomes of a member."""
+        return compute(self, number)
+
 
 @dataclass(frozen=True, slots=True)
 class Found:
@@ -108,15 +117,22 @@ def compute(work: Work, number: int) -> Outcome:
             result = region_map(slice, work.wanted.options)
             summary = _summary(result, work.wanted)
         except LimitReached:
-            return Failed(out_of_time(work.wanted))
+            return Failed(out_of_time(work.timeout))
         except PtmcadError as error:
-            return Refused(str(error), perf_counter() - started)
+            return Refused(reason(error), perf_counter() - started)
         return Found(result.to_json(timings=False), summary, perf_counter() - started)
 
 
-def out_of_time(wanted: Wanted) -> str:
+def reason(error: PtmcadError) -> str:
+    """Why values are refused, without the place of the record, which may be moved."""
+    if isinstance(error, ConfigError):
+        return str(ConfigError(error.message, key=error.key))
+    return str(error)
+
+
+def out_of_time(timeout: float | None) -> str:
     """What is said of a member that took too long, wherever that was noticed."""
-    return f"the member's time limit of {wanted.timeout:g} s was reached"
+    return f"the member's time limit of {timeout:g} s was reached"
 
 
 def _summary(result: RegionMap, wanted: Wanted) -> Summary:

@@ -21,8 +21,8 @@ from multiprocessing.connection import Connection, wait
 from time import monotonic
 
 from ptmcad.errors import OutputError
-from ptmcad.sweeping.member import Failed, Work, out_of_time
-from ptmcad.sweeping.tasks import Answer
+from ptmcad.sweeping.member import Failed, out_of_time
+from ptmcad.sweeping.tasks import Answer, Task
 
 _OVERRUN = 1.0
 """Seconds by which a member may overrun its time limit before its process is killed; it looks at the clock itself."""
@@ -50,7 +50,7 @@ class Pool:
     jobs : how many there are.
     """
 
-    def __init__(self, work: Work, jobs: int) -> None:
+    def __init__(self, work: Task, jobs: int) -> None:
         self.work = work
         self.jobs = jobs
         self._workers: list[_Worker] = []
@@ -158,21 +158,21 @@ class Pool:
 
     def _patience(self, seconds: float | None) -> float | None:
         """How long to wait for an answer: until a member is late."""
-        if self.work.wanted.timeout is None:
+        if self.work.timeout is None:
             return seconds
         first = min(worker.since for worker in self._workers if worker.numbers)
-        late = max(0.0, first + self.work.wanted.timeout + _OVERRUN - monotonic())
+        late = max(0.0, first + self.work.timeout + _OVERRUN - monotonic())
         return late if seconds is None else min(seconds, late)
 
     def _kill_late(self) -> None:
         """End workers whose member has overrun its limit in code that does not look at the clock."""
-        limit = self.work.wanted.timeout
+        limit = self.work.timeout
         if limit is None:
             return
         for worker in list(self._workers):
             if worker.numbers and monotonic() > worker.since + limit + _OVERRUN:
                 worker.process.kill()
-                self._died(worker, out_of_time(self.work.wanted))
+                self._died(worker, out_of_time(limit))
 
 
 def _bury(worker: _Worker) -> int:
@@ -190,5 +190,3 @@ def _how_ended(status: int) -> str:
     except ValueError:
         name = f"signal {-status}"
     return f"its process was ended by {name}"
-
-

@@ -26,7 +26,7 @@ from ptmcad.process.extras import require_distributed
 from ptmcad.question.config import Sweeping, sweep_from
 from ptmcad.question.slice import Slice
 from ptmcad.sweeping.index import Index, opened, read_sweep
-from ptmcad.sweeping.member import Failed, Wanted, Work
+from ptmcad.sweeping.member import Failed, Wanted, Work, reason
 from ptmcad.sweeping.pool import Pool
 from ptmcad.sweeping.tasks import Workers
 from ptmcad.text.numerals import text_of
@@ -118,7 +118,7 @@ def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[]
 
         def pool() -> Workers:
             prepare(work.question.slice(0), work.wanted.options)  # compiles once for all, where that is needed
-            return Pool(work, jobs or _processors())
+            return Pool(work, jobs or processors())
 
         return pool
     from ptmcad.sweeping.cluster import Cluster
@@ -127,7 +127,7 @@ def _workers(work: Work, jobs: int | None, scheduler: str | None) -> Callable[[]
     return lambda: Cluster(work, scheduler)
 
 
-def _processors() -> int:
+def processors() -> int:
     """How many this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)
     return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
@@ -262,5 +262,5 @@ class _Run:
         try:
             data = json.dumps(_slice_data(question.slice(number)), sort_keys=True)
         except PtmcadError as error:
-            return number, parameters, None, str(error)
+            return number, parameters, None, reason(error)
         return number, parameters, hashlib.sha256(data.encode()).digest(), ""

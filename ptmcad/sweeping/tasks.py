@@ -6,12 +6,21 @@ Guarantee: of each member that was submitted one outcome is returned, in any ord
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Any, Protocol
 
-from ptmcad.sweeping.member import Outcome
+Answer = tuple[int, Any]
+"""A member's number and what became of it: what the task returned, or a `ptmcad.sweeping.member.Failed`."""
 
-Answer = tuple[int, Outcome]
-"""A member's number and what became of it."""
+
+class Task(Protocol):
+    """What is asked of each member; it is sent to the processes."""
+
+    @property
+    def timeout(self) -> float | None:
+        """Seconds that a member may take."""
+
+    def answer(self, number: int) -> Any:
+        """What becomes of a member, in the process that computes it."""
 
 
 class Workers(Protocol):

@@ -17,13 +17,13 @@ from ptmcad.process.lifeline import die_with
 def serve(connection: Connection) -> None:
     """Compute members until there are no more."""
     from ptmcad.errors import shown
-    from ptmcad.sweeping.member import Failed, compute
+    from ptmcad.sweeping.member import Failed
 
     work = connection.recv()
     while True:
         number = connection.recv()
         try:
-            outcome = compute(work, number)
+            outcome = work.answer(number)
         except BaseException as error:
             connection.send((number, Failed(shown(f"{type(error).__name__}: {error}")), True))
             raise
@@ -45,4 +45,3 @@ def main(arguments: list[str]) -> None:
         serve(Connection(connection))
     except EOFError:  # there are no more members
         return
-

@@ -33,7 +33,7 @@ from ptmcad.question.config.record import (
     record_of,
 )
 from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, point_of, slice_of
-from ptmcad.question.config.sweeps import Sweeping, load_sweep, settled, swept_names, sweep_from
+from ptmcad.question.config.sweeps import Sweeping, asks_for_sweep, load_sweep, settled, sweep_from, swept_names
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
@@ -46,6 +46,7 @@ __all__ = [
     "Kind",
     "Parameter",
     "Sweeping",
+    "asks_for_sweep",
     "file_name",
     "load",
     "load_sweep",
@@ -205,9 +206,7 @@ def point_from_options(
         scalar = Scalar(text, Place(f"--at {name[:40]}"))
         if name in given:
             raise scalar.place.error("is given with --set too: leave one out")
-        if name in record.model.parameters:
-            given[name] = scalar
-        elif name in swept_names(record):
+        if name in record.model.parameters or name in swept_names(record):
             given[name] = scalar
         elif name in record.axes:
             axes[name] = constant(number_of(scalar, "the value of this axis"))

@@ -22,7 +22,16 @@ from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
 RECORD_KEYS = (
-    "name", "title", "notes", "mechanism", "system", "parameters", "axes", "sweep", "count", "units",
+    "name",
+    "title",
+    "notes",
+    "mechanism",
+    "system",
+    "parameters",
+    "axes",
+    "sweep",
+    "count",
+    "units",
     "reference",
 )
 _MAX_NAME = 100

@@ -80,6 +80,17 @@ def load_sweep(path: str | Path) -> Sweeping:
     return checked_sweep(read_file(path))
 
 
+def asks_for_sweep(path: str | Path) -> bool:
+    """Whether a record has the key ``sweep``.
+
+    Raises
+    ------
+    ConfigError
+        When it cannot be read.
+    """
+    return "sweep" in read_file(path).entries
+
+
 def sweep_from(question: str | Path | Mapping[str, Any] | Sweeping) -> Sweeping:
     """The sweep that is meant by a record's file, by a mapping like a record, or by itself.
 
@@ -260,4 +271,3 @@ def settled(record: Record, given: Mapping[str, Scalar]) -> tuple[Record, dict[s
         raise place.error(f"{name} is swept too: add --set {name}=VALUE, or ask `ptmcad sweep` for all of its values")
     settled = replace(record, sweep=None, constants={**record.constants, **new})
     return settled, {name: scalar for name, scalar in given.items() if name not in new}
-
