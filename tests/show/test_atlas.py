@@ -113,7 +113,7 @@ def test_the_film_shows_each_map(swept: Path) -> None:
 
 @pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
 def test_the_page_in_a_browser(one: Browser, swept: Path) -> None:
-    """Sliders in the order of the values, the sheet, curves that can be chosen on; on a phone nothing is wider than it."""
+    """Sliders in the order of the values, the sheet, curves to choose on; on a phone nothing is wider than it."""
     one.size(1200, 900)
     one.open(swept / "cusps.html")
 
