@@ -35,7 +35,10 @@ def test_commands_and_python_say_what_the_page_shows(
     shutil.copy(CONFIGS / "fig4.yaml", tmp_path)
     names: dict[str, object] = {}
     commands = examples = 0
-    for language, block in re.findall(r"^```(console|pycon)\n(.*?)^```$", HOW_TO, re.DOTALL | re.MULTILINE):
+    for language, block in re.findall(r"^```(console|pycon|yaml)\n(.*?)^```$", HOW_TO, re.DOTALL | re.MULTILINE):
+        if language == "yaml":
+            Path(block.splitlines()[0].removeprefix("# ")).write_text(block, encoding="utf-8")
+            continue
         if language == "console":
             for command, shown in re.findall(r"^\$ ptmcad (.*)\n((?:(?!\$ ).*\n)*)", block, re.MULTILINE):
                 assert run(shlex.split(command)) == 0, command

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ptmcad.answer import with_methods
+from ptmcad.errors import ConfigError
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -137,7 +138,10 @@ class Sweep:
         return sum(self.states.values())
 
     def __repr__(self) -> str:
-        return self.table()
+        try:
+            return self.table()
+        except ConfigError:  # the folder is gone, or its index is damaged: a repr fails of nothing
+            return f"<Sweep {self.name}: {len(self)} members, which cannot be read in {self.folder}>"
 
     if TYPE_CHECKING:  # `ptmcad.methods` has them
 

@@ -7,6 +7,7 @@ same whatever the order, the processes and the interruptions, seconds and attemp
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import json
 import os
@@ -30,10 +31,12 @@ from ptmcad.sweeping.member import Failed, Wanted, Work, reason
 from ptmcad.sweeping.pool import Pool
 from ptmcad.sweeping.tasks import Workers
 from ptmcad.text.numerals import text_of
+from ptmcad.text.parsing import rational
 from ptmcad.version import __version__
 
 RETRIES = 2
 """How often a member is tried again that has failed."""
+_SHARES = ("tolerance", "area_tolerance")
 _AT_ONCE = 100
 """Members that are planned in one step."""
 
@@ -43,7 +46,7 @@ def sweep(
     folder: str | Path | None = None,
     jobs: int | None = None,
     scheduler: str | None = None,
-    wanted: Wanted | None = None,
+    wanted: Wanted | Mapping[str, Any] | None = None,
     retries: int = RETRIES,
     timeout: float | None = None,
     progress: Progress | None = None,
@@ -59,8 +62,8 @@ def sweep(
     jobs : number of worker processes on this machine; all processors when None.
     scheduler : address of a Dask scheduler, such as ``tcp://host:8786``, whose workers compute instead; with the extra
         ``distributed``.
-    wanted : the engine's options, and the axis of operation ranges; see `Wanted`. By default ranges are along the
-        first axis.
+    wanted : the engine's options, and the axis of operation ranges, as `Wanted` or some of its fields by name, such as
+        ``{"areas": False, "along": ""}``; without ``along`` ranges are along the first axis.
     retries : how often a member is tried again whose process died, or which a limit stopped.
     timeout : seconds after which `LimitReached` is raised.
     progress : called as progress(stage, done, total).
@@ -79,7 +82,9 @@ def sweep(
         After ``timeout`` seconds; what is done stays.
     """
     question = sweep_from(config)
-    wanted = checked(question, Wanted(along=axes_of(question)[0]) if wanted is None else wanted)
+    if not isinstance(wanted, Wanted):
+        wanted = _wanted({"along": axes_of(question)[0], **(wanted or {})})
+    wanted = checked(question, wanted)
     place = Path(f"{question.name}-sweep") if folder is None else Path(folder)
     work = Work(question, wanted)
     with opened(place) as index:
@@ -95,6 +100,17 @@ def sweep(
     return read_sweep(place)
 
 
+def _wanted(fields: Mapping[str, Any]) -> Wanted:
+    known = {field.name for field in dataclasses.fields(Wanted)}
+    for name in fields:
+        if name not in known:
+            raise ConfigError(
+                f"there is no option {name[:40]!r}; the options are {', '.join(sorted(known))}", key="wanted"
+            )
+    shares = {name: rational(fields[name]) for name in _SHARES if fields.get(name) is not None}
+    return Wanted(**{**fields, **shares})
+
+
 def axes_of(question: Sweeping) -> tuple[str, ...]:
     """The names of the axes of every member."""
     return tuple(question.record.axes)
@@ -107,6 +123,7 @@ def checked(question: Sweeping, wanted: Wanted) -> Wanted:
     ------
     ConfigError
     """
+    _ = wanted.options  # which refuses an engine that there is not
     if wanted.along and wanted.along not in axes_of(question):
         raise ConfigError(f"{wanted.along[:40]} is no axis: choose {' or '.join(axes_of(question))}", key="--along")
     return wanted
@@ -145,13 +162,11 @@ def _facts(question: Sweeping) -> dict[str, str]:
 
 def _asked(question: Sweeping, wanted: Wanted) -> str:
     """A digest of all that results depend on."""
-    from dataclasses import astuple
-
     record, sweep = question.record, question.sweep
     first = _slice_data(question.slice(0))
     values = [[[name, *_values_data(v)] for name, v in product.values.items()] for product in sweep.products]
     texts = {name: scalar.text for name, scalar in record.values.items()}
-    options = [None if value is None else str(value) for value in astuple(wanted)]
+    options = [None if value is None else str(value) for value in dataclasses.astuple(wanted)]
     return hashlib.sha256(json.dumps([first, values, texts, options]).encode()).hexdigest()
 
 

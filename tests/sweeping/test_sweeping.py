@@ -103,7 +103,10 @@ def test_the_answer_can_be_read_in_several_ways(tmp_path: Path) -> None:
     text = sweep.to_csv()
     assert text.splitlines()[0].startswith("member,c,d,state,status,same_as,")
     assert "seconds" not in text.splitlines()[0]
-    assert ptmcad.sweep(CUSPS, tmp_path / "u", wanted=QUICK).to_csv() == text
+    assert ptmcad.sweep(CUSPS, tmp_path / "u", wanted={"areas": False, "along": ""}).to_csv() == text
+    for wrong in ({"area": 1}, {"engine": "exactly"}, {"along": "c"}):
+        with pytest.raises(ConfigError, match=r"options are|none of auto|no axis: choose a or b"):
+            ptmcad.sweep(CUSPS, tmp_path / "w", wanted=wrong)
 
 
 def test_the_index_does_not_depend_on_the_number_of_processes(tmp_path: Path) -> None:
@@ -209,6 +212,7 @@ def test_a_result_that_is_lost_is_made_again_and_one_that_was_changed_is_told(tm
     (tmp_path / "u" / index.INDEX).write_bytes(b"no database" * 1000)
     with pytest.raises(ConfigError, match="is damaged, or no index of a sweep"):
         list(sweep)
+    assert repr(sweep).startswith("<Sweep cusps: 6 members, which cannot be read in ")
     with pytest.raises(OutputError, match=r"index.sqlite: file is not a database"):
         mapped(CUSPS, tmp_path / "u")
 
