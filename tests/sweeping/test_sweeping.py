@@ -23,10 +23,12 @@ import yaml
 import ptmcad
 from ptmcad.answer.sweep import State, Sweep
 from ptmcad.cli import run
+from ptmcad.cli import sweep as command
 from ptmcad.errors import ConfigError, LimitReached, OutputError
 from ptmcad.process import extras
 from ptmcad.question.config import sweep_from
 from ptmcad.sweeping import index
+from ptmcad.sweeping import run as engine
 from ptmcad.sweeping.member import Failed, Found, Refused, Wanted, Work, compute
 from ptmcad.sweeping.pool import Pool
 
@@ -342,6 +344,7 @@ def test_the_command(squares: Path, tmp_path: Path, capsys: pytest.CaptureFixtur
     assert said.startswith("sweep squares over F, L: 6 members, 5 done; 1 refused, as no map")
     assert err.startswith(f"stopped: 1 refused of 6 members, see {out}; the first is member 4: ")
     assert (out / "squares.csv").read_text(encoding="utf-8").count("\n") == 7
+    assert (command.RETRIES, command.FORMATS[0]) == (engine.RETRIES, "csv")
     assert run([*arguments, "--along", "rho"]) == 2
     assert "--no-ranges" in capsys.readouterr().err
     assert run([*arguments[:4], "--along", "F"]) == 2
