@@ -121,7 +121,7 @@ def command(
     \b
     Examples:
         ptmcad sweep loads.yaml --format csv,html
-        ptmcad sweep loads.yaml --jobs 4 --no-ranges --out family
+        ptmcad sweep loads.yaml --jobs 2 --no-ranges --out family
         ptmcad sweep loads.yaml --scheduler tcp://localhost:8786
     """
     question = load_sweep(config)
