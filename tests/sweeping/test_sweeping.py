@@ -298,12 +298,17 @@ def test_killed_at_ten_random_moments_it_leaves_the_same_index(tmp_path: Path) -
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="processes are looked up in /proc")
 def test_workers_end_with_the_process_that_has_started_them(tmp_path: Path) -> None:
-    """A worker that is stopped in the middle of a member, too."""
+    """Whatever they do: this one would sleep for minutes and not look at anything."""
+    (tmp_path / "sleeper.py").write_text(
+        "import time\nfrom pathlib import Path\nclass Sleeper:\n    timeout = None\n    def answer(self, number):\n"
+        f"        Path({str(tmp_path / 'asleep')!r}).touch()\n        time.sleep(600)\n",
+        encoding="utf-8",
+    )
     code = (
-        "import os, signal, sys\nfrom ptmcad.question.config import sweep_from\n"
-        "from ptmcad.sweeping.member import Wanted, Work\nfrom ptmcad.sweeping.pool import Pool\n"
-        f"pool = Pool(Work(sweep_from({CUSPS!r}), Wanted()), 1)\npool.submit(0)\n"
-        "pid = pool._workers[0].process.pid\nprint(pid, flush=True)\npool.answers(None)\npool.submit(1)\n"
+        f"import os, signal, sys, time\nsys.path.append({str(tmp_path)!r})\nfrom sleeper import Sleeper\n"
+        "from ptmcad.sweeping.pool import Pool\npool = Pool(Sleeper(), 1)\npool.submit(0)\n"
+        "print(pool._workers[0].process.pid, flush=True)\n"
+        f"while not os.path.exists({str(tmp_path / 'asleep')!r}):\n    time.sleep(0.01)\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
     )
     process = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
