@@ -15,11 +15,13 @@ TYPE_CHECKING = False  # type checkers take it for true; the module typing would
 if TYPE_CHECKING:
     from typing import Any
 
+    from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.poses import Pose, Poses
     from ptmcad.answer.regionmap import RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
     from ptmcad.answer.sweep import Sweep
     from ptmcad.ask.classification import classify
+    from ptmcad.ask.families import family
     from ptmcad.ask.ranges import intervals, operation_widths, pose_paths
     from ptmcad.ask.solving import solve
     from ptmcad.ask.stepwise import counts_at, discriminant_variety, open_cad
@@ -44,6 +46,8 @@ _HOMES = {
     "AlgebraicNumber": "text.enclosure",
     "Enclosure": "text.enclosure",
     "classify": "ask.classification",
+    "family": "ask.families",
+    "FamilyMap": "answer.family",
     "slice_variety": "exact.slicevariety",
     "Pose": "answer.poses",
     "Poses": "answer.poses",
@@ -66,6 +70,7 @@ __all__ = [
     "AlgebraicNumber",
     "Count",
     "Enclosure",
+    "FamilyMap",
     "Mechanism",
     "Point",
     "Pose",
@@ -80,6 +85,7 @@ __all__ = [
     "classify",
     "counts_at",
     "discriminant_variety",
+    "family",
     "intervals",
     "load",
     "open_cad",

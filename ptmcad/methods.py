@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from ptmcad.answer.boundaries import Boundary, Grid
     from ptmcad.answer.comparison import Comparison
+    from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.field import Field
     from ptmcad.answer.motion import Motion
     from ptmcad.answer.poses import Poses
@@ -25,10 +26,11 @@ if TYPE_CHECKING:
     from ptmcad.show.widget import Explorer
 
 
-def _locate(self: RegionMap, **at: Any) -> Location:
+def _locate(self: RegionMap, point: Any = None, /, **at: Any) -> Location:
     """The region of a rational point, exactly; names are the two axes, values numbers or text such as "7/10".
 
-    A float stands for its exact binary value: 0.1, unlike the text "0.1", is not 1/10.
+    A float stands for its exact binary value: 0.1, unlike the text "0.1", is not 1/10. The values may be given as one
+    mapping instead, such as the sample of a cell.
 
     Raises
     ------
@@ -37,7 +39,7 @@ def _locate(self: RegionMap, **at: Any) -> Location:
     """
     from ptmcad.ask.location import locate
 
-    return locate(self, at)
+    return locate(self, at if point is None else point)
 
 
 def _map_to_json(self: RegionMap, timings: bool = True) -> str:
@@ -313,6 +315,46 @@ def _map_compare(self: RegionMap, other: RegionMap) -> Comparison:
     return compare(self, other)
 
 
+def _family_table(self: FamilyMap) -> str:
+    """A line for each member, for the terminal: its value, regions, counts and areas."""
+    from ptmcad.show.familytable import family_table
+
+    return family_table(self)
+
+
+def _family_plot(
+    self: FamilyMap, style: Any = "default", *, solid: bool = False, dpi: int = 150, **options: Any
+) -> Any:
+    """The members' maps side by side, all alike, as a `Figure` of matplotlib's.
+
+    Parameters
+    ----------
+    solid : draw the maps one above the other in three dimensions, between them the surfaces at which they change.
+    style, dpi, options : as of `RegionMap.plot`.
+
+    Raises
+    ------
+    ConfigError
+        For an unknown style or option, or what does not fit into the size.
+    """
+    from ptmcad.show.render.usersettings import user_styled
+
+    made = user_styled(style, **options)
+    if solid:
+        from ptmcad.show.render.solid import solid_figure
+
+        return solid_figure(self, dpi, made)
+    from ptmcad.show.render.multiples import multiples_figure
+
+    return multiples_figure(self, dpi, made)
+
+
+def _family_repr_html(self: FamilyMap) -> str:
+    from ptmcad.show.notebook import text_html
+
+    return text_html(self.table())
+
+
 def _variety_text(self: SliceVariety, format: str = "text") -> str:
     """The variety in one of the formats of `ptmcad.show.export.FORMATS`.
 
@@ -424,6 +466,7 @@ METHODS["RegionMap"] = {
     "animate": _map_animate,
     "explore": _map_explore,
 }
+METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "_repr_html_": _family_repr_html}
 METHODS["SliceVariety"] = {"text": _variety_text, "_repr_html_": _variety_repr_html}
 METHODS["Poses"] = {
     "table": _poses_table,

@@ -44,6 +44,7 @@ _KNOWN = frozenset(
         "not",
         "if",
         "then",
+        "dependentRequired",
     ]
 )
 

@@ -3,7 +3,8 @@
 Guarantee: the result is the reduced Groebner basis (up to scaling each element) of the ideal over the field Q(x, y):
 every S-polynomial was reduced to zero or dropped by one of Buchberger's two criteria.
 
-Not guaranteed: that it specialises to a Groebner basis at a given point; `variety` does not need that.
+Not guaranteed: that it specialises to a Groebner basis at a given point; `variety` does not need that. Where the
+coefficients are in Z[x, y, z] it does so at any z for which `specialised` finds a basis.
 
 Source: Buchberger's algorithm with his criteria (Cox, Little, O'Shea, Ideals, Varieties, and Algorithms, 2.9-2.10).
 The bases of this package have about seven elements; the whole computation takes some ten milliseconds.
@@ -33,11 +34,18 @@ class MonomialOrder(NamedTuple):
 
 
 class GroebnerBasis(NamedTuple):
-    """A reduced Groebner basis over Q(x, y); ``leading`` holds each element's leading monomial."""
+    """A reduced Groebner basis over Q(x, y).
+
+    Attributes
+    ----------
+    leading : each element's leading monomial.
+    removed : the factors that are not constant by which polynomials were divided on the way, each once.
+    """
 
     order: MonomialOrder
     elements: tuple[UnknownPolynomial, ...]
     leading: tuple[Monomial, ...]
+    removed: tuple[Coefficient, ...] = ()
 
 
 def groebner_basis(generators: Sequence[UnknownPolynomial], order: MonomialOrder) -> GroebnerBasis:
@@ -49,6 +57,7 @@ def groebner_basis(generators: Sequence[UnknownPolynomial], order: MonomialOrder
     """
     basis: list[tuple[UnknownPolynomial, Monomial]] = []
     pairs: set[tuple[int, int]] = set()
+    removed: list[Coefficient] = []
 
     def adjoin(p: UnknownPolynomial) -> None:
         pairs.update((i, len(basis)) for i in range(len(basis)))
@@ -72,10 +81,10 @@ def groebner_basis(generators: Sequence[UnknownPolynomial], order: MonomialOrder
             for k in range(len(basis))
         ):
             continue  # chain criterion: both pairs with k have been dealt with
-        remainder = _reduce(_s_polynomial(p, lead_p, q, lead_q, join), basis, order)
+        remainder = _reduce(_s_polynomial(p, lead_p, q, lead_q, join), basis, order, removed)
         if remainder:
             adjoin(remainder)
-    return _reduced(basis, order)
+    return _reduced(basis, order, removed)
 
 
 def shifted(monomial: Monomial, k: int, by: int = 1) -> Monomial:
@@ -122,11 +131,15 @@ def _s_polynomial(
     return _combination(b, p, _quotient(join, lead_p), a, q, _quotient(join, lead_q))
 
 
-def _primitive(rest: UnknownPolynomial, done: UnknownPolynomial) -> tuple[UnknownPolynomial, UnknownPolynomial]:
-    """Both parts of one polynomial, divided by the factor common to all its coefficients."""
+def _primitive(
+    rest: UnknownPolynomial, done: UnknownPolynomial, removed: list[Coefficient]
+) -> tuple[UnknownPolynomial, UnknownPolynomial]:
+    """Both parts of one polynomial, divided by the factor common to all its coefficients, which is noted."""
     common = common_factor([*done.values(), *rest.values()])
     if common.is_one() or common.is_zero():
         return dict(rest), done
+    if not common.is_constant() and common not in removed:
+        removed.append(common)
     return {m: c / common for m, c in rest.items()}, {m: c / common for m, c in done.items()}
 
 
@@ -134,9 +147,10 @@ def _reduce(
     p: UnknownPolynomial,
     basis: Sequence[tuple[UnknownPolynomial, Monomial]],
     order: MonomialOrder,
+    removed: list[Coefficient],
 ) -> UnknownPolynomial:
     """The full remainder of p, primitive; p is scaled by leading coefficients on the way."""
-    rest, done = _primitive(p, {})
+    rest, done = _primitive(p, {}, removed)
     while rest:
         top = order.leading(rest)
         divisor = next(((q, m) for q, m in basis if _divides(m, top)), None)
@@ -148,11 +162,13 @@ def _reduce(
         rest = _combination(a, rest, (0,) * len(top), b, q, _quotient(top, lead))
         if not a.is_one():
             done = {m: c * a for m, c in done.items()}
-        rest, done = _primitive(rest, done)
+        rest, done = _primitive(rest, done, removed)
     return done
 
 
-def _reduced(basis: Sequence[tuple[UnknownPolynomial, Monomial]], order: MonomialOrder) -> GroebnerBasis:
+def _reduced(
+    basis: Sequence[tuple[UnknownPolynomial, Monomial]], order: MonomialOrder, removed: list[Coefficient]
+) -> GroebnerBasis:
     minimal = [
         (p, m)
         for index, (p, m) in enumerate(basis)
@@ -160,6 +176,6 @@ def _reduced(basis: Sequence[tuple[UnknownPolynomial, Monomial]], order: Monomia
     ]
     elements, leading = [], []
     for index, (p, m) in enumerate(minimal):
-        elements.append(_reduce(p, minimal[:index] + minimal[index + 1 :], order))
+        elements.append(_reduce(p, minimal[:index] + minimal[index + 1 :], order, removed))
         leading.append(m)
-    return GroebnerBasis(order, tuple(elements), tuple(leading))
+    return GroebnerBasis(order, tuple(elements), tuple(leading), tuple(removed))

@@ -1,6 +1,7 @@
-"""Polynomials and fractions over Z[x, y], x and y being the axes of a slice.
+"""Polynomials and fractions over Z[x, y], x and y being the axes of a slice, and over Z[x, y, z] for a family of them.
 
-Guarantee: exact. Fractions are kept in lowest terms up to sign.
+Guarantee: exact. Fractions are kept in lowest terms up to sign. What is said of Z[x, y] holds in either ring: a
+function answers in that of its arguments.
 """
 
 from __future__ import annotations
@@ -18,9 +19,11 @@ from ptmcad.text.plane import PlanePolynomial
 PLANE: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(("x", "y"), Ordering.degrevlex)
 ZERO: fmpz_mpoly = PLANE.constant(0)
 ONE: fmpz_mpoly = PLANE.constant(1)
+SPACE: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(("x", "y", "z"), Ordering.degrevlex)
+"""The ring of a family, whose third parameter is z."""
 
 Coefficient = fmpz_mpoly
-"""An element of Z[x, y]."""
+"""An element of Z[x, y], or of Z[x, y, z]."""
 UnivariatePolynomial = fmpz_poly
 """An element of Z[u] or Z[v], the polynomials in one axis."""
 Ratio = tuple[fmpz_mpoly, fmpz_mpoly]
@@ -42,22 +45,25 @@ def add_ratios(left: Ratio, right: Ratio) -> Ratio:
     return ratio(left[0] * cofactor + right[0] * (left[1] / common), left[1] * cofactor)
 
 
+def constant_like(p: fmpz_mpoly, value: int) -> fmpz_mpoly:
+    """An integer in the ring of another polynomial."""
+    return p.context().constant(value)
+
+
 def lcm(polynomials: Iterable[fmpz_mpoly]) -> fmpz_mpoly:
-    """Least common multiple, up to a unit."""
-    return reduce(lambda a, b: a * (b / a.gcd(b)), polynomials, ONE)
+    """Least common multiple, up to a unit; 1 in Z[x, y] of none."""
+    found = iter(polynomials)
+    return reduce(lambda a, b: a * (b / a.gcd(b)), found, next(found, ONE))
 
 
 def common_factor(polynomials: Iterable[fmpz_mpoly]) -> fmpz_mpoly:
-    """Greatest common divisor, integer content included; 0 when all are zero."""
-    common = ZERO
+    """Greatest common divisor, integer content included; 0 when all are zero, in Z[x, y] when there are none."""
+    common: fmpz_mpoly | None = None
     for p in polynomials:
-        common = common.gcd(p)
+        common = p.gcd(constant_like(p, 0) if common is None else common)
         if common.is_one():
             break
-    return common
-
-
-_RATIONAL_PLANE: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("x", "y"), Ordering.degrevlex)
+    return ZERO if common is None else common
 
 
 def irreducible_factors(p: Coefficient) -> list[Coefficient]:
@@ -68,17 +74,23 @@ def irreducible_factors(p: Coefficient) -> list[Coefficient]:
 def factors_with_multiplicity(p: Coefficient) -> list[tuple[Coefficient, int]]:
     """The irreducible factors over Q that are not constant, primitive, each with its multiplicity.
 
-    The factorisation goes through Q[x, y], because python-flint 0.9 sorts the factors over Z[x, y] by coefficients as
-    machine integers and raises OverflowError for longer ones.
+    The factorisation goes through polynomials over Q, because python-flint 0.9 sorts the factors over Z by coefficients
+    as machine integers and raises OverflowError for longer ones.
     """
-    over_q = _RATIONAL_PLANE.from_dict({(int(i), int(j)): c for (i, j), c in p.terms()})
-    return [(from_plane(_primitive(factor)), int(power)) for factor, power in over_q.factor()[1]]
+    ring = p.context()
+    over_q = fmpq_mpoly_ctx.get(ring.names(), Ordering.degrevlex).from_dict(p.to_dict())
+    return [(_primitive(factor, ring), int(power)) for factor, power in over_q.factor()[1]]
 
 
-def _primitive(p: fmpq_mpoly) -> PlanePolynomial:
-    terms = [(int(i), int(j), c) for (i, j), c in p.terms()]
-    scale = math.lcm(*(int(c.q) for _, _, c in terms))
-    return PlanePolynomial.of((i, j, int(c.p) * (scale // int(c.q))) for i, j, c in terms)
+def _primitive(p: fmpq_mpoly, ring: fmpz_mpoly_ctx) -> fmpz_mpoly:
+    """The polynomial over Z without common factor, the coefficient of the highest exponents positive."""
+    terms = [(tuple(map(int, powers)), c) for powers, c in p.terms()]
+    scale = math.lcm(*(int(c.q) for _, c in terms))
+    integers = {powers: int(c.p) * (scale // int(c.q)) for powers, c in terms}
+    content = math.gcd(*integers.values())
+    if integers[max(integers)] < 0:
+        content = -content
+    return ring.from_dict({powers: c // content for powers, c in integers.items()})
 
 
 def from_terms(terms: Iterable[tuple[int, int, Fraction]]) -> tuple[fmpz_mpoly, int]:
@@ -93,6 +105,23 @@ def from_expression(expression: Expression) -> Ratio:
     numerator, numerator_scale = from_terms(expression.numerator)
     denominator, denominator_scale = from_terms(expression.denominator)
     return ratio(numerator * denominator_scale, denominator * numerator_scale)
+
+
+def at_third(p: fmpz_mpoly, value: fmpq, degree: int | None = None) -> fmpz_mpoly:
+    """An element of Z[x, y, z] at a rational z, in Z[x, y]: the value times d^degree, d being the denominator of z.
+
+    Parameters
+    ----------
+    degree : at least the degree in z, which it is when None.
+    """
+    top = int(p.degrees()[2]) if degree is None else degree
+    a, b = int(value.p), int(value.q)
+    powers = [a**k * b ** (top - k) for k in range(top + 1)]
+    found: dict[tuple[int, ...], int] = {}
+    for (i, j, k), c in p.terms():
+        place = (int(i), int(j))
+        found[place] = found.get(place, 0) + int(c) * powers[int(k)]
+    return PLANE.from_dict(found)
 
 
 def to_plane(p: fmpz_mpoly) -> PlanePolynomial:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from operator import add
 from typing import NamedTuple
 
@@ -18,13 +19,12 @@ from flint import fmpz_mat
 
 from ptmcad.algebra.groebner import GroebnerBasis, Monomial, shifted
 from ptmcad.algebra.polynomials import (
-    ONE,
-    ZERO,
     Coefficient,
     Ratio,
     UnknownPolynomial,
     add_ratios,
     common_factor,
+    constant_like,
     irreducible_factors,
     lcm,
     ratio,
@@ -34,8 +34,12 @@ Vector = tuple[tuple[Coefficient, ...], Coefficient]
 """Coordinates on the monomial basis: numerators and one common denominator."""
 
 
-def standard_monomials(leading: Sequence[Monomial], unknowns: int) -> tuple[Monomial, ...] | None:
-    """The monomials outside the leading ideal, by degree; None when there are infinitely many."""
+@lru_cache(maxsize=64)
+def standard_monomials(leading: tuple[Monomial, ...], unknowns: int) -> tuple[Monomial, ...] | None:
+    """The monomials outside the leading ideal, by degree; None when there are infinitely many.
+
+    The points of a slice have few leading ideals, most of them one.
+    """
     for k in range(unknowns):
         if not any(sum(m) == m[k] for m in leading):
             return None
@@ -49,10 +53,17 @@ def standard_monomials(leading: Sequence[Monomial], unknowns: int) -> tuple[Mono
 
 
 class QuotientAlgebra(NamedTuple):
-    """Monomial basis and normal forms; ``table`` grows as normal forms are asked for."""
+    """Monomial basis and normal forms; ``table`` grows as normal forms are asked for.
+
+    Attributes
+    ----------
+    zero, one : of the ring of the coefficients.
+    """
 
     basis: tuple[Monomial, ...]
     table: dict[Monomial, Vector]
+    zero: Coefficient
+    one: Coefficient
 
     @property
     def dimension(self) -> int:
@@ -66,16 +77,18 @@ def quotient_algebra(groebner: GroebnerBasis) -> QuotientAlgebra | None:
     basis = standard_monomials(groebner.leading, unknowns)
     if basis is None:
         return None
+    some = next(iter(groebner.elements[0].values()))
+    one, zero = constant_like(some, 1), constant_like(some, 0)
     position = {m: i for i, m in enumerate(basis)}
     table: dict[Monomial, Vector] = {
-        m: (tuple(ONE if i == k else ZERO for i in range(len(basis))), ONE) for m, k in position.items()
+        m: (tuple(one if i == k else zero for i in range(len(basis))), one) for m, k in position.items()
     }
     rules = dict(zip(groebner.leading, groebner.elements, strict=True))
-    algebra = QuotientAlgebra(basis, table)
+    algebra = QuotientAlgebra(basis, table, zero, one)
     border = {shifted(m, k) for m in basis for k in range(unknowns)} - position.keys()
     for m in sorted(border, key=groebner.order.key):
         if m in rules:
-            row = [ZERO] * len(basis)
+            row = [zero] * len(basis)
             for n, c in rules[m].items():
                 if n != m:
                     row[position[n]] = -c
@@ -98,10 +111,10 @@ def _normalised(row: Sequence[Coefficient], denominator: Coefficient) -> Vector:
     return tuple(c / common for c in row), denominator / common
 
 
-def _sum(terms: Sequence[tuple[Coefficient, Coefficient, Vector]], dimension: int) -> Vector:
+def _sum(algebra: QuotientAlgebra, terms: Sequence[tuple[Coefficient, Coefficient, Vector]]) -> Vector:
     """The sum of (a/b) v over (a, b, v)."""
-    scale = lcm(b * v[1] for _, b, v in terms)
-    total = [ZERO] * dimension
+    scale = lcm((algebra.one, *(b * v[1] for _, b, v in terms)))
+    total = [algebra.zero] * algebra.dimension
     for a, b, (row, denominator) in terms:
         factor = a * (scale / (b * denominator))
         for i, c in enumerate(row):
@@ -117,7 +130,7 @@ def _times_unknown(algebra: QuotientAlgebra, k: int, vector: Vector) -> Vector:
         for m, c in zip(algebra.basis, row, strict=True)
         if not c.is_zero()
     ]
-    return _sum(terms, algebra.dimension)
+    return _sum(algebra, terms)
 
 
 def normal_form(algebra: QuotientAlgebra, monomial: Monomial) -> Vector:
@@ -131,7 +144,7 @@ def normal_form(algebra: QuotientAlgebra, monomial: Monomial) -> Vector:
 
 def element(algebra: QuotientAlgebra, p: UnknownPolynomial) -> Vector:
     """Coordinates of a polynomial on the basis."""
-    return _sum([(c, ONE, normal_form(algebra, m)) for m, c in p.items()], algebra.dimension)
+    return _sum(algebra, [(c, algebra.one, normal_form(algebra, m)) for m, c in p.items()])
 
 
 def norm(algebra: QuotientAlgebra, p: UnknownPolynomial) -> Ratio:
@@ -213,11 +226,11 @@ def power_trace_denominators(algebra: QuotientAlgebra, k: int) -> Coefficient:
     By Newton's identities the zeros of this polynomial are the poles of the characteristic polynomial of u: the
     points of the plane near which the unknown u is unbounded on the solutions.
     """
-    scale = ONE
+    scale = algebra.one
     vectors = [algebra.table[m] for m in algebra.basis]
     for _ in range(algebra.dimension):
         vectors = [_times_unknown(algebra, k, v) for v in vectors]
-        total: Ratio = (ZERO, ONE)
+        total: Ratio = (algebra.zero, algebra.one)
         for i, (numerators, denominator) in enumerate(vectors):
             total = add_ratios(total, ratio(numerators[i], denominator))
         scale = lcm((scale, total[1]))
@@ -304,7 +317,7 @@ def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:
     products = [[normal_form(algebra, tuple(map(add, a, b))) for b in basis] for a in basis]
     traces = []
     for row in products:
-        total: Ratio = (ZERO, ONE)
+        total: Ratio = (algebra.zero, algebra.one)
         for j, (numerators, denominator) in enumerate(row):
             total = add_ratios(total, ratio(numerators[j], denominator))
         traces.append(total)
@@ -312,7 +325,7 @@ def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:
     for row in products:
         entries = []
         for numerators, denominator in row:
-            total = (ZERO, ONE)
+            total = (algebra.zero, algebra.one)
             for c, (trace, trace_denominator) in zip(numerators, traces, strict=True):
                 if not c.is_zero():
                     total = add_ratios(total, ratio(c * trace, denominator * trace_denominator))
@@ -323,17 +336,17 @@ def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:
 
 def determinant(rows: list[list[Ratio]]) -> Ratio:
     """The determinant of a square matrix over Q(x, y): rows and columns made primitive, then Bareiss elimination."""
-    denominator = ONE
+    zero, one = (constant_like(rows[0][0][0], value) for value in (0, 1))
+    denominator = numerator = one
     matrix: list[list[Coefficient]] = []
     for row in rows:
         scale = lcm(d for _, d in row)
         matrix.append([n * (scale / d) for n, d in row])
         denominator = denominator * scale
-    numerator = ONE
     for j in range(len(matrix)):
         common = common_factor(line[j] for line in matrix)
         if common.is_zero():
-            return ZERO, ONE
+            return zero, one
         if not common.is_one():
             numerator = numerator * common
             for line in matrix:
@@ -341,7 +354,7 @@ def determinant(rows: list[list[Ratio]]) -> Ratio:
     for i, line in enumerate(matrix):
         common = common_factor(line)
         if common.is_zero():
-            return ZERO, ONE
+            return zero, one
         if not common.is_one():
             numerator = numerator * common
             matrix[i] = [c / common for c in line]
@@ -349,11 +362,11 @@ def determinant(rows: list[list[Ratio]]) -> Ratio:
 
 
 def _bareiss(matrix: list[list[Coefficient]]) -> Coefficient:
-    size, previous, sign = len(matrix), ONE, 1
+    size, previous, sign = len(matrix), constant_like(matrix[0][0], 1), 1
     for k in range(size - 1):
         candidates = [i for i in range(k, size) if not matrix[i][k].is_zero()]
         if not candidates:
-            return ZERO
+            return constant_like(matrix[0][0], 0)
         pivot = min(candidates, key=lambda i: (len(matrix[i][k]), i))
         if pivot != k:
             matrix[k], matrix[pivot] = matrix[pivot], matrix[k]

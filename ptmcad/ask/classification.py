@@ -15,11 +15,11 @@ from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.regionmap import RegionMap, Status, with_compilation
 from ptmcad.ask.engines import is_certified
-from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.errors import ConfigError, LimitReached, expect
 from ptmcad.mechanism import ptm
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
@@ -27,6 +27,9 @@ from ptmcad.question.config import slice_from
 from ptmcad.question.savings import load_all, switched_off
 from ptmcad.question.slice import Count, Slice, without_free_lengths
 from ptmcad.text.numerals import exactly
+
+if TYPE_CHECKING:
+    from ptmcad.exact.variety import Known
 
 
 def classify(
@@ -77,6 +80,7 @@ def classify(
     LimitReached
         After ``timeout`` seconds, with what there is of the map as ``partial``.
     """
+    expect(engine, str, "engine", "the name of an engine")
     options = Options(
         engine=engine,
         timeout=timeout,
@@ -97,7 +101,9 @@ def _counted(slice: Slice, count: Count | str | None) -> Slice:
     try:
         return slice if count is None else replace(slice, count=Count(count))
     except ValueError as error:
-        raise ConfigError(str(error), key="count") from error
+        expect(count, str, "count", "the name of a count")
+        known = ", ".join(member.value for member in Count)
+        raise ConfigError(f"{count!r:.60} is none of {known}", key="count") from error
 
 
 def _names(without: Iterable[str], keep: Iterable[str] | None) -> frozenset[str]:
@@ -110,12 +116,13 @@ def _names(without: Iterable[str], keep: Iterable[str] | None) -> frozenset[str]
     return frozenset((without,) if isinstance(without, str) else without)
 
 
-def region_map(slice: Slice, options: Options) -> RegionMap:
+def region_map(slice: Slice, options: Options, known: Known | None = None) -> RegionMap:
     """The region map of a slice as `classify` gives it.
 
     Parameters
     ----------
     options : whose ``deadline`` is set here, from ``timeout``, once the engine is loaded.
+    known : what the exact engine knows of the equations from a family that the slice is of.
 
     Raises
     ------
@@ -147,7 +154,7 @@ def region_map(slice: Slice, options: Options) -> RegionMap:
         load_all()
     from ptmcad.exact.engine import exact_map
 
-    return exact_map(slice, options)
+    return exact_map(slice, options, known)
 
 
 def _check_no_areas(options: Options) -> None:

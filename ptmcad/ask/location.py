@@ -17,8 +17,9 @@ from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at
 from ptmcad.answer.regionmap import CriticalValue, Location, RegionMap, Status
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, expect
 from ptmcad.exact.cad.curves import Curve, curves_of
+from ptmcad.question.slice import Point
 from ptmcad.text.parsing import number_for
 
 if TYPE_CHECKING:
@@ -33,6 +34,8 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     ConfigError
         When the names are not the two axes, a value is not an exact number, or the map contradicts itself.
     """
+    names = result.slice.axis_names
+    expect(at, (Mapping, Point), "point", f"the values of {names[0]} and {names[1]} by name, or a mapping of them")
     point = _point(result, at)
     inside = all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, point, strict=True))
     if not inside:
@@ -117,9 +120,10 @@ def _contradiction(what: str) -> ConfigError:
 
 def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
     names = result.slice.axis_names
-    if set(at) != set(names):
+    given = tuple(at.keys())
+    if set(given) != set(names):
         raise ConfigError(
-            f"a point of this map needs {names[0]} and {names[1]}, not {', '.join(map(str, at)) or 'nothing'}"
+            f"a point of this map needs {names[0]} and {names[1]}, not {', '.join(map(str, given)) or 'nothing'}"
         )
     return number_for(names[0], at[names[0]]), number_for(names[1], at[names[1]])
 

@@ -9,7 +9,7 @@ import click
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.values import files
 from ptmcad.errors import MAX_FAULTS, ConfigError
-from ptmcad.question.config import asks_for_sweep, load, load_sweep
+from ptmcad.question.config import Family, asks_for_sweep, load_sweep, question_from_options
 
 
 @click.command("check")
@@ -27,8 +27,8 @@ def command(*, record: Path, limits: Limits) -> int:
         ptmcad check configs/fig4.yaml
     """
     try:
-        question = load_sweep(record) if asks_for_sweep(record) else None
-        slice = load(record) if question is None else question.slice(0)
+        sweeping = load_sweep(record) if asks_for_sweep(record) else None
+        asked = question_from_options(record) if sweeping is None else sweeping.slice(0)
     except ConfigError as error:
         for fault in error.faults:
             click.echo(f"error: {fault}", err=True)
@@ -38,12 +38,16 @@ def command(*, record: Path, limits: Limits) -> int:
     with held(limits):
         with clock_stopped(limits.timeout):  # the time that the import takes is not the computation's
             from ptmcad.ask.checking import check, check_text
+        slice = asked.member(asked.values[len(asked.values) // 2]) if isinstance(asked, Family) else asked
         found = check(slice)
         for line in check_text(found):
             click.echo(line)
-        if question is not None:
+        if isinstance(asked, Family):
+            click.echo(f"{'family':<12}of {len(asked.values)} such slices, {asked.free.name} from {asked.free.low} to "
+                       f"{asked.free.high}; above is the one in the middle")  # fmt: skip
+        if sweeping is not None:
             from ptmcad.sweeping.estimate import sweep_text
 
-            for line in sweep_text(question, found):
+            for line in sweep_text(sweeping, found):
                 click.echo(line)
     return 0

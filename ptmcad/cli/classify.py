@@ -14,13 +14,14 @@ import click
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.regionmap import with_compilation
 from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of, share_of
+from ptmcad.cli.families import SOLID, Wanted, family_to_files
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.paths import file_option, out_option
 from ptmcad.cli.pictures import report_written, write_result
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.cli.slices import Asked, Third, slice_options
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.mechanism import ptm
 from ptmcad.options import Options
@@ -33,6 +34,7 @@ from ptmcad.process.output import (
     where_saved,
     write_files,
 )
+from ptmcad.question.config import Family
 from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Count, Slice
 
@@ -247,8 +249,29 @@ def _resumed(slice: Slice, path: Path) -> Any:
     return earlier
 
 
+def _classify_family(family: Family, options: Options, output: Output, limits: Limits, resume: Path | None) -> None:
+    """Classify and draw the members of a family."""
+    report_idle((
+        Idle("resume", resume is not None, "the members of a family are classified anew"),
+        Idle("explain", output.explain, "a family has a plan for each of its members: give one with --set"),
+        *idle_drawing(output.formats),
+    ))  # fmt: skip
+    with held(limits):
+        result = family_to_files(family, options, Wanted(output.out, output.formats, output.no_timings, output.drawing))
+    click.echo(result.table())
+    own = [f"{family.name}{end}.{kind}" for kind in output.formats for end in ("", SOLID) if kind in PICTURES]
+    own += [f"{family.name}.json"] if "json" in output.formats else []
+    report_written(output.out, own)
+    files = sum(len(names_of("", (kind,))) for kind in output.formats if kind not in PICTURES) * len(family.values)
+    if files:
+        click.echo(f"          and {files} files of the members, {result.members[0].slice.name} and so on")
+
+
 @click.command("classify")
 @slice_options
+@click.option("--free", metavar="NAME=LO:HI", help="A third parameter: the map of each member of a family.")
+@click.option("--members", metavar="VALUE,..|N",
+              help="Values of the free parameter, or how many.  [default: the record's, or 9]")  # fmt: skip
 @click.option("--count", type=click.Choice([c.value for c in Count]), help="What distinguishes two regions.")
 @click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
 @out_option
@@ -276,15 +299,20 @@ def _resumed(slice: Slice, path: Path) -> Any:
 @click.option("--no-areas", is_flag=True, help="Leave the regions' areas out, often half of the work (exact engine).")
 @click.option("--no-timings", is_flag=True, help="Leave run times out of the JSON, so that it is the same every time.")
 @drawing_options(FORMATS, "json,png,svg", "Files to write")
-@gathered(options=_wanted, output=Output)
+@gathered(options=_wanted, output=Output, third=Third)
 def command(
-    *, asked: Asked, count: str | None, options: Options, output: Output, limits: Limits, resume: Path | None
-) -> None:
+    *, asked: Asked, third: Third, count: str | None, options: Options, output: Output, limits: Limits,
+    resume: Path | None,
+) -> None:  # fmt: skip
     """Map the regions of a slice by their number of equilibria.
 
     CONFIG is a problem record (YAML); options override it. Writes NAME.json and NAME.png, NAME.svg, and prints a table.
     Without a record, parameters that are neither axes nor --set have their defaults: L1 = L2 = rho = 1, k = 100, no
     load.
+
+    With a third parameter (--free, or `free:` in the record) there is a map for each of its --members, computed from
+    what they have in common: NAME.png shows them side by side, NAME-3d.png one above the other, and NAME.json names the
+    files of the members' own maps.
 
     Springs with a free length (--set l0=1/5) are the certified engine's: it leaves a part of the window undetermined,
     which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the best map so far, from the first level of the
@@ -296,10 +324,14 @@ def command(
         ptmcad classify --slice L2,rho
         ptmcad classify --slice rho,L2 --range rho=0:2 --range L2=0:2 --set F3=-10 --set F4=-10 --out fig4
         ptmcad classify --slice rho,F --range rho=0:2 --range F=-10:0 --set F3=F --set F4=F --format json
+        ptmcad classify --slice rho,L2 --set F3=F --set F4=F --free F=-40:0 --members -40,-20,-10,-1
         ptmcad classify --slice rho,L2 --range rho=1/20:2 --range L2=0:2 --set l0=1/5 --set F3=-10 --set F4=-10
     """
-    slice = asked.slice(count)
+    slice = asked.question(count, third)
     options = replace(options, timeout=limits.timeout)
+    if isinstance(slice, Family):
+        _classify_family(slice, options, output, limits, resume)
+        return
     report_idle((*_idle(slice, options), *idle_drawing(output.formats)))
     spent = 0.0
     with held(limits):

@@ -12,6 +12,7 @@ import click
 from ptmcad.answer.comparison import Comparison
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of
+from ptmcad.cli.families import is_family, picture_writers, read_family_file
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
@@ -92,6 +93,17 @@ def _draw_comparison(draw: Callable[..., None], found: Comparison, drawing: Draw
     draw(found, path, drawing.dpi, drawing.style)
 
 
+def _plot_family(result: Path, folder: Path, formats: tuple[str, ...], drawing: Drawing, added: Added) -> None:
+    if added != Added(None, (), None):
+        raise ConfigError("points and comparisons are for one map: give a member's file", file=str(result))
+    if any(kind in DATA for kind in formats):
+        raise ConfigError(f"of a family there are pictures only: {', '.join(PICTURES)}", key="--format")
+    writers = picture_writers(read_family_file(result), result.stem, formats, drawing)
+    check_writable(folder, tuple(writers))
+    for path in write_files(folder, writers):
+        click.echo(shown_path(path))
+
+
 @click.command("plot")
 @click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the files.  [default: that of RESULT]")
@@ -129,6 +141,9 @@ def command(
     """
     report_idle(idle_drawing(formats))
     with held(limits):
+        if is_family(result):
+            _plot_family(result, result.parent if out is None else out, formats, drawing, added)
+            return
         stored = read_result(result)
         folder = result.parent if out is None else out
         stem = result.stem if added.compare is None else f"{result.stem}-and-{added.compare.stem}"

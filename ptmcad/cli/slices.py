@@ -13,10 +13,17 @@ import click
 
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.values import files, mechanisms, pair_of_names, settings
-from ptmcad.question.config import slice_from_options
+from ptmcad.question.config import Family, question_from_options, slice_from_options
 from ptmcad.question.slice import Slice
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+
+class Third(NamedTuple):
+    """The free parameter of a family, and its members, as they were typed."""
+
+    free: str | None
+    members: str | None
 
 
 class Asked(NamedTuple):
@@ -37,6 +44,18 @@ class Asked(NamedTuple):
             For anything wrong with the record or the options.
         """
         return slice_from_options(self.config, self.axes, self.sets, self.ranges, count, self.mechanism)
+
+    def question(self, count: str | None, third: Third) -> Slice | Family:
+        """The slice that is meant, or the family where a third parameter is free.
+
+        Raises
+        ------
+        ConfigError
+            For anything wrong with the record or the options.
+        """
+        return question_from_options(
+            self.config, self.axes, self.sets, self.ranges, count, self.mechanism, third.free, third.members
+        )
 
 
 def slice_options(command: F) -> F:

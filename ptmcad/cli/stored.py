@@ -90,6 +90,8 @@ def _other_kind(text: str) -> str:
         return ""
     if kind.partition("/")[0] == own:
         return f"this is a {shown(kind, 40)} file, and this program reads version {version}: make it anew"
+    if kind.startswith("ptmcad-family/"):
+        return "this is a family: give the file of one of its members, which it names (plot and verify take it whole)"
     return f"this is a {shown(kind, 40)} file, not a region map: `ptmcad classify` makes one"
 
 

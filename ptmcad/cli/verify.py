@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.cli.families import each_member, is_family
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
@@ -23,8 +25,9 @@ from ptmcad.cli.values import files
 def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
 
-    Prints what was checked, and how. The exit status is 0 when every check passed, 1 when one failed (the first
-    violated claim is printed with a witness), 2 when the file cannot be read, 3 when a limit was reached before that.
+    Of a family each member is checked. Prints what was checked, and how. The exit status is 0 when every check passed,
+    1 when one failed (the first violated claim is printed with a witness), 2 when the file cannot be read, 3 when a
+    limit was reached before that.
 
     \b
     Example:
@@ -32,12 +35,18 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
         ptmcad verify slice-L2-rho.json
     """
     with held(limits):
-        stored = read_result(result)
-        report_idle([Idle("boxes", stored.cover is None, "an exact map is checked whole")])
-        from ptmcad.verification import verify
+        if is_family(result):
+            return int(max(each_member(result, lambda member: _verified(member, seed, boxes))))
+        return _verified(read_result(result), seed, boxes)
 
-        with ProgressBar() as progress:
-            report = verify(stored, seed=seed, boxes=boxes, progress=progress)
+
+def _verified(stored: RegionMap, seed: int | None, boxes: int | None) -> int:
+    """The exit status for a map, after what was checked has been printed."""
+    report_idle([Idle("boxes", stored.cover is None, "an exact map is checked whole")])
+    from ptmcad.verification import verify
+
+    with ProgressBar() as progress:
+        report = verify(stored, seed=seed, boxes=boxes, progress=progress)
     click.echo(report.table())
     if report.ok:
         return 0

@@ -25,6 +25,7 @@ from ptmcad.exact.stages import (
     stacks_of,
     variety_of,
 )
+from ptmcad.exact.variety import Known
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, without_free_lengths
@@ -59,12 +60,13 @@ class _Clock:
         return {**self.seconds, "total": perf_counter() - self.started}
 
 
-def exact_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
+def exact_map(slice: Slice, options: Options = DEFAULTS, known: Known | None = None) -> RegionMap:
     """The region map of a slice without free lengths.
 
     Parameters
     ----------
     options : of which ``deadline`` counts, not ``timeout``.
+    known : what is known of the equations from a family that the slice is of; the map does not depend on it.
 
     Raises
     ------
@@ -78,7 +80,7 @@ def exact_map(slice: Slice, options: Options = DEFAULTS) -> RegionMap:
     without_free_lengths(slice.model, slice.parameters, "an exact map is")
     clock = _Clock(options)
     prove_slice(slice)
-    problem = problem_of(slice)
+    problem = problem_of(slice)._replace(known=known)
     reached: Reached | None = None
     try:
         for reached in _stages(problem, options, clock):

@@ -20,10 +20,10 @@ the latter also vanishes where the monomial basis degenerates; `hermite_determin
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
+from ptmcad.algebra.groebner import GroebnerBasis, MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import (
     Coefficient,
     Ratio,
@@ -71,6 +71,7 @@ def discriminant_variety(
     window: tuple[Interval, Interval],
     limits: Sequence[Coefficient] = (),
     without: frozenset[str] = frozenset(),
+    known: Known | None = None,
 ) -> DiscriminantVariety:
     """The discriminant variety of a slice over a window.
 
@@ -80,6 +81,7 @@ def discriminant_variety(
     window : the ranges of x and y.
     limits : further polynomials whose zeros bound the slice's domain (lengths and stiffnesses that vanish).
     without : names of savings to switch off, of `ptmcad.question.savings`.
+    known : gives for the equations what is known of them from a family that the slice is of, or None.
 
     Raises
     ------
@@ -89,7 +91,8 @@ def discriminant_variety(
     if system.turns is not None:
         system = system.turns.system  # with the same solutions, and the same determinant but for its sign
     given = on_slice(system, parameters)
-    equations, algebra, rows, jacobian_norm = _nondegenerate(given)
+    found = None if known is None else known(given)
+    equations, algebra, rows, jacobian_norm = nondegenerate(given) if found is None else found
     seen = _Components(window, without)
     for polynomial in (*equations.boundary, *limits):
         seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
@@ -119,6 +122,12 @@ def discriminant_variety(
         for part in determinant(trace_form(algebra)):
             seen.adopt(irreducible_factors(part), Kind.AUXILIARY)
     return DiscriminantVariety(seen.in_order(), algebra.dimension, equations.unknowns > given.unknowns)
+
+
+def check_hypotheses(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> None:
+    """Refuse what `discriminant_variety` would refuse, without the curves."""
+    simplest = system if system.turns is None else system.turns.system
+    nondegenerate(on_slice(simplest, parameters))
 
 
 class _Components:
@@ -152,7 +161,7 @@ class _Components:
 _ORDER = {Kind.CRITICAL: 0, Kind.INFINITY: 1, Kind.BOUNDARY: 2, Kind.AUXILIARY: 3}
 
 
-class _Nondegenerate(NamedTuple):
+class Nondegenerate(NamedTuple):
     """Equations whose solutions over Q(x, y) are simple, with their algebra.
 
     Attributes
@@ -167,7 +176,11 @@ class _Nondegenerate(NamedTuple):
     jacobian_norm: Ratio
 
 
-def _nondegenerate(equations: SliceSystem) -> _Nondegenerate:
+Known = Callable[[SliceSystem], Nondegenerate | None]
+"""From a slice's equations to what is known of them without a new basis."""
+
+
+def nondegenerate(equations: SliceSystem) -> Nondegenerate:
     """The equations, without the solutions that an inequality excludes everywhere if those are in the way.
 
     Raises
@@ -192,7 +205,7 @@ def _nondegenerate(equations: SliceSystem) -> _Nondegenerate:
     return _with_jacobian(equations)
 
 
-def _with_jacobian(equations: SliceSystem) -> _Nondegenerate:
+def _with_jacobian(equations: SliceSystem) -> Nondegenerate:
     algebra = _algebra(equations)
     if not algebra.dimension:
         raise NothingToCountError(
@@ -206,7 +219,7 @@ def _with_jacobian(equations: SliceSystem) -> _Nondegenerate:
             f"the slice lies inside the discriminant variety: at every point of it some {what}, so no count is stable "
             "under a small change; fix or free another parameter"
         )
-    return _Nondegenerate(equations, algebra, rows, jacobian_norm)
+    return Nondegenerate(equations, algebra, rows, jacobian_norm)
 
 
 def _lifted(p: UnknownPolynomial, equations: SliceSystem) -> UnknownPolynomial:
@@ -279,11 +292,15 @@ def _algebra(equations: SliceSystem) -> QuotientAlgebra:
     )
     if any(not equation for equation in equations.equations):
         raise infinitely_many
-    order = MonomialOrder(tuple(range(equations.unknowns)))
-    algebra = quotient_algebra(groebner_basis(equations.equations, order))
+    algebra = quotient_algebra(basis_of(equations))
     if algebra is None:
         raise infinitely_many
     return algebra
+
+
+def basis_of(equations: SliceSystem) -> GroebnerBasis:
+    """The reduced basis, in grevlex order of the coordinates as they come."""
+    return groebner_basis(equations.equations, MonomialOrder(tuple(range(equations.unknowns))))
 
 
 def hermite_determinant(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Ratio:

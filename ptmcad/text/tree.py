@@ -141,6 +141,26 @@ def names_of(tree: Tree) -> tuple[str, ...]:
     return tuple(names)
 
 
+def replaced(tree: Tree, name: str, value: Tree) -> Tree:
+    """A tree with another in place of a name; the same object where the name does not occur."""
+    if name not in names_of(tree):
+        return tree
+    match tree:
+        case Name():
+            return value
+        case Chain(first, steps):
+            others = (step._replace(operand=replaced(step.operand, name, value)) for step in steps)
+            return Chain(replaced(first, name, value), tuple(others))
+        case Power(base, exponent):
+            return tree._replace(base=replaced(base, name, value), exponent=replaced(exponent, name, value))
+        case Negative(operand):
+            return tree._replace(operand=replaced(operand, name, value))
+        case Call(_, argument):
+            return tree._replace(argument=replaced(argument, name, value))
+        case Number():  # without names
+            return tree
+
+
 _MAX_PLACES = 20
 """Numbers with more decimal places are written with an exponent."""
 

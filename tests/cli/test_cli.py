@@ -19,6 +19,7 @@ from typing import Any
 
 import pytest
 
+import ptmcad.ask.families  # noqa: F401 - with the real engine, before tests put another in its place
 from ptmcad.answer.regionmap import PlanStep, Status
 from ptmcad.cli import COMMANDS, group, run
 from ptmcad.errors import ConfigError, LimitReached, OutputError

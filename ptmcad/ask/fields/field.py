@@ -22,7 +22,7 @@ from ptmcad.ask.fields.jets import Floats
 from ptmcad.ask.fields.quantities import OPTION, Valued, quantity_of
 from ptmcad.ask.pixels import grid as grid_of
 from ptmcad.ask.solving import poses_at
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, expect
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.moments import acting
 from ptmcad.mechanism.work import split_moments
@@ -92,6 +92,8 @@ def request_of(slice: Slice, value: str, pose: str) -> Request:
     ConfigError
         For a value or pose that has no meaning here.
     """
+    expect(value, str, "value", "the name of a quantity, such as energy, or an expression as text")
+    expect(pose, str, "pose", "one of the poses as text, such as stable:1")
     quantity, choice = quantity_of(value, slice), choice_of(pose, slice.model)
     if quantity.is_barrier:
         if choice.kind != "stable":

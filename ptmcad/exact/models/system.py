@@ -11,13 +11,13 @@ from typing import Any, NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import (
-    ONE,
-    ZERO,
+    PLANE,
     Coefficient,
     Ratio,
     UnknownPolynomial,
     add_ratios,
     common_factor,
+    constant_like,
     lcm,
     ratio,
 )
@@ -172,28 +172,29 @@ def on_slice(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> Slice
 
     Parameters
     ----------
-    parameters : every parameter of the ring as numerator and denominator in Z[x, y].
+    parameters : every parameter of the ring as numerator and denominator, all in Z[x, y] or all in Z[x, y, z].
 
     Guarantee
     ---------
     Outside the zero set of ``boundary`` the equations have exactly the system's solutions.
     """
     ring = system.ring
+    one = _one(parameters)
     boundary: list[Coefficient] = []
     equations: list[UnknownPolynomial] = []
     for equation in system.equations:
-        cleared, removed = _cleared(_substitute(system, equation, parameters))
+        cleared, removed = _cleared(_substitute(system, equation, parameters, one))
         equations.append(cleared)
         boundary += removed
-    equations += [{m: ONE * c for m, c in circle.items()} for circle in ring.circles]
+    equations += [{m: one * c for m, c in circle.items()} for circle in ring.circles]
     conditions = []
     for condition in (*system.inequalities, *system.stability):
-        substituted = _substitute(system, condition, parameters)
+        substituted = _substitute(system, condition, parameters, one)
         conditions.append(_without_denominators(substituted))
         boundary += [q for q in (lcm(d for _, d in substituted.values()),) if not q.is_constant()]
     return SliceSystem(
         tuple(equations),
-        _without_denominators(_substitute(system, determinant(system), parameters)),
+        _without_denominators(_substitute(system, determinant(system), parameters, one)),
         tuple(conditions[: len(system.inequalities)]),
         tuple(conditions[len(system.inequalities) :]),
         tuple(boundary),
@@ -210,7 +211,8 @@ def saturated(equations: SliceSystem, condition: UnknownPolynomial) -> SliceSyst
     def lifted(p: UnknownPolynomial, power: int = 0) -> UnknownPolynomial:
         return {(*m, power): c for m, c in p.items()}
 
-    inverse = {**lifted(condition, 1), (0,) * (equations.unknowns + 1): -ONE}
+    some = next((c for p in (condition, *equations.equations) for c in p.values()), PLANE.constant(0))
+    inverse = {**lifted(condition, 1), (0,) * (equations.unknowns + 1): constant_like(some, -1)}
     return equations._replace(
         equations=(*map(lifted, equations.equations), inverse),
         jacobian=lifted(equations.jacobian),
@@ -227,7 +229,8 @@ def leading_minors(system: ParametricSystem, parameters: Mapping[str, Ratio]) ->
     """
     rows = [list(row) for row in system.jacobian]
     minors = (_leibniz([row[:k] for row in rows[:k]]) for k in range(1, system.dimension))
-    return [_without_denominators(_substitute(system, system.ring.reduce(m), parameters)) for m in minors]
+    one = _one(parameters)
+    return [_without_denominators(_substitute(system, system.ring.reduce(m), parameters, one)) for m in minors]
 
 
 def determinant(system: ParametricSystem) -> TrigonometricPolynomial:
@@ -245,15 +248,20 @@ def _leibniz(rows: list[list[TrigonometricPolynomial]]) -> TrigonometricPolynomi
     return total
 
 
+def _one(parameters: Mapping[str, Ratio]) -> Coefficient:
+    """Of the parameters' ring."""
+    return next((constant_like(numerator, 1) for numerator, _ in parameters.values()), PLANE.constant(1))
+
+
 def _substitute(
-    system: ParametricSystem, p: TrigonometricPolynomial, parameters: Mapping[str, Ratio]
+    system: ParametricSystem, p: TrigonometricPolynomial, parameters: Mapping[str, Ratio], one: Coefficient
 ) -> dict[tuple[int, ...], Ratio]:
     values = [parameters[name] for name in system.ring.parameters]
     result: dict[tuple[int, ...], Ratio] = {}
     for monomial, part in system.ring.split(p).items():
-        total: Ratio = (ZERO, ONE)
+        total: Ratio = (0 * one, one)
         for exponents, coefficient in part.items():
-            numerator, denominator = ONE * int(coefficient.p), ONE * int(coefficient.q)
+            numerator, denominator = one * int(coefficient.p), one * int(coefficient.q)
             for value, e in zip(values, exponents, strict=True):
                 if e:
                     numerator, denominator = numerator * value[0] ** e, denominator * value[1] ** e

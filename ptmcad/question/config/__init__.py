@@ -17,8 +17,9 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import ConfigError
+from ptmcad.errors import A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
+from ptmcad.question.config.family import Family, bound, checked_family, family_of, member_name
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
 from ptmcad.question.config.options import ranges_of, settings_of, with_axes
@@ -26,6 +27,7 @@ from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.record import (
     RECORD_KEYS,
     Record,
+    check_axis_name,
     count_of,
     file_name,
     number_text,
@@ -38,15 +40,17 @@ from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Place, Scalar, Tree, from_python, read_file
+from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python, read_file
 
 __all__ = [
     "MAX_DEGREE",
     "RECORD_KEYS",
+    "Family",
     "Kind",
     "Parameter",
     "Sweeping",
     "asks_for_sweep",
+    "family_from",
     "file_name",
     "load",
     "load_sweep",
@@ -55,6 +59,7 @@ __all__ = [
     "point_from_mapping",
     "point_from_options",
     "portable_file",
+    "question_from_options",
     "slice_from",
     "slice_from_mapping",
     "slice_from_options",
@@ -70,6 +75,7 @@ def load(path: str | Path) -> Slice:
     ConfigError
         For anything wrong in it, with file, line and key; its ``faults`` are all there are.
     """
+    expect(path, (str, Path), "path", "the file of a record")
     return checked_slice(read_file(path))
 
 
@@ -83,17 +89,40 @@ def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
     >>> slice_from_mapping({"axes": {"rho": [0, 2], "L2": ["0", "2"]}, "parameters": {"F3": "-0.1"}}).axis_names
     ('rho', 'L2')
     """
+    return checked_slice(_tree_of(mapping))
+
+
+def _tree_of(mapping: Mapping[str, Any]) -> Tree:
+    expect(mapping, Mapping, "mapping", "a mapping like a record")
     node = from_python(plain(mapping), Place())
-    if not isinstance(node, Tree):
-        raise ConfigError("a record is a mapping")
-    return checked_slice(node)
+    assert isinstance(node, Tree)
+    return node
 
 
 def slice_from(question: str | Path | Mapping[str, Any] | Slice) -> Slice:
     """The slice that is meant by a record's file, by a mapping like a record, or by itself."""
     if isinstance(question, Slice):
         return question
+    expect(question, (str, Path, Mapping), "slice", f"{A_SLICE}, the file of a record, or a mapping like a record")
     return slice_from_mapping(question) if isinstance(question, Mapping) else load(question)
+
+
+def family_from(question: str | Path | Mapping[str, Any] | Family) -> Family:
+    """The family that is meant by a record's file, by a mapping like a record, or by itself.
+
+    >>> record = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": "F", "F4": "F"},
+    ...           "free": {"F": [-40, 0]}, "members": 5}
+    >>> [str(value) for value in family_from(record).values]
+    ['-40', '-30', '-20', '-10', '0']
+    """
+    if isinstance(question, Family):
+        return question
+    return checked_family(_tree_of(question) if isinstance(question, Mapping) else read_file(question))
+
+
+def _released(record: Record, free: str | None) -> set[str]:
+    """What has no value in a record and may be given one: what is free, and what is swept."""
+    return {*swept_names(record), *(() if free is None else (free,))}
 
 
 def slice_from_options(
@@ -114,7 +143,7 @@ def slice_from_options(
     ----------
     config : a YAML file.
     slice : ``"X,Y"``, the two axes, the horizontal one first.
-    sets : texts ``NAME=VALUE``.
+    sets : texts ``NAME=VALUE``; one of them has the value of the parameter that is free in the record, if one is.
     ranges : texts ``NAME=LO:HI``, for axes.
     count : which count distinguishes two regions.
     mechanism : the name of a built-in mechanism, or a YAML file that describes one, in place of a record.
@@ -125,14 +154,81 @@ def slice_from_options(
         For anything wrong, with file, line and key, or the option.
     """
     sets, ranges = tuple(sets), tuple(ranges)
+    if config is not None and mechanism is None and slice is None and count is None and not sets and not ranges:
+        return load(config)
+    return slice_of(_record_from_options(config, slice, sets, ranges, count, mechanism))
+
+
+def question_from_options(
+    config: str | Path | None = None,
+    slice: str | None = None,
+    sets: Iterable[str] = (),
+    ranges: Iterable[str] = (),
+    count: str | Count | None = None,
+    mechanism: str | None = None,
+    free: str | None = None,
+    members: str | None = None,
+) -> Slice | Family:
+    """The slice of the command line's options, or the family where a parameter stays free.
+
+    Parameters
+    ----------
+    config, slice, sets, ranges, count, mechanism : as of `slice_from_options`.
+    free : a text ``NAME=LO:HI``, the free parameter in place of the record's.
+    members : values separated by commas, or how many.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong, with file, line and key, or the option.
+    """
+    sets, ranges = tuple(sets), tuple(ranges)
+    changed = sets or ranges or any(given is not None for given in (slice, count, mechanism, free, members))
+    if config is not None and not changed:
+        tree = read_file(config)
+        return checked_family(tree) if "free" in tree.entries else checked_slice(tree)
+    record = _record_from_options(config, slice, sets, ranges, count, mechanism, free)
+    if members is not None:
+        if record.free is None:
+            raise ConfigError("there are members where a parameter is free: add --free NAME=LO:HI", key="--members")
+        record = replace(record, members=_members(members))
+    return slice_of(record) if record.free is None else family_of(record)
+
+
+def _members(text: str) -> Node:
+    place = Place("--members")
+    items = tuple(Scalar(item.strip(), place) for item in text.split(","))
+    return items[0] if len(items) == 1 else Sequence(items, place)
+
+
+def _record_from_options(
+    config: str | Path | None,
+    slice: str | None,
+    sets: tuple[str, ...],
+    ranges: tuple[str, ...],
+    count: str | Count | None,
+    mechanism: str | None,
+    free: str | None = None,
+) -> Record:
+    """The record with what the options change in it."""
     if config is not None and mechanism is not None:
         raise ConfigError("the record says which mechanism is meant: leave one out", key="--mechanism")
-    if config is not None and slice is None and count is None and not sets and not ranges:
-        return load(config)
     record = record_of(read_file(config)) if config is not None else Record()
     if mechanism is not None:
         record = Record(model=named_model(Scalar(mechanism, Place("--mechanism"))))
-    given_sets, given_ranges = settings_of(sets, record.model, swept_names(record)), ranges_of(ranges)
+    if free is not None:
+        ((name, window),) = ranges_of([free], "--free").items()
+        check_axis_name(name, window.place)
+        values = {n: value for n, value in record.values.items() if n != name}
+        record = replace(record, free=(name, window), members=None, values=values, title="", reference={})
+    released = None if record.free is None else record.free[0]
+    given_sets, given_ranges = settings_of(sets, record.model, _released(record, released)), ranges_of(ranges)
+    if released is not None and released in given_sets:
+        number = number_of(given_sets.pop(released), f"the value of {released}")
+        record = replace(bound(record, released, number), name=member_name(record, released, number))
+    elif record.free is not None and slice is not None and released in [name.strip() for name in slice.split(",")]:
+        given_ranges = dict([record.free]) | given_ranges  # an axis is free, too
+        record = replace(record, free=None, members=None)
     if slice is not None:
         record = with_axes(record, slice, given_sets, given_ranges)
     elif config is None:
@@ -152,8 +248,9 @@ def slice_from_options(
         record = replace(record, title="", reference={})
     if count is not None:
         text = count.value if isinstance(count, Count) else count
-        record = replace(record, count=count_of(Scalar(text, Place("--count"))))
-    return slice_of(record)
+        place = Place("--count")
+        record = replace(record, count=count_of(Scalar(text, place)), count_place=place)
+    return record
 
 
 def point_from_mapping(values: Mapping[str, object], model: Model | None = None) -> dict[str, Fraction]:
@@ -200,12 +297,23 @@ def point_from_options(
         For anything wrong, with file, line and key, or the option.
     """
     record = record_of(read_file(config)) if config is not None else Record()
-    given = settings_of(sets, record.model, swept_names(record))
+    released = None if record.free is None else record.free[0]
+    given = settings_of(sets, record.model, _released(record, released))
+    if released in given:
+        record = bound(record, released, number_of(given.pop(released), f"the value of {released}"))
+        released = None
     axes: dict[str, Expression] = {}
+    if released is not None and (at is None or released not in at):
+        raise ConfigError(
+            f"{released} is free in {record.place.file} and has no value: add {released}=VALUE", key="--at"
+        )
     for name, text in (at or {}).items():
         scalar = Scalar(text, Place(f"--at {name[:40]}"))
         if name in given:
             raise scalar.place.error("is given with --set too: leave one out")
+        if name == released:
+            record = bound(record, name, number_of(scalar, f"the value of {name}"))
+            continue
         if name in record.model.parameters or name in swept_names(record):
             given[name] = scalar
         elif name in record.axes:

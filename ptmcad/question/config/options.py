@@ -17,15 +17,15 @@ from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Place, Scalar
 
 
-def settings_of(sets: Iterable[str], model: Model, swept: Collection[str] = ()) -> dict[str, Scalar]:
-    """``NAME=VALUE`` texts, of parameters or of what a record sweeps."""
+def settings_of(sets: Iterable[str], model: Model, released: Collection[str] = ()) -> dict[str, Scalar]:
+    """``NAME=VALUE`` texts, for parameters of a model and what is free or swept in a record."""
     settings: dict[str, Scalar] = {}
     for text in sets:
         name, equals, value = (part.strip() for part in text.partition("="))
         if not equals or not name or not value:
             raise ConfigError(f"{text[:80]!r} is not NAME=VALUE, such as {FIRST}=3/2", key="--set")
         place = Place(f"--set {name[:40]}")
-        if name not in model.parameters and name not in swept:
+        if name not in model.parameters and name not in released:
             raise place.error(unknown_parameter(name, model))
         if name in settings:
             raise place.error("is given twice: leave one out")
@@ -33,15 +33,15 @@ def settings_of(sets: Iterable[str], model: Model, swept: Collection[str] = ()) 
     return settings
 
 
-def ranges_of(ranges: Iterable[str]) -> dict[str, Window]:
-    """``NAME=LO:HI`` texts."""
+def ranges_of(ranges: Iterable[str], option: str = "--range") -> dict[str, Window]:
+    """``NAME=LO:HI`` texts of an option."""
     windows: dict[str, Window] = {}
     for text in ranges:
         name, equals, window = (part.strip() for part in text.partition("="))
         low, colon, high = (part.strip() for part in window.partition(":"))
         if not (equals and name and colon and low and high):
-            raise ConfigError(f"{text[:80]!r} is not NAME=LO:HI, such as {FIRST}=0:2", key="--range")
-        place = Place(f"--range {name[:40]}")
+            raise ConfigError(f"{text[:80]!r} is not NAME=LO:HI, such as {FIRST}=0:2", key=option)
+        place = Place(f"{option} {name[:40]}")
         if name in windows:
             raise place.error("is given twice: leave one out")
         windows[name] = Window(Scalar(low, place), Scalar(high, place), place)

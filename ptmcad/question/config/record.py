@@ -14,26 +14,15 @@ from typing import Any, NamedTuple
 
 from ptmcad.errors import Faults, shown
 from ptmcad.mechanism import Model, ptm
-from ptmcad.question.config.model import model_of
+from ptmcad.question.config.model import Described, described_in
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.examples import AXES
 from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count, unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
-RECORD_KEYS = (
-    "name",
-    "title",
-    "notes",
-    "mechanism",
-    "system",
-    "parameters",
-    "axes",
-    "sweep",
-    "count",
-    "units",
-    "reference",
-)
+RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "free", "members", "sweep",
+               "count", "units", "reference")  # fmt: skip
 _MAX_NAME = 100
 _MAX_TITLE = 300
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -55,6 +44,7 @@ class Record:
 
     Attributes
     ----------
+    values_place : where the values are given, or would be; None of what is no record.
     sweep : what is swept, as it is written; `ptmcad.question.config.sweeps` reads it.
     constants : values of swept names that are no parameters, and which expressions use.
     """
@@ -64,12 +54,29 @@ class Record:
     model: Model = field(default_factory=ptm)
     values: Mapping[str, Scalar] = field(default_factory=dict)
     axes: Mapping[str, Window] = field(default_factory=dict)
+    free: tuple[str, Window] | None = None
+    members: Node | None = None
     count: Count | None = None
     units: Mapping[str, str] = field(default_factory=dict)
     reference: Mapping[str, Any] = field(default_factory=dict)
     place: Place = field(default_factory=Place)
     sweep: Node | None = None
     constants: Mapping[str, Fraction] = field(default_factory=dict)
+    count_place: Place = field(default_factory=lambda: Place("count"))
+    values_place: Place | None = None
+    described: Described | None = None
+
+    def place_of(self, name: str) -> Place:
+        """Where a parameter's value is written, or what describes it, or where a value would be given."""
+        if name in self.values:
+            return self.values[name].place
+        found = self.described.place_of(name) if self.described is not None else None
+        return found or (self.values_place or self.place).below(name)
+
+    @property
+    def doubtful(self) -> frozenset[str]:
+        """Parameters of which nothing can be said, because what describes them is faulty."""
+        return self.described.doubtful if self.described is not None else frozenset()
 
 
 def record_of(tree: Tree) -> Record:
@@ -106,14 +113,19 @@ def read_record(tree: Tree, faults: Faults) -> Record:
                 hint = did_you_mean(key, RECORD_KEYS) or f"; the keys are {', '.join(RECORD_KEYS)}"
                 raise _node_place(node, key, tree).error(f"unknown key{hint}")
     read: dict[str, Any] = {"place": tree.place}
+    for part, key in (("values_place", "parameters"), ("count_place", "count")):
+        read[part] = tree.entries[key].place if key in tree.entries else tree.place.below(key)
     model = None
     with faults:
-        model = read["model"] = model_of(tree)
+        read["described"] = described_in(tree, faults)
+        model = read["model"] = read["described"].model
     readers: dict[str, Callable[[Node], Any]] = {
         "name": _file_name,
         "title": _title,
         "parameters": lambda node: _values(node, model, faults),
         "axes": lambda node: _axes(node, faults),
+        "free": _free,
+        "members": lambda node: node,
         "sweep": lambda node: node,
         "count": count_of,
         "units": _units,
@@ -125,6 +137,10 @@ def read_record(tree: Tree, faults: Faults) -> Record:
                 read["values" if key == "parameters" else key] = reader(tree.entries[key])
             elif key == "name":
                 read[key] = _name_of_file(tree.place.file)
+    if "members" in tree.entries and "free" not in tree.entries:
+        with faults:
+            place = _node_place(tree.entries["members"], "members", tree)
+            raise place.error("there are members where a parameter is free: add one, such as free: {F: [-20, 0]}")
     return Record(**read)
 
 
@@ -247,6 +263,14 @@ def _axes(node: Node, faults: Faults) -> dict[str, Window]:
     return axes
 
 
+def _free(node: Node) -> tuple[str, Window]:
+    """The third parameter of a family with its range."""
+    if not isinstance(node, Tree) or len(node.entries) != 1:
+        raise node.place.error("expected one parameter with its range, such as {F: [-20, 0]}")
+    ((name, entry),) = node.entries.items()
+    return name, _window(name, entry)
+
+
 def _window(name: str, node: Node) -> Window:
     check_axis_name(name, node.place)
     if not isinstance(node, Sequence) or len(node.items) != 2:
@@ -257,7 +281,9 @@ def _window(name: str, node: Node) -> Window:
 
 def check_axis_name(name: str, place: Place) -> None:
     if not NAME.fullmatch(name) or len(name) > 40 or name.lower() in ("nan", "inf", "infinity"):
-        raise place.error(f"{name[:40]!r} cannot name an axis: use letters, digits and '_', starting with a letter")
+        raise place.error(
+            f"{name[:40]!r} cannot name an axis: use ASCII letters, digits and '_', starting with a letter"
+        )
 
 
 def count_of(node: Node) -> Count:

@@ -37,7 +37,7 @@ def checked_slice(tree: Tree) -> Slice:
     """
     faults = Faults()
     record = read_record(tree, faults)
-    if any((fault.key or "").split(".")[0] in ("mechanism", "system", "axes") for fault in faults.found):
+    if record.described is None or any((fault.key or "").partition(".")[0] == "axes" for fault in faults.found):
         faults.check()  # without these nothing can be said of the values
     return slice_of(record, faults)
 
@@ -56,9 +56,21 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
                 "the record asks for a sweep: `ptmcad sweep` answers it, and --set NAME=VALUE chooses one member"
             )
         faults.check()  # of what is swept nothing can be said here
+    if record.free is not None:
+        with faults:
+            refuse_free(*record.free)
+        faults.check()
     axes, resolved = _resolved(record, faults)
     faults.check()
     return _slice(record, axes, resolved)
+
+
+def refuse_free(name: str, window: Window) -> None:
+    """Refuse a record of a family where one slice is asked for."""
+    raise window.place.error(
+        f"{name} is free, and the record is one of a family: give it a value with --set {name}=VALUE, or ask for its "
+        "members with ptmcad classify or ptmcad.family"
+    )
 
 
 def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[str, Expression]]:
@@ -74,7 +86,9 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
     axes = []
     for name, window in record.axes.items():
         with faults:
-            axes.append(_axis(name, window, record.model))
+            if name in record.model.unknowns:
+                raise window.place.error(f"{name} is an unknown: an axis is a parameter, or a new name that one uses")
+            axes.append(axis_of(name, window, record.model))
     free = {name: constant(value) for name, value in record.constants.items()}
     resolution = _Resolution(record, free | {name: axis(index) for index, name in enumerate(record.axes)})
     for name in record.model.parameters:
@@ -96,7 +110,7 @@ def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expre
     mechanism = record.model
     given = {*record.values, *record.axes}
     without_free_lengths = not any(resolved[name].numerator for name in mechanism.free_lengths)
-    left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)}
+    left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)} | {*mechanism.idle}
     if without_free_lengths:
         left_out.update(mechanism.free_lengths)
     effective = {name: expression for name, expression in resolved.items() if name not in left_out}
@@ -145,7 +159,7 @@ def _count(record: Record) -> Count:
     if count is Count.ADMISSIBLE and isinstance(model, System):
         problem = "a system has no springs, whose lengths would be admissible: count stable or total"
     if problem:
-        raise record.place.below("count").error(problem)
+        raise record.count_place.error(problem)
     return count
 
 
@@ -156,12 +170,12 @@ def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fracti
     resolved = _Resolution(record, free | dict(axes)).run()
     values = {}
     for name, expression in resolved.items():
-        place = _place_of(name, record)
+        place = record.place_of(name)
         value = expression.constant()
         check_number(name, mechanism.kind(name), value, place)
         values[name] = value
     _check_shorthands_are_used(record, mechanism, set(record.values))
-    left_out = {*mechanism.shorthands}  # the parameters that they stand for are there
+    left_out = {*mechanism.shorthands, *mechanism.idle}  # the parameters that they stand for are there
     if not any(values[name] for name in mechanism.free_lengths):
         left_out.update(mechanism.free_lengths)
     return {name: value for name, value in values.items() if name not in left_out}
@@ -199,7 +213,7 @@ def _texts(
                 else unproved(name, record.model.kind(name), resolved[name], axes, READING_WORK)
             )
             if problem:
-                raise _place_of(name, record).error(problem)
+                raise record.place_of(name).error(problem)
             texts[name] = written(name)
             waiting.append(texts[name])
     return {name: texts[name] for name in record.model.parameters if name in texts}
@@ -207,6 +221,19 @@ def _texts(
 
 def _rests_on(text: str, record: Record) -> bool:
     return not record.constants.keys().isdisjoint(names_in(text))
+
+
+def written_in(record: Record, member: Slice) -> dict[str, str]:
+    """Each parameter of a family's members as the record writes it, and every parameter that such a text names."""
+    texts = {}
+    waiting = [*member.parameters]
+    while waiting:
+        name = waiting.pop()
+        if name not in texts and name in record.model.parameters and name not in record.axes:
+            free = record.free is not None and name == record.free[0]
+            texts[name] = name if free else _written(name, record)
+            waiting += names_in(texts[name])
+    return texts
 
 
 def _written(name: str, record: Record) -> str:
@@ -220,7 +247,8 @@ def _written(name: str, record: Record) -> str:
     return parameter.default
 
 
-def _axis(name: str, window: Window, model: Model) -> Axis:
+def axis_of(name: str, window: Window, model: Model) -> Axis:
+    """An axis with its range, which is not empty and has no length below zero."""
     low, high = number_of(window.low), number_of(window.high)
     if low == high:
         raise window.place.error(f"the range of {name} is empty: {low} to {high}")
@@ -274,8 +302,8 @@ class _Resolution:
 
     def __init__(self, record: Record, free: Mapping[str, Expression]):
         self.record = record
-        self.done = dict(free)
-        self.faulty: set[str] = set()
+        self.faulty = set(record.doubtful - free.keys())
+        self.done = {**dict.fromkeys(self.faulty, constant(1)), **free}
         self.parameters = record.model.parameters
         self.known = tuple(dict.fromkeys((*free, *self.parameters)))
 
@@ -297,7 +325,7 @@ class _Resolution:
     def _found(self, name: str, chain: tuple[str, ...]) -> Expression:
         scalar = self.record.values.get(name)
         if scalar is None:
-            scalar = Scalar(self.parameters[name].default, self.record.place.below(name))
+            scalar = Scalar(self.parameters[name].default, self.record.place_of(name))
             if not scalar.text:
                 raise scalar.place.error(f"{name} has no value: give it one under 'parameters', or make it an axis")
         if name in chain:
@@ -317,7 +345,7 @@ class _Resolution:
 
 def _check_value(name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis]) -> None:
     """Refuse what the geometry excludes, and a denominator that vanishes in the window."""
-    place = _place_of(name, record)
+    place = record.place_of(name)
     if expression.degree > MAX_DEGREE:
         raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
     if expression.is_constant:
@@ -326,10 +354,6 @@ def _check_value(name: str, expression: Expression, record: Record, axes: tuple[
     problem = fault(name, record.model.kind(name), expression, axes, READING_WORK)
     if problem:
         raise place.error(problem)
-
-
-def _place_of(name: str, record: Record) -> Place:
-    return record.values[name].place if name in record.values else record.place.below(name)
 
 
 def check_number(name: str, kind: Kind, value: Fraction, place: Place) -> None:

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from ptmcad.answer.boundaries import Boundary
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.mechanism import System
 from ptmcad.show.render.axes import dress, scale_of, symbol
 from ptmcad.show.render.legend import INK, STRONG
 from ptmcad.show.render.printing import save, settings
@@ -44,11 +45,18 @@ def draw_field(
     save(figure, path, dpi=dpi)
 
 
+_WORDS = ("energy", "stiffness", "barrier")
+
+
 def title_of(result: RegionMap, field: Field) -> str:
     """What is shown, of which slice."""
-    return (
-        f"{field.quantity[0].upper()}{field.quantity[1:]} of {field.pose.replace(':', ' pose ')}: {result.slice.name}"
-    )
+    quantity = field.quantity
+    if ":" in quantity or quantity in _WORDS:  # others are names and expressions, in which u is not U
+        quantity = f"{quantity[0].upper()}{quantity[1:]}"
+    word, _, number = field.pose.partition(":")
+    solution = "solution" if isinstance(result.slice.model, System) else "pose"
+    pose = f"{solution} {number}" if word == "pose" else f"{word} {solution} {number}"
+    return f"{quantity} of {pose}: {result.slice.name}"
 
 
 def description(field: Field) -> str:

@@ -1,0 +1,176 @@
+"""What commands do with families: compute and write their members, read them again, and draw them together.
+
+Guarantee: a member's file is written as soon as its map is complete, so that an interrupted run leaves whole maps.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import click
+
+from ptmcad.answer.family import FamilyMap
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.cli.drawing import DATA, PICTURES, Drawing, names_of
+from ptmcad.cli.pictures import picture
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.stored import MAX_BYTES, read_result
+from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown, shown_path
+from ptmcad.options import Options
+from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.question.config import Family
+from ptmcad.show.document.family import FORMAT, read_family, write_family
+from ptmcad.text.numerals import text_of
+from ptmcad.text.textfile import read_text
+
+SOLID = "-3d"
+"""Behind a family's name, in that of its picture in three dimensions."""
+
+
+class Wanted(NamedTuple):
+    """What is to be written of a family, and where."""
+
+    out: Path
+    formats: tuple[str, ...]
+    no_timings: bool
+    drawing: Drawing
+
+    @property
+    def pictures(self) -> tuple[str, ...]:
+        return tuple(kind for kind in self.formats if kind in PICTURES)
+
+    @property
+    def of_members(self) -> tuple[str, ...]:
+        """The formats of files that each member has of its own."""
+        return tuple(kind for kind in self.formats if kind in DATA)
+
+
+def family_to_files(family: Family, options: Options, wanted: Wanted) -> FamilyMap:
+    """Classify the members one by one, write each, then the family's own files; return the maps.
+
+    Raises
+    ------
+    LimitReached
+        When the time is over, saying how many members are complete and written.
+    PtmcadError
+        Any other of its kinds, naming the member.
+    """
+    names = _names(family.name, wanted)
+    check_writable(wanted.out, names)
+    members: list[RegionMap] = []
+    with ProgressBar() as progress:
+        from ptmcad.ask.families import in_common, member_map
+
+        progress("variety of the family", 0, 1)
+        common = in_common(family, options)
+        ends = None if options.timeout is None else time.monotonic() + options.timeout
+        for number, value in enumerate(family.values):
+            progress("members", number, len(family.values))
+            left = None if ends is None else max(ends - time.monotonic(), 0.01)
+            try:
+                found = member_map(common, value, replace(options, timeout=left))
+            except LimitReached as stop:
+                written = f"; the maps of {number} of {len(family.values)} members are in {shown_path(wanted.out)}"
+                raise LimitReached(f"{stop} of {family.free.name} = {text_of(value)}{written}") from stop
+            except PtmcadError as error:
+                raise _at(error, f"{family.free.name} = {text_of(value)}") from error
+            _write_member(found, wanted)
+            members.append(found)
+    result = FamilyMap(family.name, family.free, family.values, tuple(members), common.surfaces, family.record.title)
+    write_files(wanted.out, _writers(result, family.name, wanted))
+    return result
+
+
+def _at(error: PtmcadError, place: str) -> PtmcadError:
+    """The same error, saying at which member."""
+    if isinstance(error, ConfigError):
+        return ConfigError(f"{error.message} (at {place})", key=error.key, file=error.file, line=error.line)
+    return type(error)(f"{error} (at {place})")
+
+
+def _names(name: str, wanted: Wanted) -> tuple[str, ...]:
+    """The family's own files."""
+    pictures = [f"{name}{end}.{kind}" for end in ("", SOLID) for kind in wanted.pictures]
+    return (*pictures, f"{name}.json") if "json" in wanted.formats else tuple(pictures)
+
+
+def _write_member(found: RegionMap, wanted: Wanted) -> None:
+    name = found.slice.name
+    writers = wanted.drawing.writers(found, name, wanted.of_members)
+    if "json" in wanted.formats:
+        writers[f"{name}.json"] = text_writer(found.to_json(timings=not wanted.no_timings))
+    if writers:
+        write_files(wanted.out, writers)
+
+
+def _writers(result: FamilyMap, name: str, wanted: Wanted) -> dict[str, Writer]:
+    writers = picture_writers(result, name, wanted.pictures, wanted.drawing)
+    if "json" in wanted.formats:
+        files = [f"{member.slice.name}.json" for member in result.members]
+        writers[f"{name}.json"] = text_writer(write_family(result, files))
+    return writers
+
+
+def picture_writers(result: FamilyMap, stem: str, formats: tuple[str, ...], drawing: Drawing) -> dict[str, Writer]:
+    """For each picture of a family a function that writes it."""
+    found = {}
+    for kind in formats:
+        for end, draw in (("", _draw_multiples), (SOLID, _draw_solid)):
+            for file in names_of(f"{stem}{end}", (kind,)):
+                found[file] = picture(file, partial(draw, result, drawing))
+    return found
+
+
+def _draw_multiples(result: FamilyMap, drawing: Drawing, path: Path) -> None:
+    from ptmcad.show.render.multiples import draw_multiples  # brings matplotlib
+
+    draw_multiples(result, path, drawing.dpi, drawing.style)
+
+
+def _draw_solid(result: FamilyMap, drawing: Drawing, path: Path) -> None:
+    from ptmcad.show.render.solid import draw_solid  # brings matplotlib
+
+    draw_solid(result, path, drawing.dpi, drawing.style)
+
+
+def is_family(path: Path) -> bool:
+    """Whether a file is the document of a family."""
+    if path.suffix.lower() != ".json":
+        return False
+    head = read_text(path, MAX_BYTES, "a result's JSON file")[:200]
+    return f'"format": "{FORMAT.partition("/")[0]}/' in head
+
+
+def read_family_file(path: Path) -> FamilyMap:
+    """The family in a JSON file, with its members' maps, which are in files beside it.
+
+    Raises
+    ------
+    ConfigError
+        When one of the files cannot be read, or is not what it should be.
+    """
+    text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
+    try:
+        stored = read_family(text)
+    except (ValueError, RecursionError) as error:
+        reason = shown(" ".join(str(error).split()), 300)
+        raise ConfigError(f"is damaged or not a {FORMAT} file: {reason}", file=str(path)) from error
+    members = tuple(read_result(path.parent / file) for file in stored.files)
+    if any(member.slice.axes != members[0].slice.axes for member in members):
+        raise ConfigError("its members are not of one family: their axes differ", file=str(path))
+    return FamilyMap(stored.name, stored.free, stored.values, members, stored.surfaces, stored.title)
+
+
+def each_member(path: Path, ask: Callable[[RegionMap], Any]) -> list[Any]:
+    """What is asked of every member of the family in a file, each announced by its value."""
+    family = read_family_file(path)
+    answers = []
+    for value, member in family:
+        click.echo(f"{family.free.name} = {text_of(value)}")
+        answers.append(ask(member))
+    return answers

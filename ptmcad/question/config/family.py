@@ -1,0 +1,209 @@
+"""A family of slices: a record with one more parameter that is free, and its members at values of that parameter.
+
+Guarantee: a member is the slice of the record in whose texts the free parameter's name is replaced by its value, and so
+the slice that a person would get who typed that value. Every member at a stated value has been read, and is as exact
+and complete as any slice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.mechanism import Model
+from ptmcad.question.config.record import Record, Window, read_record
+from ptmcad.question.config.resolution import axis_of, number_of, slice_of, written_in
+from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.numerals import text_of
+from ptmcad.text.parsing import names_in
+from ptmcad.text.syntax import parse
+from ptmcad.text.tree import Number, replaced, to_text
+from ptmcad.text.yamltree import Node, Scalar, Sequence, Tree
+
+MEMBERS = 9
+"""Where nothing is stated: so many values, evenly spaced."""
+MAX_MEMBERS = 400
+
+
+@dataclass(frozen=True, slots=True)
+class Family:
+    """The question that is put to `ptmcad.family`.
+
+    Attributes
+    ----------
+    record : of which the members are made.
+    free : the free parameter with its range.
+    values : at which members are wanted, in increasing order.
+    axes : of every member.
+    text : every parameter on which a member depends, as it is written in the record.
+    """
+
+    record: Record
+    free: Axis
+    values: tuple[Fraction, ...]
+    axes: tuple[Axis, Axis]
+    text: Mapping[str, str]
+
+    @property
+    def name(self) -> str:
+        return self.record.name or "family-" + "-".join((*self.record.axes, self.free.name))
+
+    @property
+    def model(self) -> Model:
+        return self.record.model
+
+    def __repr__(self) -> str:
+        window = ", ".join(f"{a.name} in [{a.low}, {a.high}]" for a in (*self.axes, self.free))
+        return f"<Family {self.name} of {self.model.name}: {window}, {len(self.values)} members>"
+
+    def member(self, value: Fraction) -> Slice:
+        """The slice at a value of the free parameter.
+
+        Raises
+        ------
+        ConfigError
+            When the value is outside of the range, or the slice is none that can be answered.
+        """
+        if not self.free.low <= value <= self.free.high:
+            raise ConfigError(
+                f"{text_of(value)} is outside of the range of {self.free.name}, {text_of(self.free.low)} to "
+                f"{text_of(self.free.high)}"
+            )
+        return _member(self.record, self.free.name, value)
+
+
+def family_of(record: Record, faults: Faults | None = None) -> Family:
+    """The family of a record with a free parameter.
+
+    Parameters
+    ----------
+    faults : what was found in the record before, and is raised with the rest.
+    """
+    faults = faults or Faults()
+    assert record.free is not None
+    name, window = record.free
+    free = None
+    with faults:
+        _check_name(record, name, window)
+        free = axis_of(name, window, record.model)
+    if free is None:
+        faults.check()
+    assert free is not None
+    values: tuple[Fraction, ...] = (free.low, free.high)
+    with faults:
+        values = _values(free, record.members)
+    slices = [_located(record, name, value, faults) for value in values]
+    faults.check()
+    first = slices[0]
+    assert first is not None
+    text = written_in(record, first)
+    if name not in text and not any(name in names_in(written) for written in text.values()):
+        example = next((n for n in record.model.parameters if n not in record.axes), "")
+        use = f": use it in an expression, such as {example}: {name}" if example else ""
+        raise window.place.error(f"the free parameter {name} is not used: no parameter depends on it{use}")
+    return Family(record, free, values, first.axes, text)
+
+
+def checked_family(tree: Tree) -> Family:
+    """The family of a record as read.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong in it, with file, line and key; its ``faults`` are all there are.
+    """
+    faults = Faults()
+    record = read_record(tree, faults)
+    if any((fault.key or "").split(".")[0] in ("mechanism", "system", "axes", "free") for fault in faults.found):
+        faults.check()
+    if record.free is None:
+        raise tree.place.below("free").error("is missing: a family has a third parameter, such as free: {F: [-20, 0]}")
+    return family_of(record, faults)
+
+
+def bound(record: Record, name: str, value: Fraction) -> Record:
+    """The record with a number in place of its free parameter, and without answers, which are of another slice."""
+    number = Number(value)
+    values = {}
+    for parameter, scalar in record.values.items():
+        try:
+            tree = parse(scalar.text)
+        except ExpressionError:
+            values[parameter] = scalar  # which `slice_of` refuses in better words
+            continue
+        other = replaced(tree, name, number)
+        values[parameter] = scalar if other is tree else Scalar(to_text(other), scalar.place)
+    if name in record.model.parameters:
+        assert record.free is not None
+        values[name] = Scalar(to_text(number), record.free[1].place)
+    title = f"{record.title}, {name} = {text_of(value)}" if record.title else ""
+    return replace(record, values=values, free=None, members=None, title=title, reference={})
+
+
+def member_name(record: Record, name: str, value: Fraction) -> str:
+    """The name of a member, and of its files: the record's, the parameter's, and its value."""
+    start = f"{record.name or 'family-' + '-'.join((*record.axes, name))}-{name}"
+    return f"{start}{text_of(value).replace('/', '_')}"
+
+
+def _member(record: Record, name: str, value: Fraction) -> Slice:
+    return slice_of(replace(bound(record, name, value), name=member_name(record, name, value)))
+
+
+def _located(record: Record, name: str, value: Fraction, faults: Faults) -> Slice | None:
+    """The member at a stated value; what is wrong with it is said with the value, once for all members."""
+    known = {(fault.key, fault.line) for fault in faults.found}
+    try:
+        return _member(record, name, value)
+    except ConfigError as error:
+        with faults:
+            for fault in error.faults:
+                if (fault.key, fault.line) not in known:
+                    raise ConfigError(
+                        f"{fault.message} (at {name} = {text_of(value)})",
+                        key=fault.key, file=fault.file, line=fault.line,
+                    ) from error  # fmt: skip
+        return None
+
+
+def _check_name(record: Record, name: str, window: Window) -> None:
+    if name in record.axes:
+        raise window.place.error(f"{name} is an axis too: a family has three different parameters")
+    if name in record.values:
+        raise record.values[name].place.error(f"{name} is free and cannot be fixed too: remove it here or from free")
+
+
+def _values(free: Axis, members: Node | None) -> tuple[Fraction, ...]:
+    """Where members are wanted: at the values of a list, or at as many as a number says, evenly spaced."""
+    if members is None:
+        return _spaced(free, MEMBERS)
+    if isinstance(members, Tree):
+        raise members.place.error("expected a list of values such as [-20, -10, 0], or how many, such as 9")
+    if isinstance(members, Scalar):
+        number = number_of(members, "the number of members")
+        if number.denominator != 1 or not 2 <= number <= MAX_MEMBERS:
+            raise members.place.error(f"write how many members there are, 2 to {MAX_MEMBERS}, or a list of values")
+        return _spaced(free, int(number))
+    return _listed(free, members)
+
+
+def _listed(free: Axis, members: Sequence) -> tuple[Fraction, ...]:
+    if not 1 <= len(members.items) <= MAX_MEMBERS:
+        raise members.place.error(f"{len(members.items)} values are given: a family has 1 to {MAX_MEMBERS} members")
+    values = set()
+    for item in members.items:
+        if not isinstance(item, Scalar):
+            raise item.place.error("expected a number")
+        value = number_of(item, "the value of a member")
+        if not free.low <= value <= free.high:
+            raise item.place.error(f"{text_of(value)} is outside of the range of {free.name}")
+        if value in values:
+            raise item.place.error(f"{text_of(value)} is given twice: leave one out")
+        values.add(value)
+    return tuple(sorted(values))
+
+
+def _spaced(free: Axis, number: int) -> tuple[Fraction, ...]:
+    return tuple(free.low + (free.high - free.low) * k / (number - 1) for k in range(number))

@@ -1,0 +1,94 @@
+"""A family as a JSON document: its free parameter, its surfaces, and the files of its members' maps.
+
+Guarantee: numbers are exact; the maps themselves are documents of their own, in files beside this one.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import PurePath
+from typing import Any, NamedTuple
+
+from ptmcad.answer.family import FamilyMap, SpaceTerms
+from ptmcad.errors import ConfigError
+from ptmcad.question.slice import Axis
+from ptmcad.text.numerals import fraction_of, text_of
+
+FORMAT = "ptmcad-family/1"
+MAX_MEMBERS = 10_000
+
+
+class StoredFamily(NamedTuple):
+    """What a document says; ``files`` are the members', beside it."""
+
+    name: str
+    title: str
+    free: Axis
+    values: tuple[Fraction, ...]
+    files: tuple[str, ...]
+    surfaces: tuple[SpaceTerms, ...]
+
+
+def write_family(family: FamilyMap, files: Sequence[str]) -> str:
+    """The document as JSON text.
+
+    Parameters
+    ----------
+    files : names of the members' files.
+    """
+    data = {
+        "format": FORMAT,
+        "name": family.name,
+        "title": family.title,
+        "free": {"name": family.free.name, "low": text_of(family.free.low), "high": text_of(family.free.high)},
+        "surfaces": [[[*powers, str(c)] for powers, c in terms] for terms in family.surfaces],
+        "members": [{"value": text_of(value), "file": file} for value, file in zip(family.values, files, strict=True)],
+    }
+    lines = [f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}" for key, value in data.items()]
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def read_family(text: str) -> StoredFamily:
+    """What `write_family` wrote.
+
+    Raises
+    ------
+    ValueError
+        When the text is not such a document.
+    """
+    data = json.loads(text)
+    if not isinstance(data, dict) or set(data) != {"format", "name", "title", "free", "surfaces", "members"}:
+        raise ValueError("it has other keys than a family")
+    if data["format"] != FORMAT:
+        raise ValueError(f"it is not of the format {FORMAT}")
+    try:
+        free = data["free"]
+        axis = Axis(_text(free["name"]), fraction_of(free["low"]), fraction_of(free["high"]))
+        members = data["members"]
+        values = tuple(fraction_of(member["value"]) for member in members)
+        files = tuple(_file(member["file"]) for member in members)
+        surfaces = tuple(
+            tuple(((int(i), int(j), int(k)), int(c)) for i, j, k, c in terms) for terms in data["surfaces"]
+        )
+    except (KeyError, TypeError, AttributeError, ConfigError) as error:
+        raise ValueError(f"a part of it is missing or of another kind: {error}") from error
+    if not 1 <= len(values) <= MAX_MEMBERS or any(a >= b for a, b in pairwise(values)):
+        raise ValueError("the members' values do not increase")
+    return StoredFamily(_text(data["name"]), _text(data["title"]), axis, values, files, surfaces)
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str) or not value.isprintable() or len(value) > 300:
+        raise TypeError("expected a short text")
+    return value
+
+
+def _file(value: Any) -> str:
+    """A name of a file beside the document, none elsewhere."""
+    name = _text(value)
+    if PurePath(name).name != name or not name.endswith(".json"):
+        raise TypeError("expected the name of a file beside it")
+    return name

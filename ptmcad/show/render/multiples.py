@@ -1,0 +1,186 @@
+"""The maps of a family's members side by side (small multiples), all in the same colours, with one legend.
+
+Guarantee: every chart shows the whole window to the same scale; a colour stands for the same count in all of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from ptmcad.answer.counts import counted_by
+from ptmcad.answer.family import FamilyMap
+from ptmcad.answer.regionmap import Region
+from ptmcad.errors import ConfigError
+from ptmcad.show.render.axes import Dress, dress, symbol
+from ptmcad.show.render.colours import Fill, filler, undetermined_fill
+from ptmcad.show.render.fitting import LEAST, Parts, overhang
+from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, draw_legend, head_of
+from ptmcad.show.render.painting import Paint, paint_map
+from ptmcad.show.render.printing import save, settings
+from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.textwidth import wrapped
+from ptmcad.show.style import MIN_FONT, Place, Style
+from ptmcad.show.table import count_text
+from ptmcad.text.numerals import shortest_text
+
+SIDE = 1.75
+"""Inches of a chart in 9 points, in a picture that grows with what it shows."""
+_MAX_COLUMNS = 6
+
+
+def draw_multiples(family: FamilyMap, path: Path, dpi: int, style: Style) -> None:
+    """Write the picture, as `ptmcad.show.render.printing.save` does.
+
+    Raises
+    ------
+    ConfigError
+        When it does not fit into the style's size.
+    """
+    figure = multiples_figure(family, dpi, style)
+    figure.set_label(f"{title_of(family)}\n{in_words(family)}")
+    save(figure, path, dpi=dpi, style=style)
+
+
+def title_of(family: FamilyMap) -> str:
+    shown = [shortest_text(end).replace("-", "−") for end in (family.free.low, family.free.high)]
+    return f"{family.title or family.name}, {symbol(family.free.name)} from {shown[0]} to {shown[1]}"
+
+
+def in_words(family: FamilyMap) -> str:
+    """Each member's number of regions, for who cannot see the picture."""
+    return ". ".join(
+        f"At {family.free.name} = {shortest_text(value)}: {len(result.regions)} regions" for value, result in family
+    )
+
+
+def paint_of_family(family: FamilyMap, style: Style) -> Paint:
+    """Colours that are the same in all maps."""
+    count = family.members[0].slice.count
+    every = [region for result in family.members for region in result.regions]
+    return Paint(
+        filler(every, count, style.palette), undetermined_fill(style.palette), style.strong,
+        style.strong * THIN / STRONG, style.thin_lines, style.line_scale,
+    )  # fmt: skip
+
+
+def family_entries(family: FamilyMap, paint: Paint) -> list[Entry]:
+    """The legend: a fill for each count that some member has."""
+    count = family.members[0].slice.count
+    every: list[Region] = [region for result in family.members for region in result.regions]
+    found: dict[tuple[str, Fill], None] = {}
+    for region in sorted(every, key=lambda r: counted_by(r, count)):
+        found[count_text(region, count), paint.fill(region)] = None
+    told = [Entry(head_of(family.members[0].slice), strong=True)]
+    told += [Entry((text,), fill) for text, fill in found]
+    if any(result.cover is not None for result in family.members):
+        told.append(Entry(("undetermined",), paint.undetermined))
+    return told
+
+
+def value_text(family: FamilyMap, value: Fraction) -> str:
+    """Such as ``F = -10``."""
+    return f"{symbol(family.free.name)} = {shortest_text(value).replace('-', '−')}"
+
+
+def multiples_figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
+    """The picture.
+
+    Raises
+    ------
+    ConfigError
+        When it does not fit into the style's size.
+    """
+    with settings(style):
+        return _figure(family, dpi, style)
+
+
+def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
+    font = style.base_font
+    em = font / 72
+    type = Type(
+        font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, style.strong * THIN / STRONG, style.thin_lines
+    )
+    how = Dress(max(MIN_FONT, 0.85 * font), 0.95 * font, (4, 4), scale=font / 9)
+    seen = [shapes(result) for result in family.members]
+    parts = Parts(family.members[0].slice, "", ((), ()), (seen[0].view,))
+    left, below, right, _ = overhang(parts, seen[0].view, (SIDE, SIDE), how)
+    columns = _columns(len(seen), style.size)
+    rows = math.ceil(len(seen) / columns)
+    gap, head = max(right, 1.9 * em), 1.7 * em
+    wide = style.size[0] if style.size is not None else left + columns * (SIDE * font / 9 + gap)
+    side = (wide - left) / columns - gap
+    title = title_of(family) if style.title is None else style.title
+    titles = wrapped(title, wide - 1.2 * em, font, True) if title else []
+    paint = paint_of_family(family, style)
+    lines = [] if style.legend is Place.NONE else _flowed(family_entries(family, paint), wide - 1.2 * em, type)
+    rest = 1.5 * em * len(titles) + 0.4 * em + rows * head + below + (type.line * 1.35) * len(lines) + 0.7 * em
+    between = 0.5 * em * (rows - 1)
+    tall = (style.size[1] - rest - between) / rows if style.size is not None else side
+    if min(side, tall) < 0.5 * LEAST * em:
+        raise ConfigError(f"{len(seen)} maps do not fit: make it larger, or draw fewer members", key="size")
+    height = rest + between + rows * tall
+    figure = Figure(figsize=(wide, height), dpi=dpi, facecolor="white")
+    for k, line in enumerate(titles):
+        figure.text(
+            0.6 * em, height - 1.5 * em * (k + 0.6), line, fontsize=font, fontweight="bold", va="center",
+            transform=figure.dpi_scale_trans, color=INK,
+        )  # fmt: skip
+    top = height - 1.5 * em * len(titles) - 0.4 * em
+    for k, (value, shape) in enumerate(zip(family.values, seen, strict=True)):
+        row, column = divmod(k, columns)
+        box = (left + column * (side + gap), top - (row + 1) * (head + tall) - row * 0.5 * em, side, tall)
+        axes = _axes(figure, box)
+        paint_map(axes, shape, f"{k}-", paint)
+        dress(axes, shape.result.slice, shape.view.x, shape.view.y, how)
+        _strip_inner(axes, column > 0, k + columns < len(seen))
+        figure.text(
+            box[0], box[1] + tall + 0.75 * em, value_text(family, value), fontsize=font, va="center",
+            transform=figure.dpi_scale_trans, color=INK,
+        )  # fmt: skip
+    for k, entries in enumerate(reversed(lines)):
+        for at, entry in entries:
+            draw_legend(figure, [entry], 0.6 * em + at, 0.5 * em + (k + 1) * type.line * 1.35, type)
+    return figure
+
+
+def _columns(number: int, size: tuple[float, float] | None) -> int:
+    """So that charts are about as wide as high."""
+    if size is None:
+        return min(number, 3 if number in (3, 5, 6, 9) else 4 if number in (7, 8, 12) else _MAX_COLUMNS)
+    return max(1, min(number, round(math.sqrt(number * size[0] / size[1]))))
+
+
+def _axes(figure: Figure, box: tuple[float, float, float, float]) -> Any:
+    width, height = (float(side) for side in figure.get_size_inches())
+    left, bottom, wide, tall = box
+    return figure.add_axes((left / width, bottom / height, wide / width, tall / height))
+
+
+def _strip_inner(axes: Any, has_left: bool, has_below: bool) -> None:
+    """Leave out numbers and names that a chart beside or below has."""
+    if has_left:
+        axes.set_ylabel("")
+        axes.tick_params(axis="y", labelleft=False)
+    if has_below:
+        axes.set_xlabel("")
+        axes.tick_params(axis="x", labelbottom=False)
+
+
+def _flowed(entries: Sequence[Entry], width: float, type: Type) -> list[list[tuple[float, Entry]]]:
+    """The legend in rows, each entry with its place from the left in inches."""
+    lines: list[list[tuple[float, Entry]]] = [[]]
+    at = 0.0
+    for entry in entries:
+        each = type.entry_width(entry) + 0.2 * type.scale
+        if at and at + each > width:
+            lines.append([])
+            at = 0.0
+        lines[-1].append((at, entry))
+        at += each
+    return lines

@@ -1,0 +1,116 @@
+"""Families on the command line: their files, pictures and checks."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.cli import run
+from ptmcad.show.document.family import read_family
+
+RECORD = """name: loads
+title: Loads
+axes: {rho: [0, 2], L2: [0, 2]}
+parameters: {F3: F, F4: F}
+free: {F: [-40, 0]}
+members: [-40, -10]
+"""
+
+
+@pytest.fixture(name="folder", scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("family")
+    (folder / "loads.yaml").write_text(RECORD)
+    arguments = ["classify", str(folder / "loads.yaml"), "--out", str(folder), "--format", "json,png,csv", "--no-areas"]
+    assert run(arguments) == 0
+    return folder
+
+
+def test_members_have_files_of_their_own_and_the_family_names_them(folder: Path) -> None:
+    stored = read_family((folder / "loads.json").read_text())
+    assert stored.files == ("loads-F-40.json", "loads-F-10.json")
+    for file in stored.files:
+        assert len(RegionMap.from_json((folder / file).read_text()).regions) == 2
+    assert {path.name for path in folder.glob("loads*.png")} == {"loads.png", "loads-3d.png"}
+    assert len(list(folder.glob("loads-F*.csv"))) == 6
+
+
+def test_a_family_is_verified_member_by_member(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["verify", str(folder / "loads.json")]) == 0
+    out = capsys.readouterr().out
+    assert "F = -40\n" in out
+    assert "F = -10\n" in out
+    damaged = folder / "damaged"
+    damaged.mkdir()
+    for path in folder.glob("*.json"):
+        (damaged / path.name).write_text(path.read_text())
+    text = (damaged / "loads-F-10.json").read_text()
+    (damaged / "loads-F-10.json").write_text(text.replace('"stable": 2', '"stable": 3'))
+    assert run(["verify", str(damaged / "loads.json")]) == 1
+
+
+def test_a_family_is_drawn_again(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["plot", str(folder / "loads.json"), "--out", str(tmp_path), "--format", "svg", "--style", "beamer"]
+    assert run(arguments) == 0
+    text = (tmp_path / "loads.svg").read_text()
+    assert "F = −40" in text
+    assert "F = −10" in text
+    capsys.readouterr()
+    assert run(["plot", str(folder / "loads.json"), "--format", "csv"]) == 2
+    assert run(["plot", str(folder / "loads.json"), "--at", "rho=1,L2=1"]) == 2
+    assert "give a member's file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda data: data | {"format": "ptmcad-family/2"}, "not of the format ptmcad-family/1"),
+        (lambda data: data | {"members": []}, "do not increase"),
+        (lambda data: data | {"members": data["members"][::-1]}, "do not increase"),
+        (lambda data: data | {"members": [{"value": "1", "file": "../loads-F-10.json"}]}, "a file beside it"),
+        (lambda data: data | {"members": [{"value": "1", "file": "none.json"}]}, "none.json"),
+        (lambda data: data | {"free": {"name": "F"}}, "missing"),
+        (lambda data: {k: v for k, v in data.items() if k != "title"}, "other keys"),
+    ],
+)
+def test_damaged_families_are_refused(
+    folder: Path, change: object, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = folder / "changed.json"
+    path.write_text(json.dumps(change(json.loads((folder / "loads.json").read_text()))))  # type: ignore[operator]
+    assert run(["verify", str(path)]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_other_commands_ask_for_a_member(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["locate", str(folder / "loads.json"), "--at", "rho=1,L2=1"]) == 2
+    assert "give the file of one of its members" in capsys.readouterr().err
+    assert run(["solve", str(folder / "loads.yaml"), "--at", "rho=1,L2=1,F=-10"]) == 0
+    assert "F3 = -10, F4 = -10" in capsys.readouterr().out
+    assert run(["solve", str(folder / "loads.yaml"), "--at", "rho=1,L2=1"]) == 2
+    assert "F is free" in capsys.readouterr().err
+    assert run(["check", str(folder / "loads.yaml")]) == 0
+    assert "family      of 2 such slices, F from -40 to 0" in capsys.readouterr().out
+
+
+def test_what_is_wrong_with_a_member_names_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    record = tmp_path / "slope.yaml"
+    record.write_text("system: {unknowns: {x: real}, equations: ['c*(x^3 + a*x + b)']}\n"
+                      "axes: {a: [-1, 1], b: [-1, 1]}\nfree: {c: [0, 1]}\nmembers: [0, 1]\n")  # fmt: skip
+    assert run(["classify", str(record), "--out", str(tmp_path), "--format", "json"]) == 2
+    assert "(at c = 0)" in capsys.readouterr().err
+
+
+def test_a_time_limit_leaves_whole_members(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "loads.yaml").write_text(RECORD.replace("[-40, -10]", "40"))
+    limited = ["classify", str(tmp_path / "loads.yaml"), "--out", str(tmp_path), "--format", "json", "--timeout", ".3"]
+    assert run(limited) == 3
+    number = int(capsys.readouterr().err.partition("the maps of ")[2].partition(" of 40")[0])
+    made = list(tmp_path.glob("loads-F*.json"))
+    assert len(made) == number
+    for path in made:
+        RegionMap.from_json(path.read_text())
+    assert not (tmp_path / "loads.json").exists()

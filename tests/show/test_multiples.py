@@ -1,0 +1,76 @@
+"""Pictures of families: small multiples, and maps one above the other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+import ptmcad
+from ptmcad.answer.family import FamilyMap
+from ptmcad.errors import ConfigError
+from ptmcad.show.render.multiples import draw_multiples
+from ptmcad.show.render.solid import MAX_FLOORS, draw_solid
+from ptmcad.show.style import styled
+
+
+@pytest.fixture(name="family", scope="module")
+def small() -> FamilyMap:
+    record = {"name": "cubic", "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b + c*x^2"]},
+              "axes": {"a": [-2, 2], "b": [-2, 2]}, "free": {"c": [0, 3]}, "members": 7}  # fmt: skip
+    return ptmcad.family(record, areas=False)
+
+
+def test_every_member_has_its_chart_its_value_and_the_same_colours(family: FamilyMap) -> None:
+    figure = family.plot()
+    assert len(figure.axes) == 7
+    texts = [text.get_text() for text in figure.texts]
+    assert [text for text in texts if text.startswith("c = ")] == [
+        "c = 0", "c = 0.5", "c = 1", "c = 1.5", "c = 2", "c = 2.5", "c = 3",
+    ]  # fmt: skip
+    faces: dict[int, set[object]] = {}
+    for axes, (_, result) in zip(figure.axes, family, strict=True):
+        patches = {patch.get_gid(): patch for patch in axes.patches}
+        for number, region in enumerate(result.regions):
+            found = next(patch for gid, patch in patches.items() if gid and gid.endswith(f"-region-{number}"))
+            faces.setdefault(region.total or 0, set()).add(found.get_facecolor())
+    assert set(faces) == {1, 3}
+    assert all(len(colours) == 1 for colours in faces.values())
+
+
+def test_outer_charts_alone_have_names(family: FamilyMap) -> None:
+    names = [(axes.get_xlabel(), axes.get_ylabel()) for axes in family.plot().axes]
+    assert names == [("", "b"), ("", ""), ("", ""), ("a", ""), ("a", "b"), ("a", ""), ("a", "")]
+
+
+def test_what_does_not_fit_is_refused(family: FamilyMap) -> None:
+    with pytest.raises(ConfigError, match="7 maps do not fit"):
+        family.plot(size="2x1in")
+
+
+def test_the_same_bytes_twice(family: FamilyMap, tmp_path: Path) -> None:
+    for draw in (draw_multiples, draw_solid):
+        for name in ("a.svg", "b.svg"):
+            draw(family, tmp_path / name, 100, styled())
+        assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+
+
+def test_of_many_maps_a_few_are_filled_and_of_the_others_there_are_curves(family: FamilyMap) -> None:
+    axes = family.plot(solid=True).axes[0]
+    kinds = [type(found).__name__ for found in axes.collections]
+    filled = sum(len(result.regions) for k, result in enumerate(family.members) if k in (0, 2, 3, 4, 6))
+    assert MAX_FLOORS == 5
+    assert kinds.count("Poly3DCollection") == filled
+    assert kinds.count("Line3DCollection") == 7
+
+
+def test_the_table_has_a_line_for_each_member(family: FamilyMap) -> None:
+    lines = family.table().splitlines()
+    assert len(lines) == 9
+    assert lines[1].split()[:3] == ["0", "2", str(len(family.members[0].cells))]
+    assert family.at(Fraction(1, 2)) is family.members[1]
+    with pytest.raises(KeyError):
+        family.at(Fraction(1, 3))
+    assert "<pre" in replace(family, title="T")._repr_html_()
