@@ -6,9 +6,9 @@ polynomials at the point and numbers of their real roots below it; in a certifie
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import fmpq
 
@@ -69,11 +69,26 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     return Location(status, cell.region, number, cell.total, cell.stable, cell.index)
 
 
+_KEPT = 4
+"""Maps of which what locates points is kept for the next one: many points may be asked of some maps in turn."""
+Made = TypeVar("Made")
+
+
+def _kept(latest: list[tuple[RegionMap, Made]], result: RegionMap, make: Callable[[], Made]) -> Made:
+    """What was made for this very map, or is made now; the latest ones are kept, by identity: to compare whole maps
+    would take longer."""
+    for k, (known, made) in enumerate(latest):
+        if known is result:
+            latest.append(latest.pop(k))
+            return made
+    made = make()
+    latest[:] = [*latest[1 - _KEPT :], (result, made)]
+    return made
+
+
 def _curves(result: RegionMap) -> list[Curve]:
-    """The curves over the map's base; kept for the next point of the same map."""
-    if not _latest_curves or _latest_curves[0][0] is not result:
-        _latest_curves[:] = [(result, curves_of(result.components, result.base))]
-    return _latest_curves[0][1]
+    """The curves over the map's base."""
+    return _kept(_latest_curves, result, lambda: curves_of(result.components, result.base))
 
 
 _latest_curves: list[tuple[RegionMap, list[Curve]]] = []
@@ -95,23 +110,31 @@ def in_steps(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) 
 
 
 def component_cells(result: RegionMap, cover: Cover) -> tuple[Components, dict[int | None, int]]:
-    """The components outside the cover, and which cell each of them is; kept for the next point of the same map."""
-    if not _latest or _latest[0][0] is not result:
-        complement = components(cover)
-        cells: dict[int | None, int] = {}
-        for number, cell in enumerate(result.cells):
-            try:
-                place = complement.locate(*in_steps(result, cover, (cell.sample[0], cell.sample[1])))
-            except ValueError as error:
-                raise _contradiction(f"the sample of cell {number} is not in the window") from error
-            if place is None or place in cells:
-                raise _contradiction(f"the sample of cell {number} is in the cover or in the component of another cell")
-            cells[place] = number
-        _latest[:] = [(result, complement, cells)]
-    return _latest[0][1:]
+    """The components outside the cover, and which cell each of them is.
+
+    Raises
+    ------
+    ConfigError
+        When a cell's sample is in no component of its own.
+    """
+    return _kept(_latest_components, result, lambda: _component_cells(result, cover))
 
 
-_latest: list[tuple[RegionMap, Components, dict[int | None, int]]] = []
+_latest_components: list[tuple[RegionMap, tuple[Components, dict[int | None, int]]]] = []
+
+
+def _component_cells(result: RegionMap, cover: Cover) -> tuple[Components, dict[int | None, int]]:
+    complement = components(cover)
+    cells: dict[int | None, int] = {}
+    for number, cell in enumerate(result.cells):
+        try:
+            place = complement.locate(*in_steps(result, cover, (cell.sample[0], cell.sample[1])))
+        except ValueError as error:
+            raise _contradiction(f"the sample of cell {number} is not in the window") from error
+        if place is None or place in cells:
+            raise _contradiction(f"the sample of cell {number} is in the cover or in the component of another cell")
+        cells[place] = number
+    return complement, cells
 
 
 def _contradiction(what: str) -> ConfigError:

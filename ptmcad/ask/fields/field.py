@@ -145,10 +145,12 @@ def field_of(
         values[r, c] = _at_pixels(model, quantity, choice, follower, (r, c), solutions.at[:, r, c])
     if quantity.is_barrier:  # there is one wherever there is another stable pose
         missed += int((np.isnan(values) & solutions.done & (grid.stable >= max(2, choice.rank))).sum())
+    beyond = np.isinf(values)
+    values[beyond] = np.nan
     number, difference = _checked(result, quantity, choice, values, follower, checks)
     return Field(
         quantity.name, str(choice), quantity.unit, grid.x, grid.y, grid.names, values, grid.region, missed, number,
-        difference,
+        difference, int(beyond.sum()),
     )  # fmt: skip
 
 
