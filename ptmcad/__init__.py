@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ptmcad.answer.poses import Pose, Poses
     from ptmcad.answer.regionmap import RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
+    from ptmcad.answer.sweep import Sweep
     from ptmcad.ask.classification import classify
     from ptmcad.ask.families import family
     from ptmcad.ask.ranges import intervals, operation_widths, pose_paths
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from ptmcad.question.config import make_mechanism as Mechanism
     from ptmcad.question.config import make_system as System
     from ptmcad.question.slice import Count, Point, Slice
+    from ptmcad.sweeping.run import sweep
     from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
     from ptmcad.verification import VerifyReport, verify
 
@@ -50,6 +52,8 @@ _HOMES = {
     "Pose": "answer.poses",
     "Poses": "answer.poses",
     "solve": "ask.solving",
+    "Sweep": "answer.sweep",
+    "sweep": "sweeping.run",
     "intervals": "ask.ranges",
     "operation_widths": "ask.ranges",
     "pose_paths": "ask.ranges",
@@ -74,6 +78,7 @@ __all__ = [
     "RegionMap",
     "Slice",
     "SliceVariety",
+    "Sweep",
     "System",
     "VerifyReport",
     "__version__",
@@ -90,6 +95,7 @@ __all__ = [
     "slice_from_options",
     "slice_variety",
     "solve",
+    "sweep",
     "verify",
 ]
 

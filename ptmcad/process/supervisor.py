@@ -24,6 +24,7 @@ from types import FrameType, TracebackType
 from typing import NoReturn, TextIO
 
 from ptmcad.process.handover import Topic, connect, disconnect, send
+from ptmcad.process.lifeline import die_with
 from ptmcad.process.streams import open_standard_streams, quiet_stream, report
 from ptmcad.process.watch import Watch
 
@@ -64,7 +65,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     if child == 0:
         for descriptor in (messages[0], printed[0], lifeline[1], *wake):
             os.close(descriptor)
-        _die_with_the_parent(lifeline[0], parent)
+        die_with(parent, lifeline[0])
         connect(messages[1])
         _redirect(printed[1])
     elif sys.stderr is not None:
@@ -108,16 +109,6 @@ def _check_descriptors() -> None:
 
 
 _PIPE_SIGNAL = (signal.SIGIO,) if hasattr(signal, "SIGIO") else ()
-
-
-def _die_with_the_parent(lifeline: int, parent: int) -> None:
-    """Let the kernel end this process when the parent's end of the pipe is closed, whatever code it is in."""
-    if hasattr(os, "O_ASYNC"):
-        signal.signal(signal.SIGIO, signal.SIG_DFL)  # the caller may have had it ignored
-        fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
-        fcntl.fcntl(lifeline, fcntl.F_SETFL, os.O_ASYNC)  # sends SIGIO, whose default is to end the process
-    if os.getppid() != parent:
-        os._exit(1)
 
 
 def _redirect(printed: int) -> None:

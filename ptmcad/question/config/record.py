@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,8 +21,8 @@ from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count, unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
-RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "free", "members", "count",
-               "units", "reference")  # fmt: skip
+RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "free", "members", "sweep",
+               "count", "units", "reference")  # fmt: skip
 _MAX_NAME = 100
 _MAX_TITLE = 300
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -44,6 +45,8 @@ class Record:
     Attributes
     ----------
     values_place : where the values are given, or would be; None of what is no record.
+    sweep : what is swept, as it is written; `ptmcad.question.config.sweeps` reads it.
+    constants : values of swept names that are no parameters, and which expressions use.
     """
 
     name: str = ""
@@ -57,6 +60,8 @@ class Record:
     units: Mapping[str, str] = field(default_factory=dict)
     reference: Mapping[str, Any] = field(default_factory=dict)
     place: Place = field(default_factory=Place)
+    sweep: Node | None = None
+    constants: Mapping[str, Fraction] = field(default_factory=dict)
     count_place: Place = field(default_factory=lambda: Place("count"))
     values_place: Place | None = None
     described: Described | None = None
@@ -121,6 +126,7 @@ def read_record(tree: Tree, faults: Faults) -> Record:
         "axes": lambda node: _axes(node, faults),
         "free": _free,
         "members": lambda node: node,
+        "sweep": lambda node: node,
         "count": count_of,
         "units": _units,
         "reference": _reference,
