@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -46,7 +45,6 @@ class Record:
     ----------
     values_place : where the values are given, or would be; None of what is no record.
     sweep : what is swept, as it is written; `ptmcad.question.config.sweeps` reads it.
-    constants : values of swept names that are no parameters, and which expressions use.
     """
 
     name: str = ""
@@ -61,7 +59,6 @@ class Record:
     reference: Mapping[str, Any] = field(default_factory=dict)
     place: Place = field(default_factory=Place)
     sweep: Node | None = None
-    constants: Mapping[str, Fraction] = field(default_factory=dict)
     count_place: Place = field(default_factory=lambda: Place("count"))
     values_place: Place | None = None
     described: Described | None = None

@@ -89,8 +89,7 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
             if name in record.model.unknowns:
                 raise window.place.error(f"{name} is an unknown: an axis is a parameter, or a new name that one uses")
             axes.append(axis_of(name, window, record.model))
-    free = {name: constant(value) for name, value in record.constants.items()}
-    resolution = _Resolution(record, free | {name: axis(index) for index, name in enumerate(record.axes)})
+    resolution = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)})
     for name in record.model.parameters:
         with faults:
             resolution.resolve(name, ())
@@ -166,8 +165,7 @@ def _count(record: Record) -> Count:
 def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fraction]:
     """Resolve a record to a point; ``axes`` holds the values of its axes that are no parameters."""
     mechanism = record.model
-    free = {name: constant(value) for name, value in record.constants.items()}
-    resolved = _Resolution(record, free | dict(axes)).run()
+    resolved = _Resolution(record, axes).run()
     values = {}
     for name, expression in resolved.items():
         place = record.place_of(name)
@@ -194,14 +192,7 @@ def _texts(
     A k that the springs do not have by default, say, is no parameter of the mechanism, but "k/10" says nothing without
     it. No engine looks at the sign of such a name, so it has to be proved here.
     """
-    names = (axes[0].name, axes[1].name)
-
-    def written(name: str) -> str:
-        text = _written(name, record)
-        # a value of a sweep's has no name in a slice
-        return resolved[name].to_text(names) if record.constants and _rests_on(text, record) else text
-
-    texts = {name: written(name) for name in effective}
+    texts = {name: _written(name, record) for name in effective}
     waiting = list(texts.values())
     while waiting:
         for name in names_in(waiting.pop()):
@@ -214,13 +205,9 @@ def _texts(
             )
             if problem:
                 raise record.place_of(name).error(problem)
-            texts[name] = written(name)
+            texts[name] = _written(name, record)
             waiting.append(texts[name])
     return {name: texts[name] for name in record.model.parameters if name in texts}
-
-
-def _rests_on(text: str, record: Record) -> bool:
-    return not record.constants.keys().isdisjoint(names_in(text))
 
 
 def written_in(record: Record, member: Slice) -> dict[str, str]:

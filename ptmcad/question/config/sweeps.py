@@ -14,12 +14,12 @@ from typing import Any
 
 from ptmcad.errors import Faults
 from ptmcad.mechanism import Model
+from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import plain
 from ptmcad.question.config.record import Record, check_axis_name, number_text, read_record
 from ptmcad.question.config.resolution import check_number, names_in_scalar, number_of, slice_of
 from ptmcad.question.slice import Slice
 from ptmcad.question.sweep import Listed, Product, Spaced, Sweep, Values
-from ptmcad.text.numerals import text_of
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python, read_file
 
@@ -57,16 +57,7 @@ class Sweeping:
 
 def with_values(record: Record, values: Mapping[str, Fraction]) -> Record:
     """The record with values for what it sweeps; its title and its published answers are those of another slice."""
-    known = record.model.parameters
-    fixed = {name: Scalar(text_of(value), Place(name)) for name, value in values.items() if name in known}
-    return replace(
-        record,
-        sweep=None,
-        values={**record.values, **fixed},
-        constants={name: value for name, value in values.items() if name not in known},
-        title="",
-        reference={},
-    )
+    return replace(with_numbers(record, values, {}), sweep=None, title="", reference={})
 
 
 def load_sweep(path: str | Path) -> Sweeping:
@@ -269,5 +260,5 @@ def settled(record: Record, given: Mapping[str, Scalar]) -> tuple[Record, dict[s
     left = {name: place for name, place in swept.items() if name not in given and name not in record.axes}
     for name, place in left.items():
         raise place.error(f"{name} is swept too: add --set {name}=VALUE, or ask `ptmcad sweep` for all of its values")
-    settled = replace(record, sweep=None, constants={**record.constants, **new})
+    settled = replace(with_numbers(record, new, {}), sweep=None)
     return settled, {name: scalar for name, scalar in given.items() if name not in new}
