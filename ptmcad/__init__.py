@@ -15,10 +15,12 @@ TYPE_CHECKING = False  # type checkers take it for true; the module typing would
 if TYPE_CHECKING:
     from typing import Any
 
+    from ptmcad.answer.changes import Change, Changes
     from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.poses import Pose, Poses
     from ptmcad.answer.regionmap import RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
+    from ptmcad.ask.changes import changes
     from ptmcad.ask.classification import classify
     from ptmcad.ask.families import family
     from ptmcad.ask.ranges import intervals, operation_widths, pose_paths
@@ -43,6 +45,9 @@ _HOMES = {
     "open_cad": "ask.stepwise",
     "AlgebraicNumber": "text.enclosure",
     "Enclosure": "text.enclosure",
+    "changes": "ask.changes",
+    "Change": "answer.changes",
+    "Changes": "answer.changes",
     "classify": "ask.classification",
     "family": "ask.families",
     "FamilyMap": "answer.family",
@@ -64,6 +69,8 @@ _HOMES = {
 
 __all__ = [
     "AlgebraicNumber",
+    "Change",
+    "Changes",
     "Count",
     "Enclosure",
     "FamilyMap",
@@ -77,6 +84,7 @@ __all__ = [
     "System",
     "VerifyReport",
     "__version__",
+    "changes",
     "classify",
     "counts_at",
     "discriminant_variety",

@@ -23,7 +23,9 @@ from ptmcad.question.config import Family, family_from
 from ptmcad.text.parsing import number_for
 
 if TYPE_CHECKING:
+    from ptmcad.algebra.polynomials import Ratio
     from ptmcad.exact.family import FamilyVariety
+    from ptmcad.exact.models import ParametricSystem
 
 
 class Common(NamedTuple):
@@ -116,13 +118,24 @@ def in_common(asked: Family, options: Options = DEFAULTS) -> Common:
     if all(is_certified(asked.member(value), options.engine) for value in asked.values):
         return Common(asked, None)
     from ptmcad.exact.family import family_variety
+
+    try:
+        return Common(asked, family_variety(*in_space(asked)))
+    except (ExpressionError, DegenerateSliceError, InfiniteSolutionsError):
+        return Common(asked, None)
+
+
+def in_space(asked: Family) -> tuple[ParametricSystem, dict[str, Ratio]]:
+    """The system, and its parameters over Z[x, y, z].
+
+    Raises
+    ------
+    ExpressionError
+        When they are too large to be expanded in three variables.
+    """
     from ptmcad.exact.models import system_from
     from ptmcad.exact.models.space import space_parameters
 
     system = system_from(asked.model)
     x, y = (a.name for a in asked.axes)
-    try:
-        parameters = space_parameters(system.ring.parameters, asked.text, (x, y, asked.free.name))
-        return Common(asked, family_variety(system, parameters))
-    except (ExpressionError, DegenerateSliceError, InfiniteSolutionsError):
-        return Common(asked, None)
+    return system, space_parameters(system.ring.parameters, asked.text, (x, y, asked.free.name))
