@@ -23,7 +23,7 @@ from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.changes import Change, Changes
 from ptmcad.ask.changewords import described
 from ptmcad.ask.engines import is_certified
-from ptmcad.ask.families import Common, in_common, in_space
+from ptmcad.ask.members import Common, in_common, in_space
 from ptmcad.errors import ConfigError, HypothesisError, LimitReached
 from ptmcad.exact.arrangement import Picture, picture_of
 from ptmcad.exact.familyprojection import OutOfReach, critical_values

@@ -13,7 +13,7 @@ import ptmcad
 from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.changes import Change, Changes
 from ptmcad.ask import changes as asking
-from ptmcad.ask.families import in_common
+from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError, DegenerateSliceError, LimitReached
 from ptmcad.exact.familyprojection import OutOfReach
 from ptmcad.options import DEFAULTS
@@ -46,8 +46,8 @@ ASTROID = {
     [
         pytest.param(of("u^2 - c + a^2 + b^2", -1, 3), ["0", "1", "2"], "a region of 2 solutions appears",
                      id="a disc of radius sqrt c: appears, reaches all sides, fills the window"),
-        pytest.param(of("u^2 - c^2 + a^2 + b^2", "1/2", 2), ["1", "1.4142136"], "the region of 0 solutions splits into 4",
-                     id="a disc of radius c: corners at an irrational value"),
+        pytest.param(of("u^2 - c^2 + a^2 + b^2", "1/2", 2), ["1", "1.4142136"],
+                     "the region of 0 solutions splits into 4", id="a disc of radius c: corners at an irrational value"),
         pytest.param(of("u^2 - c^2 + a^2 + b^2", -2, 2), ["-1.4142136", "-1", "0", "1", "1.4142136"],
                      "4 regions of 0 solutions appear", id="symmetric, and vanishing at one value only"),
         pytest.param(of("u^2 - (a^2 - 1/4)^2 - b^2 + c", "-1/4", "1/4"), ["0", "0.0625"],

@@ -46,7 +46,7 @@ def test_sides_and_points_are_where_the_map_has_them(name: str, base: int) -> No
     for number, side in enumerate(arrangement.sides):
         along, across = (y, x) if number < 2 else (x, y)
         edge = across.high - beside if number % 2 else across.low + beside
-        seen = []
+        seen: list[int] = []
         for k in range(60):
             free = along.low + (along.high - along.low) * Fraction(200 * k + 101, 12_001)  # off the wedges' points
             point = (edge, free) if number < 2 else (free, edge)
