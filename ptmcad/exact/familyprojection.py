@@ -4,23 +4,13 @@ Guarantee: between neighbouring values of a complete list the members' maps are 
 keeps the window's sides: cells, counts, what is adjacent, and in which order regions lie along the sides.
 
 Why. Let the surfaces p be irreducible in Z[x, y, z], and let them be projected along v, one of x and y, the other one
-being w. Let E be the curves in the plane of (w, z) that are given by the irreducible factors of disc_v p, of
+being w. Let E be the curves in the plane of (z, w) that are given by the irreducible factors of disc_v p, of
 res_v(p, q), of p on the window's two edges v = const, and of p itself where v is not in it; and D the values of z that
-the projection of E along w gives in the same way, together with those of points (w, z) over which a p vanishes for
-all v.
-
-1. Between values of D the curves E are disjoint graphs w(z) in the window, and on each of them only one irreducible
-   factor vanishes, with nonzero gradient. So each discriminant and resultant is order-invariant on the graph.
-2. Over a connected curve on which disc_v p is order-invariant, p does not vanish identically and its degree in v stays
-   the same, p is delineable (McCallum's theorem): its roots are graphs of continuous functions, whose number and order
-   is constant. A list for McCallum's projection lacks nothing here: the points at which p vanishes identically, the
-   theorem's known exception in three dimensions, lie over values of D. Nor is the degree needed in a bounded window:
-   near a point at which p(., c) is not zero, c outside of the window, v = c + 1/t makes c the place at infinity, keeps
-   the discriminant, and gives a polynomial in t of constant degree. The same for the product of all p shows that
-   roots of two of them stay equal or different.
-3. So over each graph of E, and in the same way over each part of the plane between them, the surfaces cut the cylinder
-   into parts that are products with the interval of z. An arc of a member's line over the graph that is free of the
-   surfaces belongs to a connected part of space, which borders the same cells for every z: adjacency is constant, too.
+the projection of E along w gives in the same way, together with those of points (z, w) over which a p vanishes for all
+v. Between values of D, discriminants and resultants have a constant order on each graph of E, and no p vanishes
+identically over a point: the known exception of McCallum's projection in three dimensions does not occur. So the
+surfaces are delineable over the graphs of E and over the parts between them, and all pieces are products with the
+interval of z. docs/method.md has the proof, also of why leading coefficients are not needed.
 
 References: McCallum, An improved projection operation for cylindrical algebraic decomposition of three-dimensional
 space, J. Symb. Comp. 5 (1988); Strzebonski, J. Symb. Comp. 29 (2000).

@@ -47,7 +47,7 @@ ASTROID = {
         pytest.param(of("u^2 - c + a^2 + b^2", -1, 3), ["0", "1", "2"], "a region of 2 solutions appears",
                      id="a disc of radius sqrt c: appears, reaches all sides, fills the window"),
         pytest.param(of("u^2 - c^2 + a^2 + b^2", "1/2", 2), ["1", "1.4142136"],
-                     "the region of 0 solutions splits into 4", id="a disc of radius c: corners at an irrational value"),
+                     "the region of 0 solutions splits into 4", id="a disc of radius c, corners at sqrt 2"),
         pytest.param(of("u^2 - c^2 + a^2 + b^2", -2, 2), ["-1.4142136", "-1", "0", "1", "1.4142136"],
                      "4 regions of 0 solutions appear", id="symmetric, and vanishing at one value only"),
         pytest.param(of("u^2 - (a^2 - 1/4)^2 - b^2 + c", "-1/4", "1/4"), ["0", "0.0625"],
