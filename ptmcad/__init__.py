@@ -15,11 +15,13 @@ TYPE_CHECKING = False  # type checkers take it for true; the module typing would
 if TYPE_CHECKING:
     from typing import Any
 
+    from ptmcad.answer.changes import Change, Changes
     from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.poses import Pose, Poses
     from ptmcad.answer.regionmap import RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
     from ptmcad.answer.sweep import Sweep
+    from ptmcad.ask.changes import changes
     from ptmcad.ask.classification import classify
     from ptmcad.ask.families import family
     from ptmcad.ask.ranges import intervals, operation_widths, pose_paths
@@ -45,6 +47,9 @@ _HOMES = {
     "open_cad": "ask.stepwise",
     "AlgebraicNumber": "text.enclosure",
     "Enclosure": "text.enclosure",
+    "changes": "ask.changes",
+    "Change": "answer.changes",
+    "Changes": "answer.changes",
     "classify": "ask.classification",
     "family": "ask.families",
     "FamilyMap": "answer.family",
@@ -68,6 +73,8 @@ _HOMES = {
 
 __all__ = [
     "AlgebraicNumber",
+    "Change",
+    "Changes",
     "Count",
     "Enclosure",
     "FamilyMap",
@@ -82,6 +89,7 @@ __all__ = [
     "System",
     "VerifyReport",
     "__version__",
+    "changes",
     "classify",
     "counts_at",
     "discriminant_variety",

@@ -11,7 +11,7 @@ from flint import fmpq
 import ptmcad
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import SPACE, UnknownPolynomial, at_third
-from ptmcad.ask.families import Common, in_common, member_map
+from ptmcad.ask.members import Common, in_common, member_map
 from ptmcad.errors import PtmcadError
 from ptmcad.exact.models.space import space_parameters
 from ptmcad.options import Options
