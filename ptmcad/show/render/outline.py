@@ -2,7 +2,8 @@
 
 Guarantee: each wall is the branch that the map names, from exact root isolation of the stored polynomials at rational
 abscissae; every vertex is within 2^-17 of the view's size of the branch, and two neighbouring vertices are so near that
-their chord misses the branch's middle by at most `TOLERANCE` of the view's size, up to the depth of subdivision.
+their chord misses the branch's middle by at most `TOLERANCE`, or what is asked for, of the view's size, up to the depth
+of subdivision.
 
 Not guaranteed: the shape between the vertices. Nothing but pictures may be decided by an outline.
 """
@@ -145,14 +146,19 @@ class Outline:
         return image.T if self.swapped else image
 
 
-def outline(result: RegionMap, view: View | None = None) -> Outline:
-    """The outline of a map in a view, the whole window when None."""
-    return _outline(Same(result), View.whole(result) if view is None else view)
+def outline(result: RegionMap, view: View | None = None, tolerance: float = TOLERANCE) -> Outline:
+    """The outline of a map in a view, the whole window when None.
+
+    Parameters
+    ----------
+    tolerance : how far a chord may miss its branch, as a share of the view's size; the vertices are on it in any case.
+    """
+    return _outline(Same(result), View.whole(result) if view is None else view, tolerance)
 
 
 # a map is drawn into several files, in several sizes and into the report
 @lru_cache(maxsize=32)
-def _outline(of: Same[RegionMap], view: View) -> Outline:
+def _outline(of: Same[RegionMap], view: View, tolerance: float) -> Outline:
     result = of.it
     base = result.base
     curves = by_component(curves_of(result.components, base))
@@ -162,7 +168,7 @@ def _outline(of: Same[RegionMap], view: View) -> Outline:
     for number, stack in enumerate(result.stacks):
         ends = _ends(result, stack, roots)
         if ends[0] < high and ends[1] > low:
-            stacks.append(_Tracer(result, view, curves, stack, number).trace(ends))
+            stacks.append(_Tracer(result, view, curves, stack, number).trace(ends, tolerance))
     lines = []
     for k, abscissa in enumerate(roots):
         component = _vertical_component(result, k)
@@ -224,8 +230,8 @@ class _Tracer:
         self.edges = (self._height(axis.low), self._height(axis.high))
         self.width = from_fraction((self.shown[1] - self.shown[0]) / 2**17)
 
-    def trace(self, ends: Interval) -> StackOutline:
-        """The stack's walls from end to end, or to the view's edge."""
+    def trace(self, ends: Interval, tolerance: float) -> StackOutline:
+        """The stack's walls from end to end, or to the view's edge; see `outline`."""
         low, high = max(ends[0], self.base[0]), min(ends[1], self.base[1])
         inner = (high - low) * _LIMIT
         columns = {0.0: self._column(low + inner, low), 1.0: self._column(high - inner, high)}
@@ -241,7 +247,7 @@ class _Tracer:
             for s, t in pending:
                 middle = (s + t) / 2
                 columns[middle] = self._column(_between(low, high, middle))
-                if _deviation(columns[s], columns[middle], columns[t]) > TOLERANCE:
+                if _deviation(columns[s], columns[middle], columns[t]) > tolerance:
                     following += [(s, middle), (middle, t)]
             pending = following
         ordered = np.array([columns[s] for s in sorted(columns)])
