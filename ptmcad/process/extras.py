@@ -19,6 +19,10 @@ ANYWIDGET_MISSING = (
     "a living map in a notebook needs the package anywidget, which is not installed: pip install 'ptmcad[notebook]'"
 )
 
+AIOHTTP_MISSING = (
+    "the explorer's page is served by the package aiohttp, which is not installed: pip install 'ptmcad[explore]'"
+)
+
 
 def require_numba() -> None:
     """Refuse at once what the certified engine would refuse later.
@@ -42,6 +46,18 @@ def require_anywidget() -> None:
     """
     if find_spec("anywidget") is None:
         raise ConfigError(ANYWIDGET_MISSING)
+
+
+def require_aiohttp() -> None:
+    """Refuse what the explorer needs.
+
+    Raises
+    ------
+    ConfigError
+        When aiohttp is not installed.
+    """
+    if find_spec("aiohttp") is None:
+        raise ConfigError(AIOHTTP_MISSING)
 
 
 def require_ffmpeg() -> str:

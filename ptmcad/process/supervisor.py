@@ -24,6 +24,7 @@ from types import FrameType, TracebackType
 from typing import NoReturn, TextIO
 
 from ptmcad.process.handover import Topic, connect, disconnect, send
+from ptmcad.process.lifeline import PIPE_SIGNAL, end_with
 from ptmcad.process.streams import open_standard_streams, quiet_stream, report
 from ptmcad.process.watch import Watch
 
@@ -49,7 +50,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     gc.freeze()  # what there is by now is not looked through again, which would copy its pages in the child
     parent = os.getpid()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, (*heeded, signal.SIGCHLD))
-    before -= {*heeded, signal.SIGCHLD, *_PIPE_SIGNAL}  # of a caller that has blocked them, too: this waits for them
+    before -= {*heeded, signal.SIGCHLD, *PIPE_SIGNAL}  # of a caller that has blocked them, too: this waits for them
     try:
         child = os.fork()
     except OSError:  # no more processes allowed: better unwatched than not at all
@@ -64,7 +65,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     if child == 0:
         for descriptor in (messages[0], printed[0], lifeline[1], *wake):
             os.close(descriptor)
-        _die_with_the_parent(lifeline[0], parent)
+        end_with(lifeline[0], parent)
         connect(messages[1])
         _redirect(printed[1])
     elif sys.stderr is not None:
@@ -105,19 +106,6 @@ def _check_descriptors() -> None:
     finally:
         for descriptor in spare:
             os.close(descriptor)
-
-
-_PIPE_SIGNAL = (signal.SIGIO,) if hasattr(signal, "SIGIO") else ()
-
-
-def _die_with_the_parent(lifeline: int, parent: int) -> None:
-    """Let the kernel end this process when the parent's end of the pipe is closed, whatever code it is in."""
-    if hasattr(os, "O_ASYNC"):
-        signal.signal(signal.SIGIO, signal.SIG_DFL)  # the caller may have had it ignored
-        fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
-        fcntl.fcntl(lifeline, fcntl.F_SETFL, os.O_ASYNC)  # sends SIGIO, whose default is to end the process
-    if os.getppid() != parent:
-        os._exit(1)
 
 
 def _redirect(printed: int) -> None:

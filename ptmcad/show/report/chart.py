@@ -60,7 +60,7 @@ def chart(seen: Shapes) -> Chart:
     ]
     places = tuple(seen.view.approximate_position((c.sample[0], c.sample[1])) for c in result.cells)
     return Chart(
-        whole=_picture(seen, "map", tips, _region_labels(seen)),
+        whole=_picture(seen, "map", tips, region_labels(seen)),
         details=tuple(_picture(zoom.outline, f"detail-{letter}", (), ()) for letter, zoom in marks),
         places=places,
         thin_walls=any(not separates for _, separates, _ in seen.walls()),
@@ -116,22 +116,16 @@ def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[La
         f'<g transform="translate({LEFT} {RIM})">',
         f'<rect class="{plate}" width="{SIDE}" height="{SIDE}"/><g clip-path="url(#{name}-window)">',
     ]
-    for number, region in enumerate(result.regions):
-        outline = "".join(_closed(p) for p in seen.polygons(number))
-        if not outline:
-            continue
-        fill = fill_of(region, count)
+    for number, outline in outlines(seen):
+        fill = fill_of(result.regions[number], count)
         paints = [fill.face, *([f"url(#{hatch_id(fill.hatch)})"] if fill.hatch else [])]
         # between the regions of a certified map is what is undetermined, however narrow: it is seen by their rims
         kinds = ["fill"] * (len(paints) - 1) + ["fill" if result.cover is None else "fill rim"]
         for kind, paint in zip(kinds, paints, strict=True):
             parts.append(f'<path class="{kind}" fill="{paint}" d="{outline}"/>')
-    lines: dict[tuple[bool, int], list[str]] = {}
-    for component, separates, line in seen.walls():
-        lines.setdefault((separates, component), []).append(_open(line))
-    for (separates, component), pieces in sorted(lines.items()):
+    for (separates, component), line in wall_lines(seen).items():
         kind = "wall strong" if separates else "wall"
-        parts.append(f'<path class="{kind}" data-curve="{component}" d="{"".join(pieces)}"/>')
+        parts.append(f'<path class="{kind}" data-curve="{component}" d="{line}"/>')
     for region_number, x, y in labels:
         text = count_text(result.regions[region_number], count)
         parts.append(
@@ -147,6 +141,22 @@ def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[La
         )
     parts.append('<circle class="sample" r="5" visibility="hidden"/></g></svg>')
     return "".join(parts)
+
+
+def outlines(seen: Shapes) -> Iterator[tuple[int, str]]:
+    """Every region that is seen, with its outline as the data of a path."""
+    for number in range(len(seen.result.regions)):
+        outline = "".join(_closed(p) for p in seen.polygons(number))
+        if outline:
+            yield number, outline
+
+
+def wall_lines(seen: Shapes) -> dict[tuple[bool, int], str]:
+    """The walls as the data of paths: those that do not separate regions first, then by components."""
+    lines: dict[tuple[bool, int], list[str]] = {}
+    for component, separates, line in seen.walls():
+        lines.setdefault((separates, component), []).append(_open(line))
+    return {kind: "".join(pieces) for kind, pieces in sorted(lines.items())}
 
 
 def _window_text(seen: Shapes) -> str:
@@ -205,7 +215,7 @@ def counts_text(part: Cell | Region, model: Model) -> str:
     return counted(model, total) if stable is None else f"{stable} stable of {counted(model, total)}"
 
 
-def _region_labels(seen: Shapes) -> list[Label]:
+def region_labels(seen: Shapes) -> list[Label]:
     """For each region into which its count can be written, even in the larger type of phones, a point deep inside."""
     pixels = 60
     image = seen.raster(pixels, pixels)
