@@ -191,12 +191,12 @@ def _members(text: str) -> Node:
 
 
 def record_from_options(
-    config: str | Path | None,
-    slice: str | None,
-    sets: tuple[str, ...],
-    ranges: tuple[str, ...],
-    count: str | Count | None,
-    mechanism: str | None,
+    config: str | Path | None = None,
+    slice: str | None = None,
+    sets: tuple[str, ...] = (),
+    ranges: tuple[str, ...] = (),
+    count: str | Count | None = None,
+    mechanism: str | None = None,
     free: str | None = None,
 ) -> Record:
     """The record with what the options change in it.
