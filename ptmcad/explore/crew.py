@@ -21,8 +21,8 @@ from typing import Any
 
 from ptmcad.explore.panel import Panel
 
-ANSWER_SECONDS = 60.0
-"""After which a worker is ended: FLINT's code, and long steps, do not look at any clock."""
+ANSWER_SECONDS = 180.0
+"""After which a worker is ended: FLINT's code, and compiling the certified engine, do not look at any clock."""
 CANCEL_SECONDS = 2.0
 """In which a superseded job has to leave; it is ended then."""
 _LONGEST = 1 << 26

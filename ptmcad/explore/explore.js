@@ -2,7 +2,7 @@
 // The map that follows the sliders, and the solutions at a point of it.
 
 const REST = 160; // milliseconds without a change after which areas and smooth curves are asked for
-const ROUNDS = 4; // of a certified map that is refined while the hand rests
+const ROUNDS = 8; // of a certified map that is refined while the hand rests
 const state = document.getElementById("state");
 const byId = (id) => document.getElementById(id);
 const view = {
@@ -258,7 +258,7 @@ byId("map").addEventListener("pointermove", (event) => {
   if (inside(share) && (held || (event.pointerType === "mouse" && !view.fixed))) movePoint(share);
 });
 for (const kind of ["pointerup", "pointercancel"]) byId("map").addEventListener(kind, () => { held = false; });
-probe.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false });
+probe.addEventListener("touchstart", (event) => { if (event.cancelable) event.preventDefault(); }, { passive: false });
 probe.addEventListener("keydown", (event) => {
   const arrow = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowDown: [1, -1], ArrowUp: [1, 1] }[event.key];
   if (!arrow || event.ctrlKey || event.metaKey || event.altKey) return;

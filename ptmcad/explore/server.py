@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import socket
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
 from aiohttp import web
+from aiohttp.http_exceptions import HttpProcessingError
 
 from ptmcad.errors import ConfigError
 from ptmcad.explore.crew import Worker
@@ -39,6 +41,7 @@ HEADERS = {
 STATUS = {"done": 200, "superseded": 409, "refused": 422, "lost": 503}
 KINDS = {"map": ("fine", "framed"), "point": ("at",), "record": (), "save": ("name", "formats")}
 """What a question of each kind says beside its tab and the sliders' values."""
+_LOG = logging.getLogger("ptmcad.explore")
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
@@ -166,6 +169,11 @@ async def _with_headers(_request: web.Request, response: web.StreamResponse) -> 
     response.headers["Server"] = "ptmcad"
 
 
+def _is_own_fault(record: logging.LogRecord) -> bool:
+    """Whether a message is about an error of this program: what is sent that is no HTTP is answered, and no news."""
+    return not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError))
+
+
 def listening(port: int) -> socket.socket:
     """A socket on 127.0.0.1.
 
@@ -202,7 +210,9 @@ async def serve(panel: Panel, folder: Path, port: int, announce: Callable[[str],
     own = listening(port)
     guard = Guard(own.getsockname()[1])
     server = Server(panel, folder, guard)
-    runner = web.AppRunner(server.application(), access_log=None, handle_signals=False, shutdown_timeout=0.1)
+    _LOG.addFilter(_is_own_fault)
+    app = server.application()
+    runner = web.AppRunner(app, access_log=None, logger=_LOG, handle_signals=False, shutdown_timeout=0.1)
     await runner.setup()
     try:
         await web.SockSite(runner, own).start()

@@ -11,6 +11,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 from ptmcad.answer.regionmap import RegionMap
@@ -29,11 +30,16 @@ from ptmcad.show.report.reproduction import reproduction
 
 EXACT_SECONDS = 50.0
 """For one exact map."""
-COARSE_SECONDS, FINE_SECONDS = 0.5, 5.0
-"""For a certified map while one drags, and where the hand rests."""
+CERTIFIED_SECONDS, FINE_SECONDS = 40.0, 3.0
+"""For a certified map at most; and after which the next one on the way is good enough where the hand rests."""
 PICTURES = ("png", "svg", "pdf")
 DIGITS = 10
 """To which solutions at a point are computed; fewer are shown."""
+
+
+class _Enough(Exception):
+    """The map that was handed over is good enough for now."""
+
 
 Job = Mapping[str, Any]
 
@@ -67,7 +73,7 @@ class Tasks:
         fine = bool(job["fine"])
         slice = self.panel.slice(values)
         if is_certified(slice, "auto"):
-            result = self._certified(slice, FINE_SECONDS if fine else COARSE_SECONDS)
+            result = self._certified(slice, fine)
         else:
             result = self._exact(slice, values, areas=fine, sparing=True)
         return map_view(result, fine=fine, framed=bool(job["framed"]))
@@ -80,17 +86,27 @@ class Tasks:
             return region_map(slice, options)
         return member_map(self.families.common(values, options), values[free[0]], options)
 
-    def _certified(self, slice: Slice, seconds: float) -> RegionMap:
-        """The certified map as far as it is in some seconds, from where the last one of this slice was."""
-        resume = self.last if self.last is not None and replace(self.last.slice, name="") == replace(slice, name="") \
-            else None  # fmt: skip
-        self.last = None
+    def _certified(self, slice: Slice, fine: bool) -> RegionMap:
+        """The first certified map there is, or from where the last one of this slice was some seconds further."""
+        last, self.last = self.last, None
+        resume = last if last is not None and replace(last.slice, name="") == replace(slice, name="") else None
+        started, seconds = perf_counter(), FINE_SECONDS if fine else 0
+
+        def handed(found: RegionMap) -> None:
+            self.last = found
+            if perf_counter() - started >= seconds:
+                raise _Enough
+
         try:
-            self.last = region_map(slice, Options(timeout=seconds, progress=self._progress, resume=resume))
+            options = Options(timeout=CERTIFIED_SECONDS, progress=self._progress, partial=handed, resume=resume)
+            self.last = region_map(slice, options)
+        except _Enough:
+            pass
         except LimitReached as stop:
             if not isinstance(stop.partial, RegionMap):
                 raise
             self.last = stop.partial
+        assert self.last is not None
         return self.last
 
     @property
@@ -132,7 +148,7 @@ class Tasks:
                 raise ConfigError(f"{file} is there already: choose another name")
         check_writable(self.folder, tuple(names))
         if is_certified(slice, "auto"):
-            result = replace(self._certified(self.panel.slice(values), FINE_SECONDS), slice=slice)
+            result = replace(self._certified(self.panel.slice(values), fine=True), slice=slice)
         else:
             result = replace(self._exact(slice, values, areas=True, sparing=False), slice=slice)
         return {"files": [path.name for path in write_files(self.folder, _writers(result, record, names))]}
