@@ -82,4 +82,4 @@ def test_a_coarser_outline_has_fewer_vertices_and_all_of_them_on_the_curves() ->
     for many, few in zip(fine.stacks, coarse.stacks, strict=True):
         places = dict(zip(many.along.tolist(), many.heights.T.tolist(), strict=True))
         for at, heights in zip(few.along.tolist(), few.heights.T.tolist(), strict=True):
-            assert places[at] == heights
+            assert places[at] == pytest.approx(heights, abs=2**-13)

@@ -91,8 +91,9 @@ def test_dragging_redraws_and_every_map_is_exact(view: Browser) -> None:
 
 def test_while_a_map_is_computed_the_old_one_stays_and_the_page_says_so(view: Browser) -> None:
     before = view.run("document.querySelector('#strong').getAttribute('d')")
+    view.run("strong = byId('strong')")
     said = view.run(f"{FIRST}.value = -250; {FIRST}.dispatchEvent(new Event('input')); [state.textContent,"
-                    " document.querySelector('#strong').getAttribute('d'), byId('map').classList.contains('late')]")  # fmt: skip
+                    " strong.getAttribute('d'), byId('map').classList.contains('late')]")  # fmt: skip
     assert said == ["Shown: F = -20 (exact, 2 regions). Computing F = -25.0 …", before, True]
     view.until(SETTLED)
     assert view.run("state.textContent") == "Shown: F = -25.0 (exact, 2 regions). "

@@ -102,7 +102,7 @@ def test_without_the_cookie_there_is_nothing(own: Explorer) -> None:
 )
 def test_other_hosts_and_origins_are_refused(own: Explorer, wrong: dict[str, str]) -> None:
     body = json.dumps({"tab": "t", "values": {}, "fine": False, "framed": False})
-    found = own.send("POST", "/api/map", body, {**own.own, **{k: v.encode("latin-1") for k, v in wrong.items()}})
+    found = own.send("POST", "/api/map", body, {**own.own, **wrong})
     assert found.status == 403
     said(found)
 
