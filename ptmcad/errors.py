@@ -107,6 +107,30 @@ class ConfigError(PtmcadError):
         return shown(f"{place}: {self.message}" if place else self.message)
 
 
+def expect(value: object, kinds: type | tuple[type, ...], key: str, expected: str) -> None:
+    """Refuse an argument of another kind than is expected.
+
+    Raises
+    ------
+    ConfigError
+        With the argument's name as the key.
+
+    >>> expect(3, str, "along", "an axis of the slice")
+    Traceback (most recent call last):
+        ...
+    ptmcad.errors.ConfigError: along: expected an axis of the slice, not 3
+    """
+    if not isinstance(value, kinds):
+        small = value is None or isinstance(value, str | bytes | int | float)
+        given = shown(repr(value), 60) if small else f"an object of type {type(value).__name__}"
+        raise ConfigError(f"expected {expected}, not {given}", key=key)
+
+
+A_SLICE = "a slice, as ptmcad.load(FILE) or ptmcad.slice_from_mapping({...}) returns"
+A_MAP = "a map, as ptmcad.classify(...) returns"
+A_MODEL = "a mechanism or a system, as ptmcad.Mechanism(...), ptmcad.System(...) or the model of a slice"
+
+
 class Faults:
     """Everything that is wrong with a record: a `ConfigError` in a ``with`` block is noted, and work goes on behind it.
 

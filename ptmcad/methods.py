@@ -24,10 +24,11 @@ if TYPE_CHECKING:
     from ptmcad.show.widget import Explorer
 
 
-def _locate(self: RegionMap, **at: Any) -> Location:
+def _locate(self: RegionMap, point: Any = None, /, **at: Any) -> Location:
     """The region of a rational point, exactly; names are the two axes, values numbers or text such as "7/10".
 
-    A float stands for its exact binary value: 0.1, unlike the text "0.1", is not 1/10.
+    A float stands for its exact binary value: 0.1, unlike the text "0.1", is not 1/10. The values may be given as one
+    mapping instead, such as the sample of a cell.
 
     Raises
     ------
@@ -36,7 +37,7 @@ def _locate(self: RegionMap, **at: Any) -> Location:
     """
     from ptmcad.ask.location import locate
 
-    return locate(self, at)
+    return locate(self, at if point is None else point)
 
 
 def _map_to_json(self: RegionMap, timings: bool = True) -> str:

@@ -27,6 +27,8 @@ class Field:
     values : shape (rows, columns), from the bottom.
     region : shape (rows, columns): numbers of the map's regions, -1 where there is none.
     missed : number of pixels with such a solution that was not found.
+    beyond : number of pixels where the quantity has a value that no double is near, larger than 1.8e308 or nearer to
+        zero than 2.2e-308; nan is there.
     checked : number of pixels that were compared with exact poses.
     difference : the largest difference found there, as a share of the largest modulus of a value.
     """
@@ -42,6 +44,7 @@ class Field:
     missed: int
     checked: int
     difference: float
+    beyond: int = 0
 
     def __repr__(self) -> str:
         rows, columns = self.values.shape

@@ -8,19 +8,30 @@ not counted.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from ptmcad.ask.classification import check_taken
 from ptmcad.ask.engines import is_certified
-from ptmcad.errors import ConfigError, GeometryError
+from ptmcad.errors import ConfigError, GeometryError, shown
 from ptmcad.mechanism import Mechanism, ptm
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
+from ptmcad.text.numerals import short_text
+
+if TYPE_CHECKING:
+    from flint import fmpq
+
+    from ptmcad.exact.models import ParametricSystem
 
 MAX_UNKNOWNS = 4
 """Beyond, even one point takes too long for a question that should be answered at once."""
+MAX_SHOWN = 60
+"""Characters of a parameter's value."""
+MAX_PROVED = 8
+"""Complex solutions: of more it is not proved that the slice is degenerate, which takes seconds and more."""
 MAX_DEGREE, MAX_BOUND = 12, 400
 """Of an equation, and of the number of solutions by Bezout's theorem: beyond, too."""
 _CLASSES = (
@@ -64,6 +75,9 @@ def check(slice: Slice) -> Check:
         When no engine takes the model.
     GeometryError
         When a parameter is not in the whole window what it needs to be, or that is not proved.
+    DegenerateSliceError, InfiniteSolutionsError
+        When some solution is multiple at every point of the slice, there are infinitely many, or there is none that
+        counts; with a point that shows it. Where a proof would take long, the cost says what was seen.
     """
     prove_slice(slice)
     # thirds and sevenths of the window: rarely on a curve that a person has in mind
@@ -87,19 +101,47 @@ _CERTIFIED = (
 def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:
     """The check of a slice that the exact engine takes."""
     from ptmcad.algebra.polynomials import from_fraction
-    from ptmcad.exact.point_system import degree_bound, solutions_at
-    from ptmcad.exact.stages import point_values, problem_of
+    from ptmcad.exact.point_system import degree_bound
+    from ptmcad.exact.stages import point_values, problem_of, prove_regular
+    from ptmcad.exact.witness import SHARES, points
 
     problem = problem_of(slice)
     values = point_values(problem.parameters, (from_fraction(sample[0]), from_fraction(sample[1])))
     degree, bound = degree_bound(problem.system, values)
     if degree > MAX_DEGREE or bound > MAX_BOUND:
         return Check(slice, sample, None, "exact", "not known: try single points first, by ptmcad solve", bound)
-    found = solutions_at(problem.system, values)[0] or solutions_at(problem.system, values, saturated=True)[0]
+    found, doubt = _solutions(problem.system, values)
+    if doubt:
+        others = (point_values(problem.parameters, at) for at in points(problem.window))
+        if all(_solutions(problem.system, other)[1] for other in others):
+            if (found or 0) > MAX_PROVED:
+                seen = (
+                    f"at {len(SHARES)} points that were tried {doubt}; a slice where that is so everywhere is refused"
+                )
+                return Check(slice, sample, found, "exact", f"not known: {seen}")
+            prove_regular(problem)
     if not found:
-        return Check(slice, sample, None, "exact", "none: there are infinitely many solutions, or none, at the sample")
+        return Check(slice, sample, None, "exact", f"not known: at the sample {doubt}")
     cost = next((cost for most, cost in _CLASSES if found <= most), _BEYOND)
     return Check(slice, sample, found, "exact", cost + (_BY_INTERVALS if found > _LONG and _encloses(slice) else ""))
+
+
+def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int | None, str]:
+    """The number of different complex solutions at a point, and what casts doubt on the slice, in words."""
+    from ptmcad.exact.point_system import solutions_at
+
+    different, multiplicity = solutions_at(system, values)
+    if system.inequalities:
+        counted, of = solutions_at(system, values, saturated=True)
+        if counted == 0 and different != 0:
+            return different, "each solution makes the left side of an inequality zero"
+        if different != multiplicity or different is None:
+            different, multiplicity = counted, of
+    if different is None:
+        return None, "there are infinitely many solutions"
+    if not different:
+        return 0, "there is no solution, real or complex"
+    return different, "" if different == multiplicity else "some solution is multiple"
 
 
 def _encloses(slice: Slice) -> bool:
@@ -118,7 +160,8 @@ def warning(slice: Slice) -> str:
     found = check(slice)
     if found.engine != "exact" or (found.complex_solutions or 0) <= _LONG:
         return ""
-    return f"the equations have {found.complex_solutions} complex solutions, and the exact map takes {found.cost}"
+    takes = "the exact map's cost is" if found.cost.startswith("not known") else "the exact map takes"
+    return f"the equations have {found.complex_solutions} complex solutions, and {takes} {found.cost}"
 
 
 def check_text(found: Check) -> Iterator[str]:
@@ -130,17 +173,23 @@ def check_text(found: Check) -> Iterator[str]:
     if isinstance(model, Mechanism):
         turning = sum(moment.unknown in model.angles for moment in model.moments)
         parts = {
-            "bars": len(model.bars), "bodies": len(model.bodies), "springs": len(model.springs),
-            "torsion springs": len(model.torsion), "loads": len(model.loads), "moments": turning,
-            "forces on lengths": len(model.moments) - turning,
+            ("bar", "bars"): len(model.bars), ("body", "bodies"): len(model.bodies),
+            ("spring", "springs"): len(model.springs), ("torsion spring", "torsion springs"): len(model.torsion),
+            ("load", "loads"): len(model.loads), ("moment", "moments"): turning,
+            ("force on a length", "forces on lengths"): len(model.moments) - turning,
         }  # fmt: skip
-        yield f"{'parts':<12}{', '.join(f'{number} {name}' for name, number in parts.items() if number)}"
+        words = (f"{number} {one if number == 1 else many}" for (one, many), number in parts.items() if number)
+        yield f"{'parts':<12}{', '.join(words)}"
     values = {name: e.to_text(slice.axis_names) for name, e in slice.parameters.items() if name not in slice.axis_names}
-    fixed = [f"{name} = {value}" for name, value in merged(values, model).items()]
+    fixed = [
+        f"{name} = {value if len(value) <= MAX_SHOWN else shown(slice.text.get(name, value), MAX_SHOWN)}"
+        for name, value in merged(values, model).items()
+    ]
     yield f"{'parameters':<12}{', '.join(fixed) or 'none but the axes'}"
-    yield f"{'axes':<12}{', '.join(f'{a.name} from {a.low} to {a.high}' for a in slice.axes)}"
+    ends = (f"{a.name} from {short_text(a.low)} to {short_text(a.high)}" for a in slice.axes)
+    yield f"{'axes':<12}{', '.join(ends)}"
     yield f"{'count':<12}{slice.count.value}"
-    at = ", ".join(f"{a.name} = {value}" for a, value in zip(slice.axes, found.sample, strict=True))
+    at = ", ".join(f"{a.name} = {short_text(value)}" for a, value in zip(slice.axes, found.sample, strict=True))
     number = "not counted" if found.complex_solutions is None else f"{found.complex_solutions} complex ones at {at}"
     if found.bound is not None:
         number = f"at most {found.bound} complex ones, by the equations' degrees"

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.regionmap import RegionMap, Status, with_compilation
 from ptmcad.ask.engines import is_certified
-from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.errors import ConfigError, LimitReached, expect
 from ptmcad.mechanism import ptm
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
@@ -80,6 +80,7 @@ def classify(
     LimitReached
         After ``timeout`` seconds, with what there is of the map as ``partial``.
     """
+    expect(engine, str, "engine", "the name of an engine")
     options = Options(
         engine=engine,
         timeout=timeout,
@@ -100,7 +101,9 @@ def _counted(slice: Slice, count: Count | str | None) -> Slice:
     try:
         return slice if count is None else replace(slice, count=Count(count))
     except ValueError as error:
-        raise ConfigError(str(error), key="count") from error
+        expect(count, str, "count", "the name of a count")
+        known = ", ".join(member.value for member in Count)
+        raise ConfigError(f"{count!r:.60} is none of {known}", key="count") from error
 
 
 def _names(without: Iterable[str], keep: Iterable[str] | None) -> frozenset[str]:

@@ -22,7 +22,7 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Cell, Component, Region, RegionMap, Status
 from ptmcad.ask.location import locate
 from ptmcad.cover.rectangles import Cover
-from ptmcad.errors import ConfigError
+from ptmcad.errors import A_MAP, ConfigError, expect
 from ptmcad.exact.assembly import critical_values_of, stacks_of_cells
 from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import curves_of, lines_of
@@ -51,6 +51,7 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
     ConfigError
         When they are not such maps; where one of them contradicts itself, the error's key is ``first`` or ``second``.
     """
+    expect(second, RegionMap, "other", A_MAP)
     _check(first, second)
     if first.cover is not None and second.cover is not None:
         return _certified(first, first.cover, second, second.cover)

@@ -6,9 +6,9 @@ polynomials at the point and numbers of their real roots below it; in a certifie
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import fmpq
 
@@ -17,8 +17,9 @@ from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at
 from ptmcad.answer.regionmap import CriticalValue, Location, RegionMap, Status
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, expect
 from ptmcad.exact.cad.curves import Curve, curves_of
+from ptmcad.question.slice import Point
 from ptmcad.text.parsing import number_for
 
 if TYPE_CHECKING:
@@ -33,6 +34,8 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     ConfigError
         When the names are not the two axes, a value is not an exact number, or the map contradicts itself.
     """
+    names = result.slice.axis_names
+    expect(at, (Mapping, Point), "point", f"the values of {names[0]} and {names[1]} by name, or a mapping of them")
     point = _point(result, at)
     inside = all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, point, strict=True))
     if not inside:
@@ -66,11 +69,26 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     return Location(status, cell.region, number, cell.total, cell.stable, cell.index)
 
 
+_KEPT = 4
+"""Maps of which what locates points is kept for the next one: many points may be asked of some maps in turn."""
+Made = TypeVar("Made")
+
+
+def _kept(latest: list[tuple[RegionMap, Made]], result: RegionMap, make: Callable[[], Made]) -> Made:
+    """What was made for this very map, or is made now; the latest ones are kept, by identity: to compare whole maps
+    would take longer."""
+    for k, (known, made) in enumerate(latest):
+        if known is result:
+            latest.append(latest.pop(k))
+            return made
+    made = make()
+    latest[:] = [*latest[1 - _KEPT :], (result, made)]
+    return made
+
+
 def _curves(result: RegionMap) -> list[Curve]:
-    """The curves over the map's base; kept for the next point of the same map."""
-    if not _latest_curves or _latest_curves[0][0] is not result:
-        _latest_curves[:] = [(result, curves_of(result.components, result.base))]
-    return _latest_curves[0][1]
+    """The curves over the map's base."""
+    return _kept(_latest_curves, result, lambda: curves_of(result.components, result.base))
 
 
 _latest_curves: list[tuple[RegionMap, list[Curve]]] = []
@@ -92,23 +110,31 @@ def in_steps(result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]) 
 
 
 def component_cells(result: RegionMap, cover: Cover) -> tuple[Components, dict[int | None, int]]:
-    """The components outside the cover, and which cell each of them is; kept for the next point of the same map."""
-    if not _latest or _latest[0][0] is not result:
-        complement = components(cover)
-        cells: dict[int | None, int] = {}
-        for number, cell in enumerate(result.cells):
-            try:
-                place = complement.locate(*in_steps(result, cover, (cell.sample[0], cell.sample[1])))
-            except ValueError as error:
-                raise _contradiction(f"the sample of cell {number} is not in the window") from error
-            if place is None or place in cells:
-                raise _contradiction(f"the sample of cell {number} is in the cover or in the component of another cell")
-            cells[place] = number
-        _latest[:] = [(result, complement, cells)]
-    return _latest[0][1:]
+    """The components outside the cover, and which cell each of them is.
+
+    Raises
+    ------
+    ConfigError
+        When a cell's sample is in no component of its own.
+    """
+    return _kept(_latest_components, result, lambda: _component_cells(result, cover))
 
 
-_latest: list[tuple[RegionMap, Components, dict[int | None, int]]] = []
+_latest_components: list[tuple[RegionMap, tuple[Components, dict[int | None, int]]]] = []
+
+
+def _component_cells(result: RegionMap, cover: Cover) -> tuple[Components, dict[int | None, int]]:
+    complement = components(cover)
+    cells: dict[int | None, int] = {}
+    for number, cell in enumerate(result.cells):
+        try:
+            place = complement.locate(*in_steps(result, cover, (cell.sample[0], cell.sample[1])))
+        except ValueError as error:
+            raise _contradiction(f"the sample of cell {number} is not in the window") from error
+        if place is None or place in cells:
+            raise _contradiction(f"the sample of cell {number} is in the cover or in the component of another cell")
+        cells[place] = number
+    return complement, cells
 
 
 def _contradiction(what: str) -> ConfigError:
@@ -117,9 +143,10 @@ def _contradiction(what: str) -> ConfigError:
 
 def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
     names = result.slice.axis_names
-    if set(at) != set(names):
+    given = tuple(at.keys())
+    if set(given) != set(names):
         raise ConfigError(
-            f"a point of this map needs {names[0]} and {names[1]}, not {', '.join(map(str, at)) or 'nothing'}"
+            f"a point of this map needs {names[0]} and {names[1]}, not {', '.join(map(str, given)) or 'nothing'}"
         )
     return number_for(names[0], at[names[0]]), number_for(names[1], at[names[1]])
 

@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
-from ptmcad.errors import ConfigError, shown
+from ptmcad.errors import A_MODEL, ConfigError, expect, shown
 from ptmcad.mechanism import Mechanism, Model, ptm
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import point_from_mapping
+from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import have_free_lengths
 from ptmcad.text.expressions import constant
 
@@ -34,9 +35,16 @@ def solve(digits: int = DIGITS, model: Model | None = None, **parameters: object
     ConfigError
         For a name or a value that is wrong, with the name.
     """
+    if not isinstance(digits, int | float | str):
+        raise ConfigError(
+            f"expected the parameters' values by name, as in solve({FIRST}=1, {SECOND}='3/2'), and what they are of as "
+            f"model=slice.model, not an object of type {type(digits).__name__}"
+        )
     if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MAX_DIGITS:
         raise ConfigError(f"{shown(repr(digits), 60)} is not a number of digits from 1 to {MAX_DIGITS}", key="digits")
-    model = model or ptm()
+    if model is None:
+        model = ptm()
+    expect(model, Model, "model", A_MODEL)
     return poses_at(model, point_from_mapping(parameters, model), digits)
 
 

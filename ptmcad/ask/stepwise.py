@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.slicevariety import SliceVariety
-from ptmcad.errors import ConfigError
+from ptmcad.errors import A_MODEL, ConfigError, expect
 from ptmcad.mechanism import Model
 from ptmcad.question.config import point_from_mapping, slice_from
 from ptmcad.question.slice import Point, Slice, without_free_lengths
@@ -105,7 +105,8 @@ def counts_at(model: Model, **values: object) -> Counts:
     from ptmcad.text.expressions import constant
 
     if isinstance(model, Slice):
-        raise ConfigError("a count is of a mechanism or a system: give the slice's model, and all values")
+        raise ConfigError("a count is of a mechanism or a system: give the slice's model, and all values", key="model")
+    expect(model, Model, "model", A_MODEL)
     point = point_from_mapping(values, model)
     without_free_lengths(model, {n: constant(v) for n, v in point.items()}, "an exact count is", "use ptmcad.solve")
     system = system_from(model)

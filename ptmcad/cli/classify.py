@@ -235,7 +235,7 @@ def _resumed(slice: Slice, path: Path) -> Any:
     from ptmcad.ask.classification import check_resumable
     from ptmcad.cli.stored import read_result
 
-    earlier = read_result(path)
+    earlier = read_result(path, whole=False)  # of which its cover alone is taken
     try:
         check_resumable(slice, earlier)
     except ConfigError as error:

@@ -146,8 +146,12 @@ def is_family(path: Path) -> bool:
     return f'"format": "{FORMAT.partition("/")[0]}/' in head
 
 
-def read_family_file(path: Path) -> FamilyMap:
+def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
     """The family in a JSON file, with its members' maps, which are in files beside it.
+
+    Parameters
+    ----------
+    whole : as of `read_result`.
 
     Raises
     ------
@@ -160,7 +164,7 @@ def read_family_file(path: Path) -> FamilyMap:
     except (ValueError, RecursionError) as error:
         reason = shown(" ".join(str(error).split()), 300)
         raise ConfigError(f"is damaged or not a {FORMAT} file: {reason}", file=str(path)) from error
-    members = tuple(read_result(path.parent / file) for file in stored.files)
+    members = tuple(read_result(path.parent / file, whole=whole) for file in stored.files)
     if any(member.slice.axes != members[0].slice.axes for member in members):
         raise ConfigError("its members are not of one family: their axes differ", file=str(path))
     return FamilyMap(stored.name, stored.free, stored.values, members, stored.surfaces, stored.title)
@@ -168,7 +172,7 @@ def read_family_file(path: Path) -> FamilyMap:
 
 def each_member(path: Path, ask: Callable[[RegionMap], Any]) -> list[Any]:
     """What is asked of every member of the family in a file, each announced by its value."""
-    family = read_family_file(path)
+    family = read_family_file(path, whole=False)
     answers = []
     for value, member in family:
         click.echo(f"{family.free.name} = {text_of(value)}")

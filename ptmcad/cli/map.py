@@ -100,6 +100,13 @@ def command(
     for path in written:
         click.echo(shown_path(path))
     click.echo(_summary(field))
+    if field.beyond:
+        many = f"{field.beyond} pixels are" if field.beyond > 1 else "1 pixel is"
+        click.echo(
+            f"warning: {many} left empty, where {field.quantity} or a part of it is beyond doubles: larger than "
+            "1.8e308 or nearer to zero than 2.2e-308",
+            err=True,
+        )
     if field.checked and not field.difference <= MAX_DIFFERENCE:
         raise DifferenceError(
             f"{field.checked} pixels were compared with exact poses, and one differs by {field.difference:.2g} of the "
@@ -138,6 +145,8 @@ def _summary(field: Field) -> str:
     import numpy as np
 
     known = field.values[~np.isnan(field.values)]
+    if not known.size and field.beyond:
+        return f"{field.quantity} of {field.pose} is beyond doubles wherever it has a value"
     if not known.size:
         return f"{field.pose} is nowhere in this window, or {field.quantity} has no value where it is"
     unit = f" {field.unit}" if field.unit else ""

@@ -73,7 +73,15 @@ def slice_and_line(asked: AskedLine) -> tuple[Slice, dict[str, str]]:
         if name != other and name not in known:
             raise ConfigError(f"'{name}' is neither an axis nor a parameter", key="--at")
     axes = asked.axes if {along, other} == set(given) else f"{along},{other}"
-    slice = slice_from_options(asked.config, axes, (*asked.sets, *fixed), asked.ranges)
+    try:
+        slice = slice_from_options(asked.config, axes, (*asked.sets, *fixed), asked.ranges)
+    except ConfigError as error:
+        if asked.axes is not None or error.key != "--slice":
+            raise
+        # the axes were named by other options than the one that the message speaks of
+        named = {"--along": along, "--over": asked.over, "--at": other}
+        wrong = next((key for key, name in named.items() if f"'{name}'" in error.message), "--at")
+        raise ConfigError(error.message, key=wrong) from error
     return slice, {other: at[other]} if other in at else {}
 
 

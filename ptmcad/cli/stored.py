@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown
 from ptmcad.process.commit import recover
@@ -25,8 +26,12 @@ _OF_A_RECORD = frozenset(("mechanism", "system", "axes"))
 """Keys of which a problem record has one at least, and no result has any at its top."""
 
 
-def read_result(path: Path) -> RegionMap:
+def read_result(path: Path, *, whole: bool = True) -> RegionMap:
     """The region map in a JSON file.
+
+    Parameters
+    ----------
+    whole : whether its parts have to be there to which others refer; `ptmcad verify` says itself which are not.
 
     Raises
     ------
@@ -36,11 +41,17 @@ def read_result(path: Path) -> RegionMap:
     recover(path.parent)
     text = read_text(path, MAX_BYTES, f"a {FORMAT} file")
     try:
-        return RegionMap.from_json(text)
+        result = RegionMap.from_json(text)
     except (ValueError, PtmcadError, ZeroDivisionError, RecursionError) as error:
         reason = shown(" ".join(str(error).split()), 300)
         what = _other_kind(text) or f"is damaged or not a {FORMAT} file: {reason}"
         raise ConfigError(what, file=str(path)) from error
+    if whole:
+        try:
+            check_numbers(result)
+        except ConfigError as error:
+            raise ConfigError(error.message, file=str(path)) from error
+    return result
 
 
 @contextmanager

@@ -37,7 +37,7 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
     with held(limits):
         if is_family(result):
             return int(max(each_member(result, lambda member: _verified(member, seed, boxes))))
-        return _verified(read_result(result), seed, boxes)
+        return _verified(read_result(result, whole=False), seed, boxes)
 
 
 def _verified(stored: RegionMap, seed: int | None, boxes: int | None) -> int:

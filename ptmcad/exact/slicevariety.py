@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ptmcad.answer.slicevariety import SliceVariety
+from ptmcad.errors import A_SLICE, expect
 from ptmcad.exact.assembly import versions
 from ptmcad.exact.models.elimination import elimination_system
 from ptmcad.exact.stages import domain_limits, problem_of, variety_of
@@ -24,6 +25,7 @@ def slice_variety(slice: Slice, without: frozenset[str] = frozenset()) -> SliceV
     HypothesisError
         When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
     """
+    expect(slice, Slice, "slice", A_SLICE)
     without_free_lengths(slice.model, slice.parameters, "the discriminant variety is")
     prove_slice(slice)
     problem = problem_of(slice)

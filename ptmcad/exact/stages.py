@@ -23,12 +23,11 @@ from ptmcad.algebra.polynomials import (
     from_fraction,
     to_fraction,
 )
-from ptmcad.algebra.real_roots import simplest_between
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import HARMLESS, Adjacency, Component, Merge, Segment
-from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError, NothingToCountError
+from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
 from ptmcad.exact.cad.adjacency import Crossing, Separator, cross
 from ptmcad.exact.cad.area import RegionStacks, region_areas
 from ptmcad.exact.cad.curves import Curve, curves_of, lines_of
@@ -36,11 +35,12 @@ from ptmcad.exact.cad.projection import Projection, predicted_cost, project
 from ptmcad.exact.cad.stacks import Avoided, StackData, lift
 from ptmcad.exact.counting import Equilibria, equilibria
 from ptmcad.exact.models import ParametricSystem, system_from
-from ptmcad.exact.point_system import DegeneratePoint, solutions_at
+from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.regions import Link, members, merge
-from ptmcad.exact.variety import Known, discriminant_variety
+from ptmcad.exact.variety import Known, check_hypotheses, discriminant_variety
+from ptmcad.exact.witness import with_witness
 from ptmcad.question.slice import Count, Slice
-from ptmcad.text.numerals import decimal, fraction_of
+from ptmcad.text.numerals import decimal, fraction_of, short_text
 
 Sample = tuple[fmpq, fmpq]
 Report = Callable[[int, int], None]
@@ -75,7 +75,9 @@ class SliceProblem(NamedTuple):
 
     def place(self, at: Sample) -> str:
         """A point in words, for messages."""
-        return ", ".join(f"{name} = {value}" for name, value in zip(self.slice.axis_names, at, strict=True))
+        return ", ".join(
+            f"{name} = {short_text(to_fraction(value))}" for name, value in zip(self.slice.axis_names, at, strict=True)
+        )
 
     def solved_at(self, at: Sample) -> Equilibria:
         """The equilibria at a point off the variety; raises what `count_at` does."""
@@ -171,16 +173,29 @@ def variety_of(problem: SliceProblem, keep: frozenset[str] = frozenset(), base: 
     system, parameters, window = problem.system, problem.parameters, problem.window
     try:
         found = discriminant_variety(system, parameters, window, domain_limits(system, parameters), keep, problem.known)
-    except NothingToCountError:
-        raise
     except (DegenerateSliceError, InfiniteSolutionsError) as error:
-        raise type(error)("; ".join(filter(None, (str(error), _witness(problem))))) from error
+        raise with_witness(error, system, parameters, window, problem.place) from error
     views = [curves_of(found.components, base) for base in (0, 1)]
     costs = (predicted_cost(views[0]), predicted_cost(views[1]))
     if base is None:
         base = 1 if costs[1] < costs[0] and "axis-order" not in keep else 0
     lines = lines_of(found.components, base)
     return Variety(found.components, found.complex_solutions, base, views[base], lines, costs, found.excludes)
+
+
+def prove_regular(problem: SliceProblem) -> None:
+    """Prove that off some curves there are solutions, finitely many, and none is multiple.
+
+    Raises
+    ------
+    DegenerateSliceError, InfiniteSolutionsError
+        As `variety_of`.
+    """
+    system, parameters = problem.system, problem.parameters
+    try:
+        check_hypotheses(system, parameters)
+    except (DegenerateSliceError, InfiniteSolutionsError) as error:
+        raise with_witness(error, system, parameters, problem.window, problem.place) from error
 
 
 def domain_limits(system: ParametricSystem, parameters: dict[str, Ratio]) -> list[Coefficient]:
@@ -363,20 +378,6 @@ def count_at(where: str, system: ParametricSystem, parameters: dict[str, Ratio],
 def point_values(parameters: dict[str, Ratio], at: Sample) -> dict[str, fmpq]:
     """The parameters at a point where their denominators do not vanish."""
     return {name: evaluate(a, *at) / evaluate(b, *at) for name, (a, b) in parameters.items()}
-
-
-def _witness(problem: SliceProblem) -> str:
-    """What is wrong at one point of a slice that is degenerate everywhere; empty where that does not show."""
-    at = (simplest_between(*problem.window[0]), simplest_between(*problem.window[1]))
-    where = problem.place(at)
-    if any(evaluate(below, *at) == 0 for _, below in problem.parameters.values()):
-        return f"at {where} a parameter has a zero denominator"
-    different, multiplicity = solutions_at(problem.system, point_values(problem.parameters, at))
-    if different is None:
-        return f"for example at {where} there are infinitely many solutions"
-    if different == multiplicity:
-        return ""
-    return f"for example at {where} only {different} of {multiplicity} solutions are different"
 
 
 def _coefficients(p: UnivariatePolynomial) -> tuple[int, ...]:

@@ -124,6 +124,12 @@ def discriminant_variety(
     return DiscriminantVariety(seen.in_order(), algebra.dimension, equations.unknowns > given.unknowns)
 
 
+def check_hypotheses(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> None:
+    """Refuse what `discriminant_variety` would refuse, without the curves."""
+    simplest = system if system.turns is None else system.turns.system
+    nondegenerate(on_slice(simplest, parameters))
+
+
 class _Components:
     """The components found so far, each with the first kind that was found for it."""
 

@@ -65,15 +65,18 @@ function changed(name, text) {
 function drawMap(data, question) {
   byId("patterns").innerHTML = data.patterns;
   byId("fills").replaceChildren(...data.regions.flatMap((region, number) => {
-    const parts = [svg("path", { class: data.certified ? "fill rim" : "fill", fill: region.face, d: region.d, "data-region": number })];
-    if (region.hatch) parts.push(svg("path", { class: "fill", fill: `url(#${region.hatch})`, d: region.d }));
+    const parts = [svg("path", { class: "fill", fill: region.face, d: region.d, "data-region": number })];
+    if (region.hatch) parts.push(svg("path", { class: "fill", fill: `url(#map-${region.hatch})`, d: region.d }));
+    if (data.certified) parts.push(svg("path", { class: "rim", "stroke-width": DATA.rim, d: region.d }));
     return parts;
   }));
   byId("strong").setAttribute("d", data.strong);
   byId("thin").setAttribute("d", data.thin);
   byId("labels").replaceChildren(...data.labels.map(([text, x, y]) => svg("text", { class: "count", x, y, dy: ".36em" }, text)));
   if (data.frame) {
-    byId("frame").innerHTML = data.frame;
+    byId("frame").innerHTML = data.frame.svg;
+    byId("map").setAttribute("viewBox", data.frame.view);
+    byId("placed").setAttribute("transform", data.frame.place);
     view.framed = true;
   }
   view.shown = data;
@@ -186,7 +189,7 @@ function movePoint(share) {
 // The drawn region at the point; none in what is undetermined.
 function regionAt([x, y]) {
   const spot = byId("map").createSVGPoint();
-  [spot.x, spot.y] = [x * DATA.side, (1 - y) * DATA.side];
+  [spot.x, spot.y] = [x * DATA.side * DATA.grid, (1 - y) * DATA.side * DATA.grid];
   const found = [...document.querySelectorAll("#fills [data-region]")].find((path) => path.isPointInFill(spot));
   return found && view.shown ? view.shown.regions[Number(found.dataset.region)] : null;
 }

@@ -15,8 +15,11 @@ from ptmcad.explore.panel import Panel
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.config.resolution import number_of
 from ptmcad.show.render.axes import symbol
-from ptmcad.show.report.frame import BOTTOM, LEFT, RIM, SIDE
+from ptmcad.show.report.chart import RIM_WIDTH
+from ptmcad.show.report.frame import SIDE
+from ptmcad.show.report.packing import packed
 from ptmcad.show.report.page import drawing_of, harmless
+from ptmcad.show.report.pathdata import GRID
 from ptmcad.text.numerals import shortest_text, text_of
 from ptmcad.version import __version__
 
@@ -56,9 +59,8 @@ def page(panel: Panel, secret: str) -> str:
     return Template((files("ptmcad.explore") / "explore.html").read_text(encoding="utf-8")).substitute(
         title=escape(record.title or record.name),
         name=escape(record.name),
-        view=f"0 0 {LEFT + SIDE + RIM} {RIM + SIDE + BOTTOM}",
         side=SIDE,
-        place=f"translate({LEFT} {RIM})",
+        shrunk=f"scale({1 / GRID:g})",
         window=escape(" and ".join(record.axes)),
         version=escape(__version__),
         data=harmless(_data(panel, secret)),
@@ -71,6 +73,9 @@ def _data(panel: Panel, secret: str) -> dict[str, Any]:
     return {
         "secret": secret,
         "side": SIDE,
+        "grid": GRID,
+        "rim": RIM_WIDTH * GRID,
+        "cells": packed([]),
         "name": record.name,
         "drawable": isinstance(model, Mechanism),
         "told": model.tells_stability,

@@ -21,8 +21,8 @@ from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.outline import TOLERANCE, outline
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.report.chart import counts_text, hatch_id, outlines, pattern_defs, region_labels, wall_lines
-from ptmcad.show.report.frame import SIDE, frame
+from ptmcad.show.report.chart import counts_text, hatch_id, pattern_defs, region_labels, region_outlines, wall_lines
+from ptmcad.show.report.frame import RIM, SIDE, frame, room
 from ptmcad.show.table import certified_digits, count_text
 from ptmcad.text.numerals import approximate_text
 
@@ -43,7 +43,7 @@ def map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
     seen: Shapes = shapes(result) if result.cover is not None else outline(result, None, TOLERANCE if fine else COARSE)
     slice = result.slice
     fills = [fill_of(region, slice.count) for region in result.regions]
-    drawn = dict(outlines(seen))
+    drawn = dict(region_outlines(seen))
     lines = wall_lines(seen)
     return {
         "regions": [
@@ -63,12 +63,22 @@ def map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
             for number, x, y in region_labels(seen)
         ],
         "patterns": pattern_defs(fills),
-        "frame": "".join(frame(seen)) if framed else "",
+        "frame": _frame(seen) if framed else None,
         "certified": result.cover is not None,
         "undetermined": approximate_text(100 * result.undetermined) if result.cover is not None else "",
         "settled": result.status is not Status.PARTIAL,
         "cells": len(result.cells),
         "digest": _digest(result),
+    }
+
+
+def _frame(seen: Shapes) -> dict[str, Any]:
+    """The axes, and how much room they need around the window."""
+    around = room(seen, detail=False)
+    return {
+        "svg": "".join(frame(seen, around)),
+        "view": f"0 0 {around.left + SIDE + around.right} {RIM + SIDE + around.bottom}",
+        "place": f"translate({around.left} {RIM})",
     }
 
 

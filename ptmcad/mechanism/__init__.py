@@ -10,8 +10,8 @@ from dataclasses import replace
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism.description import Kind, Mechanism, Model, Parameter, Support, System
 from ptmcad.mechanism.ptm import ptm
-from ptmcad.mechanism.record import described
-from ptmcad.mechanism.systems import described_system
+from ptmcad.mechanism.record import described, read_mechanism
+from ptmcad.mechanism.systems import described_system, read_system
 
 __all__ = [
     "Kind",
@@ -26,6 +26,8 @@ __all__ = [
     "known_of",
     "mechanism_of",
     "ptm",
+    "read_mechanism",
+    "read_system",
     "recognised",
 ]
 

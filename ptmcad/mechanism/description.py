@@ -184,6 +184,12 @@ class Model:
         return tuple(name for name in self.parameters if name in used)
 
     @cached_property
+    def idle(self) -> tuple[str, ...]:
+        """The parameters that nothing in the description uses: those of a record's own expressions."""
+        used = {*self.variables, *self.shorthands}
+        return tuple(name for name in self.parameters if name not in used)
+
+    @cached_property
     def free_lengths(self) -> tuple[str, ...]:
         """The variables that are free lengths."""
         return tuple(name for name in self.variables if self.kind(name) is Kind.FREE_LENGTH)

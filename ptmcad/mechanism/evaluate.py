@@ -18,6 +18,10 @@ MAX_EXPONENT = 64
 MAX_BITS = 13_000
 MAX_MULTIPLE = 64
 """Of an angle inside a cosine or sine."""
+FIXED_ANGLE = (
+    "only multiples of pi/2 can be added to an angle: of other fixed angles use cosine and sine as two parameters, "
+    "given as (1 - t^2)/(1 + t^2) and 2*t/(1 + t^2), t the tangent of the half, or turn the points of a body themselves"
+)
 
 
 class Element(Protocol):
@@ -141,7 +145,9 @@ class _Evaluation(Generic[E]):
     def call(self, call: Call) -> Fraction | E:
         angles = _Angles()
         multiples = interpret(call.argument, angles)
-        if multiples.pop("", 0) or any(m.denominator != 1 or abs(m) > MAX_MULTIPLE for m in multiples.values()):
+        if multiples.pop("", 0):
+            raise ExpressionError(FIXED_ANGLE, call.position)
+        if any(m.denominator != 1 or abs(m) > MAX_MULTIPLE for m in multiples.values()):
             raise ExpressionError(
                 f"the argument of {call.function} is not a sum of whole multiples of angles (at most {MAX_MULTIPLE})",
                 call.position,
@@ -174,6 +180,12 @@ def multiples(tree: Tree) -> dict[str, Fraction]:
         When the tree is none.
     """
     return interpret(tree, _Angles())
+
+
+def multiples_with_positions(tree: Tree) -> tuple[dict[str, Fraction], dict[str, int]]:
+    """The same, and where each name stands first."""
+    angles = _Angles()
+    return interpret(tree, angles), angles.positions
 
 
 class _Angles:

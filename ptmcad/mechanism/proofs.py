@@ -10,13 +10,13 @@ The ring is a small one of its own: readers and checkers load no algebra.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.description import Mechanism, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, multiples
-from ptmcad.text.tree import Call, Name, Number, Tree
+from ptmcad.text.tree import Call, Name, Negative, Number, Tree
 
 MAX_WORK = 12_000
 """Products of terms for one question, a fraction of a second; two bars and a spring take some hundred."""
@@ -223,6 +223,56 @@ class _Image:
 
     def sin(self, angle: str) -> Polynomial:
         return evaluate(Call("sin", self.images.get(angle, Name(angle))), self.ring)
+
+
+class MirrorImage(_Image):
+    """The ring at values of the parameters, and with some unknowns reflected.
+
+    Parameters
+    ----------
+    reflected : unknowns u that become -u.
+    odd : those angles of them that become a half turn more, pi - u.
+    """
+
+    def __init__(
+        self, parameters: Mapping[str, Fraction], reflected: Iterable[str] = (), odd: frozenset[str] = frozenset()
+    ):
+        super().__init__(Ring(MAX_WORK), {name: Negative(Name(name)) for name in reflected})
+        self.parameters, self.odd = parameters, odd
+
+    def parameter(self, name: str) -> Polynomial:
+        return self.constant(self.parameters[name]) if name in self.parameters else super().parameter(name)
+
+    def cos(self, angle: str) -> Polynomial:
+        return self._turned(angle, super().cos(angle))
+
+    def sin(self, angle: str) -> Polynomial:
+        return self._turned(angle, super().sin(angle))
+
+    def _turned(self, angle: str, value: Polynomial) -> Polynomial:
+        return self.constant(Fraction(-1)) * value if angle in self.odd else value
+
+    def value(self, tree: Tree) -> Polynomial:
+        """The value of a tree."""
+        return evaluate(tree, self)
+
+
+def energy_is_kept(
+    mechanism: Mechanism, parameters: Mapping[str, Fraction], reflected: Iterable[str], odd: frozenset[str]
+) -> bool:
+    """Whether a reflection takes equilibria at values of the parameters to equilibria; see `MirrorImage`.
+
+    Raises
+    ------
+    ExpressionError
+        When that is too much to be multiplied out.
+    """
+    return _are_the_same(mechanism, MirrorImage(parameters), MirrorImage(parameters, reflected, odd))
+
+
+def squared_length(mechanism: Mechanism, image: MirrorImage, start: str, end: str) -> Polynomial:
+    """The square of the distance of two points."""
+    return _Points(mechanism, image).squared(start, end)
 
 
 def _are_the_same(mechanism: Mechanism, one: _Image, other: _Image) -> bool:

@@ -11,8 +11,9 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.mechanism.angles import PI, split_angle, without_quarter_turns
 from ptmcad.mechanism.description import Kind, Parameter, UnknownKind
-from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.mechanism.evaluate import evaluate, value_at
 from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean, parse
 from ptmcad.text.tree import FUNCTIONS, Call, Negative, Number, Tree, names_of
 from ptmcad.text.tree import to_text as text_of
@@ -26,7 +27,7 @@ MAX_BODIES = 100
 MAX_ENTRIES = 400
 """Of any list or mapping in a description, so that what is read is read, and proved, in a fraction of a second."""
 PARAMETER_KEYS = ("kind", "default", "range", "alias")
-PI = "pi"
+_EXPRESSIONS = ": what depends on other parameters is written under the record's 'parameters:'"
 _UNSET = frozenset({Kind.FREE_LENGTH, Kind.FORCE, Kind.ANGLE})
 """Kinds that are zero where nothing is said."""
 _Member = TypeVar("_Member", bound=Enum)
@@ -57,6 +58,17 @@ def listed(value: object, key: str, like: str = "") -> Sequence[Any]:
     return value
 
 
+def as_written(value: object) -> str:
+    """What a value is, for messages: a text in quotation marks, or the kind of what is none."""
+    if value is None:
+        return "an empty value"
+    if isinstance(value, bool):
+        return f"the yes-or-no value '{str(value).lower()}'"
+    if isinstance(value, list | tuple):
+        return "a list"
+    return "a mapping" if isinstance(value, Mapping) else f"{value!r:.60}"
+
+
 def _check_size(size: int, key: str, most: int) -> None:
     if size > most:
         raise ConfigError(f"{size} entries, more than the {most} that can be computed with", key=key)
@@ -71,13 +83,19 @@ def check_keys(entries: Mapping[str, Any], known: Sequence[str], key: str, fault
                 raise ConfigError(f"unknown key{hint}", key=f"{key}.{found}" if key else str(found))
 
 
+def faulty_entries(faults: Faults, part: str) -> frozenset[str]:
+    """The entries of a part of a description of which something is noted."""
+    keys = ((fault.key or "").split(".") for fault in faults.found)
+    return frozenset(steps[1] for steps in keys if len(steps) > 1 and steps[0] == part)
+
+
 def member(kinds: type[_Member], word: object, key: str) -> _Member:
     """The member of an enumeration that a word stands for."""
     for kind in kinds:
         if kind.value == word:
             return kind
     known = ", ".join(str(kind.value) for kind in kinds)
-    raise ConfigError(f"{word!r:.60} is none of {known}{did_you_mean(str(word), known.split(', '))}", key=key)
+    raise ConfigError(f"{as_written(word)} is none of {known}{did_you_mean(str(word), known.split(', '))}", key=key)
 
 
 # ------------------------------------------------------------------------------------------------------------- names
@@ -86,7 +104,9 @@ def member(kinds: type[_Member], word: object, key: str) -> _Member:
 def new_name(name: object, key: str, taken: Mapping[str, object]) -> str:
     """A name that nothing else has."""
     if not isinstance(name, str) or not NAME.fullmatch(name) or len(name) > MAX_NAME:
-        raise ConfigError(f"{name!r:.60} is no name: use letters, digits and '_', starting with a letter", key=key)
+        raise ConfigError(
+            f"{name!r:.60} is no name: use ASCII letters, digits and '_', starting with a letter", key=key
+        )
     if name in FUNCTIONS or name == PI or name.lower() in NOT_NUMBERS:
         raise ConfigError(f"'{name}' has a meaning of its own: choose another name", key=key)
     if name in taken:
@@ -96,7 +116,9 @@ def new_name(name: object, key: str, taken: Mapping[str, object]) -> str:
 
 def point_name(name: object, key: str, points: Mapping[str, object]) -> str:
     """The name of a point that there is."""
-    if not isinstance(name, str) or name not in points:
+    if not isinstance(name, str):
+        raise ConfigError(f"{as_written(name)} is no point's name; the points are {', '.join(points)}", key=key)
+    if name not in points:
         hint = did_you_mean(str(name), points) or f"; the points are {', '.join(points)}"
         raise ConfigError(f"there is no point {name!r:.60}{hint}", key=key)
     return name
@@ -104,7 +126,7 @@ def point_name(name: object, key: str, points: Mapping[str, object]) -> str:
 
 def ends(value: object, key: str, points: Mapping[str, object]) -> tuple[str, str]:
     """The names of two different points."""
-    pair = listed(value, key)
+    pair = listed(value, key, "[A1, A3]")
     if len(pair) != 2:
         raise ConfigError("expected two points, such as [A1, A3]", key=key)
     start, end = (point_name(name, key, points) for name in pair)
@@ -129,9 +151,10 @@ def parameters_of(entries: Mapping[str, Any], faults: Faults) -> dict[str, Param
             kind = member(Kind, fields.get("kind", Kind.NUMBER.value), f"{key}.kind")
             default = "0" if kind in _UNSET else ""
             if "default" in fields:
-                default = constant(fields["default"], f"{key}.default")
+                default = constant(fields["default"], f"{key}.default", _EXPRESSIONS)
             found[name] = Parameter(name, kind, default, _window(fields, f"{key}.range"))
-            for alias in listed(fields.get("alias", ()), f"{key}.alias"):
+            for alias in listed(fields.get("alias", ()), f"{key}.alias", "[k1, k2]"):
+                new_name(alias, f"{key}.alias", {})
                 if alias in entries:
                     raise ConfigError(f"'{alias}' is a parameter of its own: leave one out", key=f"{key}.alias")
                 new_name(alias, f"{key}.alias", found)
@@ -142,10 +165,13 @@ def parameters_of(entries: Mapping[str, Any], faults: Faults) -> dict[str, Param
 def _window(fields: Mapping[str, Any], key: str) -> tuple[str, str] | None:
     if "range" not in fields:
         return None
-    window = listed(fields["range"], key)
+    window = listed(fields["range"], key, "[0, 2]")
     if len(window) != 2:
         raise ConfigError("expected a range such as [0, 2]", key=key)
-    return constant(window[0], key), constant(window[1], key)
+    low, high = (constant(end, f"{key}.{n}") for n, end in enumerate(window, 1))
+    if value_at(parse(low), {}) >= value_at(parse(high), {}):
+        raise ConfigError(f"the range is reversed or empty: {low} to {high}", key=key)
+    return low, high
 
 
 def unknowns_of(value: object, taken: Mapping[str, object], faults: Faults) -> dict[str, UnknownKind]:
@@ -157,6 +183,7 @@ def unknowns_of(value: object, taken: Mapping[str, object], faults: Faults) -> d
     for name, kind in entries.items():
         with faults:
             new_name(name, f"unknowns.{name}", taken)
+            found[name] = UnknownKind.ANGLE  # known, whatever is wrong with it
             found[name] = member(UnknownKind, kind, f"unknowns.{name}")
     return found
 
@@ -165,33 +192,56 @@ def unknowns_of(value: object, taken: Mapping[str, object], faults: Faults) -> d
 
 
 class Reader:
-    """Reads expressions, and refuses those without a value in every ring."""
+    """Reads expressions, and refuses those without a value in every ring.
 
-    def __init__(self, parameters: Mapping[str, Parameter], unknowns: Mapping[str, UnknownKind]):
-        lengths = [name for name, kind in unknowns.items() if kind is not UnknownKind.ANGLE]
+    Parameters
+    ----------
+    doubtful : names of unknowns that are faulty themselves: they may stand anywhere.
+    """
+
+    def __init__(
+        self,
+        parameters: Mapping[str, Parameter],
+        unknowns: Mapping[str, UnknownKind],
+        doubtful: frozenset[str] = frozenset(),
+    ):
+        lengths = [name for name, kind in unknowns.items() if kind is not UnknownKind.ANGLE or name in doubtful]
         angles = [name for name, kind in unknowns.items() if kind is UnknownKind.ANGLE]
-        self.fixed = _Names(parameters, (), unknowns)
-        self.moving = _Names((*parameters, *lengths), angles, ())
+        self.fixed = _Names(parameters, (), unknowns, doubtful)
+        self.moving = _Names((*parameters, *lengths), angles, (), doubtful)
         self.names = dict.fromkeys((*parameters, *unknowns))
 
     def tree(self, value: object, key: str, *, moving: bool = False) -> Tree:
         """An expression in the parameters, and in the unknowns where it may move."""
         tree = parsed(value, key)
-        located(lambda: evaluate(tree, self.moving if moving else self.fixed), value, key)
-        return tree
+        return located(lambda: self._without_offsets(tree, self.moving if moving else self.fixed), value, key)
 
-    def pair(self, value: object, key: str, *, moving: bool = False) -> tuple[Tree, Tree]:
-        """Two coordinates or components."""
-        pair = listed(value, key)
+    @staticmethod
+    def _without_offsets(tree: Tree, names: _Names) -> Tree:
+        """The tree with quarter turns in cosines and sines worked out, once it was found to have a value."""
+        turned = without_quarter_turns(tree)
+        evaluate(turned, names)
+        return turned
+
+    def pair(
+        self, value: object, key: str, *, moving: bool = False, what: str = "coordinates", like: str = "[rho, 0]"
+    ) -> tuple[Tree, Tree]:
+        """Two coordinates or components; what they are, and an example, are for messages."""
+        pair = listed(value, key, like)
         if len(pair) != 2:
-            raise ConfigError("expected two coordinates, such as [rho, 0]", key=key)
+            raise ConfigError(f"expected two {what}, such as {like}", key=key)
         return self.tree(pair[0], f"{key}.1", moving=moving), self.tree(pair[1], f"{key}.2", moving=moving)
 
-    def angle(self, value: object, key: str) -> Tree:
-        """A sum of whole multiples of unknown angles."""
+    def angle(self, value: object, key: str) -> tuple[Tree, int]:
+        """A sum of whole multiples of unknown angles, and the quarter turns that are added to it."""
         tree = parsed(value, key)
-        located(lambda: evaluate(Call("cos", tree), self.moving), value, key)
-        return tree
+
+        def read() -> tuple[Tree, int]:
+            angle, turns = split_angle(tree)
+            evaluate(Call("cos", angle), self.moving)
+            return angle, turns
+
+        return located(read, value, key)
 
     def symmetry(self, value: object, key: str) -> dict[str, Tree]:
         """A substitution; angles stand in it as they are."""
@@ -213,23 +263,27 @@ class _Names:
     constants : parameters, and unknowns on the line where they may stand.
     angles : that may stand in cosines and sines.
     excluded : unknowns that may not occur.
+    doubtful : unknowns of which nothing more is said.
     """
 
-    def __init__(self, constants: Iterable[str], angles: Iterable[str], excluded: Iterable[str]):
+    def __init__(
+        self, constants: Iterable[str], angles: Iterable[str], excluded: Iterable[str], doubtful: frozenset[str]
+    ):
         # dictionaries for their order and for fast look-up: a hostile record has thousands of names
         self.constants, self.angles, self.excluded = map(dict.fromkeys, (constants, angles, excluded))
+        self.doubtful = doubtful
 
     def constant(self, value: Fraction) -> _Degree:
         return _Degree(0)
 
     def parameter(self, name: str) -> _Degree:
-        if name in self.angles:
+        if name in self.angles and name not in self.doubtful:
             raise ExpressionError(f"{name} is an angle: it stands inside of cos or sin")
         self._check(name, self.constants)
         return _Degree(1)
 
     def cos(self, angle: str) -> _Degree:
-        if angle in self.constants:
+        if angle in self.constants and angle not in self.doubtful:
             # of a rational angle neither is rational, so that no axis could be one
             raise ExpressionError(
                 f"{angle} is not an unknown angle: for the cosine and sine of a fixed one use two parameters, given as "
@@ -241,8 +295,12 @@ class _Names:
     sin = cos
 
     def _check(self, name: str, known: Mapping[str, None]) -> None:
+        if name in self.doubtful:
+            return
         if name in self.excluded:
             raise ExpressionError(f"{name} is an unknown: only points may depend on it")
+        if name == PI:
+            raise ExpressionError("pi is no rational number: name a parameter in its place")
         if name not in known:
             hint = did_you_mean(name, self.constants | self.angles) or f"; the names are {', '.join(known)}"
             raise ExpressionError(f"unknown name '{name[:MAX_NAME]}'{hint}")
@@ -272,7 +330,7 @@ def parsed(value: object, key: str) -> Tree:
     if isinstance(value, str):
         return located(lambda: parse(value), value, key)
     if isinstance(value, bool) or not isinstance(value, int | Fraction):
-        raise ConfigError(f"{value!r:.60} is neither an exact number nor an expression as text", key=key)
+        raise ConfigError(f"{as_written(value)} is neither an exact number nor an expression as text", key=key)
     number = Number(abs(Fraction(value)))
     return Negative(number) if value < 0 else number
 
@@ -286,9 +344,10 @@ def located(work: Callable[[], _T], text: object, key: str) -> _T:
         raise ConfigError(f"{error.message}{where}", key=key) from None
 
 
-def constant(value: object, key: str) -> str:
-    """A number as text."""
+def constant(value: object, key: str, instead: str = "") -> str:
+    """A number as text; ``instead`` says where expressions are written."""
     tree = parsed(value, key)
     if names_of(tree):
-        raise ConfigError(f"expected a number, not an expression in {names_of(tree)[0]}", key=key)
+        raise ConfigError(f"expected a number, not an expression in {names_of(tree)[0]}{instead}", key=key)
+    located(lambda: value_at(tree, {}), value, key)
     return text_of(tree)

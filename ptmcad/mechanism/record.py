@@ -18,9 +18,11 @@ from ptmcad.mechanism.proofs import check_bars, check_symmetries, check_unknowns
 from ptmcad.mechanism.reading import (
     MAX_BODIES,
     Reader,
+    as_written,
     check_keys,
     constant,
     ends,
+    faulty_entries,
     listed,
     mapping,
     member,
@@ -30,8 +32,8 @@ from ptmcad.mechanism.reading import (
     unknowns_of,
 )
 from ptmcad.mechanism.work import split_moments
-from ptmcad.text.syntax import parse
-from ptmcad.text.tree import Name, Negative, Number, Tree
+from ptmcad.text.syntax import did_you_mean, parse
+from ptmcad.text.tree import Name, Negative, Number, Tree, names_of
 
 KEYS = (
     "name", "parameters", "unknowns", "points", "bodies", "bars", "supports", "springs", "torsion", "loads", "moments",
@@ -49,7 +51,12 @@ _LATER = {
     "the loop as a 'system:'",
     "x-joint": "crossed joints cannot be computed yet: write the equations as a 'system:'",
 }
-_ZERO = Number(Fraction(0))
+_LIKE = {
+    "points": "{A: [0, 0]}", "bars": "[[O, P]]", "supports": "{O: pin}", "springs": "[{between: [A, P], k: 1}]",
+    "torsion": "[{angle: th, k: 1}]", "loads": "{P: [0, -W]}", "moments": "{th: M}", "symmetries": "[{th: -th}]",
+}  # fmt: skip
+"""Examples for messages."""
+_ZERO: Tree = Number(Fraction(0))
 
 
 def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
@@ -64,9 +71,16 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
     ConfigError
         With the key of what is wrong: an unknown key, kind, name or point, a name that is given twice, a text that is
         no expression, or one that has no value in every ring; a bar whose length varies, an unknown that no equation
-        holds, a parameter that nothing uses. Its ``faults`` are all of these.
+        holds. Its ``faults`` are all of these.
     """
     faults = Faults()
+    found = read_mechanism(record, faults, proved)
+    faults.check()
+    return found
+
+
+def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = False) -> Mechanism:
+    """As `described`, but what is wrong is noted, and left out or replaced."""
     for key, why in _LATER.items():
         with faults:
             if key in record:
@@ -83,7 +97,7 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
                 raise ConfigError("is missing", key=key)
     with faults:
         unknowns = unknowns_of(record["unknowns"], parameters, faults) if "unknowns" in record else {}
-    parts = _Parts(record, Reader(parameters, unknowns), faults)
+    parts = _Parts(record, Reader(parameters, unknowns, faulty_entries(faults, "unknowns")), faults)
     points = parts.points()
     bodies = {}
     with faults:
@@ -105,11 +119,24 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
         torsion,
         source=record,
     )
-    faults.check()
-    for check in (check_use,) if proved else (check_bars, check_unknowns, check_symmetries, check_moments, check_use):
-        check(found, faults)
-    faults.check()
+    if not proved:
+        _prove(found, faults)
     return found
+
+
+_SHAPE = frozenset({"parameters", "unknowns", "points", "bodies"})
+_FORCELESS = frozenset({"name", "bars", "supports", "symmetries"})
+
+
+def _prove(found: Mechanism, faults: Faults) -> None:
+    """Note what the parts show together only, where the parts that are concerned are right."""
+    faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
+    if not faulty & _SHAPE:
+        check_bars(found, faults)
+    if not faulty - _FORCELESS:
+        check_unknowns(found, faults)
+        check_symmetries(found, faults)
+        check_moments(found, faults)
 
 
 def check_moments(mechanism: Mechanism, faults: Faults) -> None:
@@ -119,19 +146,6 @@ def check_moments(mechanism: Mechanism, faults: Faults) -> None:
             split_moments(mechanism)
         except ExpressionError as error:
             raise ConfigError(f"they have no energy: {error.message}", key="moments") from None
-
-
-def check_use(mechanism: Mechanism, faults: Faults) -> None:
-    """Note each parameter that nothing uses."""
-    used = {*mechanism.variables, *mechanism.shorthands}
-    for name in mechanism.parameters:
-        with faults:
-            if name not in used:
-                key = mechanism.parameters[name].alias_of
-                raise ConfigError(
-                    f"nothing uses {name}: leave it out, or use it in a point, a spring or a load",
-                    key=f"parameters.{key}.alias" if key else f"parameters.{name}",
-                )
 
 
 class _Parts:
@@ -144,20 +158,20 @@ class _Parts:
 
     def _list(self, key: str) -> Sequence[Any]:
         with self.faults:
-            return listed(self.record.get(key, ()), key)
+            return listed(self.record.get(key, ()), key, _LIKE.get(key, ""))
         return ()
 
     def _mapping(self, key: str) -> Mapping[str, Any]:
         with self.faults:
-            return mapping(self.record.get(key, {}), key)
+            return mapping(self.record.get(key, {}), key, like=_LIKE.get(key, ""))
         return {}
 
     def points(self) -> dict[str, tuple[Tree, Tree]]:
         found: dict[str, tuple[Tree, Tree]] = {}
         for name, pair in self._mapping("points").items():
             with self.faults:
-                new_name(name, f"points.{name}", {})
                 found[name] = (_ZERO, _ZERO)  # known, whatever is wrong with it
+                new_name(name, f"points.{name}", {})
                 found[name] = self.reader.pair(pair, f"points.{name}", moving=True)
         return found
 
@@ -191,15 +205,21 @@ class _Parts:
         fields = mapping(entry, key, like="{between: [A, B], k: 1}")
         check_keys(fields, SPRING_KEYS, key, self.faults)
         for needed in ("between", "k"):
-            if needed not in fields:
-                raise ConfigError("is missing", key=f"{key}.{needed}")
+            with self.faults:
+                if needed not in fields:
+                    raise ConfigError("is missing", key=f"{key}.{needed}")
         start = end = ""
-        stiffness: Tree = _ZERO
+        stiffness = free = _ZERO
         with self.faults:
-            start, end = ends(fields["between"], f"{key}.between", points)
+            if "between" in fields:
+                start, end = ends(fields["between"], f"{key}.between", points)
         with self.faults:
-            stiffness = self.reader.tree(fields["k"], f"{key}.k")
-        free = self.reader.tree(fields["free"], f"{key}.free") if "free" in fields else _ZERO
+            if "k" in fields:
+                stiffness = self.reader.tree(fields["k"], f"{key}.k")
+        with self.faults:
+            free = self.reader.tree(fields.get("free", 0), f"{key}.free")
+            if not names_of(free) and value_at(free, {}) < 0:
+                raise ConfigError(f"a free length is not negative, but this is {fields['free']}", key=f"{key}.free")
         return Spring("", start, end, stiffness, free)
 
     def torsion(self) -> tuple[TorsionSpring, ...]:
@@ -210,11 +230,21 @@ class _Parts:
                 fields = mapping(entry, key)
                 check_keys(fields, TORSION_KEYS, key, self.faults)
                 for needed in ("angle", "k"):
-                    if needed not in fields:
-                        raise ConfigError("is missing", key=f"{key}.{needed}")
-                angle = self.reader.angle(fields["angle"], f"{key}.angle")
-                stiffness = self.reader.tree(fields["k"], f"{key}.k")
-                found.append(TorsionSpring(angle, stiffness, _rest(fields.get("rest", 0), f"{key}.rest")))
+                    with self.faults:
+                        if needed not in fields:
+                            raise ConfigError("is missing", key=f"{key}.{needed}")
+                angle, turns, stiffness, rest = _ZERO, 0, _ZERO, (Fraction(1), Fraction(0))
+                with self.faults:
+                    if "angle" in fields:
+                        angle, turns = self.reader.angle(fields["angle"], f"{key}.angle")
+                with self.faults:
+                    if "k" in fields:
+                        stiffness = self.reader.tree(fields["k"], f"{key}.k")
+                with self.faults:
+                    rest = _rest(fields.get("rest", 0), f"{key}.rest")
+                for _ in range(turns):  # what is added to the angle is taken from the rest
+                    rest = (rest[1], -rest[0])
+                found.append(TorsionSpring(angle, stiffness, rest))
         return tuple(found)
 
     def loads(self, points: Mapping[str, object]) -> tuple[Load, ...]:
@@ -225,12 +255,15 @@ class _Parts:
                 point_name(name, key, points)
                 if isinstance(force, Mapping):
                     check_keys(force, ("weight",), key, self.faults)
-                    if "weight" not in force:
+                    if not force:
                         raise ConfigError("expected two components, such as [0, -W], or {weight: W}", key=key)
+                    if "weight" not in force:
+                        continue  # its key is a fault already
                     weight = self.reader.tree(force["weight"], f"{key}.weight")
                     found.append(Load(name, _ZERO, Negative(weight)))
                 else:
-                    found.append(Load(name, *self.reader.pair(force, key)))
+                    like = "[0, -W], or {weight: W}"
+                    found.append(Load(name, *self.reader.pair(force, key, what="components", like=like)))
         return tuple(found)
 
     def moments(self, unknowns: Mapping[str, object]) -> tuple[Moment, ...]:
@@ -239,7 +272,8 @@ class _Parts:
             key = f"moments.{name}"
             with self.faults:
                 if name not in unknowns:
-                    raise ConfigError(f"there is no unknown {name!r:.60}; they are {', '.join(unknowns)}", key=key)
+                    hint = did_you_mean(str(name), unknowns) or f"; they are {', '.join(unknowns)}"
+                    raise ConfigError(f"there is no unknown {name!r:.60}{hint}", key=key)
                 found.append(Moment(name, self.reader.tree(value, key, moving=True)))
         return tuple(found)
 
@@ -266,8 +300,8 @@ def _rest(value: object, key: str) -> tuple[Fraction, Fraction]:
     named = NAMED_RESTS.get(str(value).replace(" ", "") if isinstance(value, str | int) else "")
     if named is None:
         raise ConfigError(
-            f"{value!r:.60} is none of {', '.join(NAMED_RESTS)}: of other angles give the cosine and sine, such as "
-            "{cos: 3/5, sin: 4/5}",
+            f"{as_written(value)} is none of {', '.join(NAMED_RESTS)}: of other angles give the cosine and sine, such "
+            "as {cos: 3/5, sin: 4/5}",
             key=key,
         )
     return Fraction(named[0]), Fraction(named[1])

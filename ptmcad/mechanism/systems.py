@@ -9,12 +9,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from ptmcad.errors import ConfigError, Faults
+from ptmcad.mechanism.angles import PI
 from ptmcad.mechanism.description import Kind, Parameter, System, UnknownKind
+from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.reading import (
     MAX_ENTRIES,
-    PI,
     Reader,
     check_keys,
+    faulty_entries,
     listed,
     mapping,
     new_name,
@@ -27,6 +29,7 @@ from ptmcad.text.tree import Tree, names_of
 SYSTEM_KEYS = ("name", "parameters", "unknowns", "equations", "potential", "positive", "stable")
 DEFAULT_NAME = "system"
 _LISTS = ("equations", "positive", "stable")
+_HOLDING = frozenset({"unknowns", "equations", "potential"})
 _LIKE = {"equations": '["x^3 - a*x + b"]', "positive": "[x]", "stable": '["3*x^2 - a"]'}
 """Examples for messages."""
 
@@ -43,6 +46,13 @@ def described_system(record: Mapping[str, Any]) -> System:
         stands in no equation. Its ``faults`` are all that is wrong.
     """
     faults = Faults()
+    found = read_system(record, faults)
+    faults.check()
+    return found
+
+
+def read_system(record: Mapping[str, Any], faults: Faults) -> System:
+    """As `described_system`, but what is wrong is noted, and left out or replaced."""
     check_keys(record, SYSTEM_KEYS, "", faults)
     name = DEFAULT_NAME
     with faults:
@@ -60,30 +70,43 @@ def described_system(record: Mapping[str, Any]) -> System:
             raise ConfigError("give either equations or a potential", key="equations")
     texts = _texts(record, faults)
     trees = {key: tree for key, text in texts.items() if (tree := _tree(text, key, faults)) is not None}
-    faults.check()
-    listed_ones = tuple(parameters)
     for key, tree in trees.items():
-        for found in names_of(tree):
-            if found not in parameters and found not in unknowns:
-                with faults:
-                    if found == PI:
-                        raise ConfigError("pi is no rational number: name a parameter in its place", key=key)
-                    parameters[new_name(found, key, {})] = Parameter(found, Kind.NUMBER, "", None)
+        _add_names(tree, key, parameters, unknowns, faults)
     with faults:
         if len(parameters) > MAX_ENTRIES:
             raise ConfigError(f"{len(parameters)} names of parameters, more than {MAX_ENTRIES}", key="equations")
-    faults.check()
-    reader = Reader(parameters, unknowns)
-    for key, text in texts.items():
+    reader = Reader(parameters, unknowns, faulty_entries(faults, "unknowns"))
+    for key in trees:
         with faults:
-            reader.tree(text, key, moving=True)
+            trees[key] = tree = reader.tree(texts[key], key, moving=True)
+            if key.startswith("positive.") and not names_of(tree) and value_at(tree, {}) <= 0:
+                raise ConfigError("is never positive: no solution would be counted", key=key)
     equations, positive, stable = (
         tuple(tree for key, tree in trees.items() if key.startswith(f"{part}.")) for part in _LISTS
     )
     system = System(name, parameters, unknowns, equations, trees.get("potential"), positive, stable, source=record)
-    _check(system, listed_ones, faults)
-    faults.check()
+    with faults:
+        if system.potential is not None and system.stability:
+            raise ConfigError("of a potential the Hessian decides what is stable: leave this out", key="stable")
+    with faults:
+        written = sum(key.startswith("equations.") for key in texts)
+        if "potential" not in record and written and written != len(unknowns):
+            raise ConfigError(
+                f"{written} equations for {len(unknowns)} unknowns: give as many as there are unknowns", key="equations"
+            )
+    if not {(fault.key or "").partition(".")[0] for fault in faults.found} & _HOLDING:
+        _check_unknowns(system, faults)
     return system
+
+
+def _add_names(
+    tree: Tree, key: str, parameters: dict[str, Parameter], unknowns: Mapping[str, UnknownKind], faults: Faults
+) -> None:
+    """Add the names in an expression that are new to the parameters."""
+    for name in names_of(tree):
+        with faults:
+            if name != PI and name not in parameters and name not in unknowns:
+                parameters[new_name(name, key, {})] = Parameter(name, Kind.NUMBER, "", None)
 
 
 def _texts(record: Mapping[str, Any], faults: Faults) -> dict[str, object]:
@@ -103,26 +126,11 @@ def _tree(text: object, key: str, faults: Faults) -> Tree | None:
     return None
 
 
-def _check(system: System, listed_ones: tuple[str, ...], faults: Faults) -> None:
-    """Note what the parts show together only."""
-    with faults:
-        if system.potential is not None and system.stability:
-            raise ConfigError("of a potential the Hessian decides what is stable: leave this out", key="stable")
-    with faults:
-        if system.potential is None and len(system.equations) != len(system.unknowns):
-            raise ConfigError(
-                f"{len(system.equations)} equations for {len(system.unknowns)} unknowns: give as many as there are "
-                "unknowns",
-                key="equations",
-            )
+def _check_unknowns(system: System, faults: Faults) -> None:
+    """Note each unknown that stands in no equation."""
     equations = system.equations if system.potential is None else (system.potential,)
     held = {name for tree in equations for name in names_of(tree)}
     for unknown in system.unknowns:
         with faults:
             if unknown not in held:
                 raise ConfigError("no equation holds this unknown", key=f"unknowns.{unknown}")
-    used = {*system.variables, *system.shorthands}
-    for parameter in listed_ones:
-        with faults:
-            if parameter not in used:
-                raise ConfigError("nothing uses this parameter", key=f"parameters.{parameter}")

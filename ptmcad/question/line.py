@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.errors import A_SLICE, ConfigError, ExpressionError, expect
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis, Slice, have_free_lengths, without_free_lengths
 from ptmcad.text.expressions import Expression, axis, constant
@@ -41,6 +41,7 @@ def varying_axis(slice: Slice, along: str, at: Mapping[str, Any]) -> tuple[int, 
     ConfigError
         When ``along`` is no axis, or ``at`` does not name exactly the other one with an exact number.
     """
+    _expect(slice, along, at)
     names = slice.axis_names
     if along not in names:
         raise ConfigError(f"{along} is not an axis of the slice: choose {names[0]} or {names[1]}", key="along")
@@ -52,6 +53,14 @@ def varying_axis(slice: Slice, along: str, at: Mapping[str, Any]) -> tuple[int, 
             f"a line along {along} needs a value of {other} and of nothing else, not of {given}", key="at"
         )
     return varying, other, number_for(f"at {other}", at[other])
+
+
+def _expect(slice: object, along: object, at: object) -> None:
+    """Refuse what is no slice, no name of an axis, or no mapping."""
+    expect(slice, Slice, "slice", A_SLICE)
+    assert isinstance(slice, Slice)
+    expect(along, str, "along", f"an axis of the slice, {' or '.join(slice.axis_names)}")
+    expect(at, Mapping, "at", "a mapping of the other axis to its value")
 
 
 def line_of(slice: Slice, along: str, at: Mapping[str, Any]) -> Line:
@@ -92,6 +101,7 @@ def restricted(expression: Expression, varying: int, value: Fraction) -> Express
 
 def has_free_lengths(slice: Slice, along: str, at: Mapping[str, Any]) -> bool:
     """Whether a spring has a free length on the line; where none has, algebra answers, or refuses the line."""
+    _expect(slice, along, at)
     if along not in slice.axis_names:
         return False
     varying = slice.axis_names.index(along)

@@ -46,8 +46,13 @@ class Enclosure:
     def settles(self, digits: int = DIGITS) -> bool:
         """Whether the enclosure determines its number rounded to ``digits`` significant digits, and to any fewer.
 
-        It does when it is exact, or when it contains neither zero nor a multiple of half a unit of the last digit. A
-        number that is not exactly known must therefore not be such a multiple, as no irrational number is.
+        It does when it is exact, or when it contains neither zero nor a number that lies halfway between two texts, one
+        with a 5 as its last digit. A number that is not exactly known must therefore not be one, as no irrational
+        number is.
+
+        >>> near = Fraction(1, 10**30)
+        >>> Enclosure(3 - near, 3 + near).settles(), Enclosure(Fraction(5, 2) - near, Fraction(5, 2) + near).settles()
+        (True, False)
         """
         if self.low == self.high:
             return True
@@ -55,7 +60,8 @@ class Enclosure:
             return False
         near, far = (self.low, self.high) if self.low > 0 else (-self.high, -self.low)
         half = Fraction(10) ** (magnitude(near) + 1 - digits) / 2
-        return -(-near // half) - 1 == far // half
+        first, last = -(-near // half), far // half
+        return first > last or (first == last and not integer_text(first * 5).rstrip("0").endswith("5"))
 
     def text(self, digits: int = DIGITS) -> str:
         """The number rounded to nearest, with ``digits`` significant digits.

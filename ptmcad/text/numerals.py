@@ -93,6 +93,20 @@ def shortest_text(value: Fraction) -> str:
     return f"{'-' if scaled < 0 else ''}{text[:-digits]}.{text[-digits:]}"
 
 
+MAX_SHORT = 24
+"""Characters of an exact number in a message."""
+
+
+def short_text(value: Fraction) -> str:
+    """A number for a message: as it is where that is short, else about what it is.
+
+    >>> short_text(Fraction(-2, 21)), short_text(Fraction(1, 3 * 10**40))
+    ('-2/21', 'about 3.33333333e-41')
+    """
+    text = text_of(value)
+    return text if len(text) <= MAX_SHORT else f"about {approximate_text(value)}"
+
+
 def fraction_of(text: str) -> Fraction:
     """The number written as ``7/10``, ``-3``, ``0.25`` or ``1.5e-7``.
 

@@ -160,6 +160,11 @@ class _Parser:
             return tree
         if token.text == ")":
             raise ExpressionError("this ')' has no '(' before it", token.position)
+        before = self.tokens[self.index - 1]
+        if token.text == "(" and before.kind == "name":
+            raise ExpressionError(
+                f"'{_short(before.text)}' is no function here: is an operator missing?", token.position
+            )
         raise ExpressionError(f"'{_short(token.text)}' is not expected here: is an operator missing?", token.position)
 
     def next(self) -> _Token:

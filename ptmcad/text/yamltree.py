@@ -189,6 +189,7 @@ def _counted(events: Iterator[Any], root: Place) -> Iterator[Any]:
 def _node(event: Any, events: Iterator[Any], place: Place, depth: int) -> Node:
     """The node that starts with `event`; the rest of it is taken from `events`."""
     here = Place(place.key, place.file, _line(event))
+    key_line = place.line or here.line  # where a block begins is below its key
     if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
         raise here.error("anchors (&) and aliases (*) are not accepted: write the value out, or quote the text")
     if event.tag is not None:
@@ -200,12 +201,12 @@ def _node(event: Any, events: Iterator[Any], place: Place, depth: int) -> Node:
     if isinstance(event, yaml.SequenceStartEvent):
         items = []
         while not isinstance(event := next(events), yaml.SequenceEndEvent):
-            items.append(_node(event, events, place, depth + 1))
-        return Sequence(tuple(items), here)
+            items.append(_node(event, events, place._replace(line=None), depth + 1))
+        return Sequence(tuple(items), here._replace(line=key_line))
     entries: dict[str, Node] = {}
     lines: dict[str, int] = {}
     while not isinstance(event := next(events), yaml.MappingEndEvent):
-        key = _node(event, events, place, depth + 1)
+        key = _node(event, events, place._replace(line=None), depth + 1)
         line = _line(event)
         if not isinstance(key, Scalar) or key.is_null:
             raise Place(place.key, place.file, line).error("a key must be a name")
@@ -218,7 +219,7 @@ def _node(event: Any, events: Iterator[Any], place: Place, depth: int) -> Node:
             raise at.error(f"the key occurs twice; first in line {lines[key.text]}: leave one out")
         lines[key.text] = line
         entries[key.text] = _node(next(events), events, at, depth + 1)
-    return Tree(entries, here)
+    return Tree(entries, here._replace(line=key_line))
 
 
 def _line(event: Any) -> int:

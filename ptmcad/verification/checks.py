@@ -7,6 +7,7 @@ from functools import partial
 from hashlib import sha256
 
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.errors import A_MAP, expect
 from ptmcad.options import Progress
 from ptmcad.verification.adjacency import check_adjacencies, check_no_adjacency_missing, check_non_adjacencies
 from ptmcad.verification.areas import check_areas
@@ -68,6 +69,7 @@ def verify(
     --------------
     What the table lists as not checked.
     """
+    expect(result, RegionMap, "result", A_MAP)
     if result.cover is not None or result.status is Status.CERTIFIED:
         return verify_certified(result, seed, boxes, progress)
     steps = checks_of(result, seed)

@@ -27,9 +27,10 @@ from ptmcad.verification.variety import BITS, check_identity, condition_exponent
 def auxiliary(model: Model) -> tuple[str, ...]:
     """Names that may be kept as texts alone, because other texts name them.
 
-    They are shorthands, which are no parameters of the mechanism, and free lengths that are zero.
+    They are shorthands, which are no parameters of the mechanism, free lengths that are zero, and parameters that only
+    a record's own expressions use.
     """
-    return (*model.shorthands, *model.free_lengths)
+    return (*model.shorthands, *model.free_lengths, *model.idle)
 
 
 def check_text(claims: Claims) -> str:

@@ -398,3 +398,68 @@ def test_at_its_poles_an_expression_has_no_value(recwarn: pytest.WarningsRecorde
     assert np.array_equal(np.isnan(field.values), np.eye(7, dtype=bool))
     assert field.checked and field.difference < 1e-9
     assert not recwarn.list
+
+
+@pytest.mark.parametrize(
+    ("value", "beyond", "known"),
+    [
+        ("rho^1000000", 49, None),  # six columns too small or too large, and the one at 1, see below
+        ("1e-400*rho", 49, None),
+        ("10^300*10^300*rho", 49, None),
+        ("rho/10^300/10^300", 49, None),
+        ("cos(10^400)", 49, None),
+        ("1/(rho*1e-400)", 49, None),
+        ("1 + 1e-400*rho", 0, 1.0),  # what is lost is less than rounding
+        ("cos(10^-400)", 0, 1.0),
+        ("(1 + 10^-400)^2", 0, 1.0),
+        ("2/(1 + 10^-400) + 3*10^-400", 0, 2.0),
+        ("0*10^300", 0, 0.0),
+    ],
+)
+def test_values_that_no_double_is_near_are_undecided_and_counted(value: str, beyond: int, known: float | None) -> None:
+    field = shipped("fig4").field(value, "stable:1", 7)
+    at_one = value.startswith("rho^")  # the middle column is at rho = 1
+    assert field.beyond == beyond - 7 * at_one
+    assert np.isnan(field.values).sum() == field.beyond
+    assert np.all(field.values[~np.isnan(field.values)] == (1.0 if at_one else known))
+
+
+def test_the_command_says_at_how_many_pixels_a_value_is_beyond_doubles(
+    tmp_path: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    result = tmp_path / "fig4.json"
+    result.write_text(shipped("fig4").to_json(), encoding="utf-8")
+    asked = ["map", str(result), "--pixels", "7", "--out", str(tmp_path), "--format", "csv", "--value"]
+    assert run([*asked, "rho^1000000"]) == 0
+    out, err = capsys.readouterr()
+    assert "rho^1000000 of stable:1: 1 to 1, at 14.3 % of the pixels" in out
+    assert err == (
+        "warning: 42 pixels are left empty, where rho^1000000 or a part of it is beyond doubles: larger than 1.8e308 "
+        "or nearer to zero than 2.2e-308\n"
+    )
+    assert run([*asked, "1e-400*rho"]) == 0
+    out, err = capsys.readouterr()
+    assert "1e-400*rho of stable:1 is beyond doubles wherever it has a value" in out and "49 pixels" in err
+    assert run([*asked, "rho^2"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("value", "title", "nothing"),
+    [
+        ("stiffness", "Stiffness of stable pose 1: fig4", ""),
+        ("angle:th1", "Angle θ₁ of stable pose 1: fig4", ""),
+        ("rho*th1", "rho*th1 of stable pose 1: fig4", ""),
+        ("1e-400*rho", "1e-400*rho of stable pose 1: fig4", "1e-400*rho is beyond doubles"),
+        ("1/(rho-1)", "1/(rho-1) of stable pose 1: fig4", "no stable:1 in this window"),
+    ],
+)
+def test_a_picture_names_its_quantity_as_the_bar_beside_it(value: str, title: str, nothing: str) -> None:
+    from ptmcad.show.render.field import field_figure
+    from ptmcad.show.render.printing import settings
+
+    result = shipped("fig4")
+    field = result.field(value, "stable:1", 1 if "-1)" in value else 3)
+    with settings():
+        texts = [t.get_text() for t in field_figure(result, field, (), 0, 50).axes[0].texts]
+    assert texts == [title, *([nothing] if nothing else [])]

@@ -84,7 +84,9 @@ def test_the_steps_one_by_one() -> None:
 def test_what_is_wrong_is_said() -> None:
     with pytest.raises(ConfigError) as caught:
         ptmcad.Mechanism({**PENDULUM, "springs": [{"between": ["O", "Q"], "k": "K"}], "bars": [["G", "P"]]})
-    assert [fault.key for fault in caught.value.faults] == ["mechanism.springs.1.between", "mechanism.springs.1.k"]
+    assert [fault.key for fault in caught.value.faults] == [
+        "mechanism.springs.1.between", "mechanism.springs.1.k", "mechanism.bars.1",
+    ]  # fmt: skip
     with pytest.raises(ConfigError, match=r"use ptmcad\.System"):
         ptmcad.Mechanism(unknowns={"x": "real"}, equations=["x"])
     with pytest.raises(ConfigError, match="expected a mapping"):

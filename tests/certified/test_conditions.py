@@ -230,7 +230,7 @@ def test_a_condition_without_unknowns_is_a_curve_and_a_number_is_none() -> None:
     result = ptmcad.classify(slice, engine="certified", tolerance="1/50", jobs=1)
     assert (result.locate(a="3/4", b="1/4").total, result.locate(a="1/4", b="3/4").total) == (1, 0)
     for never in ("0", "-1", "x - x"):
-        with pytest.raises(ConfigError, match="no solution counts"):
+        with pytest.raises(ConfigError, match=r"no solution (counts|would be counted)"):
             point_counter(small({**system, "positive": [never]}, {"a": [0, 1], "b": [0, 1]}))
 
 

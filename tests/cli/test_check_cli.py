@@ -140,3 +140,17 @@ def test_classify_says_at_once_that_it_will_take_long(
     assert first.startswith("note: the equations have 20 complex solutions") and "nothing is computed" in last
     assert run([*asked, "--engine", "certified"]) == 2
     assert "note" not in capsys.readouterr().err
+
+
+def test_long_numbers_are_shown_short(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "long.yaml"
+    path.write_text(
+        'system: {unknowns: {x: real}, equations: ["x^3 - a*x + b + c"]}\nparameters: {c: 1/3e50 + b}\n'
+        "axes: {a: [1.23456789e-200, 7.7777777777777777e-100], b: [0, 2]}\n",
+        encoding="utf-8",
+    )
+    assert run(["check", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert max(map(len, out.splitlines())) < 120
+    assert "axes        a from about 1.23456789e-200 to about 7.77777777e-100, b from 0 to 2" in out
+    assert "solutions   3 complex ones at a = about 3.7037037e-100, b = 38/35" in out

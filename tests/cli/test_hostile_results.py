@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from support.certified_maps import circle
+from support.maps import shipped
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli import run
@@ -139,3 +141,28 @@ def test_paths_are_printed_so_that_no_terminal_obeys_them(
 def test_a_long_path_is_shown_whole() -> None:
     path = Path("/", *["x" * 100] * 35)
     assert shown_path(path) == str(path)
+
+
+@pytest.mark.parametrize("name", ["fig4", "certified"])
+@pytest.mark.parametrize(
+    "command",
+    [["plot"], ["map", "--pixels", "5"], ["locate", "--at", "rho=1/2,L2=1/3"], ["report"],
+     ["animate", "--path", "rho=3/4:6/5,L2=3/2", "--frames", "3"]],
+    ids=lambda command: command[0],
+)  # fmt: skip
+def test_a_map_whose_regions_are_missing_is_refused(
+    command: list[str], name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By all commands that ask something of it, alike; `verify` says it of the claim."""
+    whole = shipped("fig4") if name == "fig4" else circle(5)
+    file = tmp_path / "damaged.json"
+    file.write_text(json.dumps(json.loads(whole.to_json()) | {"regions": []}), encoding="utf-8")
+    asked = [command[0], str(file), *command[1:]]
+    assert run([*asked, *([] if command[0] == "locate" else ["--out", str(tmp_path)])]) == 2
+    told = capsys.readouterr()
+    assert told.out == "" and told.err == (
+        f"error: {file}: the map contradicts itself: cell 0 names region 0, which is not there; check it with ptmcad "
+        "verify\n"
+    )
+    assert [path.name for path in tmp_path.iterdir()] == ["damaged.json"]
+    assert run(["verify", str(file)]) == 1

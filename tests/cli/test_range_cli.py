@@ -162,3 +162,19 @@ def test_a_band_with_free_lengths(at: list[str], tmp_path: Path, capsys: pytest.
     assert ("enclosed" in data) == bool(at)
     picture = (tmp_path / "x-over.svg").read_text(encoding="utf-8")
     assert "above: where there are at least two stable equilibria" in picture
+
+
+@pytest.mark.parametrize(
+    ("asked", "key"),
+    [
+        (["--along", "foo", "--at", "L2=1"], "--along"),
+        (["--along", "rho", "--over", "foo"], "--over"),
+        (["--slice", "foo,L2", "--along", "foo", "--at", "L2=1"], "--slice"),
+    ],
+)
+def test_an_unknown_axis_is_told_by_the_option_that_named_it(
+    asked: list[str], key: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["range", str(ROOT / "configs" / "fig4.yaml"), *asked]) == 2
+    expected = f"error: {key}: unknown axis 'foo'; to introduce a new variable add --range foo=LO:HI\n"
+    assert capsys.readouterr().err == expected

@@ -11,7 +11,15 @@ from support.maps import CONFIGS
 from support.structure import check_structure
 
 from ptmcad import RegionMap, classify, load, slice_from_mapping
-from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError, LimitReached
+from ptmcad.ask.checking import check
+from ptmcad.errors import (
+    ConfigError,
+    DegenerateSliceError,
+    GeometryError,
+    InfiniteSolutionsError,
+    LimitReached,
+    NothingToCountError,
+)
 
 RHO_L2 = {"rho": [0, 2], "L2": [0, 2]}
 
@@ -50,6 +58,76 @@ def test_infinitely_many_solutions_everywhere() -> None:
     """Unloaded with rho = 0: the crossed bars turn freely."""
     with pytest.raises(InfiniteSolutionsError, match=r"(?s).{20}"):
         region_map({"L1": [1, 2], "L2": [1, 2]}, rho=0)
+
+
+X = {"x": "real"}
+
+
+@pytest.mark.parametrize(
+    ("system", "words"),
+    [
+        ({"unknowns": X, "equations": ["(x^2-a)^2 + 0*b"]}, "only 2 of 4 solutions are different"),
+        ({"unknowns": X, "equations": ["(x^2-a)^2*(x-b)"]}, "only 3 of 5 solutions are different"),
+        ({"unknowns": X, "equations": ["(x^2-a)^2*(x-b)"], "positive": ["x-b"]}, "only 2 of 4 solutions are different"),
+        ({"unknowns": {"x": "angle", "y": "real"}, "equations": ["cos(x)-2-y", "(y-a)^2*(y-b)^2"]},
+         "only 4 of 8 solutions are different"),
+    ],
+)  # fmt: skip
+def test_a_slice_inside_the_variety_is_shown_at_a_point_where_nothing_else_degenerates(
+    system: dict[str, Any], words: str
+) -> None:
+    """By hand: a and b differ and are not zero there, and the roots of each factor are simple."""
+    slice = slice_from_mapping({"system": system, "axes": {"a": [-2, 2], "b": [-2, 2]}})
+    for ask in (classify, check):
+        with pytest.raises(DegenerateSliceError) as caught:
+            ask(slice)
+        assert str(caught.value).endswith(
+            f"for example at a = -2/21, b = 6/35, where nothing else degenerates, {words}"
+        )
+
+
+def test_a_point_where_more_degenerates_is_passed_over() -> None:
+    """At the first point that is tried a = b, so that solutions coincide that do not elsewhere."""
+    system = {"unknowns": X, "equations": ["(x-a)^2*(x-b)"]}
+    equal = slice_from_mapping({"system": system, "axes": {"a": [0, "399/10"], "b": [0, 35]}})
+    words = "at a = 399/22, b = 140/13, where nothing else degenerates, only 2 of 3"
+    with pytest.raises(DegenerateSliceError, match=words):
+        classify(equal)
+
+
+@pytest.mark.parametrize(
+    ("system", "error", "words"),
+    [
+        ({"unknowns": X, "equations": ["x^2-a+0*b"], "positive": ["x^2-a"]}, NothingToCountError,
+         "b = 6/35 the equations have 2 different solutions, all excluded"),
+        ({"unknowns": X, "equations": ["1+0*a*b*x"]}, NothingToCountError, "b = 6/35 there is none"),
+        ({"unknowns": {"x": "real", "y": "real"}, "equations": ["x*y-a*x", "x*(x-b)"]}, InfiniteSolutionsError,
+         "b = 6/35 there are infinitely many solutions"),
+    ],
+)  # fmt: skip
+def test_nothing_to_count_and_infinitely_many_are_shown_at_a_point(
+    system: dict[str, Any], error: type[Exception], words: str
+) -> None:
+    slice = slice_from_mapping({"system": system, "axes": {"a": [-2, 2], "b": [-2, 2]}})
+    for ask in (classify, check):
+        with pytest.raises(error) as caught:
+            ask(slice)
+        assert str(caught.value).endswith(f"for example at a = -2/21, {words}")
+
+
+def test_a_check_that_does_not_prove_says_what_it_saw() -> None:
+    system = {"unknowns": {"x": "real", "y": "real"}, "equations": ["(x^3-a*x+b)^2*(x-1)", "y^3-x"]}
+    found = check(slice_from_mapping({"system": system, "axes": {"a": [-2, 2], "b": [-2, 2]}}))
+    assert found.complex_solutions == 12
+    assert found.cost.startswith("not known: at 5 points that were tried some solution is multiple")
+
+
+def test_what_degenerates_at_the_checks_sample_only_is_no_fault() -> None:
+    """x^2 = a - 10/21 has a double solution at the first point that is tried, and nowhere else."""
+    system = {"unknowns": X, "equations": ["x^2 - a + 10/21 + 0*b"]}
+    assert check(slice_from_mapping({"system": system, "axes": {"a": [0, 1], "b": [0, 1]}})).complex_solutions == 1
+    excluded = {"unknowns": X, "equations": ["(x^2-a)^2*(x-b)"], "positive": ["x^2-a"]}
+    assert check(slice_from_mapping({"system": excluded, "axes": {"a": [0, 1], "b": [0, 1]}})).complex_solutions == 1
 
 
 def test_rho_zero_with_loads() -> None:

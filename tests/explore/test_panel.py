@@ -127,7 +127,7 @@ def test_maps_are_those_of_classify(name: str, values: dict[str, str]) -> None:
     for fine in (False, True):
         shown = task.answer({"kind": "map", "values": values, "fine": fine, "framed": True})
         assert shown["digest"] == [[r.stable, r.total, len(r.cells)] for r in alone.regions]
-        assert shown["frame"].startswith("<rect") and not shown["certified"]
+        assert shown["frame"]["svg"].startswith("<rect") and not shown["certified"]
         areas = [region["area"] for region in shown["regions"]]
         assert [not area for area in areas] == [not fine] * len(areas)
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from support import pages
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
@@ -103,10 +105,7 @@ def test_what_cannot_be_drawn_is_refused(tmp_path: Path) -> None:
 
 
 def data_of(result: RegionMap) -> dict[str, Any]:
-    match = re.search(r'id="data">(.*?)</script>', page(result, timings=False))
-    assert match is not None
-    found: dict[str, Any] = json.loads(match[1])
-    return found
+    return pages.data_of(page(result, timings=False))
 
 
 def test_maps_and_pages_of_systems_speak_of_solutions() -> None:
@@ -115,7 +114,7 @@ def test_maps_and_pages_of_systems_speak_of_solutions() -> None:
     data = data_of(result)
     assert not data["drawable"] and not data["landscape"] and data["mechanism"]["unknowns"] == ["x"]
     for cell in data["cells"]:
-        a, b = (eval(text.replace("/", "*1.0/")) for *_, text in cell["sample"])
+        a, b = (float(Fraction(text.split()[0])) for text in cell["sample"])
         for solution in cell["equilibria"]:
             (x,) = solution["at"]
             assert solution["kind"] == "solution" and solution["energy"] == "" and abs(x**3 - a * x + b) < 1e-6

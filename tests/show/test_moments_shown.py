@@ -16,6 +16,7 @@ import yaml
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
+from support import pages
 
 import ptmcad
 from ptmcad.answer.poses import Poses
@@ -214,17 +215,14 @@ def test_a_load_is_told_by_its_name_or_as_a_force() -> None:
 
 def data_of(record: dict[str, Any]) -> dict[str, Any]:
     result = ptmcad.classify(ptmcad.slice_from_mapping({"name": "s", **record}), area_tolerance="1/10")
-    match = re.search(r'id="data">(.*?)</script>', page(result, timings=False))
-    assert match is not None
-    found: dict[str, Any] = json.loads(match[1])
-    return found
+    return pages.data_of(page(result, timings=False))
 
 
 def test_the_page_has_the_moments_and_calls_nothing_degenerate_without_a_potential() -> None:
     data = data_of(ANGLE)
     assert data["told"]
     for cell in data["cells"]:
-        ((_, exact, *_), *_) = cell["sample"]
+        exact, *_ = cell["sample"]
         assert cell["moments"] == ([float(Fraction(exact.split()[0]))] if exact != "0" else [])
     data = data_of(UNTOLD)
     assert not data["told"] and not data["landscape"]
@@ -285,5 +283,4 @@ def test_the_page_of_a_certified_map_of_lengths_alone() -> None:
         "count": "total",
     }
     result = ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/5")
-    match = re.search(r'id="data">(.*?)</script>', page(result, timings=False))
-    assert match is not None and all(not cell["potential"] for cell in json.loads(match[1])["cells"])
+    assert all(not cell["potential"] for cell in pages.data_of(page(result, timings=False))["cells"])

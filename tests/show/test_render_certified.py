@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import replace
 from fractions import Fraction
@@ -18,6 +17,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 from matplotlib.path import Path as Curve
 from support.certified_maps import certified, circle, crossing, cusp
+from support.pages import data_of
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli import run
@@ -26,11 +26,12 @@ from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count, Point
 from ptmcad.show.render import draw
 from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED, fill_of
-from ptmcad.show.render.coveroutline import TOLERANCE, simplified
+from ptmcad.show.render.coveroutline import TOLERANCE
 from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
 from ptmcad.show.render.legend import RIM
 from ptmcad.show.render.regionmap import figure_of
 from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.simplification import simplified
 from ptmcad.show.render.view import View
 from ptmcad.show.report import page
 
@@ -187,10 +188,10 @@ def test_the_page_tells_status_undetermined_area_and_bounds() -> None:
         assert high - low < region.area[1] - region.area[0] + Fraction(1, 10**5)
     assert bounds[1][0] < pi / 4 < bounds[1][1]
     assert "Boundary curves" not in text and "polynomial" not in plain
-    data = json.loads(text.partition('<script type="application/json" id="data">')[2].partition("</script>")[0])
+    data = data_of(text)
     assert [cell["stack"] for cell in data["cells"]] == [None, None]
-    assert text.count('class="cell" data-cell=') == 2
-    assert 'class="undetermined"' in text and 'class="fill rim"' in text
+    assert text.count('<use class="cell" ') == 2
+    assert 'class="undetermined"' in text and 'class="rim"' in text
 
 
 def test_a_partial_map_says_so_on_its_page() -> None:

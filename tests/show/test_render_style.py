@@ -114,6 +114,46 @@ def test_insets_go_first_then_the_legend_moves_then_areas_go() -> None:
     assert max(t.get_position()[1] for t in tall.texts[1:]) < tall.axes[0].get_position().y0 * 3.8
 
 
+def crowded(made: Figure) -> list[str]:
+    """What lies on what, of labels and of arrows: in which a label's own arrow is left out."""
+    canvas = FigureCanvasAgg(made)
+    canvas.draw()
+    labels = [t for t in made.findobj(Annotation) if str(t.get_gid()).startswith("arrow")]
+    boxes = [t.get_bbox_patch().get_window_extent() for t in labels]
+    arrows = [t.axes.transAxes.transform(np.array([t.xy, t.get_position()])) for t in labels]
+    met = [f"{a.get_text()} on {b.get_text()}" for (a, p), (b, q) in combinations(zip(labels, boxes, strict=True), 2)
+           if p.overlaps(q)]  # fmt: skip
+    for k, arrow in enumerate(arrows):
+        points = arrow[0] + np.linspace(0, 1, 200)[:, None] * (arrow[1] - arrow[0])
+        met += [f"arrow of {labels[k].get_text()} on {labels[n].get_text()}" for n, box in enumerate(boxes)
+                if n != k and any(box.contains(*point) for point in points)]  # fmt: skip
+    return met
+
+
+MANY = [Fraction(k // 2 + 1, 14) + (k % 2) * Fraction(1, 10**4) for k in range(26)]
+
+
+@pytest.mark.parametrize("size", [(3.5, 2.6), (3.5, 3.2), (2.6, 2.6)])
+def test_labels_that_no_inset_explains_are_apart_and_the_rest_is_told(size: tuple[float, float]) -> None:
+    """First the count that is seen nowhere else, a label at a thin region; they are counts without letters."""
+    counts = [1 + k % 2 for k in range(27)]
+    counts[13] = 5
+    made = figure(bands(MANY, Fraction(0), counts), styled(size=size, font_size=7))
+    labels = [t.get_text() for t in made.findobj(Annotation) if str(t.get_gid()).startswith("arrow")]
+    assert len(made.axes) == 1 and "5" in labels and set(labels) <= {"1", "2", "5"}
+    assert crowded(made) == []
+    hidden = re.search(r"(\d+) more regions? (?:are|is) too thin for a label", legend_of(made))
+    assert hidden is not None and int(hidden[1]) + len(labels) == 13
+
+
+def test_a_title_breaks_at_no_equals_sign() -> None:
+    words = "Some words and L1 = 1, L2 = 2, F3 = F4 = -10, k = 100 " * 2
+    made = figure(shipped("fig4"), styled(size=(3.5, 3.5), title=words))
+    lines = [t.get_text().replace("\N{NO-BREAK SPACE}", " ") for t in made.texts]
+    title = lines[: next(k for k, line in enumerate(lines) if line.startswith("Stable"))]
+    assert len(title) > 1 and not any(line.startswith("=") or line.endswith("=") for line in title)
+
+
 def test_without_a_legend_there_is_none() -> None:
     made = figure(shipped("fig4"), styled("ieee", legend=Place.NONE))
     assert not made.texts

@@ -14,11 +14,13 @@ from typing import Any
 import pytest
 from support import browser as chromium
 from support.browser import Browser
+from support.certified_maps import certified
 from support.maps import CONFIGS
 from support.maps import shipped as computed
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.cover.rectangles import Cover
 from ptmcad.show.report import page
 
 pytestmark = pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
@@ -199,10 +201,9 @@ def test_the_arrows_follow_the_map(one: Browser, tmp_path: Path, axes: str, base
                 moves += 1
         inside = f"""(() => {{
           const area = document.querySelector('#map [data-cell="{number}"]');
-          const point = area.ownerSVGElement.createSVGPoint();
-          [point.x, point.y] = DATA.cells[{number}].at;
-          const box = area.getBBox();
-          return Math.min(box.width, box.height) < 3 || area.isPointInFill(point);
+          const [x, y] = DATA.cells[{number}].at;
+          const {{ width, height }} = area.getBBox();
+          return Math.min(width, height) < 3 * DATA.grid || cellAt([x / DATA.side, 1 - y / DATA.side]) === {number};
         }})()"""
         assert one.run(inside)
     assert moves >= 2 * (len(result.cells) - 1)
@@ -277,6 +278,40 @@ def test_narrow_screens_need_no_sideways_scrolling(view: Callable[..., Browser],
     b.run("document.querySelectorAll('details').forEach((d) => { d.open = false; })")
     b.picture(f"fig4-phone-{width}.png")
     quiet(b, "fig4")
+
+
+CROWDED = """[...document.querySelectorAll('svg.map')].flatMap((map) => {
+  const window = map.getBoundingClientRect();
+  const all = [...map.querySelectorAll('.number, .name')];
+  const texts = all.map((text) => [text.textContent, text.getBoundingClientRect()]);
+  const out = texts.filter(([, box]) => box.left < window.left - 1 || box.right > window.right + 1
+    || box.top < window.top - 1 || box.bottom > window.bottom + 1).map(([text]) => text);
+  const meet = (a, b) => Math.min(Math.min(a.right, b.right) - Math.max(a.left, b.left),
+    Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top));
+  return [...out, ...texts.flatMap(([one, a], k) => texts.slice(0, k).filter(([, b]) => meet(a, b) > 2.5)
+    .map(([other]) => `${one} on ${other}`))];
+})"""
+
+
+def strips() -> RegionMap:
+    """A region that is too thin to be seen, between two upright strips."""
+    steps, left = 2**20, 2**19
+    sides = ((left, left + 64, 0, steps), (left + 2000, left + 2064, 0, steps))
+    return certified(Cover(steps, sides), lambda x, y: 3 if 0.5 < x < 0.502 else 1)
+
+
+@pytest.mark.parametrize("width", [320, 390, 1200])
+@pytest.mark.parametrize("name", ["fig5-text", "stiffness", "views of thin regions"])
+def test_numbers_and_names_stand_beside_each_other(one: Browser, tmp_path: Path, name: str, width: int) -> None:
+    """Within the picture, also where there are many digits and the type is large."""
+    result = strips() if name.startswith("views") else computed(name)
+    file = tmp_path / "map.html"
+    file.write_text(page(result), encoding="utf-8")
+    one.media(prefers_color_scheme="light")
+    one.size(width, 900, phone=width < 600)
+    one.open(file)
+    assert one.run("document.querySelectorAll('.details svg').length") == name.startswith("views")
+    assert one.run(CROWDED) == []
 
 
 def test_copy_buttons_copy_what_stands_below_them(view: Callable[..., Browser]) -> None:
@@ -356,6 +391,16 @@ def test_it_opens_within_a_second_and_is_small(view: Callable[..., Browser], nam
         quiet(b, name)
     assert min(times) < 1000, times
     print(f"{name}: {min(times):.0f} ms")
+
+
+EXACT = [path.relative_to(CONFIGS).with_suffix("").as_posix() for path in sorted(CONFIGS.rglob("*.yaml"))
+         if not ptmcad.load(path).has_free_lengths and path.stem != "three-bar-chain"]  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", EXACT)
+def test_the_page_of_every_shipped_slice_is_small(name: str) -> None:
+    assert len(page(computed(name)).encode()) < 300_000
 
 
 def test_reduced_motion_and_print(view: Callable[..., Browser], tmp_path: Path) -> None:

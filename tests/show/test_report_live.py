@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from support import browser as chromium
 from support.browser import Browser
+from support.certified_maps import crossing, cusp
 from support.maps import CONFIGS, part_of_free02
 from support.maps import shipped as computed
 
@@ -23,6 +24,8 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields.equations import state_at
 from ptmcad.ask.fields.field import exact_at
 from ptmcad.show.report import page
+from ptmcad.show.report.chart import SLACK
+from ptmcad.show.report.frame import SIDE
 from ptmcad.show.report.tape import tape
 
 pytestmark = pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)
@@ -133,6 +136,64 @@ def test_with_free_lengths_too(view: Callable[..., Browser]) -> None:
             continue
         assert agrees(followed(b), [pose for pose in exact(result, *shares) if pose[0] == "stable"])
         compared += 1
+
+
+@pytest.mark.parametrize("result", [crossing(7), cusp(9)], ids=["crossing", "cusp"])
+def test_no_point_is_said_to_be_in_a_cell_that_it_is_not_in(view: Callable[..., Browser], result: RegionMap) -> None:
+    """However near to a rim; and away from the rims every point has its cell."""
+    b = view(result)
+    assert result.cover is not None
+    chance, slack = random.Random(5), SLACK / SIDE
+    points: list[tuple[float, float]] = []
+    for left, right, bottom, top in chance.choices(result.cover.rectangles, k=1000):  # across a side of each
+        x = chance.choice((left, right)) / result.cover.steps + chance.uniform(-2, 2) * slack
+        y = chance.uniform(bottom, top) / result.cover.steps
+        points += [point for point in ((x, y), (y, x)) if all(0.01 < v < 0.99 for v in point)]
+    points += [(chance.uniform(0.01, 0.99), chance.uniform(0.01, 0.99)) for _ in range(100)]
+    ringed, near = b.run(f"{json.dumps(points)}.map(cellAt)"), 0
+    for (x, y), ring in zip(points, ringed, strict=True):
+        true = result.locate(rho=2 * x, L2=2 * y).cell
+        around = {result.locate(rho=2 * (x + dx), L2=2 * (y + dy)).cell for dx in (-2 * slack, 0, 2 * slack)
+                  for dy in (-2 * slack, 0, 2 * slack)}  # fmt: skip
+        near += len(around) > 1
+        assert ring == (-1 if true is None else true) or (ring == -1 and len(around) > 1), (x, y)
+    assert near > 40
+
+
+def test_what_is_pointed_at_is_what_is_there(view: Callable[..., Browser]) -> None:
+    """Of a map that is drawn so large that a pointer's whole pixels are much smaller than the rims."""
+    result = crossing(7)
+    assert result.cover is not None
+    b = view(result)
+    b.run("Object.assign(document.querySelector('#map').style, { position: 'fixed', left: 0, top: 0, maxWidth: 'none',"
+          " width: '80000px', zIndex: 9 })")  # fmt: skip
+    across = """([x, y]) => {
+      const map = document.querySelector('#map');
+      map.style.left = map.style.top = 0;
+      const box = map.querySelector('.frame').getBoundingClientRect();
+      map.style.left = `${600 - Math.round(box.left + x * box.width)}px`;
+      map.style.top = `${500 - Math.round(box.top + (1 - y) * box.height)}px`;
+      return Array.from({ length: 51 }, (_, k) => {
+        const at = { clientX: 500 + 4 * k, clientY: 500 };
+        return [document.elementFromPoint(at.clientX, at.clientY).dataset.cell || null, ...shareAt(at)];
+      });
+    }"""
+    chosen = random.Random(8).choices(result.cover.rectangles, k=40)
+    sides = [(right / result.cover.steps, (bottom + top) / 2 / result.cover.steps) for _, right, bottom, top in chosen]
+    seen = set()
+    for found, x, y in (one for row in b.run(f"{json.dumps(sides)}.map({across})") for one in row):
+        true = result.locate(rho=2 * x, L2=2 * y).cell
+        seen.add((found is None, true is None))
+        assert found is None or int(found) == true, (x, y)
+    assert seen == {(True, True), (True, False), (False, False)}
+
+
+def test_at_a_sample_the_cell_is_known_however_near_its_rims_are(view: Callable[..., Browser]) -> None:
+    b = view(part_of_free02())
+    b.run("DATA.slack = 600; choose(0, false)")
+    assert "exact count of this region" in b.run(STATUS) and len(followed(b)) > 0
+    b.run("moveProbe(live.share.map((value) => value + 1e-6))")
+    assert "not determined" in b.run(STATUS)
 
 
 TURNED = {

@@ -22,7 +22,7 @@ from ptmcad.ask.fields.jets import Floats
 from ptmcad.ask.fields.quantities import OPTION, Valued, quantity_of
 from ptmcad.ask.pixels import grid as grid_of
 from ptmcad.ask.solving import poses_at
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, expect
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.moments import acting
 from ptmcad.mechanism.work import split_moments
@@ -92,6 +92,8 @@ def request_of(slice: Slice, value: str, pose: str) -> Request:
     ConfigError
         For a value or pose that has no meaning here.
     """
+    expect(value, str, "value", "the name of a quantity, such as energy, or an expression as text")
+    expect(pose, str, "pose", "one of the poses as text, such as stable:1")
     quantity, choice = quantity_of(value, slice), choice_of(pose, slice.model)
     if quantity.is_barrier:
         if choice.kind != "stable":
@@ -143,10 +145,12 @@ def field_of(
         values[r, c] = _at_pixels(model, quantity, choice, follower, (r, c), solutions.at[:, r, c])
     if quantity.is_barrier:  # there is one wherever there is another stable pose
         missed += int((np.isnan(values) & solutions.done & (grid.stable >= max(2, choice.rank))).sum())
+    beyond = np.isinf(values)
+    values[beyond] = np.nan
     number, difference = _checked(result, quantity, choice, values, follower, checks)
     return Field(
         quantity.name, str(choice), quantity.unit, grid.x, grid.y, grid.names, values, grid.region, missed, number,
-        difference,
+        difference, int(beyond.sum()),
     )  # fmt: skip
 
 

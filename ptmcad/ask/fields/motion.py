@@ -29,9 +29,10 @@ from ptmcad.ask.fields.field import Choice, choice_of, complete, exact_at, unkno
 from ptmcad.ask.fields.jets import Floats
 from ptmcad.ask.fields.track import LEAST, Track, followed
 from ptmcad.ask.location import locate
-from ptmcad.errors import ConfigError, PtmcadError
+from ptmcad.errors import ConfigError, PtmcadError, expect
 from ptmcad.options import Progress
 from ptmcad.question.doubles import within_doubles
+from ptmcad.question.examples import FIRST, SECOND
 
 FRAMES, MOST_FRAMES = 90, 600
 MOST_FALLS = 20
@@ -66,6 +67,8 @@ def motion_of(
     LostError
         Where the map has the pose and it was not found.
     """
+    expect(path, (str, Mapping), "path", f"corners, as '{FIRST}=3/4:6/5,{SECOND}=3/2'")
+    expect(pose, str, "pose", "one of the poses as text, such as stable:1")
     if isinstance(frames, bool) or not isinstance(frames, int) or not 2 <= frames <= MOST_FRAMES:
         raise ConfigError(f"{frames!r} is not a number of frames from 2 to {MOST_FRAMES}", key="--frames")
     if not result.cells:

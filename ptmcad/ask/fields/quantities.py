@@ -31,6 +31,7 @@ class Valued:
 
     Attributes
     ----------
+    values : nan where there is none, infinite where no double is near it.
     is_barrier : whether it is counted from the values, which are a pose's energy then.
     """
 
@@ -96,7 +97,7 @@ def _expression(text: str, slice: Slice) -> Valued:
             # where no quotient of names is zero by chance
             generic = {name: np.float64(math.fmod(math.sqrt(2) * (k + 1), 1)) for k, name in enumerate(known)}
             anywhere = interpret(tree, _Arrays(generic))
-        if np.isinf(anywhere):
+        if np.isinf(anywhere.value) and not anywhere.lost():
             raise ConfigError(f"{text[:60]!r} divides by zero", key=OPTION)
     except ExpressionError as error:
         raise ConfigError(f"{text!r}: {error.message}", key=OPTION) from error
@@ -106,11 +107,27 @@ def _expression(text: str, slice: Slice) -> Valued:
     def values(_state: State, at: Floats, given: Mapping[str, Any]) -> Floats:
         unknowns = dict(zip((*model.angles, *model.reals), at, strict=True))
         with np.errstate(all="ignore"):
-            found: Floats = np.broadcast_to(interpret(tree, _Arrays({**given, **unknowns})), at.shape[1:]) + 0.0
-        found[np.isinf(found)] = np.nan  # there the expression has no value
-        return found
+            found = interpret(tree, _Arrays({**given, **unknowns}))
+            value = np.where(np.isfinite(found.value), found.value, np.nan)  # else the expression has no value there
+            return np.broadcast_to(np.where(found.lost(), np.inf, value), at.shape[1:]) + 0.0
 
     return Valued(text.strip(), "", values)
+
+
+_TINY, _EPSILON = np.finfo(np.float64).tiny, np.finfo(np.float64).eps
+
+
+@dataclass(frozen=True, slots=True)
+class _Doubles:
+    """Values of a part of an expression, and how far from the true ones they may be where doubles did not hold a part
+    of it, being too small or too large; rounding apart, which this error does not count."""
+
+    value: Any
+    error: Any = 0.0
+
+    def lost(self) -> Any:
+        """Where the error is more than rounding."""
+        return (self.error != 0) & ~(self.error < _EPSILON * np.abs(self.value))
 
 
 class _Arrays:
@@ -119,30 +136,54 @@ class _Arrays:
     def __init__(self, values: Mapping[str, Any]):
         self.values = values
 
-    def number(self, number: Number) -> Any:
-        return np.float64(number.value)
+    def number(self, number: Number) -> _Doubles:
+        value = np.float64(number.value)
+        return _Doubles(value, _TINY if number.value and abs(value) < _TINY else 0.0)
 
-    def name(self, name: Name) -> Any:
-        return self.values[name.name]
+    def name(self, name: Name) -> _Doubles:
+        return _Doubles(self.values[name.name])
 
-    def call(self, call: Call) -> Any:
-        return (np.cos if call.function == "cos" else np.sin)(interpret(call.argument, self))
+    def call(self, call: Call) -> _Doubles:
+        argument = interpret(call.argument, self)
+        return _Doubles((np.cos if call.function == "cos" else np.sin)(argument.value), argument.error)
 
-    def negative(self, value: Any) -> Any:
-        return -value
+    def negative(self, one: _Doubles) -> _Doubles:
+        return _Doubles(-one.value, one.error)
 
-    def joined(self, left: Any, step: Step, right: Any) -> Any:
+    def joined(self, left: _Doubles, step: Step, right: _Doubles) -> _Doubles:
+        a, b = left.value, right.value
         match step.operator:
-            case "+":
-                return left + right
-            case "-":
-                return left - right
+            case "+" | "-":
+                value = a + b if step.operator == "+" else a - b
+                return _Doubles(value, left.error + right.error + _overflow(value, a, b))
             case "*":
-                return left * right
+                value = a * b
+                error = np.abs(a) * right.error + np.abs(b) * left.error + left.error * right.error
+                return _Doubles(value, error + _overflow(value, a, b) + _underflow(value, (a != 0) & (b != 0)))
             case _:
-                return left / right
+                value = a / b
+                error = (left.error + np.abs(value) * right.error) / (np.abs(b) - right.error)
+                known = (left.error == 0) & (right.error == 0)
+                error = np.where(known, 0.0, np.where(np.abs(b) > right.error, error, np.inf))
+                beyond = np.where(b != 0, _overflow(value, a, b), 0.0)
+                return _Doubles(value, error + beyond + _underflow(value, a != 0))
 
-    def power(self, base: Any, power: Power, exponent: Any) -> Any:
-        if not np.ndim(exponent) and math.isclose(float(exponent), round(float(exponent))):
-            return base ** round(float(exponent))
-        return base**exponent
+    def power(self, base: _Doubles, power: Power, exponent: _Doubles) -> _Doubles:
+        a, b = base.value, exponent.value
+        whole = not np.ndim(b) and math.isclose(float(b), round(float(b)))
+        value = a ** round(float(b)) if whole else a**b
+        known = (base.error == 0) & (exponent.error == 0)
+        slight = (base.error <= _EPSILON * np.abs(a)) & (exponent.error == 0)
+        error = np.where(known, 0.0, np.where(slight, np.abs(value * b * base.error / a), np.inf))
+        beyond = np.where(a != 0, _overflow(value, a, b), 0.0)
+        return _Doubles(value, error + beyond + _underflow(value, a != 0))
+
+
+def _overflow(value: Any, a: Any, b: Any) -> Any:
+    """Infinite where a value is and what it is made of is not."""
+    return np.where(np.isinf(value) & np.isfinite(a) & np.isfinite(b), np.inf, 0.0)
+
+
+def _underflow(value: Any, expected: Any) -> Any:
+    """The error where a value that is not zero is nearer to it than doubles are."""
+    return np.where(expected & (np.abs(value) < _TINY), _TINY, 0.0)

@@ -17,6 +17,7 @@ from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.points import PlainCounter, plain_counter
+from ptmcad.certified.plain.symmetric import fixed_turns, rational_numbers
 from ptmcad.certified.potential import potential
 from ptmcad.certified.tape import Tape, record
 from ptmcad.mechanism import Mechanism
@@ -33,7 +34,10 @@ NOT_TOLD = (
     "the equilibria could not be distinguished: there are infinitely many, one is nearly degenerate, or a spring has "
     "nearly no length there"
 )
-ZERO = "a number of an equilibrium could not be distinguished from zero"
+ZERO = (
+    "a number of an equilibrium could not be distinguished from zero, or from a short decimal that ends in 5, so that "
+    "not all of its digits are known: change a value a little"
+)
 
 
 def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits: int) -> Poses:
@@ -101,16 +105,24 @@ def _pose(
     """The pose with all numbers settled, and the bits that this took; None when some number is not."""
     tape, names = written
     bits, found = 64 + 4 * digits, dict[str, Enclosure]()
-    for _ in range(MAX_DOUBLINGS):
+    turns: dict[str, int] = {}
+    for attempt in range(MAX_DOUBLINGS):
         with ctx.workprec(bits):
             radius = solution.radius
-            box: Box = (arb(0), arb(0), *(ball(c - radius, c + radius) for c in solution.center))
-        box = refined(counter.equations, box, bits)
+            whole: Box = (arb(0), arb(0), *(ball(c - radius, c + radius) for c in solution.center))
+        box = refined(counter.equations, whole, bits)
+        if attempt == 1:  # some number is not settled: it may be a short one
+            with ctx.workprec(bits):
+                held, boxes = (dict(zip(mechanism.unknowns, some[2:], strict=True)) for some in (box, whole))
+                turns = fixed_turns(mechanism, parameters, held, boxes)
+            found |= rational_numbers(mechanism, parameters, turns) if turns else {}
         with ctx.workprec(bits):
             values = run_arb(tape, box, bits)
             numbers = {name: values[int(place)] for name, place in zip(names, tape.outputs[0], strict=True)}
             for angle in mechanism.angles:
                 radians = arb.atan2(numbers[f"sin {angle}"], numbers[f"cos {angle}"])
+                if angle in turns:
+                    radians = arb.pi() * turns[angle] / 2
                 numbers |= {angle: radians, f"degrees {angle}": radians * 180 / arb.pi()}
             size = len(mechanism.unknowns)
             entries = arb_mat(size, size, [values[int(place)] for place in tape.outputs[1]])
@@ -121,7 +133,7 @@ def _pose(
                 settled = enclosed(numbers[name], digits) if exact is None else Enclosure(exact, exact)
                 if settled is not None:
                     found[name] = settled
-        if found.keys() == numbers.keys() and f"eigenvalue {size - 1}" in found:
+        if found.keys() >= numbers.keys() and f"eigenvalue {size - 1}" in found:
             return assembled(mechanism, parameters, found, solution.signs.count("-")), bits
         bits *= 2
     return None, bits // 2

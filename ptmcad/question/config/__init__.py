@@ -17,7 +17,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import ConfigError
+from ptmcad.errors import A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
 from ptmcad.question.config.family import Family, bound, checked_family, family_of, member_name
 from ptmcad.question.config.model import named_model
@@ -71,6 +71,7 @@ def load(path: str | Path) -> Slice:
     ConfigError
         For anything wrong in it, with file, line and key; its ``faults`` are all there are.
     """
+    expect(path, (str, Path), "path", "the file of a record")
     return checked_slice(read_file(path))
 
 
@@ -88,9 +89,9 @@ def slice_from_mapping(mapping: Mapping[str, Any]) -> Slice:
 
 
 def _tree_of(mapping: Mapping[str, Any]) -> Tree:
+    expect(mapping, Mapping, "mapping", "a mapping like a record")
     node = from_python(plain(mapping), Place())
-    if not isinstance(node, Tree):
-        raise ConfigError("a record is a mapping")
+    assert isinstance(node, Tree)
     return node
 
 
@@ -98,6 +99,7 @@ def slice_from(question: str | Path | Mapping[str, Any] | Slice) -> Slice:
     """The slice that is meant by a record's file, by a mapping like a record, or by itself."""
     if isinstance(question, Slice):
         return question
+    expect(question, (str, Path, Mapping), "slice", f"{A_SLICE}, the file of a record, or a mapping like a record")
     return slice_from_mapping(question) if isinstance(question, Mapping) else load(question)
 
 
@@ -245,7 +247,8 @@ def record_from_options(
         record = replace(record, title="", reference={})
     if count is not None:
         text = count.value if isinstance(count, Count) else count
-        record = replace(record, count=count_of(Scalar(text, Place("--count"))))
+        place = Place("--count")
+        record = replace(record, count=count_of(Scalar(text, place)), count_place=place)
     return record
 
 

@@ -6,38 +6,100 @@ record's folder, or in folders below, are read.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
-from ptmcad.errors import ConfigError
-from ptmcad.mechanism import Model, built_in, described, described_system, mechanism_of, ptm, recognised
+from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.mechanism import (
+    Mechanism,
+    Model,
+    System,
+    built_in,
+    mechanism_of,
+    ptm,
+    read_mechanism,
+    read_system,
+    recognised,
+)
 from ptmcad.question.config.starters import NAMES, starter_mechanism
-from ptmcad.text.syntax import did_you_mean
+from ptmcad.text.syntax import NAME, did_you_mean, names_in
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data, read_file
 
 
+@dataclass(frozen=True, slots=True)
+class Described:
+    """A model and where each part of its description stands.
+
+    Attributes
+    ----------
+    node : the description; None where nobody has written one.
+    doubtful : parameters of which nothing can be said, because what describes them is faulty.
+    """
+
+    model: Model
+    node: Tree | None = None
+    doubtful: frozenset[str] = frozenset()
+
+    def place_of(self, parameter: str) -> Place | None:
+        """Where a parameter has its default, or else where it is declared or first used; None where nothing says it."""
+        if self.node is None:
+            return None
+        found = self.model.parameters[parameter]
+        declared = f"parameters.{found.alias_of or parameter}"
+        entry = _entry(self.node, declared)
+        if found.alias_of:
+            return _place(self.node, f"{declared}.alias")
+        if isinstance(entry, Tree):
+            return _place(self.node, f"{declared}.default" if "default" in entry.entries else declared)
+        return next((place for place, text in _texts(self.node) if parameter in NAME.findall(text)), None)
+
+
 def model_of(record: Tree) -> Model:
-    """The mechanism or system of a record; the paper's mechanism where it says nothing."""
+    """The mechanism or system of a record; the paper's mechanism where it says nothing.
+
+    Raises
+    ------
+    ConfigError
+        For what is wrong with it; it knows all faults.
+    """
+    faults = Faults()
+    with faults:
+        found = described_in(record, faults)
+    faults.check()
+    return found.model
+
+
+def described_in(record: Tree, faults: Faults) -> Described:
+    """The same with its places; what is wrong inside of a description is noted, and left out or replaced.
+
+    Raises
+    ------
+    ConfigError
+        When there is no description.
+    """
     mechanism, system = (record.entries.get(key) for key in ("mechanism", "system"))
     if mechanism is not None and system is not None:
         raise system.place.error("a record is about a mechanism or about another system: leave one out")
+    used = tuple(_names_in_values(record))
     if system is not None:
         if not isinstance(system, Tree):
             raise system.place.error("expected a mapping with unknowns and equations, or a potential")
         # what has points is meant for a mechanism; anything else that is not right is wrong with a system
-        return _read(system, record.place.file, "points" not in system.entries)
+        return _read(system, faults, used, "points" not in system.entries)
     if mechanism is None:
-        return ptm()
+        return Described(ptm())
     if isinstance(mechanism, Tree):
-        return _read(mechanism, record.place.file)
+        return _read(mechanism, faults, used)
     if not isinstance(mechanism, Scalar):
         raise mechanism.place.error("expected a mechanism's name, a mapping that describes one, or a file that does")
     if mechanism.text in built_in():
-        return mechanism_of(mechanism.text)
+        return Described(mechanism_of(mechanism.text))
     if _is_file(mechanism):
-        return _from_file(mechanism, record.place.file)
+        return _read(_description(_file_of(mechanism, record.place.file)), faults, used)
     known = starter_mechanism(mechanism.text)
     if isinstance(known, Tree):
-        return _read(known, None)
+        return Described(_read(known, faults, used).model)
     names = tuple(name for name in NAMES if starter_mechanism(name) is not None)
     hint = did_you_mean(mechanism.text, names) or f"; built in are {', '.join(names)}"
     raise mechanism.place.error(
@@ -54,7 +116,10 @@ def named_model(name: Scalar) -> Model:
         When there is none, or for what is wrong with it.
     """
     if _is_file(name):
-        return _from_tree(read_file(name.text))
+        faults = Faults()
+        found = _read(_description(read_file(name.text)), faults)
+        faults.check()
+        return found.model
     return model_of(Tree({"mechanism": name}, name.place))
 
 
@@ -62,7 +127,8 @@ def _is_file(name: Scalar) -> bool:
     return Path(name.text).suffix.lower() in (".yaml", ".yml")
 
 
-def _from_file(name: Scalar, record: str | None) -> Model:
+def _file_of(name: Scalar, record: str | None) -> Tree:
+    """The file that a record names."""
     try:
         folder = (Path(record).parent if record else Path()).resolve()
         path = (folder / name.text).resolve()
@@ -73,49 +139,123 @@ def _from_file(name: Scalar, record: str | None) -> Model:
         raise name.place.error("the file is not in the record's folder nor below it: move it there")
     if path == itself:
         raise name.place.error("the record names itself as its mechanism's file")
-    return _from_tree(read_file(path))
+    return read_file(path)
 
 
-def _from_tree(tree: Tree) -> Model:
-    """The model of a file: a description, a record with one, or a system."""
+def _description(tree: Tree) -> Tree:
+    """The description in a file: itself, or that of a record."""
     inner = tree.entries.get("mechanism") or tree.entries.get("system") or tree
     if not isinstance(inner, Tree):
         raise inner.place.error("a mechanism's file describes it: it does not name another one")
-    return _read(inner, tree.place.file)
+    return inner
 
 
-def _read(node: Tree, file: str | None, is_system: bool = False) -> Model:
-    """What a mapping describes; a fault is put where it stands in the file."""
+def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool = False) -> Described:
+    """What a mapping describes; a fault is put where it stands in the file.
+
+    Parameters
+    ----------
+    used : names in the record's own expressions.
+    """
     is_system = is_system or "equations" in node.entries or "potential" in node.entries
-    data = {key: _plain(entry) for key, entry in node.entries.items()}
-    try:
-        # written down again, the built-in one is the same one
-        return described_system(data) if is_system else recognised(described(data))
-    except ConfigError as error:
-        raise ConfigError.of([_placed(fault, node, file) for fault in error.faults]) from error
+    empty = tuple(_empty(node, ""))
+    data = plain_data(node)
+    found = Faults()
+    model: Model = read_system(data, found) if is_system else read_mechanism(data, found)
+    if isinstance(model, Mechanism) and not found.found:
+        with found:
+            model = recognised(model)  # written down again, the built-in one is the same one
+    _check_use(model, {*used}, found)
+    # what is said of an empty value, or of a list because of one in it, says no more
+    inner = [fault for fault in found.found if not any(_is_below(key, fault.key or "") for key in empty)]
+    for key in empty:
+        with faults:
+            raise _place(node, key).error("has no value: write one, or leave the key out")
+    for fault in inner:
+        with faults:
+            raise _place(node, fault.key or "").error(fault.message)
+    return Described(model, node, _doubtful(model, (*(fault.key or "" for fault in found.found), *empty)))
 
 
-def _placed(fault: ConfigError, node: Node, file: str | None) -> ConfigError:
-    place = _place(node, fault.key or "")
-    return ConfigError(fault.message, key=place.key, file=file, line=place.line)
+def _check_use(model: Model, used: set[str], faults: Faults) -> None:
+    """Note each parameter that nothing uses, neither the description nor the record's own expressions."""
+    if {(fault.key or "").partition(".")[0] for fault in faults.found} - {"name", "bars", "supports", "unknowns"}:
+        return  # what could not be read may use it
+    for name in model.idle:
+        with faults:
+            if name not in used:
+                parameter = model.parameters[name]
+                where = "an equation" if isinstance(model, System) else "a point, a spring or a load"
+                raise ConfigError(
+                    f"nothing uses {name}: leave it out, or use it in {where}, or in an expression under the record's "
+                    "'parameters:'",
+                    key=f"parameters.{parameter.alias_of}.alias" if parameter.alias_of else f"parameters.{name}",
+                )
 
 
-def _plain(node: Node) -> object:
-    """As `plain_data`, but refusing an empty value, which a description has no meaning for."""
-    if isinstance(node, Scalar) and node.is_null:
-        raise node.place.error("has no value")
-    return plain_data(node)
+def _names_in_values(record: Tree) -> Iterator[str]:
+    """The names in the expressions of a record's parameters."""
+    values = record.entries.get("parameters")
+    for name, value in values.entries.items() if isinstance(values, Tree) else ():
+        if isinstance(value, Scalar):
+            try:
+                yield from (other for other in names_in(value.text) if other != name)
+            except ExpressionError:
+                continue  # a fault of that value
+
+
+def _doubtful(model: Model, keys: Iterable[str]) -> frozenset[str]:
+    """The parameters of which nothing can be said with faults at such keys."""
+    steps = [key.split(".") for key in keys]
+    names = {step[1] for step in steps if step[0] == "parameters" and len(step) > 1}
+    if any(step[0] == "parameters" and len(step) == 1 for step in steps):
+        return frozenset(model.parameters)
+    if isinstance(model, System) and any(step[0] not in ("parameters", "name") for step in steps):
+        names |= {name for name in model.parameters if name not in model.source.get("parameters", {})}
+    return frozenset(names | {name for name, p in model.parameters.items() if p.alias_of in names})
+
+
+def _empty(node: Node, key: str) -> Iterator[str]:
+    """The keys of what has no value in a description, which has no meaning for it."""
+    if isinstance(node, Scalar) and node.is_null and not (key.startswith("parameters.") and key.count(".") == 1):
+        yield key  # of a whole parameter its reader says what could be there
+    entries = enumerate(node.items, 1) if isinstance(node, Sequence) else ()
+    for step, entry in node.entries.items() if isinstance(node, Tree) else entries:
+        yield from _empty(entry, f"{key}.{step}" if key else str(step))
+
+
+def _is_below(key: str, above: str) -> bool:
+    return key == above or key.startswith(f"{above}.")
+
+
+def _texts(node: Node, place: Place | None = None) -> Iterator[tuple[Place, str]]:
+    """The texts in a description, each with its place."""
+    place = place or node.place
+    if isinstance(node, Scalar):
+        yield place, node.text
+    entries = enumerate(node.items, 1) if isinstance(node, Sequence) else ()
+    for step, entry in node.entries.items() if isinstance(node, Tree) else entries:
+        yield from _texts(entry, place.below(str(step), entry.place.line))
+
+
+def _entry(node: Node, key: str) -> Node | None:
+    """What a key of a description holds."""
+    found: Node | None = node
+    for step in key.split(".") if key else ():
+        if isinstance(found, Tree):
+            found = found.entries.get(step)
+        elif isinstance(found, Sequence) and step.isdecimal() and 1 <= int(step) <= len(found.items):
+            found = found.items[int(step) - 1]
+        else:
+            return None
+    return found
 
 
 def _place(node: Node, key: str) -> Place:
-    """Where a key of a description stands: the nearest entry above it that is there."""
+    """Where a key of a description stands: the line of the nearest entry above it that is there."""
     place = node.place
-    for step in key.split(".") if key else ():
-        if isinstance(node, Tree) and step in node.entries:
-            node = node.entries[step]
-        elif isinstance(node, Sequence) and step.isdecimal() and 1 <= int(step) <= len(node.items):
-            node = node.items[int(step) - 1]
-        else:
-            return Place(f"{place.key}.{step}" if place.key else step, place.file, place.line)
-        place = Place(f"{place.key}.{step}" if place.key else step, place.file, node.place.line or place.line)
+    steps = key.split(".") if key else []
+    for n, step in enumerate(steps, 1):
+        entry = _entry(node, ".".join(steps[:n]))
+        place = place.below(step, entry.place.line if entry is not None else None)
     return place

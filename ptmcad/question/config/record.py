@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from ptmcad.errors import Faults, shown
 from ptmcad.mechanism import Model, ptm
-from ptmcad.question.config.model import model_of
+from ptmcad.question.config.model import Described, described_in
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.examples import AXES
 from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count, unstorable
@@ -39,7 +39,12 @@ class Window(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """A record whose keys are known and whose values are still text."""
+    """A record whose keys are known and whose values are still text.
+
+    Attributes
+    ----------
+    values_place : where the values are given, or would be; None of what is no record.
+    """
 
     name: str = ""
     title: str = ""
@@ -52,6 +57,21 @@ class Record:
     units: Mapping[str, str] = field(default_factory=dict)
     reference: Mapping[str, Any] = field(default_factory=dict)
     place: Place = field(default_factory=Place)
+    count_place: Place = field(default_factory=lambda: Place("count"))
+    values_place: Place | None = None
+    described: Described | None = None
+
+    def place_of(self, name: str) -> Place:
+        """Where a parameter's value is written, or what describes it, or where a value would be given."""
+        if name in self.values:
+            return self.values[name].place
+        found = self.described.place_of(name) if self.described is not None else None
+        return found or (self.values_place or self.place).below(name)
+
+    @property
+    def doubtful(self) -> frozenset[str]:
+        """Parameters of which nothing can be said, because what describes them is faulty."""
+        return self.described.doubtful if self.described is not None else frozenset()
 
 
 def record_of(tree: Tree) -> Record:
@@ -88,9 +108,12 @@ def read_record(tree: Tree, faults: Faults) -> Record:
                 hint = did_you_mean(key, RECORD_KEYS) or f"; the keys are {', '.join(RECORD_KEYS)}"
                 raise _node_place(node, key, tree).error(f"unknown key{hint}")
     read: dict[str, Any] = {"place": tree.place}
+    for part, key in (("values_place", "parameters"), ("count_place", "count")):
+        read[part] = tree.entries[key].place if key in tree.entries else tree.place.below(key)
     model = None
     with faults:
-        model = read["model"] = model_of(tree)
+        read["described"] = described_in(tree, faults)
+        model = read["model"] = read["described"].model
     readers: dict[str, Callable[[Node], Any]] = {
         "name": _file_name,
         "title": _title,
@@ -252,7 +275,9 @@ def _window(name: str, node: Node) -> Window:
 
 def check_axis_name(name: str, place: Place) -> None:
     if not NAME.fullmatch(name) or len(name) > 40 or name.lower() in ("nan", "inf", "infinity"):
-        raise place.error(f"{name[:40]!r} cannot name an axis: use letters, digits and '_', starting with a letter")
+        raise place.error(
+            f"{name[:40]!r} cannot name an axis: use ASCII letters, digits and '_', starting with a letter"
+        )
 
 
 def count_of(node: Node) -> Count:

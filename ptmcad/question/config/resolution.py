@@ -37,7 +37,7 @@ def checked_slice(tree: Tree) -> Slice:
     """
     faults = Faults()
     record = read_record(tree, faults)
-    if any((fault.key or "").split(".")[0] in ("mechanism", "system", "axes") for fault in faults.found):
+    if record.described is None or any((fault.key or "").partition(".")[0] == "axes" for fault in faults.found):
         faults.check()  # without these nothing can be said of the values
     return slice_of(record, faults)
 
@@ -80,6 +80,8 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
     axes = []
     for name, window in record.axes.items():
         with faults:
+            if name in record.model.unknowns:
+                raise window.place.error(f"{name} is an unknown: an axis is a parameter, or a new name that one uses")
             axes.append(axis_of(name, window, record.model))
     resolution = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)})
     for name in record.model.parameters:
@@ -101,7 +103,7 @@ def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expre
     mechanism = record.model
     given = {*record.values, *record.axes}
     without_free_lengths = not any(resolved[name].numerator for name in mechanism.free_lengths)
-    left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)}
+    left_out = {name for name in mechanism.shorthands if _is_left_out(name, mechanism, given)} | {*mechanism.idle}
     if without_free_lengths:
         left_out.update(mechanism.free_lengths)
     effective = {name: expression for name, expression in resolved.items() if name not in left_out}
@@ -150,7 +152,7 @@ def _count(record: Record) -> Count:
     if count is Count.ADMISSIBLE and isinstance(model, System):
         problem = "a system has no springs, whose lengths would be admissible: count stable or total"
     if problem:
-        raise record.place.below("count").error(problem)
+        raise record.count_place.error(problem)
     return count
 
 
@@ -160,12 +162,12 @@ def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fracti
     resolved = _Resolution(record, axes).run()
     values = {}
     for name, expression in resolved.items():
-        place = _place_of(name, record)
+        place = record.place_of(name)
         value = expression.constant()
         _check_number(name, mechanism.kind(name), value, place)
         values[name] = value
     _check_shorthands_are_used(record, mechanism, set(record.values))
-    left_out = {*mechanism.shorthands}  # the parameters that they stand for are there
+    left_out = {*mechanism.shorthands, *mechanism.idle}  # the parameters that they stand for are there
     if not any(values[name] for name in mechanism.free_lengths):
         left_out.update(mechanism.free_lengths)
     return {name: value for name, value in values.items() if name not in left_out}
@@ -196,7 +198,7 @@ def _texts(
                 else unproved(name, record.model.kind(name), resolved[name], axes, READING_WORK)
             )
             if problem:
-                raise _place_of(name, record).error(problem)
+                raise record.place_of(name).error(problem)
             texts[name] = _written(name, record)
             waiting.append(texts[name])
     return {name: texts[name] for name in record.model.parameters if name in texts}
@@ -281,8 +283,8 @@ class _Resolution:
 
     def __init__(self, record: Record, free: Mapping[str, Expression]):
         self.record = record
-        self.done = dict(free)
-        self.faulty: set[str] = set()
+        self.faulty = set(record.doubtful - free.keys())
+        self.done = {**dict.fromkeys(self.faulty, constant(1)), **free}
         self.parameters = record.model.parameters
         self.known = tuple(dict.fromkeys((*free, *self.parameters)))
 
@@ -304,7 +306,7 @@ class _Resolution:
     def _found(self, name: str, chain: tuple[str, ...]) -> Expression:
         scalar = self.record.values.get(name)
         if scalar is None:
-            scalar = Scalar(self.parameters[name].default, self.record.place.below(name))
+            scalar = Scalar(self.parameters[name].default, self.record.place_of(name))
             if not scalar.text:
                 raise scalar.place.error(f"{name} has no value: give it one under 'parameters', or make it an axis")
         if name in chain:
@@ -324,7 +326,7 @@ class _Resolution:
 
 def _check_value(name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis]) -> None:
     """Refuse what the geometry excludes, and a denominator that vanishes in the window."""
-    place = _place_of(name, record)
+    place = record.place_of(name)
     if expression.degree > MAX_DEGREE:
         raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
     if expression.is_constant:
@@ -333,10 +335,6 @@ def _check_value(name: str, expression: Expression, record: Record, axes: tuple[
     problem = fault(name, record.model.kind(name), expression, axes, READING_WORK)
     if problem:
         raise place.error(problem)
-
-
-def _place_of(name: str, record: Record) -> Place:
-    return record.values[name].place if name in record.values else record.place.below(name)
 
 
 def _check_number(name: str, kind: Kind, value: Fraction, place: Place) -> None:

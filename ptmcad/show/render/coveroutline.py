@@ -22,6 +22,7 @@ from ptmcad.cover.complement import Components, components
 from ptmcad.cover.outlines import outlines
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
+from ptmcad.show.render.simplification import simplified
 from ptmcad.show.render.view import Floats, Same, View
 
 TOLERANCE = 1.5e-4
@@ -50,19 +51,19 @@ class CoverOutline:
         """The same map in another view."""
         return replace(self, view=view)
 
-    def polygons(self, region: int) -> Iterator[Floats]:
+    def polygons(self, region: int, tolerance: float = 0.0) -> Iterator[Floats]:
         """The region's outlines; those around holes turn the other way."""
         for cell in self.result.regions[region].cells:
-            yield from self._of_cell(cell)
+            yield from self._of_cell(cell, tolerance)
 
-    def cells(self) -> Iterator[tuple[int, list[Floats]]]:
-        """Every cell's outlines."""
+    def cells(self, tolerance: float = 0.0) -> Iterator[tuple[int, list[Floats]]]:
+        """Every cell's outlines; with a tolerance those that collapse are among them, as a line or a point."""
         for cell in range(len(self.result.cells)):
-            found = list(self._of_cell(cell))
+            found = list(self._of_cell(cell, tolerance))
             if found:
                 yield cell, found
 
-    def walls(self) -> Iterator[tuple[int, bool, Floats]]:
+    def walls(self, tolerance: float = 0.0) -> Iterator[tuple[int, bool, Floats]]:
         """None: a certified map knows no curve, only what encloses the curves."""
         return iter(())
 
@@ -88,7 +89,9 @@ class CoverOutline:
         image[free] = self.region_at[self.complement.owner[leaf[free]]]
         return image.reshape(rows, columns)
 
-    def _of_cell(self, cell: int) -> Iterator[Floats]:
+    def _of_cell(self, cell: int, tolerance: float) -> Iterator[Floats]:
+        """The outlines of a cell in the view: without a tolerance of one's own those that do not collapse."""
+        least = 1 if tolerance else 3
         scale = [
             (
                 float((axis.high - axis.low) / (shown[1] - shown[0]) / self.complement.cover.steps),
@@ -98,8 +101,8 @@ class CoverOutline:
         ]
         for corners in self.corners[cell]:
             points = np.stack([corners[:, k] * scale[k][0] + scale[k][1] for k in (0, 1)], axis=1)
-            seen = simplified(np.clip(points, *_FAR), TOLERANCE)
-            if len(seen) > 2 and (seen.max(axis=0) > 0).all() and (seen.min(axis=0) < 1).all():
+            seen = simplified(np.clip(points, *_FAR), tolerance or TOLERANCE)
+            if len(seen) >= least and (seen.max(axis=0) > 0).all() and (seen.min(axis=0) < 1).all():
                 yield seen
 
 
@@ -139,42 +142,3 @@ def _components_of(result: RegionMap, complement: Components) -> Mapping[int, in
             raise ValueError(f"the sample of cell {number} is in the cover, or in the component of another cell")
         found[number] = component
     return found
-
-
-def simplified(points: Floats, tolerance: float) -> Floats:
-    """A closed polygon with fewer corners, all of them its own, from which it departs by at most the tolerance.
-
-    Method: Ramer, Douglas and Peucker; the two halves are those between the first corner and the one farthest from it.
-    """
-    points = points[(points != np.roll(points, 1, axis=0)).any(axis=1)]
-    n = len(points)
-    if n < 4:
-        return points
-    closed = np.concatenate([points, points[:1]])
-    kept = np.zeros(n + 1, dtype=np.bool_)
-    kept[[0, int(np.argmax(((points - points[0]) ** 2).sum(axis=1))), n]] = True
-    # all pieces are halved at once: `inner` are the corners whose piece may still depart too far
-    inner = np.flatnonzero(~kept)
-    while len(inner):
-        ends = np.flatnonzero(kept)
-        piece = np.searchsorted(ends, inner) - 1
-        away = _distances(closed[inner], closed[ends[piece]], closed[ends[piece + 1]])
-        starts = np.flatnonzero(np.diff(piece, prepend=-1))
-        group = np.cumsum(np.diff(piece, prepend=-1) != 0) - 1
-        farthest = np.maximum.reduceat(away, starts)
-        halved = farthest > tolerance
-        at = np.flatnonzero((away == farthest[group]) & halved[group])
-        kept[inner[at[np.diff(group[at], prepend=-1) != 0]]] = True  # one of them, where several are farthest
-        inner = inner[halved[group]]
-        inner = inner[~kept[inner]]
-    return closed[:-1][kept[:-1]]
-
-
-def _distances(points: Floats, a: Floats, b: Floats) -> Floats:
-    """From each point to its own segment, from a to b; all of shape (k, 2)."""
-    along, offset = b - a, points - a
-    square = (along * along).sum(axis=1)
-    share = np.divide((offset * along).sum(axis=1), square, out=np.zeros(len(points)), where=square > 0)
-    offset = offset - np.clip(share, 0.0, 1.0)[:, None] * along
-    distances: Floats = np.hypot(offset[:, 0], offset[:, 1])
-    return distances

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from ptmcad.answer.boundaries import Boundary
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.mechanism import System
 from ptmcad.show.render.axes import dress, scale_of, symbol
 from ptmcad.show.render.legend import INK, STRONG
 from ptmcad.show.render.printing import save, settings
@@ -27,6 +28,7 @@ LEFT, BOTTOM, SIDE, GAP, BAR, RIGHT, TOP = 0.85, 0.65, 4.6, 0.2, 0.2, 0.95, 0.6
 COLOURS = "viridis"
 """Perceptually uniform, distinguishable to the colour-blind, and monotone on grey prints."""
 _EMPTY = "#ffffff"
+_WORDS = ("energy", "stiffness", "barrier")
 
 
 def draw_field(
@@ -46,16 +48,20 @@ def draw_field(
 
 def title_of(result: RegionMap, field: Field) -> str:
     """What is shown, of which slice."""
-    return (
-        f"{field.quantity[0].upper()}{field.quantity[1:]} of {field.pose.replace(':', ' pose ')}: {result.slice.name}"
-    )
+    text = _name(field)
+    # others are names and expressions, which are written as they were asked for: u is not U
+    text = text.capitalize() if text in _WORDS else text[0].upper() + text[1:] if ":" in field.quantity else text
+    word, _, number = field.pose.partition(":")
+    solution = "solution" if isinstance(result.slice.model, System) else "pose"
+    pose = f"{solution} {number}" if word == "pose" else f"{word} {solution} {number}"
+    return f"{text} of {pose}: {result.slice.name}"
 
 
 def description(field: Field) -> str:
     """What the picture shows, in words."""
     known = field.values[~np.isnan(field.values)]
     if not known.size:
-        return f"There is no {field.pose} in the window."
+        return f"{_absent(field)[0].upper()}{_absent(field)[1:]}."
     share = 100 * known.size / field.values.size
     return (
         f"{field.quantity} of {field.pose} from {known.min():.6g} to {known.max():.6g}, "
@@ -86,7 +92,7 @@ def field_figure(result: RegionMap, field: Field, boundaries: Sequence[Boundary]
         bar.ax.tick_params(labelsize=9)
         bar.set_label(_label(field), fontsize=10)
     else:
-        axes.text(0.5, 0.5, f"no {field.pose} in this window", transform=axes.transAxes, ha="center", color=INK)
+        axes.text(0.5, 0.5, _absent(field), transform=axes.transAxes, ha="center", color=INK)
     for boundary in boundaries:
         if boundary.separates:
             axes.plot(*_shares(result, boundary.points).T, color=INK, linewidth=STRONG, transform=axes.transAxes)
@@ -96,9 +102,20 @@ def field_figure(result: RegionMap, field: Field, boundaries: Sequence[Boundary]
 
 
 def _label(field: Field) -> str:
+    return with_unit(_name(field), field.unit)
+
+
+def _name(field: Field) -> str:
+    """The quantity with the symbol of what it is of."""
     kind, colon, name = field.quantity.partition(":")
-    text = f"{kind} {symbol(name)}" if colon else field.quantity
-    return with_unit(text, field.unit)
+    return f"{kind} {symbol(name)}" if colon else field.quantity
+
+
+def _absent(field: Field) -> str:
+    """Why nothing is shown."""
+    if field.beyond:
+        return f"{field.quantity} is beyond doubles"
+    return f"no {field.pose} in this window"
 
 
 def _shares(result: RegionMap, points: Floats) -> Floats:

@@ -1,7 +1,7 @@
 """Places for the labels of arrows: near their tips, within the picture, apart from each other.
 
 Guarantee: the same for the same map, whatever the format. Labels overlap only where `TRIED` places for each do not
-suffice to keep them apart.
+suffice to keep them apart; which of them are clear of all others is known.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ _EM = 0.64
 """Width of a digit of DejaVu Sans against the font's size; letters are narrower, on the whole."""
 _DIRECTIONS = 16
 _DISTANCES = (34, 50, 70, 95, 125, 160, 200)
+_MET = 1e3
+"""What a place costs at the least where something is in its way; distances are less."""
 TRIED = _DIRECTIONS * len(_DISTANCES)
 
 Box = tuple[float, float, float, float]
@@ -26,21 +28,26 @@ Box = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """The tip of an arrow and the centre of its label, as fractions of the picture's sides; the font's size."""
+    """The tip of an arrow and the centre of its label, as fractions of the picture's sides; the font's size.
+
+    ``clear`` says whether label and arrow are within the picture and clear of all those before them.
+    """
 
     tip: tuple[float, float]
     label: tuple[float, float]
     size: float
+    clear: bool = True
 
 
 def place(
     tips: Sequence[tuple[float, float]], texts: Sequence[str], seen: Shapes, sides: tuple[float, float],
-    size: float = FONT_SIZE,
+    size: float = FONT_SIZE, skip: bool = False,
 ) -> list[Placement]:  # fmt: skip
     """Places for the texts, one after the other.
 
     Parameters
     ----------
+    skip : whether those that are not clear are not to be drawn, so that nothing has to be clear of them.
     sides : width and height of the picture, in points.
     size : of the texts, in points.
     """
@@ -52,7 +59,7 @@ def place(
     result = []
     for number, (tip, text) in enumerate(zip(points, texts, strict=True)):
         half = ((len(text) * _EM * size) / 2 + 4, size * 0.6 + 4)
-        best, label = float("inf"), tip
+        best, label, clear = float("inf"), tip, False
         for distance in away:
             for k in range(_DIRECTIONS):
                 angle = 2 * pi * (k + 0.5) / _DIRECTIONS
@@ -66,12 +73,16 @@ def place(
                 cost += 1e3 * sum(_near(box, p) for j, p in enumerate(points) if j != number)
                 cost += 1e3 * sum(_crosses(a, b, tip, (x, y)) for a, b in arrows)
                 cost += 1e3 * sum(_meets(box, a, b) for a, b in arrows)
+                cost += 1e3 * sum(_meets(other, tip, (x, y)) for other in taken) if skip else 0.0
+                met = cost >= _MET
                 cost += 25 * _variety(image, box, sides)
                 if cost < best:
-                    best, label = cost, (x, y)
+                    best, label, clear = cost, (x, y), not met
+        result.append(Placement(tips[number], (label[0] / sides[0], label[1] / sides[1]), size, clear))
+        if skip and not clear:
+            continue
         taken.append((label[0] - half[0], label[1] - half[1], label[0] + half[0], label[1] + half[1]))
         arrows.append((tip, label))
-        result.append(Placement(tips[number], (label[0] / sides[0], label[1] / sides[1]), size))
     return result
 
 

@@ -115,7 +115,7 @@ def entries(
     Parameters
     ----------
     thin : whether the picture shows walls that separate nothing.
-    hidden : number of regions that are too thin to be seen and are shown by no inset.
+    hidden : number of regions that are too thin to be seen and have neither inset nor label.
     """
     count = result.slice.count
     return tuple(_entries(result, thin, samples, hidden, wording or Wording(lambda region: fill_of(region, count))))
@@ -142,7 +142,7 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
     if samples:
         yield Entry(("sample point of a cell",), "dot")
     if hidden:
-        yield Entry((f"{hidden} more regions are too thin to be seen",))
+        yield Entry((f"{hidden} more region{'s are' if hidden > 1 else ' is'} too thin for a label",))
 
 
 def percent(share: Fraction) -> str:

@@ -24,6 +24,7 @@ from ptmcad.algebra.polynomials import coefficients_in, from_fraction, from_plan
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine
 from ptmcad.answer.regionmap import RegionMap, Stack
 from ptmcad.exact.cad.curves import Curve, by_component, curves_of
+from ptmcad.show.render.simplification import simplified_line
 from ptmcad.show.render.view import Floats, Interval, Same, View
 from ptmcad.text.plane import PlanePolynomial
 
@@ -75,7 +76,12 @@ class Outline:
         pair = (heights, along) if self.swapped else (along, heights)
         return np.stack(pair, axis=-1)
 
-    def polygons(self, region: int) -> Iterator[Floats]:
+    def line(self, stack: StackOutline, row: int, tolerance: float) -> Floats:
+        """One of the stack's lines, an edge or a wall, the same for all that it bounds."""
+        points = self.points(stack.along, stack.heights[row])
+        return simplified_line(points, tolerance) if tolerance else points
+
+    def polygons(self, region: int, tolerance: float = 0.0) -> Iterator[Floats]:
         """The region's parts over each stack, neighbouring cells joined; all with the same orientation."""
         for stack in self.stacks:
             levels = [self.region(stack.number, k) == region for k in range(len(stack.heights) - 1)]
@@ -84,29 +90,27 @@ class Outline:
                 if inside and start is None:
                     start = level
                 elif not inside and start is not None:
-                    bottom = self.points(stack.along, stack.heights[start])
-                    top = self.points(stack.along, stack.heights[level])
+                    bottom, top = (self.line(stack, row, tolerance) for row in (start, level))
                     yield np.concatenate([bottom, top[::-1]])
                     start = None
 
-    def cells(self) -> Iterator[tuple[int, list[Floats]]]:
+    def cells(self, tolerance: float = 0.0) -> Iterator[tuple[int, list[Floats]]]:
         """Every cell of the view with its outline, stack after stack from below."""
         for stack in self.stacks:
             for level, number in enumerate(self.result.stacks[stack.number].cells):
-                bottom = self.points(stack.along, stack.heights[level])
-                top = self.points(stack.along, stack.heights[level + 1])
+                bottom, top = (self.line(stack, row, tolerance) for row in (level, level + 1))
                 yield number, [np.concatenate([bottom, top[::-1]])]
 
     def edges(self) -> Iterator[Floats]:
         """None: an exact map leaves nothing open between its cells."""
         return iter(())
 
-    def walls(self) -> Iterator[tuple[int, bool, Floats]]:
+    def walls(self, tolerance: float = 0.0) -> Iterator[tuple[int, bool, Floats]]:
         """Every wall as (component, whether it separates two regions, polyline)."""
         for stack in self.stacks:
             for level, wall in enumerate(self.result.stacks[stack.number].walls):
                 separates = self.region(stack.number, level) != self.region(stack.number, level + 1)
-                yield wall.component, separates, self.points(stack.along, stack.heights[level + 1])
+                yield wall.component, separates, self.line(stack, level + 1, tolerance)
         by_number = {stack.number: stack for stack in self.stacks}
         for position, left, component in self.lines:
             if left in by_number and left + 1 in by_number:

@@ -11,6 +11,7 @@ import numpy as np
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.errors import expect
 from ptmcad.show.render.around import Point, draw_around
 from ptmcad.show.render.axes import axis_name
 from ptmcad.show.render.legend import INK, head_of
@@ -35,6 +36,9 @@ def plot(result: RegionMap, ax: Any, style: str | Style, samples: bool, dpi: int
     """
     made = user_styled(style, **options)
     if ax is not None:
+        from matplotlib.axes import Axes
+
+        expect(ax, Axes, "ax", "axes of matplotlib's")
         draw_on(ax, result, samples, made)
         return ax
     with settings(made):

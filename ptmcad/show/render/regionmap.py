@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import noun
+from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import dress
 from ptmcad.show.render.fitting import Parts, fitted
 from ptmcad.show.render.labels import Placement, place
@@ -73,7 +74,8 @@ def draw(
 
     Guarantee
     ---------
-    No region is invisible.
+    No region is invisible, unless the style sets a size in which its label has no room: the legend says of how many,
+    if that has room.
     """
     with settings(style):
         figure = figure_of(result, samples, dpi, style=style, overlay=overlay)
@@ -99,6 +101,35 @@ class _Seen:
         if len(views) == len(self.views):
             return self
         return replace(self, views=views, thin_lines=seen_thin_walls(self.whole, sides))
+
+    def with_room(self, sides: tuple[float, float], size: float) -> _Seen:
+        """The same but for regions whose label has no room of its own, where letters lead to no inset."""
+        ranked = self.ranked
+        marks = place(*self._labels(ranked), self.whole, sides, size, skip=True)
+        kept = [sliver for sliver, mark in zip(ranked, marks, strict=True) if mark.clear]
+        if len(kept) == len(ranked):
+            return self
+        views = (replace(zoom, slivers=tuple(s for s in zoom.slivers if s in kept)) for zoom in self.views)
+        return replace(self, views=tuple(zoom for zoom in views if zoom.slivers))
+
+    def _labels(self, slivers: Sequence[Sliver]) -> tuple[list[tuple[float, float]], list[str]]:
+        """Where thin regions are, and their counts."""
+        tips = [self.whole.view.approximate_position(sliver.at) for sliver in slivers]
+        return tips, [_name_of(self.whole.result, sliver, None) for sliver in slivers]
+
+    @property
+    def ranked(self) -> list[Sliver]:
+        """What is marked: first the largest region of each count that is seen nowhere else, then by size."""
+        regions, count = self.whole.result.regions, self.whole.result.slice.count
+        told = {count_text(region, count) for n, region in enumerate(regions) if n not in self.thin}
+        first: list[Sliver] = []
+        by_size = sorted(self.marked, key=lambda sliver: -regions[sliver.region].area[0])
+        for sliver in by_size:
+            text = count_text(regions[sliver.region], count)
+            if text not in told:
+                told.add(text)
+                first.append(sliver)
+        return [*first, *(sliver for sliver in by_size if sliver not in first)]
 
     @property
     def hidden(self) -> int:
@@ -166,10 +197,18 @@ def fit(
             _legend(result, seen, samples, style, overlay),
             (whole.view, *(zoom.outline.view for zoom in seen.views)),
         )
-        layout = fitted(parts, style, style.size or _natural(style, parts))
+        try:
+            layout = fitted(parts, style, style.size or _natural(style, parts))
+        except ConfigError:
+            if not seen.hidden:
+                raise
+            # a small picture rather has no word on the thin regions without a label, which it shows all the same
+            untold = replace(parts, legend=_legend(result, seen, samples, style, overlay, told=False))
+            layout = fitted(untold, style, style.size or _natural(style, untold))
         if seen.views and not layout.insets:
             # an arrow to what no inset shows helps where a count differs, and where none does it points at nothing
-            bare = seen.without_unstable((72 * layout.chart[2], 72 * layout.chart[3]))
+            sides = (72 * layout.chart[2], 72 * layout.chart[3])
+            bare = seen.without_unstable(sides).with_room(sides, layout.texts.arrow)
             if bare is not seen:
                 seen, tries = bare, 1
                 continue
@@ -190,14 +229,14 @@ def _natural(style: Style, parts: Parts) -> tuple[float, float]:
 
 
 def _legend(
-    result: RegionMap, seen: _Seen, samples: bool, style: Style, overlay: Overlay = ()
+    result: RegionMap, seen: _Seen, samples: bool, style: Style, overlay: Overlay = (), told: bool = True
 ) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
-    """The legend with areas and without."""
+    """The legend with areas and without; ``told`` says whether it tells how many thin regions have no label."""
     if style.legend is Place.NONE:
         return (), ()
     paint = paint_of(result, style)
     with_areas, without = (
-        entries(result, seen.thin_lines, samples, seen.hidden, Wording(paint.fill, paint.undetermined, areas))
+        entries(result, seen.thin_lines, samples, seen.hidden * told, Wording(paint.fill, paint.undetermined, areas))
         for areas in (True, False)
     )
     further = overlay_entries(overlay)
@@ -222,12 +261,12 @@ def draw_parts(figure: Figure, seen: _Seen, layout: Layout, style: Style, sample
     dress(axes, result.slice, seen.whole.view.x, seen.whole.view.y, layout.axes)
     for corner, part in layout.legend:
         draw_legend(figure, part, *corner, layout.type)
-    marked = seen.marked
-    names = [_name_of(result, s, k if len(marked) > 1 else None) for k, s in enumerate(marked)]
+    marked = seen.marked if layout.insets else seen.ranked
+    names = [_name_of(result, s, k if len(marked) > 1 and layout.insets else None) for k, s in enumerate(marked)]
     rest = iter(names)
     for zoom, box in zip(seen.views, layout.insets, strict=False):
         _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
-    _mark(axes, seen, names, layout, paint)
+    _mark(axes, seen, marked, names, layout, paint)
     draw_overlay(axes, seen.whole.view, overlay, paint.scale, layout.texts.arrow)
     return axes
 
@@ -288,12 +327,15 @@ def _inset(
     axes.set_title(title, fontsize=layout.texts.inset, loc="left", pad=3)
 
 
-def _mark(axes: Any, seen: _Seen, names: Sequence[str], layout: Layout, paint: Paint) -> None:
+def _mark(
+    axes: Any, seen: _Seen, slivers: Sequence[Sliver], names: Sequence[str], layout: Layout, paint: Paint
+) -> None:  # fmt: skip
     """An arrow to every sliver, labels apart from each other."""
-    tips = [seen.whole.view.approximate_position(s.at) for s in seen.marked]
+    tips = [seen.whole.view.approximate_position(sliver.at) for sliver in slivers]
     sides = (layout.chart[2] * 72, layout.chart[3] * 72)
-    marks: list[Placement] = place(tips, names, seen.whole, sides, layout.texts.arrow)
-    for sliver, mark, name in zip(seen.marked, marks, names, strict=True):
+    skip = not layout.insets
+    marks: list[Placement] = place(tips, names, seen.whole, sides, layout.texts.arrow, skip=skip)
+    for sliver, mark, name in zip(slivers, marks, names, strict=True):
         axes.annotate(
             name, xy=mark.tip, xytext=mark.label, xycoords="axes fraction", textcoords="axes fraction",
             ha="center", va="center", fontsize=mark.size, color=INK, zorder=6, gid=f"arrow-{sliver.region}",

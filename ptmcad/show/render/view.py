@@ -74,16 +74,22 @@ class Shapes(Protocol):
         """The same map in another view."""
         ...
 
-    def polygons(self, region: int) -> Iterator[Floats]:
-        """Closed polygons, shape (k, 2), that together bound a region's part of the view."""
+    def polygons(self, region: int, tolerance: float = 0.0) -> Iterator[Floats]:
+        """Closed polygons, shape (k, 2), that together bound a region's part of the view.
+
+        Parameters
+        ----------
+        tolerance : of the view's side; outlines may depart by as much, to have fewer corners, and still meet where
+            they are the same wall. None is left out, even one that shrinks to a line or a point.
+        """
         ...
 
-    def cells(self) -> Iterator[tuple[int, list[Floats]]]:
-        """Every cell of the view and its closed polygons."""
+    def cells(self, tolerance: float = 0.0) -> Iterator[tuple[int, list[Floats]]]:
+        """Every cell of the view and its closed polygons, with a tolerance as ``polygons`` has one."""
         ...
 
-    def walls(self) -> Iterator[tuple[int, bool, Floats]]:
-        """Every wall as (component, whether it separates two regions, polyline)."""
+    def walls(self, tolerance: float = 0.0) -> Iterator[tuple[int, bool, Floats]]:
+        """Every wall as (component, whether it separates two regions, polyline), with such a tolerance."""
         ...
 
     def edges(self) -> Iterator[Floats]:

@@ -10,8 +10,16 @@ const readout = document.getElementById("readout");
 const panel = document.getElementById("poses");
 const sampleDot = document.querySelector("#map .sample");
 
+// A cell's sample, and what the areas are to those who do not see them.
+const sampleOf = (cell) => cell.sample.map((text, k) => `${DATA.names[k]} = ${text}`);
+
 for (const area of document.querySelectorAll(".cell")) {
   const number = Number(area.dataset.cell);
+  const cell = DATA.cells[number];
+  const label = `Cell ${number} of region ${cell.region}: ${cell.counts}; sample ${sampleOf(cell).join(", ")}`;
+  for (const [name, value] of Object.entries({ tabindex: "-1", role: "button", "aria-pressed": "false", "aria-label": label })) {
+    area.setAttribute(name, value);
+  }
   if (!cells.areas.has(number)) cells.areas.set(number, []);
   cells.areas.get(number).push(area);
 }
@@ -35,7 +43,7 @@ function show(number) {
   }
   const index = cell.index ? ` (${DATA.index} ${cell.index.join("-")})` : "";
   line(readout, `Cell ${number}, region ${cell.region}:`, `${cell.counts}${index}`);
-  line(readout, "Sample:", cell.sample.map(([name, text]) => `${name} = ${text}`).join(", "));
+  line(readout, "Sample:", sampleOf(cell).join(", "));
   const region = DATA.regions[cell.region];
   line(readout, "Area of the region:", region.area);
   for (const area of cells.areas.get(number) || []) area.classList.add("seen");
@@ -83,7 +91,7 @@ function choose(number, bringIntoView) {
   press(number, true);
   moveTo(number, false);
   show(number);
-  if (FOLLOW) moveProbe([cell.at[0] / DATA.side, 1 - cell.at[1] / DATA.side], true);
+  if (FOLLOW) moveProbe(shareOf(cell.point), true, number);
   fillPanel(number, cell);
   say(`Cell ${number}: ${cell.counts}. ${DATA.drawable ? "Its poses are drawn." : "Its solutions are listed."}`);
   // the point's own poses stand above the cell's: what was clicked is at the top of both
@@ -100,9 +108,7 @@ function fillPanel(number, cell) {
   button.id = "close";
   button.addEventListener("click", close);
   head.append(title, button);
-  const given = [...cell.sample.map(([name, text]) => `${name} = ${text}`),
-    ...cell.parameters.filter(([name]) => !cell.sample.some(([axis]) => axis === name))
-      .map(([name, text]) => `${name} = ${text}`)];
+  const given = [...sampleOf(cell), ...cell.parameters.map(([name, text]) => `${name} = ${text}`)];
   panel.replaceChildren(head, html("p", "hint", `At the sample: ${given.join(", ")}.`));
   cells.redraw = null;
   if (!cell.equilibria.length) {
@@ -215,6 +221,8 @@ for (const [number, areas] of cells.areas) {
   }
 }
 for (const chip of document.querySelectorAll(".chip")) {
+  chip.type = "button";
+  chip.dataset.cell = chip.textContent;
   chip.setAttribute("aria-label", `Show cell ${chip.dataset.cell}`);
   chip.addEventListener("click", () => choose(Number(chip.dataset.cell), true));
 }

@@ -2,6 +2,9 @@
 
 Guarantee: every cell of the view has an area with its number; nothing is drawn with a style attribute, which the page's
 policy forbids. The same map gives the same text.
+
+A certified map's rims are drawn within `SLACK` of their places, and at least twice as wide, over all fills: what is
+seen of a fill, and what of an area can be pointed at, is in that cell of the map itself.
 """
 
 from __future__ import annotations
@@ -16,14 +19,15 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from ptmcad.answer.regionmap import Cell, Region, RegionMap
+from ptmcad.answer.regionmap import Cell, Region
 from ptmcad.answer.words import counted
 from ptmcad.mechanism import Model
+from ptmcad.question.slice import Count
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.slivers import thin_regions, zooms
 from ptmcad.show.render.view import Shapes
-from ptmcad.show.report.frame import BOTTOM, LEFT, RIM, SIDE, frame
-from ptmcad.show.report.pathdata import path_data
+from ptmcad.show.report.frame import RIM, SIDE, frame, room
+from ptmcad.show.report.pathdata import GRID, path_data
 from ptmcad.show.table import count_text
 from ptmcad.text.numerals import shortest_text
 
@@ -34,6 +38,11 @@ Label = tuple[int, float, float]
 
 MAP_PIXELS = 300
 """Pixels of the map's side on a phone: regions thinner than three of them get a view of their own."""
+_WALLS, _RIMS, SLACK = 0.1, 0.25, 0.3
+"""By how much, in the picture's units, walls and a certified map's rims may depart to have fewer corners, and these
+together with the rounding to the grid. A unit is less than a pixel where the page is largest."""
+RIM_WIDTH = 0.7
+"""Of a certified map's rims, in the picture's units: no less than twice `SLACK`."""
 LABEL, _LETTER = 42, 0.55
 """Size of the counts' type on phones, in the picture's units, and a character's width against it, on the whole."""
 
@@ -73,8 +82,14 @@ def pattern_defs(fills: Sequence[Fill]) -> str:
     hatches = sorted({fill.hatch for fill in fills if fill.hatch})
     if not hatches:
         return ""
-    body = "".join(_pattern(hatch) for hatch in hatches)
+    body = "".join(_pattern(hatch) + _of_outlines(hatch) for hatch in hatches)
     return f'<svg class="defs" width="0" height="0" aria-hidden="true"><defs>{body}</defs></svg>'
+
+
+def _of_outlines(hatch: str) -> str:
+    """The same pattern for what is drawn in steps of the grid."""
+    name = hatch_id(hatch)
+    return f'<pattern id="map-{name}" href="#{name}" patternTransform="scale({GRID})"/>'
 
 
 def hatch_id(hatch: str) -> str:
@@ -108,32 +123,26 @@ def _pattern(hatch: str) -> str:
 def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[Label]) -> str:
     result = seen.result
     count = result.slice.count
+    around = room(seen, detail=name != "map")
     plate = "plate" if result.cover is None else "undetermined"
     parts = [
-        f'<svg id="{name}" class="map" viewBox="0 0 {LEFT + SIDE + RIM} {RIM + SIDE + BOTTOM}" role="group" '
+        f'<svg id="{name}" class="map" role="group" '
+        f'viewBox="0 0 {around.left + SIDE + around.right} {RIM + SIDE + around.bottom}" '
         f'aria-label="{escape(_window_text(seen))}">',
         f'<clipPath id="{name}-window"><rect width="{SIDE}" height="{SIDE}"/></clipPath>',
-        f'<g transform="translate({LEFT} {RIM})">',
+        f'<g transform="translate({around.left} {RIM})">',
         f'<rect class="{plate}" width="{SIDE}" height="{SIDE}"/><g clip-path="url(#{name}-window)">',
     ]
-    for number, outline in outlines(seen):
-        fill = fill_of(result.regions[number], count)
-        paints = [fill.face, *([f"url(#{hatch_id(fill.hatch)})"] if fill.hatch else [])]
-        # between the regions of a certified map is what is undetermined, however narrow: it is seen by their rims
-        kinds = ["fill"] * (len(paints) - 1) + ["fill" if result.cover is None else "fill rim"]
-        for kind, paint in zip(kinds, paints, strict=True):
-            parts.append(f'<path class="{kind}" fill="{paint}" d="{outline}"/>')
-    for (separates, component), line in wall_lines(seen).items():
-        kind = "wall strong" if separates else "wall"
-        parts.append(f'<path class="{kind}" data-curve="{component}" d="{line}"/>')
+    parts.append(f'<g transform="scale({1 / GRID:g})">')
+    parts += _areas(seen) if result.cover is None else _rimmed_areas(seen, name)
+    parts.append("</g>")
     for region_number, x, y in labels:
         text = count_text(result.regions[region_number], count)
         parts.append(
             f'<text class="count" x="{x * SIDE:.1f}" y="{(1 - y) * SIDE:.1f}" dy=".36em">{escape(text)}</text>'
         )
-    parts += _cells(seen)
     parts.append("</g>")
-    parts += frame(seen)
+    parts += frame(seen, around)
     for letter, (x, y) in marks:
         parts.append(
             f'<g class="mark" transform="translate({x * SIDE:.1f} {(1 - y) * SIDE:.1f})"><circle r="13"/>'
@@ -141,22 +150,6 @@ def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[La
         )
     parts.append('<circle class="sample" r="5" visibility="hidden"/></g></svg>')
     return "".join(parts)
-
-
-def outlines(seen: Shapes) -> Iterator[tuple[int, str]]:
-    """Every region that is seen, with its outline as the data of a path."""
-    for number in range(len(seen.result.regions)):
-        outline = "".join(_closed(p) for p in seen.polygons(number))
-        if outline:
-            yield number, outline
-
-
-def wall_lines(seen: Shapes) -> dict[tuple[bool, int], str]:
-    """The walls as the data of paths: those that do not separate regions first, then by components."""
-    lines: dict[tuple[bool, int], list[str]] = {}
-    for component, separates, line in seen.walls():
-        lines.setdefault((separates, component), []).append(_open(line))
-    return {kind: "".join(pieces) for kind, pieces in sorted(lines.items())}
 
 
 def _window_text(seen: Shapes) -> str:
@@ -185,20 +178,63 @@ def _closed(polygon: NDArray[np.float64]) -> str:
     return path_data(_placed(polygon), closed=True)
 
 
-def _cells(seen: Shapes) -> Iterator[str]:
-    """The cells of the view, from the left and from below, as areas that take pointer and focus."""
-    for number, polygons in seen.cells():
-        yield (
-            f'<path class="cell" data-cell="{number}" tabindex="-1" role="button" aria-pressed="false" '
-            f'aria-label="{escape(cell_text(seen.result, number))}" d="{"".join(map(_closed, polygons))}"/>'
-        )
+def _paints(region: Region, count: Count) -> list[str]:
+    """What a region is filled with: its colour, and its hatch over it."""
+    fill = fill_of(region, count)
+    return [fill.face, *([f"url(#map-{hatch_id(fill.hatch)})"] if fill.hatch else [])]
 
 
-def cell_text(result: RegionMap, number: int) -> str:
-    """What a cell is, in words: its region, its counts, its sample."""
-    cell = result.cells[number]
-    at = ", ".join(f"{name} = {_shortened(cell.sample[name])}" for name in cell.sample.names)
-    return f"Cell {number} of region {cell.region}: {counts_text(cell, result.slice.model)}; sample {at}"
+def _areas(seen: Shapes) -> Iterator[str]:
+    """An exact map's regions, walls and cells, these from the left and from below."""
+    result = seen.result
+    for number, outline in region_outlines(seen):
+        for paint in _paints(result.regions[number], result.slice.count):
+            yield f'<path class="fill" fill="{paint}" d="{outline}"/>'
+    for (separates, component), line in wall_lines(seen).items():
+        kind = "wall strong" if separates else "wall"
+        yield f'<path class="{kind}" data-curve="{component}" d="{line}"/>'
+    for number, polygons in seen.cells(_WALLS / SIDE):
+        yield f'<path class="cell" data-cell="{number}" d="{"".join(map(_closed, polygons))}"/>'
+
+
+def region_outlines(seen: Shapes) -> Iterator[tuple[int, str]]:
+    """Every region that is seen, and its outline as the data of a path, in steps of the grid."""
+    tolerance = (_WALLS if seen.result.cover is None else _RIMS) / SIDE
+    for number in range(len(seen.result.regions)):
+        # one path for all parts: where two of them share an edge no seam is left
+        outline = "".join(_closed(p) for p in seen.polygons(number, tolerance))
+        if outline:
+            yield number, outline
+
+
+def wall_lines(seen: Shapes) -> dict[tuple[bool, int], str]:
+    """The walls as such data: those that do not separate regions first, then by components."""
+    lines: dict[tuple[bool, int], list[str]] = {}
+    for component, separates, line in seen.walls(_WALLS / SIDE):
+        lines.setdefault((separates, component), []).append(_open(line))
+    return {kind: "".join(pieces) for kind, pieces in sorted(lines.items())}
+
+
+def _rimmed_areas(seen: Shapes, name: str) -> Iterator[str]:
+    """A certified map's cells: their outlines once, what fills them, their rims, and what can be pointed at.
+
+    Between two cells is what is undetermined, however narrow: it is seen by the rims, which are over all fills, and the
+    last of them, which nobody sees, keeps the pointer from the areas below.
+    """
+    result = seen.result
+    outlines = {n: "".join(map(_closed, p)) for n, p in seen.cells(_RIMS / SIDE)}
+    body = "".join(f'<path id="{name}-{n}" class="outline" d="{d}"/>' for n, d in outlines.items())
+    yield f'<defs><g id="{name}-rims">{body}</g></defs>'
+    for region in result.regions:
+        used = "".join(f'<use href="#{name}-{n}"/>' for n in region.cells if n in outlines)
+        if used:
+            for paint in _paints(region, result.slice.count):
+                yield f'<g class="fill" fill="{paint}">{used}</g>'
+    rims = f'href="#{name}-rims" stroke-width="{RIM_WIDTH * GRID:g}"'
+    yield f'<use class="rim" {rims}/>'
+    for n in outlines:
+        yield f'<use class="cell" href="#{name}-{n}" data-cell="{n}"/>'
+    yield f'<use class="open" {rims}/>'
 
 
 def counts_text(part: Cell | Region, model: Model) -> str:

@@ -14,7 +14,7 @@ if (window.parent !== window) {
     }
     if (point && live.probe) {
       quiet = true;
-      moveProbe(FOLLOW.window.map(([low, high], k) => (point[k] - low) / (high - low)));
+      moveProbe(shareOf(point));
     } else if (embedded && live.probe) tell({ point: pointOf(live.share) });
     quiet = false;
   });

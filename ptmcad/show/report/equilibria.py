@@ -40,6 +40,8 @@ MAX_DRAWN = 10**100
 _MAX_TURNED = 1000
 """Radians in a stored angle, which is within one turn or a few."""
 _DIGITS = 7
+_DRAWN_DIGITS = 9
+"""Of numbers for drawing, or from which the page's script begins: a little more than are shown."""
 
 Point = tuple[Bounds, Bounds]
 Value = TypeVar("Value")
@@ -48,6 +50,7 @@ Value = TypeVar("Value")
 def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     """All that the page shows and draws for a cell's sample: parameters, loads, potential and equilibria, as JSON data.
 
+    Parameters are those besides the axes, which the sample has.
     Moments are those on the unknowns, angles first, whose work is not in the potential; none where all are zero.
 
     Where springs have free lengths, whose energy is no polynomial, the potential's terms are left out.
@@ -73,8 +76,9 @@ def at_sample(result: RegionMap, cell: Cell) -> dict[str, Any]:
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | values
     moments = moments_at(model, known) if drawn and model.has_potential else {}
     loads = model.loads if drawn and isinstance(model, Mechanism) else ()
+    others = {n: v for n, v in distinct_parameters(values, model).items() if n not in cell.sample.names}
     return {
-        "parameters": [[n, both(v)] for n, v in distinct_parameters(values, model).items()],
+        "parameters": [[n, both(v)] for n, v in others.items()],
         "loads": [[float(value_at(load.x, known)), float(value_at(load.y, known))] for load in loads],
         "potential": [[*exponents, float(c)] for exponents, c in (potential or {}).items()] if drawn else [],
         "moments": [float(moments.get(name, 0)) for name in (*model.angles, *model.reals)] if moments else [],
@@ -149,9 +153,9 @@ def _solutions(
         entry = {
             "kind": kinds[k],
             "unknowns": unknowns + [decimal_text(x, real_place) for x in reals[k]],
-            "at": [float(sum(c) / 2) for c in box],
+            "at": [_drawn(c) for c in box],
             "energy": "" if at is None else decimal_text(at, energy_place),
-            "level": 0.0 if at is None or abs(at[0] + at[1]) > MAX_DRAWN**3 else float(sum(at) / 2),
+            "level": 0.0 if at is None or abs(at[0] + at[1]) > MAX_DRAWN**3 else _drawn(at),
         }
         found.append(entry | parts[k])
     return found
@@ -175,7 +179,7 @@ def _parts(
     force_place = last_place([f for row in forces for f in row], _DIGITS)
     return [
         {
-            "nodes": [[float(sum(x) / 2) for x in place] for place in where.values()],
+            "nodes": [[_drawn(x) for x in place] for place in where.values()],
             "places": [
                 f"({decimal_text(where[n][0], length_place)}, {decimal_text(where[n][1], length_place)})"
                 for n in mechanism.moving
@@ -185,6 +189,12 @@ def _parts(
         }
         for where, long, strong in zip(nodes, lengths, forces, strict=True)
     ]
+
+
+def _drawn(value: Bounds) -> float:
+    """The middle of bounds, in few characters."""
+    middle = float(f"{float(sum(value) / 2):.{_DRAWN_DIGITS}g}")
+    return int(middle) if middle.is_integer() and abs(middle) < 10**_DRAWN_DIGITS else middle
 
 
 def _angle_text(angle: Bounds) -> str:

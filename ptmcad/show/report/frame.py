@@ -1,26 +1,64 @@
 """The frame of a map in SVG: its size, ticks, numbers and the names of the axes.
 
-Guarantee: a tick is exactly where its number says, up to the picture's own rounding to a tenth of a unit.
+Guarantee: a tick is exactly where its number says, up to the picture's own rounding to a tenth of a unit. Numbers and
+names have room beside each other also in the larger type of phones, in a font that is no wider than DejaVu Sans.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from fractions import Fraction
 from html import escape
+from math import ceil
 
 from ptmcad.show.render.axes import Scale, scale_of, symbol
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.units import unit
 from ptmcad.text.numerals import magnitude, shortest_text
 
-SIDE, LEFT, BOTTOM, RIM = 600, 110, 100, 24
-"""In the picture's own units: the window's side, the room for the axes' numbers and names, the rim."""
+SIDE, RIM = 600, 24
+"""In the picture's own units: the window's side, the rim."""
+_LEFT, _BOTTOM = 110, 100
+"""The least room for the axes' numbers and names."""
+_NUMBER, _NAME, _DETAIL = 29, 31, 36
+"""The sizes of their type on phones, as page.css has them: in the map, and of both in a view of thin regions."""
+_WIDTHS = {".": 0.32, "−": 0.84}
+"""Of characters against the type's size; digits are 0.64 wide."""
 _MAX_TICKS = 6
 _MAX_NAME = 24
 
 
-def frame(seen: Shapes) -> Iterator[str]:
+@dataclass(frozen=True, slots=True)
+class Room:
+    """What is left around the window for numbers and names, and the size of the names' type on phones."""
+
+    left: float
+    right: float
+    bottom: float
+    name: float
+
+
+def room(seen: Shapes, detail: bool) -> Room:
+    """The room that the numbers of a view need: of the whole window, or of thin regions, where the type is larger."""
+    number, name = (_DETAIL, _DETAIL) if detail else (_NUMBER, _NAME)
+    across, up = (ticks(interval, scale_of(*interval)) for interval in (seen.view.x, seen.view.y))
+    beside = max((_width(text) for text, _ in up), default=0) * number
+    beyond = max(((float(at) - 1) * SIDE + _width(text) * number / 2 for text, at in across), default=0)
+    return Room(
+        left=ceil(max(_LEFT, 14 + beside + 6 + 1.3 * name)),
+        right=ceil(max(RIM, beyond + 2)),
+        bottom=ceil(max(_BOTTOM, 18 + 1.1 * number + 1.1 * name + 20)),
+        name=name,
+    )
+
+
+def _width(text: str) -> float:
+    """Of a number, against its type's size."""
+    return sum(_WIDTHS.get(character, 0.64) for character in text)
+
+
+def frame(seen: Shapes, room: Room) -> Iterator[str]:
     """The frame with ticks, numbers and names, as elements of a group whose origin is its upper left corner."""
     yield f'<rect class="frame" width="{SIDE}" height="{SIDE}"/>'
     slice = seen.result.slice
@@ -39,9 +77,10 @@ def frame(seen: Shapes) -> Iterator[str]:
         known = unit(slice, number)
         text = escape(f"{text} ({known})" if known else text)
         if number == 0:
-            yield f'<text class="name" x="{SIDE / 2}" y="{SIDE + BOTTOM - 16}">{text}</text>'
+            yield f'<text class="name" x="{SIDE / 2}" y="{SIDE + room.bottom - 16}">{text}</text>'
         else:
-            yield f'<text class="name" transform="translate({36 - LEFT} {SIDE / 2}) rotate(-90)">{text}</text>'
+            place = f"translate({room.name - room.left:g} {SIDE / 2}) rotate(-90)"
+            yield f'<text class="name" transform="{place}">{text}</text>'
 
 
 def ticks(interval: tuple[Fraction, Fraction], scale: Scale) -> list[tuple[str, Fraction]]:

@@ -17,15 +17,22 @@ const HISTORY = 160;
 const FALL_TIME = 900;
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 
+const shareOf = (point) => FOLLOW.window.map(([low, high], k) => (point[k] - low) / (high - low));
 const pointOf = (share) => FOLLOW.window.map(([low, high], k) => low + (high - low) * share[k]);
 const digits = (value, many = 6) => String(Number(value.toPrecision(many))).replace("-", "−");
 
-// The cell of the drawn map at a point; -1 in undetermined strips and on walls.
+// The cell of the map at a point; -1 in undetermined strips and on walls. A certified map's outlines are drawn within DATA.slack
+// of their places: nearer to one of them nothing is claimed.
+const ground = html("canvas").getContext("2d");
+const outlines = [...live.map.querySelectorAll(".cell")].map((area) => {
+  const path = area.href ? document.getElementById(area.href.baseVal.slice(1)) : area;
+  return [Number(area.dataset.cell), new Path2D(path.getAttribute("d"))];
+});
 function cellAt([x, y]) {
-  const spot = live.map.createSVGPoint();
-  [spot.x, spot.y] = [x * DATA.side, (1 - y) * DATA.side];
-  const area = [...live.map.querySelectorAll(".cell")].find((one) => one.isPointInFill(spot));
-  return area ? Number(area.dataset.cell) : -1;
+  const [u, v] = [x * DATA.side * DATA.grid, (1 - y) * DATA.side * DATA.grid];
+  Object.assign(ground, { lineWidth: 2 * DATA.slack * DATA.grid || 1, lineJoin: "round", lineCap: "round" });
+  const found = outlines.find(([, path]) => ground.isPointInPath(path, u, v));
+  return found && !(DATA.slack && outlines.some(([, path]) => ground.isPointInStroke(path, u, v))) ? found[0] : -1;
 }
 
 function buildProbe() {
@@ -103,10 +110,11 @@ function buildLive() {
   });
 }
 
-// The point elsewhere: the followed pose goes along, and all solutions are found anew.
-function moveProbe(share, quietly = false) {
+// The point elsewhere: the followed pose goes along, and all solutions are found anew. At a sample its cell is known.
+function moveProbe(share, quietly = false, known = -1) {
   const before = pointOf(live.share);
   live.share = share.map((value) => Math.min(0.9995, Math.max(0.0005, value)));
+  live.cell = known >= 0 && live.share.every((value, k) => value === share[k]) ? known : cellAt(live.share);
   const point = pointOf(live.share);
   const [x, y] = live.share;
   live.probe.setAttribute("transform", `translate(${(x * DATA.side).toFixed(2)} ${((1 - y) * DATA.side).toFixed(2)})`);
@@ -144,7 +152,6 @@ function note(height, falling = false) {
 }
 
 function solve(point) {
-  live.cell = cellAt(live.share);
   live.found = [];
   const cell = DATA.cells[live.cell];
   const where = point.map((value, k) => `${DATA.axes[k]} = ${digits(value)}`).join(", ");

@@ -14,6 +14,7 @@ from importlib.resources import files
 from string import Template
 from typing import Any
 
+from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words, moments_work, untold
 from ptmcad.errors import ConfigError
@@ -24,17 +25,19 @@ from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.report import sections
-from ptmcad.show.report.chart import Chart, chart, counts_text, pattern_defs
-from ptmcad.show.report.consistency import check_numbers
+from ptmcad.show.report.chart import SLACK, Chart, chart, counts_text, pattern_defs
 from ptmcad.show.report.equilibria import at_sample, both
 from ptmcad.show.report.error_curve import ErrorCurve, error_section
 from ptmcad.show.report.formulas import curves
 from ptmcad.show.report.frame import SIDE
+from ptmcad.show.report.packing import packed
+from ptmcad.show.report.pathdata import GRID
 from ptmcad.show.report.tape import tape
 from ptmcad.show.table import certified_digits
-from ptmcad.text.numerals import text_of
 from ptmcad.version import __version__
 
+_POINT_DIGITS = 12
+"""Of a sample's floating-point numbers: even in the thinnest cells the solutions are found from there."""
 SCRIPTS = ("theme.js", "mechanism.js", "landscape.js", "cells.js", "follow.js", "live.js", "embed.js")
 """In the order in which they run."""
 
@@ -171,6 +174,8 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
     names, model = result.slice.axis_names, result.slice.model
     return {
         "side": SIDE,
+        "grid": GRID,
+        "slack": 0 if result.cover is None else SLACK,
         "base": result.base,
         "axes": [symbol(name) for name in names],
         "drawable": isinstance(model, Mechanism),
@@ -183,20 +188,24 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "follow": tape(result),
         "regions": [{"area": certified_digits(r.area), "counts": counts_text(r, model)} for r in result.regions],
         "stacks": [list(s.cells) for s in result.stacks],
-        "cells": [
-            {
-                "at": [round(x * SIDE, 2), round((1 - y) * SIDE, 2)],
-                "stack": cell.stack,
-                "level": cell.level,
-                "region": cell.region,
-                "counts": counts_text(cell, model),
-                "index": list(cell.index) if cell.index else None,
-                "stable": cell.stable,
-                "total": cell.total,
-                "point": [float(value) for value in cell.sample],
-                "sample": [[name, both(cell.sample[name]), text_of(cell.sample[name])] for name in names],
-                **at_sample(result, cell),
-            }
-            for cell, (x, y) in zip(result.cells, drawn.places, strict=True)
-        ],
+        "names": list(names),
+        "cells": packed(
+            [
+                {
+                    "at": [round(x * SIDE, 2), round((1 - y) * SIDE, 2)],
+                    "stack": cell.stack,
+                    "level": cell.level,
+                    "region": cell.region,
+                    "counts": counts_text(cell, model),
+                    "index": list(cell.index) if cell.index else None,
+                    "stable": cell.stable,
+                    "total": cell.total,
+                    "point": [float(f"{float(value):.{_POINT_DIGITS}g}") for value in cell.sample],
+                    "sample": [both(cell.sample[name]) for name in names],
+                    **at_sample(result, cell),
+                }
+                for cell, (x, y) in zip(result.cells, drawn.places, strict=True)
+            ],
+            inner=("equilibria",),
+        ),
     }

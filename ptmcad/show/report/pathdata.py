@@ -1,35 +1,42 @@
-"""Lines as the data of SVG paths, in few characters: places on a grid, of which only what changes is written.
+"""Lines as the data of SVG paths, in few characters: whole steps of a grid, from corner to corner.
 
-Guarantee: every corner is within half a step of the grid of its place, and corners at one place are written alike.
-(Steps from corner to corner would take fewer characters, but browsers add them up in single precision, so that two
-cells would no longer meet where they share a side.)
+Guarantee: every corner is within half a step of the grid of its place in each direction, and corners at one place are
+drawn alike: browsers add the steps up in single precision, in which whole numbers of this size are exact.
 """
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 from numpy.typing import NDArray
 
-GRID = 100
-"""Steps of the grid in one of the picture's units."""
+GRID = 20
+"""Steps of the grid in one of the picture's units; what is drawn by such data is scaled down by as much."""
 
 
 def path_data(line: NDArray[np.float64], *, closed: bool = False) -> str:
     """The data of a polyline, or of a polygon; corners within a side along an axis are left out.
 
-    >>> path_data(np.array([[0, 10], [2.5, 10], [3, 10], [3, 9.75], [2, 9.125], [1.5, 8.5]]))
-    'M0 10H3V9.75L2 9.12 1.5 8.5'
+    A line that is shorter than a step is drawn one step long: a browser leaves out one without length.
+
+    >>> path_data(np.array([[0, 10], [2.5, 10], [3, 10], [3, 9.75], [2, 9.1], [1.5, 8.5]]))
+    'M0 200h60v-5l-20-13-10-12'
     """
-    corners = _needed(np.rint(line * GRID).astype(np.int64)).tolist()
-    parts, last = [f"M{_text(corners[0][0])} {_text(corners[0][1])}"], "M"
-    for (x0, y0), (x, y) in pairwise(corners):
-        command, numbers = ("V", [y]) if x == x0 else ("H", [x]) if y == y0 else ("L", [x, y])
-        parts.append(command if command != last else " ")
-        parts.append(" ".join(map(_text, numbers)))
+    corners = _needed(np.rint(line * GRID).astype(np.int64))
+    if len(corners) == 1:
+        corners = np.concatenate([corners, corners + np.array([[1, 0]])])
+    x, y = corners[0].tolist()
+    parts, last = [f"M{x}{_after(y)}"], "M"
+    for dx, dy in np.diff(corners, axis=0).tolist():
+        command, numbers = ("v", f"{dy}") if not dx else ("h", f"{dx}") if not dy else ("l", f"{dx}{_after(dy)}")
+        parts.append(command if command != last else "" if numbers[0] == "-" else " ")
+        parts.append(numbers)
         last = command
-    return "".join(parts) + "Z" * closed
+    return "".join(parts) + "z" * closed
+
+
+def _after(steps: int) -> str:
+    """A number after another one: a minus sign parts them, too."""
+    return str(steps) if steps < 0 else f" {steps}"
 
 
 def _needed(corners: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -41,9 +48,3 @@ def _needed(corners: NDArray[np.int64]) -> NDArray[np.int64]:
     straight = (steps[1:] == steps[:-1]).all(axis=1) & (steps[1:] == 0).any(axis=1)
     kept: NDArray[np.int64] = corners[np.concatenate([[True], ~straight, [True]])]
     return kept
-
-
-def _text(steps: int) -> str:
-    whole, rest = divmod(abs(steps), GRID)
-    decimals = f".{rest:02}".rstrip("0") if rest else ""
-    return ("-" if steps < 0 else "") + (str(whole) if whole or not rest else "") + decimals

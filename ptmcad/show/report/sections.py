@@ -153,7 +153,7 @@ def regions(result: RegionMap) -> str:
     rows = []
     for number, region in enumerate(result.regions):
         index = "-".join(map(str, region.index)) if region.index else ""
-        buttons = "".join(f'<button type="button" class="chip" data-cell="{n}">{n}</button>' for n in region.cells)
+        buttons = "".join(f'<button class="chip">{n}</button>' for n in region.cells)
         low, high = region.area
         middle = certified_digits(region.area)
         if result.cover is not None:

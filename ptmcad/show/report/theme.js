@@ -1,7 +1,18 @@
 "use strict";
-// Light and dark, the copy buttons, and what is said to those who do not see.
+// The page's data; light and dark, the copy buttons, and what is said to those who do not see.
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
+
+// A table that comes as columns, in which equal entries are written once.
+function unpacked({ length, columns }) {
+  const rows = Array.from({ length }, () => ({}));
+  for (const [name, { of, at, many, rows: inner }] of Object.entries(columns)) {
+    const all = many ? unpacked(inner) : [];
+    rows.forEach((row, k) => { row[name] = many ? all.splice(0, many[k]) : of[!at ? k : at.length ? at[k] : 0]; });
+  }
+  return rows;
+}
+DATA.cells = unpacked(DATA.cells);
 
 function svg(name, attributes, text) {
   const element = document.createElementNS("http://www.w3.org/2000/svg", name);

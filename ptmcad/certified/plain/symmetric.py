@@ -1,0 +1,131 @@
+"""Numbers of an equilibrium that are rational because a mirror image of the mechanism there is the mechanism itself.
+
+Guarantee: exact. An unknown is fixed only when the reflection is proved to leave the energy as it is, and the image of
+the equilibrium to lie in a box that holds no other one: then the equilibrium is its own image. Or the gradient is
+rational at such a point of the box, and zero.
+
+Balls alone would never tell such a number from its neighbours.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import prod
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from ptmcad.certified.plain.jets import rational_energy, rational_root
+from ptmcad.errors import ExpressionError
+from ptmcad.mechanism.evaluate import value_at
+from ptmcad.mechanism.proofs import MirrorImage, Polynomial, energy_is_kept, squared_length
+from ptmcad.text.enclosure import Enclosure
+
+if TYPE_CHECKING:
+    from ptmcad.mechanism import Mechanism
+
+Point = dict[str, Fraction]
+"""Rational values by name: reals, and cosines and sines as ``cos NAME`` and ``sin NAME``."""
+_QUARTERS = ((1, 0), (0, 1), (-1, 0), (0, -1))
+
+
+def fixed_turns(
+    mechanism: Mechanism, parameters: Mapping[str, Fraction], held: Mapping[str, arb], boxes: Mapping[str, arb]
+) -> dict[str, int]:
+    """The unknowns that are fixed: angles to their quarter turns, from -1 to 2, and reals, which are zero, to 0.
+
+    Parameters
+    ----------
+    held : balls around the equilibrium.
+    boxes : wider ones, which together hold no other solution.
+    """
+    turns: dict[str, int] = {}
+    for name, ball in held.items():
+        half = arb.pi() / 2 if name in mechanism.angles else arb(0)
+        n = round(float(ball.mid()) / float(half.mid())) if name in mechanism.angles else 0
+        place = half * n
+        if ball.overlaps(place) and boxes[name].contains(2 * place - ball):
+            turns[name] = n
+    if not turns:
+        return {}
+    turns = {name: (n + 1) % 4 - 1 for name, n in turns.items()}
+    odd = frozenset(name for name, n in turns.items() if n % 2)
+    try:
+        kept = energy_is_kept(mechanism, parameters, turns, odd)
+    except ExpressionError:  # too large to be multiplied out
+        kept = False
+    return turns if kept or _is_equilibrium(mechanism, parameters, turns) else {}
+
+
+def _is_equilibrium(mechanism: Mechanism, parameters: Mapping[str, Fraction], turns: Mapping[str, int]) -> bool:
+    """Whether these values of all unknowns are proved to be those of an equilibrium, which the boxes hold."""
+    if turns.keys() != mechanism.unknowns.keys() or mechanism.moments:
+        return False
+    jet = rational_energy(mechanism, parameters, _point(mechanism, turns))
+    return jet is not None and not any(jet.gradient)
+
+
+def _point(mechanism: Mechanism, turns: Mapping[str, int]) -> Point:
+    """The values of fixed unknowns."""
+    at: Point = {}
+    for name, n in turns.items():
+        if name in mechanism.angles:
+            at |= {f"cos {name}": Fraction(_QUARTERS[n % 4][0]), f"sin {name}": Fraction(_QUARTERS[n % 4][1])}
+        else:
+            at[name] = Fraction(0)
+    return at
+
+
+def rational_numbers(
+    mechanism: Mechanism, parameters: Mapping[str, Fraction], turns: Mapping[str, int]
+) -> dict[str, Enclosure]:
+    """Those numbers of an equilibrium that are rational by these fixed unknowns, by name, as exact enclosures."""
+    at = _point(mechanism, turns)
+    found = {name: value for name, value in at.items() if " " in name}
+    for name, n in turns.items():
+        if name in mechanism.angles:
+            found |= {f"degrees {name}": Fraction(90 * n)} | ({name: Fraction(0)} if n == 0 else {})
+        else:
+            found[f"real {name}"] = Fraction(0)
+    image = MirrorImage(parameters)
+    for name, pair in mechanism.points.items():
+        for n, tree in enumerate(pair):
+            value = _value(image.value(tree), at)
+            if value is not None:
+                found[f"{name} {n}"] = value
+    for n, spring in enumerate(mechanism.springs):
+        squared = _value(squared_length(mechanism, image, spring.start, spring.end), at)
+        length = None if squared is None else rational_root(squared)
+        if length is not None:
+            stretch = length - value_at(spring.free, parameters)
+            found |= {f"length {n}": length, f"force {n}": value_at(spring.stiffness, parameters) * stretch}
+    if turns.keys() == mechanism.unknowns.keys():
+        found |= _of_energy(mechanism, parameters, at)
+    return {name: Enclosure(value, value) for name, value in found.items()}
+
+
+def _of_energy(mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Point) -> dict[str, Fraction]:
+    """The energy, and the eigenvalues of its Hessian, as far as they are rational."""
+    jet = rational_energy(mechanism, parameters, at)
+    if jet is None:
+        return {}
+    found, hessian = {"energy": jet.value}, jet.hessian
+    size = range(len(hessian))
+    if len(hessian) == 2:
+        (a, b), (_, d) = hessian
+        root = rational_root((a - d) ** 2 + 4 * b * b)
+        values = None if root is None else [(a + d - root) / 2, (a + d + root) / 2]
+    else:
+        diagonal = not any(hessian[i][j] for i in size for j in size if i != j)
+        values = sorted(hessian[i][i] for i in size) if diagonal else None
+    return found | {f"eigenvalue {n}": value for n, value in enumerate(values or ())}
+
+
+def _value(p: Polynomial, at: Point) -> Fraction | None:
+    """The value of a polynomial; None where it depends on what has no value."""
+    total: dict[tuple[tuple[str, int], ...], Fraction] = {}
+    for monomial, c in p.terms.items():
+        rest = tuple((name, e) for name, e in monomial if name not in at)
+        total[rest] = total.get(rest, Fraction(0)) + c * prod(at[name] ** e for name, e in monomial if name in at)
+    return total.get((), Fraction(0)) if not any(c for rest, c in total.items() if rest) else None

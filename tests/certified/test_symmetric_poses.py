@@ -1,0 +1,97 @@
+"""Equilibria of symmetric mechanisms with free lengths: numbers that are 0, 1 or a short decimal are told exactly."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+import ptmcad
+from ptmcad.certified.plain.jets import rational_energy
+from ptmcad.mechanism import Mechanism
+
+PENDULUM: dict[str, Any] = {
+    "parameters": {"l0": {"kind": "free length"}, "W": {"kind": "force"}},
+    "unknowns": {"th": "angle"},
+    "points": {"O": [0, 0], "A": [0, 3], "P": ["sin(th)", "cos(th)"]},
+    "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
+    "loads": {"P": {"weight": "W"}},
+}
+JAW: dict[str, Any] = {
+    "parameters": {"l0": {"kind": "free length"}, "F": {"kind": "force"}},
+    "unknowns": {"th": "angle", "phi": "angle"},
+    "points": {"A": [-1, 1], "B": [1, 1], "P": ["sin(th)", "cos(th)"]},
+    "bodies": {"jaw": {"at": "P", "angle": "phi + pi/2", "points": {"Q": [1, 0]}}},
+    "springs": [{"between": ["A", "Q"], "k": 10, "free": "l0"}, {"between": ["B", "Q"], "k": 10, "free": "l0"}],
+    "torsion": [{"angle": "th", "k": 2}, {"angle": "phi - th", "k": 1}],
+    "loads": {"Q": [0, "-F"]},
+}
+
+
+def with_anchor(x: object) -> Mechanism:
+    return ptmcad.Mechanism({**PENDULUM, "points": {**PENDULUM["points"], "A": [x, 3]}})
+
+
+def test_an_upright_pendulum_by_hand() -> None:
+    """At th = 0 the spring has length 2: E = (2 - 1/2)^2/2 + 1, E'' = 3 - (1/2) 3/2 - 1; at th = pi length 4."""
+    up, down = ptmcad.solve(model=ptmcad.Mechanism(PENDULUM), l0="1/2", W=1).equilibria
+    assert (up.energy.exact, up.eigenvalues[0].exact) == (Fraction(17, 8), Fraction(5, 4))
+    assert (up.angles[0].exact, up.springs[0].length.exact, up.nodes["P"][0].exact) == (0, 2, 0)
+    assert (down.energy.exact, down.eigenvalues[0].exact) == (Fraction(41, 8), Fraction(-13, 8))
+    assert (down.degrees[0].exact, down.angles[0].text(8)) == (180, "3.1415927")
+
+
+def test_a_mechanism_that_is_nearly_symmetric_is_not_taken_for_one_that_is() -> None:
+    """Exact zeros are proved: with the anchor beside the axis the equilibrium is beside it too."""
+    up = ptmcad.solve(model=with_anchor("1e-12"), l0="1/2", W=1).equilibria[0]
+    assert up.angles[0].exact is None
+    assert 0 < float(up.angles[0]) < 1e-12
+
+
+def test_a_pose_that_no_symmetry_explains_is_proved_by_its_gradient() -> None:
+    """3-4-5: the spring pulls with 9/2 along (3, 4)/5 at th = 0, and the load takes the part across the bar."""
+    balanced = {**PENDULUM, "points": {**PENDULUM["points"], "A": [3, 5]}, "loads": {"P": ["W", 0]}}
+    poses = ptmcad.solve(model=ptmcad.Mechanism(balanced), l0="1/2", W="-27/10")
+    (up,) = (pose for pose in poses.equilibria if pose.stable)
+    assert (up.angles[0].exact, up.springs[0].force.exact) == (0, Fraction(9, 2))
+
+
+def test_a_jaw_with_torsion_springs_and_free_lengths() -> None:
+    """Two mirrored stable poses, and four with both angles 0 or pi; checked by the gradient in doubles elsewhere."""
+    poses = ptmcad.solve(model=ptmcad.Mechanism(JAW), l0="1/2", F=2)
+    assert [pose.index for pose in poses.equilibria] == [0, 0, 1, 1, 1, 2]
+    one, other, *upright = poses.equilibria
+    assert [a.text(9) for a in one.angles] == [b.text(9).removeprefix("-") for b in other.angles]
+    assert {tuple(degree.exact for degree in pose.degrees) for pose in upright} == {
+        (0, 180), (0, 0), (180, 0), (180, 180),
+    }  # fmt: skip
+    assert all(pose.nodes["Q"][0].exact == 0 for pose in upright)
+
+
+@pytest.mark.parametrize("free", ["1/2", "1/3"])
+def test_rational_derivatives_are_those_of_the_certified_engine(free: str) -> None:
+    """Of a pose where all lengths are rational, 3-4-5, but no symmetry makes the gradient zero."""
+    model = ptmcad.Mechanism({**PENDULUM, "points": {"A": [4, 4], "P": ["sin(th)", "cos(th)"]}})
+    parameters = {"l0": Fraction(free), "W": Fraction(2)}
+    jet = rational_energy(model, parameters, {"cos th": Fraction(1), "sin th": Fraction(0)})
+    assert jet is not None
+    f = Fraction(free)
+    # N = 33 - 8 (s + c): N = 25, N' = -8, N'' = 8; sqrt' = -8/10, sqrt'' = 8/10 - 64/500
+    first, second = Fraction(-4, 5), Fraction(4, 5) - Fraction(16, 125)
+    assert jet.value == (5 - f) ** 2 / 2 + 2
+    assert jet.gradient == ((5 - f) * first,)
+    assert jet.hessian == ((first**2 + (5 - f) * second - 2,),)
+
+
+def test_a_length_that_is_a_whole_number_by_accident_settles() -> None:
+    """1 - 2/length = 1/3 away from the axis: length 3 and force 1, with digits that are all right."""
+    poses = ptmcad.solve(model=ptmcad.Mechanism(PENDULUM), l0=2, W=1)
+    assert [pose.stable for pose in poses.equilibria] == [True, True, False, False]
+    assert [poses.equilibria[0].springs[0].length.text(d) for d in (1, 4)] == ["3", "3.000"]
+
+
+def test_poses_are_followed_from_a_symmetric_start() -> None:
+    slice = ptmcad.slice_from_mapping({"mechanism": PENDULUM, "axes": {"W": [0, 4], "l0": [0, 1]}})
+    paths = ptmcad.pose_paths(slice, "W", {"l0": "1/2"}, 1)
+    assert len(paths.paths) == 1
