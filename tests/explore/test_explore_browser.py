@@ -34,19 +34,12 @@ def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Explorer]:
         yield found
 
 
-@pytest.fixture(scope="module", name="chrome")
-def own_browser() -> Iterator[Browser]:
-    """A browser of its own, as it keeps a cookie."""
-    with browser() as found:
-        yield found
-
-
 @pytest.fixture(name="view")
-def fresh_view(chrome: Browser, own: Explorer) -> Browser:
-    chrome.media(prefers_color_scheme="light")
-    chrome.size(1300, 1000)
-    chrome.visit(own.address, f"{SETTLED} && {SOLVED}")
-    return chrome
+def fresh_view(one: Browser, own: Explorer) -> Browser:
+    one.media(prefers_color_scheme="light")
+    one.size(1300, 1000)
+    one.visit(own.address, f"{SETTLED} && {SOLVED}")
+    return one
 
 
 def at(view: Browser, selector: str) -> tuple[float, float, float, float]:
@@ -100,6 +93,7 @@ def test_while_a_map_is_computed_the_old_one_stays_and_the_page_says_so(view: Br
     assert view.run("document.querySelector('#strong').getAttribute('d')") != before
 
 
+@pytest.mark.slow
 def test_the_keyboard_moves_sliders_and_the_point(view: Browser) -> None:
     view.run(f"{FIRST}.focus()")
     view.press("ArrowRight", "ArrowRight")
@@ -114,6 +108,7 @@ def test_the_keyboard_moves_sliders_and_the_point(view: Browser) -> None:
     assert (found["data"]["total"], found["data"]["stable"]) == (len(poses.equilibria), poses.stable)
 
 
+@pytest.mark.slow
 def test_what_is_typed_is_exact_and_what_is_wrong_is_said(view: Browser) -> None:
     typed = "document.querySelector('#sliders input[type=text]')"
     view.run(f"{typed}.value = '-1/3'; {typed}.dispatchEvent(new Event('change'))")
@@ -141,6 +136,7 @@ def test_the_point_under_the_pointer_agrees_with_the_region_beside_it(view: Brow
     assert abs(view.run("view.share[0]") - 0.8) < 0.01
 
 
+@pytest.mark.slow
 def test_another_parameter_makes_another_family(view: Browser) -> None:
     second = "document.querySelectorAll('#sliders input[type=range]')[2]"
     view.run(f"{second}.value = Number({second}.value) / 2; {second}.dispatchEvent(new Event('input'))")
@@ -184,6 +180,7 @@ def test_two_tabs_do_not_disturb_each_other(view: Browser, own: Explorer) -> Non
         view.switch(other)
 
 
+@pytest.mark.slow
 def test_another_browser_is_not_let_in(view: Browser, own: Explorer) -> None:
     with browser() as stranger:
         stranger.call("Page.navigate", url=own.address)
@@ -192,6 +189,7 @@ def test_another_browser_is_not_let_in(view: Browser, own: Explorer) -> None:
         stranger.until("document.body !== null && document.body.textContent.includes('the token')")
 
 
+@pytest.mark.slow
 def test_phones_have_touch_and_dark_colours(view: Browser) -> None:
     view.size(390, 844, phone=True)
     view.media(prefers_color_scheme="dark")
@@ -211,41 +209,42 @@ def test_phones_have_touch_and_dark_colours(view: Browser) -> None:
         view.size(1300, 1000)
 
 
-def test_a_refused_question_leaves_the_old_map_and_says_why(chrome: Browser) -> None:
+@pytest.mark.slow
+def test_a_refused_question_leaves_the_old_map_and_says_why(one: Browser) -> None:
     """Without loads and without a base every pose turns freely: there is no map of that."""
     with explorer("--slice", "L1,L2", "--slider", "rho=0:2") as own:
-        chrome.visit(own.address, "view.shown !== null")
-        before = chrome.run("document.querySelector('#strong').getAttribute('d')")
-        chrome.run("(() => { const n = DATA.sliders.findIndex((s) => s.name === 'rho'); const range ="
+        one.visit(own.address, "view.shown !== null")
+        before = one.run("document.querySelector('#strong').getAttribute('d')")
+        one.run("(() => { const n = DATA.sliders.findIndex((s) => s.name === 'rho'); const range ="
                    " document.querySelectorAll('#sliders input[type=range]')[n]; range.value = 0;"
                    " range.dispatchEvent(new Event('input')); })()")  # fmt: skip
-        chrome.until("state.className === 'refused'")
-        assert "infinitely many" in chrome.run("state.textContent")
-        assert chrome.run("document.querySelector('#strong').getAttribute('d')") == before
+        one.until("state.className === 'refused'")
+        assert "infinitely many" in one.run("state.textContent")
+        assert one.run("document.querySelector('#strong').getAttribute('d')") == before
 
 
-def test_a_killed_server_is_told(chrome: Browser) -> None:
+def test_a_killed_server_is_told(one: Browser) -> None:
     with explorer(CONFIGS / "fig4.yaml") as own:
-        chrome.visit(own.address, SETTLED)
+        one.visit(own.address, SETTLED)
         own.process.send_signal(signal.SIGKILL)
         own.process.wait(10)
         end = time.monotonic() + 20
-        while chrome.run("document.querySelector('#gone').hidden"):
-            chrome.run(f"{FIRST}.value = Number({FIRST}.value) + 1; {FIRST}.dispatchEvent(new Event('input'))")
+        while one.run("document.querySelector('#gone').hidden"):
+            one.run(f"{FIRST}.value = Number({FIRST}.value) + 1; {FIRST}.dispatchEvent(new Event('input'))")
             assert time.monotonic() < end
             time.sleep(0.1)
-        assert "The program has ended" in chrome.run("document.querySelector('#gone').textContent")
+        assert "The program has ended" in one.run("document.querySelector('#gone').textContent")
 
 
 @pytest.mark.slow
-def test_springs_with_free_lengths_are_coarse_first_and_then_refined(chrome: Browser) -> None:
+def test_springs_with_free_lengths_are_coarse_first_and_then_refined(one: Browser) -> None:
     pytest.importorskip("numba")
     with explorer(CONFIGS / "free02.yaml") as own:
         chromium.PATIENCE, before = 120.0, chromium.PATIENCE
         try:
-            chrome.visit(own.address, "view.shown !== null")
-            assert "% undetermined" in chrome.run("state.textContent")
-            first = chrome.run("Number(view.shown.undetermined)")
-            chrome.until(f"Number(view.shown.undetermined) < {first / 2}")
+            one.visit(own.address, "view.shown !== null")
+            assert "% undetermined" in one.run("state.textContent")
+            first = one.run("Number(view.shown.undetermined)")
+            one.until(f"Number(view.shown.undetermined) < {first / 2}")
         finally:
             chromium.PATIENCE = before

@@ -34,6 +34,8 @@ class Explorer:
     Attributes
     ----------
     address : what the terminal shows.
+    own : the headers of the page's questions, once it has been entered.
+    entered : those of the answer to the token.
     """
 
     def __init__(self, process: subprocess.Popen[str], address: str):
@@ -41,6 +43,7 @@ class Explorer:
         self.port = int(re.findall(r":(\d+)/", address)[0])
         self.token = address.partition("token=")[2]
         self.own: dict[str, str] = {}
+        self.entered: dict[str, str] = {}
 
     def send(
         self, method: str, path: str, body: str | bytes | None = None, headers: Mapping[str, str] | None = None
@@ -58,6 +61,7 @@ class Explorer:
         """Exchange the token, and read the page's secret."""
         first = self.send("GET", f"/?token={self.token}")
         assert first.status == 303, first
+        self.entered = first.headers
         cookie = first.headers["Set-Cookie"].partition(";")[0]
         text = self.send("GET", "/", headers={"Cookie": cookie}).body.decode()
         data = json.loads(re.findall(r'id="data">(.*?)</script>', text)[0])
@@ -86,4 +90,4 @@ def explorer(*arguments: str | Path) -> Iterator[Explorer]:
         if process.poll() is None:
             process.send_signal(signal.SIGTERM)
         out, err = process.communicate(timeout=PATIENCE)
-    assert (err, "Traceback" in out) == ("", False)
+    assert not err and "Traceback" not in out, err
