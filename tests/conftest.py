@@ -7,9 +7,13 @@ import os
 import shutil
 import signal
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
 
 import pytest
+from _pytest.doctest import DoctestModule
 from hypothesis import HealthCheck, settings
 from support.browser import Browser, browser
 from support.examples import ALL, FAST, FEW, THOROUGH
@@ -35,6 +39,7 @@ if hasattr(signal, "SIGHUP"):
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    gc.disable()  # until all is collected: nearly all that is made until then stays
     # the first process of a run; those that it starts find the folder in their environment
     if FOLDER not in os.environ and os.name == "posix":
         folder = tempfile.mkdtemp(prefix="ptmcad-maps-")
@@ -45,9 +50,31 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_collection_finish() -> None:
     # the modules and tests of the whole suite stay to its end: the collector need not go through them again and again,
-    # nor forked children copy them for it
+    # nor forked children copy them for it; and of what tests make, maps and figures, it need not look for cycles often
     gc.collect()
     gc.freeze()
+    gc.set_threshold(50_000, 20, 50)
+    gc.enable()
+
+
+@pytest.fixture
+def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Curves of pictures to a fiftieth of the window, and branches at a third of the values: for tests of what else the
+    pictures show. How near curves are, and that branches are joined right, have tests of their own."""
+    from ptmcad.ask import boundaries, branches
+
+    fine = boundaries.chains
+    monkeypatch.setattr(boundaries, "chains", lambda found, wanted: fine(found, max(wanted, Fraction(1, 50))))
+    monkeypatch.setattr(branches, "SAMPLES", 8)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collect_file(file_path: Path) -> Generator[None, Any, Any]:
+    """Of the modules, doctests are looked for in those that have an example."""
+    found = yield
+    if file_path.suffix == ".py" and b">>>" not in file_path.read_bytes():
+        found = [node for node in found if not isinstance(node, DoctestModule)]
+    return found
 
 
 @pytest.fixture(scope="session", name="one")

@@ -28,7 +28,13 @@ def shown(source: str, names: dict[str, Any]) -> tuple[str, str]:
     return printed.getvalue(), "" if value is None else repr(value)
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+HEAVY = ("replotting", "design-study")
+"""Of what is asked in them, the tests of docs/data.md and docs/how-to.md ask the same."""
+
+
+@pytest.mark.parametrize(
+    "path", [pytest.param(p, marks=pytest.mark.slow if p.stem in HEAVY else (), id=p.stem) for p in NOTEBOOKS]
+)
 def test_cells_say_what_is_stored(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     names: dict[str, Any] = {}

@@ -46,7 +46,12 @@ class Sample:
 
 
 def branch_diagram(
-    slice: Slice, along: str, at: Mapping[str, Any], names: Sequence[str], progress: Progress | None = None
+    slice: Slice,
+    along: str,
+    at: Mapping[str, Any],
+    names: Sequence[str],
+    progress: Progress | None = None,
+    line: SolutionsOnLine | None = None,
 ) -> Branches:
     """All branches of solutions on a line of a slice, with some quantities at each of their points.
 
@@ -55,6 +60,7 @@ def branch_diagram(
     along, at : as for `ptmcad.ask.ranges.intervals`.
     names : as `ptmcad.ask.quantities.quantity` takes them.
     progress : called as progress("branches: interval", done, total).
+    line : `solutions_on_line` of the same slice and line, where other questions were asked of it before.
 
     Raises
     ------
@@ -63,7 +69,7 @@ def branch_diagram(
     """
     asked = [quantity(slice.model, name) for name in names]
     varying, other, value = varying_axis(slice, along, at)
-    line = SolutionsOnLine(slice, varying, value)
+    line = line or SolutionsOnLine(slice, varying, value)
     branches: list[Branch] = []
     stretches = _stretches(slice, along, at)
     for number, (low, high) in enumerate(stretches):
@@ -92,16 +98,34 @@ def _stretches(slice: Slice, along: str, at: Mapping[str, Any]) -> list[tuple[Fr
     return [(upper(a), lower(b)) for a, b in itertools.pairwise(ends)]
 
 
+def solutions_on_line(slice: Slice, along: str, at: Mapping[str, Any]) -> SolutionsOnLine:
+    """The line's solutions, for more than one `branch_diagram`.
+
+    Raises
+    ------
+    ConfigError
+        As `branch_diagram` does.
+    """
+    varying, _, value = varying_axis(slice, along, at)
+    return SolutionsOnLine(slice, varying, value)
+
+
 class SolutionsOnLine:
-    """The solutions on a line, as they are asked for."""
+    """The solutions on a line, each found when it is first asked for."""
 
     def __init__(self, slice: Slice, varying: int, value: Fraction, digits: int = DIGITS):
         self.model, self.digits = slice.model, digits
         self.parameters = {name: restricted(e, varying, value) for name, e in slice.parameters.items()}
         self.undecided: list[Fraction] = []
+        self._known: dict[Fraction, Sample | None] = {}
 
     def at(self, value: Fraction) -> Sample | None:
         """The solutions at a value; None where they are not all known, or one is degenerate."""
+        if value not in self._known:
+            self._known[value] = self._found(value)
+        return self._known[value]
+
+    def _found(self, value: Fraction) -> Sample | None:
         parameters = {name: e.evaluate(value, Fraction(0)) for name, e in self.parameters.items()}
         found = poses_at(self.model, parameters, self.digits)
         if found.status not in (Status.EXACT, Status.CERTIFIED):

@@ -8,13 +8,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Slice
+
+if TYPE_CHECKING:
+    from ptmcad.ask.branches import SolutionsOnLine
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +68,7 @@ def answer(slice: Slice, request: Request) -> Answer:
     if is_enclosed(slice, request):
         known = _enclosed(slice, request) if request.at else Answer(slice.heading, {}, {})
         known = _with_bands(known, slice, request) if request.over else known
-        return _with_branches(_with_paths(known, slice, request), slice, request)
+        return _with_poses(known, slice, request)
     if request.critical:
         raise ConfigError("is for springs with a free length; ends are exact without", key="--critical")
     if request.over:
@@ -82,8 +85,7 @@ def answer(slice: Slice, request: Request) -> Answer:
         texts.append(table.width_table(widths, request.digits))
         parts["over"] = document.over_data(widths, request.digits)
         pictures["-over"] = partial(_picture, "over", slice, widths)
-    known = Answer("\n\n".join(texts), parts, pictures)
-    return _with_branches(_with_paths(known, slice, request), slice, request)
+    return _with_poses(Answer("\n\n".join(texts), parts, pictures), slice, request)
 
 
 def is_enclosed(slice: Slice, request: Request) -> bool:
@@ -109,7 +111,19 @@ def _with_bands(found: Answer, slice: Slice, request: Request) -> Answer:
     )
 
 
-def _with_paths(found: Answer, slice: Slice, request: Request) -> Answer:
+def _with_poses(found: Answer, slice: Slice, request: Request) -> Answer:
+    """The answer with the paths of stable poses and the branches of quantities that were asked for."""
+
+    @cache
+    def line() -> SolutionsOnLine:  # a picture of the paths shows branches too: those of the same solutions
+        from ptmcad.ask.branches import solutions_on_line
+
+        return solutions_on_line(slice, request.along, request.at)
+
+    return _with_branches(_with_paths(found, slice, request, line), slice, request, line)
+
+
+def _with_paths(found: Answer, slice: Slice, request: Request, line: Callable[[], SolutionsOnLine]) -> Answer:
     """The answer with the paths of stable poses, where they were asked for."""
     if request.start is None:
         return found
@@ -121,11 +135,11 @@ def _with_paths(found: Answer, slice: Slice, request: Request) -> Answer:
     return Answer(
         f"{found.text}\n\n{table.path_table(paths, min(request.digits, 10))}",
         {**found.parts, "path": document.path_data(paths)},
-        {**found.pictures, "-path": partial(_picture, "path", slice, paths)},
+        {**found.pictures, "-path": partial(_picture, "path", slice, paths, line=line)},
     )
 
 
-def _with_branches(found: Answer, slice: Slice, request: Request) -> Answer:
+def _with_branches(found: Answer, slice: Slice, request: Request, line: Callable[[], SolutionsOnLine]) -> Answer:
     """The answer with the branches of the quantities that were asked for."""
     if not request.quantities:
         return found
@@ -133,7 +147,7 @@ def _with_branches(found: Answer, slice: Slice, request: Request) -> Answer:
     from ptmcad.show.ranges import branches
 
     with ProgressBar() as progress:
-        diagram = branch_diagram(slice, request.along, request.at, request.quantities, progress)
+        diagram = branch_diagram(slice, request.along, request.at, request.quantities, progress, line())
     return Answer(
         f"{found.text}\n\n{branches.table(diagram)}",
         {**found.parts, "branches": branches.branches_data(diagram)},
@@ -161,7 +175,9 @@ def _enclosed(slice: Slice, request: Request) -> Answer:
     return Answer("\n\n".join(texts), parts, {})
 
 
-def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
+def _picture(
+    kind: str, slice: Slice, found: Any, path: Path, line: Callable[[], SolutionsOnLine] | None = None
+) -> None:
     from ptmcad.show.render.backend import load_matplotlib
 
     load_matplotlib()
@@ -177,7 +193,7 @@ def _picture(kind: str, slice: Slice, found: Any, path: Path) -> None:
 
         figure = draw_branches(slice, found)
     else:
-        figure = _paths_and_branches(slice, found)
+        figure = _paths_and_branches(slice, found, line)
     save(figure, path)
 
 
@@ -185,7 +201,7 @@ MAX_UNKNOWNS = 2
 """Of a model of which a picture of paths shows the unstable branches unasked: of others they take minutes."""
 
 
-def _paths_and_branches(slice: Slice, found: Any) -> Any:
+def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOnLine] | None) -> Any:
     from ptmcad.ask.branches import branch_diagram
     from ptmcad.show.render.branches import draw_paths_and_branches
     from ptmcad.show.render.paths import draw_paths
@@ -194,4 +210,6 @@ def _paths_and_branches(slice: Slice, found: Any) -> Any:
     if len(model.unknowns) > MAX_UNKNOWNS or not model.tells_stability:
         return draw_paths(slice, found)
     unknowns = (*model.angles, *model.reals)
-    return draw_paths_and_branches(slice, found, branch_diagram(slice, found.along.name, found.at, unknowns))
+    known = None if line is None else line()
+    diagram = branch_diagram(slice, found.along.name, found.at, unknowns, line=known)
+    return draw_paths_and_branches(slice, found, diagram)

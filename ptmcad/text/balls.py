@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
-from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.enclosure import Enclosure, settled
 
 _GUARD = 6
 """Digits of the enclosure's middle beyond those asked for, at first."""
@@ -26,19 +26,37 @@ def enclosed(ball: arb, digits: int) -> Enclosure | None:
     if not ball.is_finite() or ball.contains(0) or 10 * ball.rel_accuracy_bits() < 33 * (digits + _GUARD - 2):
         return None  # the test of the radius below would say so too; most balls that are too wide end here
     mantissa, exponent = (int(n) for n in ball.mid().man_exp())
-    radius = exact(ball.rad())
+    radius, scale = (int(n) for n in ball.rad().man_exp())
     # the place of the first digit, to within one: 0.30103 is the logarithm of 2
     first = (abs(mantissa).bit_length() + exponent - 1) * 30103 // 100000
-    middle = exact(ball.mid())
     guard = _GUARD
     while True:
-        unit = Fraction(10) ** (first - digits - guard)
-        if 2 * radius > unit:
+        place = first - digits - guard
+        numerator, denominator = _in_units(2 * radius, scale, place)
+        if numerator > denominator:
             return None
-        center = round(middle / unit) * unit  # within half a unit of the middle, so within a unit of each number
-        if (found := Enclosure(center - unit, center + unit)).settles(digits):
-            return found
+        numerator, denominator = _in_units(abs(mantissa), exponent, place)
+        center, rest = divmod(2 * numerator + denominator, 2 * denominator)
+        center -= rest == 0 and center % 2  # half a unit goes to the even one
+        # within half a unit of the middle's modulus, so within a unit of each number's
+        if _settles(center - 1, center + 1, digits):
+            near, far = (Fraction(n * 10 ** max(place, 0), 10 ** max(-place, 0)) for n in (center - 1, center + 1))
+            return Enclosure(near, far) if mantissa > 0 else Enclosure(-far, -near)
         guard *= 2
+
+
+def _in_units(mantissa: int, exponent: int, place: int) -> tuple[int, int]:
+    """m 2^e divided by 10^place, as numerator and denominator: integers, as no fraction need be reduced."""
+    return (
+        (mantissa << max(exponent, 0)) * 10 ** max(-place, 0),
+        10 ** max(place, 0) << max(-exponent, 0),
+    )
+
+
+def _settles(near: int, far: int, digits: int) -> bool:
+    """What `Enclosure.settles` says of two positive multiples of a power of ten, given by their factors."""
+    unit = 10 ** max(len(str(near)) - digits, 0)  # of the last digit; less than one where all digits are whole
+    return len(str(near)) > digits and near > 0 and settled(-(-2 * near // unit), 2 * far // unit)
 
 
 def ball_of(value: Fraction) -> arb:

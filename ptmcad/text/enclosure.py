@@ -17,6 +17,15 @@ _MAX_PLAIN_ZEROS = 6
 """Zeros after the point, or places before it beyond the digits, from which the form with an exponent is used."""
 
 
+def settled(first: int, last: int) -> bool:
+    """Whether two ends settle the digits of what lies between, by the first and the last multiple of half a unit there.
+
+    The unit is that of the last digit. A multiple of half of it may be there if it is no number halfway between two
+    texts, of these digits or fewer: one with a 5 as its last digit.
+    """
+    return first > last or (first == last and not integer_text(first * 5).rstrip("0").endswith("5"))
+
+
 @dataclass(frozen=True, slots=True)
 class Enclosure:
     """A closed interval with rational ends; the number is exact when they are equal."""
@@ -60,8 +69,7 @@ class Enclosure:
             return False
         near, far = (self.low, self.high) if self.low > 0 else (-self.high, -self.low)
         half = Fraction(10) ** (magnitude(near) + 1 - digits) / 2
-        first, last = -(-near // half), far // half
-        return first > last or (first == last and not integer_text(first * 5).rstrip("0").endswith("5"))
+        return settled(-(-near // half), far // half)
 
     def text(self, digits: int = DIGITS) -> str:
         """The number rounded to nearest, with ``digits`` significant digits.

@@ -59,7 +59,9 @@ def test_every_point_of_a_curve_is_as_near_as_is_said(name: str, tolerance: str)
                 assert min(distance_along_fibre(c, float(at), r) for r in roots) <= q.distance + 1e-12
 
 
-@pytest.mark.parametrize(("name", "tolerance"), [("fig2", "1/50"), ("fig4", "1/10")])
+@pytest.mark.parametrize(
+    ("name", "tolerance"), [("fig2", "1/50"), pytest.param("fig4", "1/10", marks=pytest.mark.slow)]
+)
 def test_polylines_have_all_chords_of_which_the_distance_is_proved(name: str, tolerance: str) -> None:
     result = shipped(name)
     base, axes = result.base, result.slice.axes

@@ -13,7 +13,8 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.branches import Branch, Branches
-from ptmcad.ask.branches import branch_diagram
+from ptmcad.ask import branches as module
+from ptmcad.ask.branches import branch_diagram, solutions_on_line
 from ptmcad.ask.fields import quantities as fields
 from ptmcad.ask.fields.quantities import quantity_of
 from ptmcad.ask.quantities import OPTION, of_pose, quantities, quantity
@@ -84,6 +85,7 @@ def test_the_cubic() -> None:
             assert abs(x**3 - a * x + 0.5) < 1e-4
 
 
+@pytest.mark.slow
 def test_free_lengths() -> None:
     pytest.importorskip("numba")
     slice = ptmcad.slice_from_options(CONFIGS / "free02.yaml", ranges=["rho=3/10:3/5"])
@@ -154,6 +156,24 @@ def test_a_barrier_is_no_number_of_a_pose() -> None:
         quantity(load(FIG4).model, "barrier")
 
 
+def test_a_line_is_solved_once_for_several_diagrams(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Fraction] = []
+    own = module.poses_at
+
+    def counted(model: Any, parameters: dict[str, Fraction], digits: int) -> Any:
+        asked.append(parameters["rho"])
+        return own(model, parameters, digits)
+
+    monkeypatch.setattr(module, "poses_at", counted)
+    monkeypatch.setattr(module, "SAMPLES", 8)
+    slice = ptmcad.slice_from_options(FIG4, ranges=["rho=1:5/4"])
+    line = solutions_on_line(slice, "rho", {"L2": "3/2"})
+    one, two = (branch_diagram(slice, "rho", {"L2": "3/2"}, [name], line=line) for name in ("th1", "energy"))
+    assert len(asked) == len(set(asked)) > 8
+    assert [[p.value for p in b.points] for b in one.branches] == [[p.value for p in b.points] for b in two.branches]
+    assert two == branch_diagram(slice, "rho", {"L2": "3/2"}, ["energy"])
+
+
 def test_numbers_of_a_pose() -> None:
     model = load(FIG4).model
     pose = ptmcad.solve(rho="7/10", L2="3/2", F3=-10).equilibria[0]
@@ -178,6 +198,7 @@ def test_other_spellings_are_the_same_numbers() -> None:
             assert fixed is not None and fixed.exact == 0
 
 
+@pytest.mark.usefixtures("coarse")
 def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     common = ["range", FIG4, "--along", "rho"]
     asked = ["--quantity", "th1", "--quantity", "energy", "--quantity", "th1", "--format", "json,svg"]
@@ -195,6 +216,7 @@ def test_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert "error: --quantity: needs the value of the other axis too" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("coarse")
 def test_a_picture_of_branches_with_free_lengths(tmp_path: Path) -> None:
     pytest.importorskip("numba")
     common = ["range", str(CONFIGS / "free02.yaml"), "--along", "rho", "--at", "L2=3/2", "--range", "rho=3/10:2/5"]
@@ -202,6 +224,7 @@ def test_a_picture_of_branches_with_free_lengths(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["x-branches.svg"]
 
 
+@pytest.mark.usefixtures("coarse")
 def test_a_picture_of_paths_shows_what_is_not_stable(tmp_path: Path) -> None:
     """... behind the paths; not of what nothing tells to be stable."""
     cubic = str(CONFIGS / "systems" / "cubic.yaml")

@@ -78,7 +78,7 @@ def in_ellipse(x: Fraction, y: Fraction) -> int:
     return 2 if (x - Fraction(3, 5)) ** 2 + 4 * (y - Fraction(1, 2)) ** 2 < Fraction(9, 100) else 3
 
 
-@pytest.mark.parametrize(("one", "other"), [(5, 6), (6, 5)])
+@pytest.mark.parametrize(("one", "other"), [(5, 6), pytest.param(6, 5, marks=pytest.mark.slow)])
 def test_areas_are_those_of_the_squares(one: int, other: int) -> None:
     first, second = circle(one), ellipse(other)
     assert first.cover is not None and second.cover is not None

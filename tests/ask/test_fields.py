@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.few import few
 from support.maps import CONFIGS, shipped
 
 import ptmcad
@@ -46,6 +47,16 @@ QUANTITIES: dict[str, Any] = {
 }
 
 
+KNOWN: dict[tuple[str, Fraction, Fraction], tuple[Pose, ...]] = {}
+
+
+def exact_poses_at(name: str, result: RegionMap, x: Fraction, y: Fraction) -> tuple[Pose, ...]:
+    """Of a shipped map, found once."""
+    if (name, x, y) not in KNOWN:
+        KNOWN[name, x, y] = exact_at(result, x, y).equilibria
+    return KNOWN[name, x, y]
+
+
 def compare(result: RegionMap, value: str, pose: str, sides: tuple[int, int], number: int, seed: int) -> None:
     """Random pixels against `solve`: relative to the largest value, to 9 digits; nan where there is no such pose."""
     field = field_of(
@@ -54,11 +65,11 @@ def compare(result: RegionMap, value: str, pose: str, sides: tuple[int, int], nu
     assert (field.missed, field.difference < 1e-9) == (0, True)
     size = np.abs(field.values[~np.isnan(field.values)]).max(initial=1e-300)
     kind, _, rank = pose.partition(":")
-    source = random.Random(f"{value} {pose} {seed}")
+    source = random.Random(f"{pose} {seed}")  # the same pixels for all quantities
     for _ in range(number):
         row, column = source.randrange(sides[1]), source.randrange(sides[0])
         x, y = centre(result, result.grid(*sides), row, column)
-        poses = of_kind(exact_at(result, x, y).equilibria, kind)
+        poses = of_kind(exact_poses_at(result.slice.name, result, x, y), kind)
         found = field.values[row, column]
         if len(poses) < int(rank):
             assert np.isnan(found)
@@ -73,12 +84,16 @@ def compare(result: RegionMap, value: str, pose: str, sides: tuple[int, int], nu
         assert abs(found - expected) <= 1e-9 * size, (row, column)
 
 
-@pytest.mark.parametrize("value", QUANTITIES)
+@pytest.mark.parametrize(
+    "value", few(QUANTITIES, "energy", "stiffness", "angle:th2", "force:k1", "sin(th1)*L2/rho + th2^2")
+)
 def test_quantities_are_those_of_exact_poses(value: str) -> None:
     compare(shipped("fig4"), value, "stable:2" if value == "stiffness" else "stable:1", (24, 18), 10, 0)
 
 
-@pytest.mark.parametrize("pose", ["stable:2", "unstable:1", "saddle:3", "maximum:2", "pose:5"])
+@pytest.mark.parametrize(
+    "pose", few(["stable:2", "unstable:1", "saddle:3", "maximum:2", "pose:5"], "stable:2", "unstable:1", "maximum:2")
+)
 def test_poses_are_those_of_solve(pose: str) -> None:
     """Of each kind, on both sides of the boundaries."""
     compare(shipped("fig4"), "angle:th2", pose, (24, 18), 15, 1)

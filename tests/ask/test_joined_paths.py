@@ -16,6 +16,7 @@ from support.maps import CONFIGS
 import ptmcad
 from ptmcad.answer.paths import Fate, PosePaths
 from ptmcad.ask import paths as module
+from ptmcad.ask.branches import Sample, SolutionsOnLine
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
@@ -68,6 +69,7 @@ def test_every_point_is_a_proved_stable_pose_and_neighbours_are_near(found: Pose
     assert (found.paths[1].upright, found.paths[1].reverse) == (True, False)
 
 
+@pytest.mark.slow
 def test_tiny_free_lengths_make_no_difference() -> None:
     """To the exact paths without, which are proved."""
     slices = [slice_of(free=free, window="4/5:6/5") for free in ("1/1000000", "0")]
@@ -94,14 +96,21 @@ def test_a_film_falls_at_the_same_place(found: PosePaths) -> None:
 
 def test_a_value_without_an_answer_leaves_a_point_out(monkeypatch: pytest.MonkeyPatch, found: PosePaths) -> None:
     """Here the one just beyond a fold of others, which the path passes."""
-    slice = slice_of(window="1:6/5")
+    slice, own = slice_of(window="1:6/5"), module.SolutionsOnLine.at
+    known: dict[Fraction, Sample | None] = {}
+
+    def at(line: SolutionsOnLine, value: Fraction) -> Sample | None:  # both times at nearly the same values
+        if value not in known:
+            known[value] = own(line, value)
+        return known[value]
+
+    monkeypatch.setattr(module.SolutionsOnLine, "at", at)
     whole = ptmcad.pose_paths(slice, "rho", {"L2": "3/2"}, "11/10", 2).paths[0]
     assert whole.low.fate is Fate.WINDOW
     below = [p.value for p in whole.points if p.value < Fraction(1027, 1000)]
     assert below
-    own = module.SolutionsOnLine.at
     hidden = max(below)
-    monkeypatch.setattr(module.SolutionsOnLine, "at", lambda line, v: None if v == hidden else own(line, v))
+    known[hidden] = None
     path = ptmcad.pose_paths(slice, "rho", {"L2": "3/2"}, "11/10", 2).paths[0]
     assert {p.value for p in whole.points} - {p.value for p in path.points} == {hidden}
     assert path.low.fate is Fate.WINDOW
@@ -131,6 +140,7 @@ def test_starts_that_there_are_not(start: str, number: int | None, message: str,
     assert caught.value.key == key
 
 
+@pytest.mark.usefixtures("coarse")
 def test_the_command_draws_and_tells_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     asked = ["range", str(FREE02), "--along", "rho", "--at", "L2=3/2", "--range", "rho=6/5:5/4", "--path", "61/50"]
     assert run([*asked, "--pose", "2", "--format", "json,svg", "--out", str(tmp_path), "--name", "x"]) == 0

@@ -128,6 +128,7 @@ def test_what_was_not_stable_or_has_no_energy_does_not_fall() -> None:
         assert abs(x**3 - a * x + 0.5) < 1e-9
 
 
+@pytest.mark.slow
 def test_a_certified_map_and_what_it_leaves_open() -> None:
     """Steps in undetermined strips have the counts of certified solutions at their points."""
     pytest.importorskip("numba")

@@ -18,6 +18,7 @@ import pytest
 import yaml
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 from support.few import few
+from support.shipped_records import OTHER
 
 from ptmcad import RegionMap, Slice, classify, load
 from ptmcad.answer.counts import Counts
@@ -32,7 +33,7 @@ ROOT = Path(__file__).resolve().parents[2]
 VALIDATOR = jsonschema.Draft202012Validator(
     json.loads((ROOT / "ptmcad" / "record.schema.json").read_text(encoding="utf-8"))
 )
-RECORDS = sorted((ROOT / "configs").glob("*/*.yaml"))
+RECORDS = list(OTHER)
 LINES_ONLY = {"three-bar-chain"}
 """Too large for an exact map."""
 MAPPED = [path for path in RECORDS if path.stem not in LINES_ONLY]
@@ -82,7 +83,9 @@ def test_records_load_and_validate(path: Path) -> None:
     assert slice.reference["source"]
 
 
-@pytest.mark.parametrize("path", RECORDS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", few(RECORDS, *(p for p in RECORDS if p.stem not in LINES_ONLY)), ids=lambda path: path.stem
+)
 def test_numbers_of_solutions(path: Path) -> None:
     """At the points of the record, by both methods; and complex ones."""
     slice, known = load(path), reference(path)
@@ -98,9 +101,11 @@ def test_numbers_of_solutions(path: Path) -> None:
         assert solutions_at(problem.system, values) == (known["complex_solutions"],) * 2
 
 
-@pytest.mark.parametrize(
-    "path", few(MAPPED, *(p for p in MAPPED if p.stem != "stability-pair")), ids=lambda path: path.stem
-)
+HEAVY = {"stability-pair", "kuramoto", "orthogonal-3r"}
+"""The fast tests have the certified engine's areas of the last two, in `test_known_answers_systems`."""
+
+
+@pytest.mark.parametrize("path", few(MAPPED, *(p for p in MAPPED if p.stem not in HEAVY)), ids=lambda path: path.stem)
 def test_areas_and_regions(path: Path) -> None:
     known, result = reference(path), mapped(path)
     stable = result.slice.count is Count.STABLE

@@ -8,6 +8,7 @@ from math import log
 from typing import Any
 
 import pytest
+from support.few import few
 from support.random_models import random_system
 
 import ptmcad
@@ -94,9 +95,9 @@ def test_a_stable_fold_is_found_where_the_unknown_is_inverted() -> None:
 
 
 @pytest.mark.parametrize("equations", [
-    ["a*x + y - 1", "x - b*y - 1/2"],
+    pytest.param(["a*x + y - 1", "x - b*y - 1/2"], marks=pytest.mark.slow),
     ["x*y - a", "x + y*a - b"],
-    ["b*x*y - 1", "x + y - a"],
+    pytest.param(["b*x*y - 1", "x + y - a"], marks=pytest.mark.slow),
 ])  # fmt: skip
 def test_maps_of_pairs_agree_with_the_exact_engine(equations: list[str]) -> None:
     slice = small({"unknowns": PAIR, "equations": equations}, {"a": [-1, 2], "b": [-3, 3]})
@@ -108,7 +109,7 @@ INFINITE = (3, 9, 22, 23, 33, 46)
 CONDITIONED = (10, 14, 20, 36, 44, 62)
 
 
-@pytest.mark.parametrize("seed", [*INFINITE, *CONDITIONED])
+@pytest.mark.parametrize("seed", few([*INFINITE, *CONDITIONED], 3, 22, 33, 46, *CONDITIONED))
 def test_maps_of_random_systems_agree_with_the_exact_engine(seed: int) -> None:
     record = random_system(seed)
     slice = slice_from_mapping({"name": "small", **record})

@@ -144,6 +144,7 @@ def _minima(a: float, load: float, samples: int = 4000) -> int:
     return sum(values[k - 1] > values[k] < values[(k + 1) % samples] for k in range(samples))
 
 
+@pytest.mark.slow
 def test_two_angles_without_free_lengths_agree_with_the_exact_engine() -> None:
     slice = _slice(CHAIN)
     exact, certified = ptmcad.classify(slice), ptmcad.classify(slice, engine="certified", tolerance="1/200")
@@ -182,6 +183,7 @@ def test_plain_and_refined_formulas_count_the_same_equilibria_of_the_papers_mech
         assert stable.decided and stable.stable == first.stable
 
 
+@pytest.mark.slow
 def test_map_by_plain_formulas_agrees_with_the_one_by_refined_formulas() -> None:
     window = {"rho": ["3/5", "6/5"], "L2": ["6/5", "9/5"]}
     maps = [

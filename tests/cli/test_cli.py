@@ -306,10 +306,11 @@ def help_examples() -> list[str]:
 
 
 LONG = ("bench configs", "bench --method", "stress all", "stress --random", "stress stiffness")
-DOCUMENTED = ("--value barrier", "--over L2", "--path 7/10")
-"""In commands that the tests of docs/how-to.md and of `ptmcad range` run too."""
+DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value length:k1", "--path", "--quantity th1")
+"""In commands that the tests of README.md, of `ptmcad range`, its branches, fields and films run too."""
 
 
+@pytest.mark.usefixtures("coarse")
 @pytest.mark.parametrize("example", [
     pytest.param(e, marks=pytest.mark.slow) if e.startswith(LONG) or any(d in e for d in DOCUMENTED) else e
     for e in help_examples() if not e.startswith(("classify", "paper"))

@@ -29,4 +29,4 @@ def test_the_title_of_a_mechanisms_quantity() -> None:
     from ptmcad.show.render.field import title_of
 
     result = ptmcad.classify(ptmcad.slice_from_options(slice="L2,rho"))
-    assert title_of(result, result.field("length:k3", "stable:1", 2, 2)) == "Length:k3 of stable pose 1: slice-L2-rho"
+    assert title_of(result, result.field("length:k3", "stable:1", 2, 2)) == "Length k₃ of stable pose 1: slice-L2-rho"

@@ -32,6 +32,12 @@ def motion() -> Motion:
 
 
 @pytest.fixture(scope="module")
+def short() -> Motion:
+    """Three pictures, for what is the same of any number."""
+    return shipped("fig4").animate("rho=3/4:4/5,L2=3/2", "stable:2", frames=3)
+
+
+@pytest.fixture(scope="module")
 def stage(motion: Motion) -> Stage:
     with settings():
         return Stage(motion, DEFAULT, 60)
@@ -96,10 +102,11 @@ def test_all_words_are_within_the_picture(motion: Motion, size: str) -> None:
     assert (stage.curve is None) == (size == "6.5x3.4in")
 
 
-def test_a_gif_has_all_pictures_and_rests_at_its_ends(motion: Motion, tmp_path: Path) -> None:
+def test_a_gif_has_all_pictures_and_rests_at_its_ends(motion: Motion, short: Motion, tmp_path: Path) -> None:
     motion.save(tmp_path / "one.gif", fps=10, dpi=60, size="7x4in")
-    motion.save(tmp_path / "two.gif", fps=10, dpi=60, size="7x4in")
-    assert (tmp_path / "one.gif").read_bytes() == (tmp_path / "two.gif").read_bytes()
+    for name in ("two.gif", "three.gif"):
+        short.save(tmp_path / name, fps=10, dpi=60, size="7x4in")
+    assert (tmp_path / "two.gif").read_bytes() == (tmp_path / "three.gif").read_bytes()
     with Image.open(tmp_path / "one.gif") as film:
         assert (film.size, film.n_frames) == ((420, 240), len(motion.steps))
         durations = []
@@ -109,9 +116,10 @@ def test_a_gif_has_all_pictures_and_rests_at_its_ends(motion: Motion, tmp_path: 
     assert durations == [800, *[100] * (len(motion.steps) - 2), 800]
 
 
-def test_a_notebook_shows_the_film(motion: Motion) -> None:
-    html = motion._repr_html_()
-    assert html.startswith('<img alt="&lt;Motion of stable:2 over fig4: 18 steps, 1 fall&gt;"')
+def test_a_notebook_shows_the_film(motion: Motion, short: Motion) -> None:
+    assert repr(motion) == "<Motion of stable:2 over fig4: 18 steps, 1 fall>"
+    html = short._repr_html_()
+    assert html.startswith('<img alt="&lt;Motion of stable:2 over fig4: 3 steps, 0 falls&gt;"')
     assert "data:image/gif;base64,R0lGOD" in html
 
 
@@ -133,21 +141,25 @@ def program(folder: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(file.parent))
 
 
-def test_ffmpeg_gets_every_picture(motion: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ffmpeg_gets_every_picture(short: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     program(tmp_path, FAKE, monkeypatch)
-    motion.save(tmp_path / "film.mp4", fps=10, dpi=60, size="7x4in")
-    assert (tmp_path / "film.mp4").read_bytes() == b"%d pictures" % (len(motion.steps) + 2 * 8)
+    short.save(tmp_path / "film.mp4", fps=10, dpi=60, size="7x4in")
+    assert (tmp_path / "film.mp4").read_bytes() == b"%d pictures" % (len(short.steps) + 2 * 8)
 
 
 @pytest.mark.parametrize("reads", [True, False], ids=["at the end", "at once"])
 def test_what_ffmpeg_refuses_is_said(
-    reads: bool, motion: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    reads: bool, short: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     read = "sys.stdin.buffer.read()\n" if reads else ""
     program(tmp_path, f"#!{{python}}\nimport sys\n{read}sys.exit('no encoder')\n", monkeypatch)
     with pytest.raises(OSError, match="ffmpeg failed with status 1: no encoder"):
-        motion.save(tmp_path / "film.mp4", dpi=60)
-    asked = ["animate", FIG4, "--path", PATH, "--frames", "3", "--dpi", "50", "--format", "gif,mp4"]
+        short.save(tmp_path / "film.mp4", dpi=60)
+    if not reads:  # the command is told in the same way
+        return
+    (tmp_path / "fig4.json").write_text(shipped("fig4").to_json())
+    asked = ["animate", str(tmp_path / "fig4.json"), "--path", "rho=3/4:4/5,L2=3/2", "--pose", "stable:2"]
+    asked += ["--frames", "2", "--dpi", "50", "--format", "gif,mp4"]
     assert run([*asked, "--out", str(tmp_path / "out")]) == 2
     assert "fig4-motion.mp4 cannot be drawn: ffmpeg failed with status 1: no encoder" in capsys.readouterr().err
     assert not list((tmp_path / "out").iterdir())
@@ -157,13 +169,14 @@ def test_the_command_writes_a_film_and_says_where_it_snaps(tmp_path: Path, capsy
     assert run(["classify", FIG4, "--format", "json", "--no-areas", "--out", str(tmp_path)]) == 0
     capsys.readouterr()
     stored = str(tmp_path / "fig4.json")
+    asked = ["--pose", "stable:2", "--frames", "2", "--dpi", "50", "--out", str(tmp_path)]
     for source, name in ((FIG4, "a"), (stored, "b")):
-        asked = ["animate", source, "--path", PATH, "--pose", "stable:2", "--frames", "6", "--dpi", "50"]
-        assert run([*asked, "--name", name, "--out", str(tmp_path)]) == 0
-        out = capsys.readouterr().out
-        assert "stable:2: 18 pictures, 6 of equilibria, each one of as many as are counted exactly there\n" in out
-        assert "snap at rho = 1.04143, L2 = 1.5: the pose vanishes and falls to th1 = -47.52" in out
-        assert f"{name}.gif" in out
+        assert run(["animate", source, "--path", "rho=3/4:4/5,L2=3/2", *asked, "--name", name]) == 0
+        assert f"{name}.gif" in capsys.readouterr().out
+    assert run(["animate", stored, "--path", PATH, *asked]) == 0
+    out = capsys.readouterr().out
+    assert "stable:2: 14 pictures, 2 of equilibria, each one of as many as are counted exactly there\n" in out
+    assert "snap at rho = 1.04143, L2 = 1.5: the pose vanishes and falls to th1 = -47.52" in out
     assert (tmp_path / "a.gif").read_bytes() == (tmp_path / "b.gif").read_bytes()
     assert run(["animate", stored, "--path", PATH, "--set", "F3=0", "--out", str(tmp_path)]) == 2
     assert "--set: a result has its slice already" in capsys.readouterr().err

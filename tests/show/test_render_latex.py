@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 from support.certified_maps import circle
-from support.maps import shipped
+from support.maps import heavier_fig4, shipped
 from support.programs import needs_latex
 from test_render import bands
 
@@ -59,8 +59,7 @@ def with_poses(path: Path) -> None:
 
 
 def compared(path: Path) -> None:
-    other = ptmcad.slice_from_options(slice="rho,L2", ranges=["rho=0:2", "L2=0:2"], sets=["F3=-14", "F4=-8"])
-    found = shipped("fig4").compare(ptmcad.classify(other))
+    found = shipped("fig4").compare(heavier_fig4())
     draw_comparison(found, path, 150, styled(size="7x4in", font_size="8"))
 
 

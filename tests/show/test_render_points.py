@@ -11,7 +11,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.lines import Line2D
-from support.few import few
 from support.maps import shipped
 
 from ptmcad.cli import run
@@ -42,8 +41,10 @@ def around(texts: tuple[str, ...], style: Style) -> Figure:
     return made
 
 
-@pytest.mark.parametrize("texts", few([AT[:1], AT[:2], AT], AT[:1], AT))
-@pytest.mark.parametrize("size", [None, "13x7in"])
+@pytest.mark.parametrize(("texts", "size"), [
+    pytest.param(texts, size, marks=() if (len(texts), size) in ((1, None), (len(AT), "13x7in")) else pytest.mark.slow)
+    for texts in (AT[:1], AT[:2], AT) for size in (None, "13x7in")
+])  # fmt: skip
 def test_poses_stand_beside_the_map_each_led_to_its_point(texts: tuple[str, ...], size: str | None) -> None:
     made = around(texts, styled(size=size))
     if size is not None:

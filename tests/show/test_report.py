@@ -20,6 +20,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.certified_map import certified_map
 from support.pages import data_of, unpacked
+from support.shipped_records import OTHER
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution, Status
@@ -182,7 +183,7 @@ def test_record_and_command_pose_the_slice_again(path: Path, count: ptmcad.Count
                                    options.get("--count", [None])[0])) == core(slice)  # fmt: skip
 
 
-@pytest.mark.parametrize("path", sorted(CONFIGS.glob("*/*.yaml")), ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", OTHER, ids=lambda p: p.stem)
 def test_a_record_poses_the_slice_of_another_model_again(path: Path, tmp_path: Path) -> None:
     """With its whole description; no command line says as much."""
     slice = load(path)

@@ -72,3 +72,14 @@ def part_of_free02() -> ptmcad.RegionMap:
         return ptmcad.classify(yaml.safe_load(record_of_part_of_free02()), tolerance="1/50", jobs=2)
 
     return once_per_run("part of free02", compute)
+
+
+@cache
+def heavier_fig4() -> ptmcad.RegionMap:
+    """Fig. 4's window with other loads, with which fig. 4 is compared."""
+
+    def compute() -> ptmcad.RegionMap:
+        slice = ptmcad.slice_from_options(slice="rho,L2", ranges=["rho=0:2", "L2=0:2"], sets=["F3=-14", "F4=-8"])
+        return ptmcad.classify(slice)
+
+    return once_per_run("heavier fig4", compute)

@@ -6,7 +6,10 @@ from pathlib import Path
 
 import yaml
 
-_ALL = tuple(sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml")))
+CONFIGS = Path(__file__).resolve().parents[2] / "configs"
+_ALL = tuple(sorted(CONFIGS.glob("*.yaml")))
+OTHER = tuple(path for path in sorted(CONFIGS.glob("*/*.yaml")) if path.parent.name != "families")
+"""Records of slices of other mechanisms and systems."""
 
 
 def _has_free_lengths(path: Path) -> bool:
