@@ -11,6 +11,7 @@ import base64
 import json
 import os
 import pickle
+import signal
 import sys
 from collections import OrderedDict
 from contextlib import suppress
@@ -86,9 +87,8 @@ class Worker:
 
     def end(self) -> None:
         """End the process, which has nothing to tidy up."""
-        if self.process is not None and self.process.returncode is None:
-            with suppress(ProcessLookupError):
-                self.process.kill()
+        if self.process is not None:
+            _kill(self.process)
         self.process = None
         if self.lifeline is not None:
             os.close(self.lifeline)
@@ -137,8 +137,7 @@ class Worker:
     async def _lost(self, process: asyncio.subprocess.Process, how: str) -> Answer:
         """Start another process, and say so; a superseded job that had to be ended is just that."""
         superseded = self.killer is not None
-        with suppress(ProcessLookupError):
-            process.kill()
+        _kill(process)
         await process.wait()
         await self._start()
         if superseded:
@@ -152,8 +151,11 @@ class Worker:
             return
         with suppress(ConnectionError):
             self.process.stdin.write(json.dumps({"cancel": number}).encode() + b"\n")
-        self.killer = asyncio.get_running_loop().call_later(CANCEL_SECONDS, self._kill, self.process)
+        self.killer = asyncio.get_running_loop().call_later(CANCEL_SECONDS, _kill, self.process)
 
-    def _kill(self, process: asyncio.subprocess.Process) -> None:
+
+def _kill(process: asyncio.subprocess.Process) -> None:
+    """End a process, if it is there; asyncio's own way would take its status from the thread that waits for it."""
+    if process.returncode is None:
         with suppress(ProcessLookupError):
-            process.kill()
+            os.kill(process.pid, signal.SIGKILL)
