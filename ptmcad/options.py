@@ -39,6 +39,8 @@ class Options:
     partial : called with the map after each stage that improves it.
     resume : a certified map of the same slice and count: what is outside its cover stays decided.
     areas : whether to enclose the regions' areas; without, they are known only to be at most the window's.
+    sparing : whether the exact engine counts once for all cells that are proved to be joined off the variety, where
+        counts are equal; the other cells then have no solutions, and nothing checks the decomposition by counting.
 
     Raises
     ------
@@ -57,6 +59,7 @@ class Options:
     partial: Callable[[RegionMap], None] | None = None
     resume: RegionMap | None = None
     areas: bool = True
+    sparing: bool = False
 
     def __post_init__(self) -> None:
         if self.engine not in ENGINES:

@@ -13,7 +13,8 @@ import click
 
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.values import files, mechanisms, pair_of_names, settings
-from ptmcad.question.config import Family, question_from_options, slice_from_options
+from ptmcad.question.config import Family, question_from_options, record_from_options, slice_from_options
+from ptmcad.question.config.record import Record
 from ptmcad.question.slice import Slice
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -54,6 +55,16 @@ class Asked(NamedTuple):
             For anything wrong with the record or the options.
         """
         return slice_from_options(self.config, self.axes, self.sets, self.ranges, count, self.mechanism)
+
+    def record(self, free: str | None) -> Record:
+        """The record that is meant, in which a parameter may be free.
+
+        Raises
+        ------
+        ConfigError
+            For anything wrong with the record's keys or the options.
+        """
+        return record_from_options(self.config, self.axes, self.sets, self.ranges, None, self.mechanism, free)
 
     def question(self, count: str | None, third: Third) -> Slice | Family:
         """The slice that is meant, or the family where a third parameter is free.

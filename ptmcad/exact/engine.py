@@ -13,9 +13,14 @@ from time import perf_counter
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import LimitReached
 from ptmcad.exact.assembly import Reached, assemble
+from ptmcad.exact.cad.adjacency import Crossing
+from ptmcad.exact.cad.projection import Projection
+from ptmcad.exact.sparing import counts_by_component, joined_cells
 from ptmcad.exact.stages import (
     Cells,
     SliceProblem,
+    Stacks,
+    Variety,
     areas_of,
     counts_of,
     crossings_of,
@@ -110,14 +115,29 @@ def _stages(problem: SliceProblem, options: Options, clock: _Clock) -> Iterator[
     clock.report("stacks")
     stacks = stacks_of(problem, variety, projection)
     clock.stage("stacks")
-    counts = counts_of(problem, stacks, partial(clock.report, "counts"))
-    clock.stage("counts")
-    crossings = crossings_of(problem, variety, stacks, partial(clock.report, "adjacency"), clock.check)
+    yield from _counted(problem, options, clock, (variety, projection, stacks))
+
+
+def _counted(
+    problem: SliceProblem, options: Options, clock: _Clock, built: tuple[Variety, Projection, Stacks]
+) -> Iterator[Reached]:
+    """Counts and adjacency, in either order, then areas."""
+    variety, projection, stacks = built
+    crossings: tuple[Crossing, ...] = ()
+    for stage in ("adjacency", "counts") if options.sparing else ("counts", "adjacency"):
+        report = partial(clock.report, stage)
+        if stage == "adjacency":
+            crossings = crossings_of(problem, variety, stacks, report, clock.check)
+        elif options.sparing:
+            counts = counts_by_component(problem, stacks, joined_cells(variety, projection, stacks, crossings), report)
+        else:
+            counts = counts_of(problem, stacks, report)
+        clock.stage(stage)
     cells = Cells(projection, stacks, counts, neighbours_of(variety, projection, stacks, counts, crossings))
     yield Reached(variety, cells)
-    clock.stage("adjacency")
     if options.areas:
         clock.report("areas")
-        areas = areas_of(problem, variety, cells, options.area_tolerance or AREA_TOLERANCE, without, clock.check)
+        tolerance = options.area_tolerance or AREA_TOLERANCE
+        areas = areas_of(problem, variety, cells, tolerance, options.without, clock.check)
         clock.stage("areas")
         yield Reached(variety, cells, areas)

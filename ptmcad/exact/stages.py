@@ -272,14 +272,18 @@ def neighbours_of(
     ArithmeticError
         When the counts contradict the decomposition.
     """
-    lines = {_coefficients(p): n for n, p in variety.lines.items()}
-    across = [lines.get(_coefficients(r.polynomial)) for r in projection.abscissae]
-    adjacencies = tuple(_adjacencies(stacks.stacks, crossings, across, counts.keys))
+    adjacencies = tuple(adjacencies_of(stacks.stacks, crossings, lines_across(variety, projection), counts.keys))
     region_of = merge(counts.keys, [Link(a.first, a.second, a.component) for a in adjacencies])
     return Neighbours(crossings, adjacencies, region_of)
 
 
-def _adjacencies(
+def lines_across(variety: Variety, projection: Projection) -> list[int | None]:
+    """The component that is a line over each abscissa, if one is."""
+    lines = {_coefficients(p): n for n, p in variety.lines.items()}
+    return [lines.get(_coefficients(r.polynomial)) for r in projection.abscissae]
+
+
+def adjacencies_of(
     stacks: Sequence[StackData],
     crossings: Sequence[Crossing],
     across: Sequence[int | None],

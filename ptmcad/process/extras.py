@@ -24,6 +24,10 @@ DISTRIBUTED_MISSING = (
     "pip install 'ptmcad[distributed]', here and on every worker"
 )
 
+AIOHTTP_MISSING = (
+    "the explorer's page is served by the package aiohttp, which is not installed: pip install 'ptmcad[explore]'"
+)
+
 
 def require_numba() -> None:
     """Refuse at once what the certified engine would refuse later.
@@ -59,6 +63,18 @@ def require_distributed() -> None:
     """
     if find_spec("distributed") is None:
         raise ConfigError(DISTRIBUTED_MISSING, key="--scheduler")
+
+
+def require_aiohttp() -> None:
+    """Refuse what the explorer needs.
+
+    Raises
+    ------
+    ConfigError
+        When aiohttp is not installed.
+    """
+    if find_spec("aiohttp") is None:
+        raise ConfigError(AIOHTTP_MISSING)
 
 
 def require_ffmpeg() -> str:

@@ -1,6 +1,7 @@
-"""A pipe by which a process learns that another one has ended, in whatever code it is.
+"""A process that ends with another one, whatever code it is in.
 
-Guarantee: where pipes send signals (Linux), the kernel ends this process when the other end is closed.
+Guarantee: on a system whose pipes send signals (Linux) the kernel ends this process as soon as the last end at which
+the other one holds the pipe is closed. Elsewhere nothing is promised.
 """
 
 import os
@@ -10,14 +11,16 @@ import sys
 if sys.platform != "win32":
     import fcntl
 
+PIPE_SIGNAL = (signal.SIGIO,) if hasattr(signal, "SIGIO") else ()
 
-def die_with(parent: int, lifeline: int) -> None:
+
+def end_with(lifeline: int, parent: int) -> None:
     """Let the kernel end this process when the parent's end of the pipe is closed.
 
     Parameters
     ----------
-    parent : the number of the process that holds the other end.
-    lifeline : the descriptor of this end, which is for reading and of which no other process has a copy.
+    lifeline : the end at which the pipe is read; nobody writes to it.
+    parent : the parent's number: it may have ended before.
     """
     if hasattr(os, "O_ASYNC"):
         signal.signal(signal.SIGIO, signal.SIG_DFL)  # the caller may have had it ignored

@@ -24,7 +24,7 @@ from types import FrameType, TracebackType
 from typing import NoReturn, TextIO
 
 from ptmcad.process.handover import Topic, connect, disconnect, send
-from ptmcad.process.lifeline import die_with
+from ptmcad.process.lifeline import PIPE_SIGNAL, end_with
 from ptmcad.process.streams import open_standard_streams, quiet_stream, report
 from ptmcad.process.watch import Watch
 
@@ -50,7 +50,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     gc.freeze()  # what there is by now is not looked through again, which would copy its pages in the child
     parent = os.getpid()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, (*heeded, signal.SIGCHLD))
-    before -= {*heeded, signal.SIGCHLD, *_PIPE_SIGNAL}  # of a caller that has blocked them, too: this waits for them
+    before -= {*heeded, signal.SIGCHLD, *PIPE_SIGNAL}  # of a caller that has blocked them, too: this waits for them
     try:
         child = os.fork()
     except OSError:  # no more processes allowed: better unwatched than not at all
@@ -65,7 +65,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
     if child == 0:
         for descriptor in (messages[0], printed[0], lifeline[1], *wake):
             os.close(descriptor)
-        die_with(parent, lifeline[0])
+        end_with(lifeline[0], parent)
         connect(messages[1])
         _redirect(printed[1])
     elif sys.stderr is not None:
@@ -106,9 +106,6 @@ def _check_descriptors() -> None:
     finally:
         for descriptor in spare:
             os.close(descriptor)
-
-
-_PIPE_SIGNAL = (signal.SIGIO,) if hasattr(signal, "SIGIO") else ()
 
 
 def _redirect(printed: int) -> None:

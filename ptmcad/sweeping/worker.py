@@ -11,7 +11,7 @@ import os
 import signal
 from multiprocessing.connection import Connection
 
-from ptmcad.process.lifeline import die_with
+from ptmcad.process.lifeline import end_with
 
 
 def serve(connection: Connection) -> None:
@@ -39,7 +39,7 @@ def main(arguments: list[str]) -> None:
     """
     connection, lifeline, parent = map(int, arguments)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    die_with(parent, lifeline)
+    end_with(lifeline, parent)
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         serve(Connection(connection))

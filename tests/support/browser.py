@@ -98,6 +98,33 @@ class Browser:
         self.call("Page.navigate", url=file.resolve().as_uri())
         self.until("document.readyState === 'complete' && location.protocol === 'file:'")
 
+    def visit(self, address: str, ready: str) -> None:
+        """Load a page from a server, and wait until an expression is true in it."""
+        self.events.clear()
+        self.call("Page.navigate", url=address)
+        end = time.monotonic() + PATIENCE
+        while not self.run(f"typeof DATA !== 'undefined' && document.readyState === 'complete' && ({ready})"):
+            if time.monotonic() > end:
+                raise TimeoutError(f"{address}: {self.run('document.body.textContent')[:200]}")
+            time.sleep(0.02)
+
+    def tab(self) -> str:
+        """Another page of the same browser, to which commands go from now on; what `switch` takes to come back."""
+        before, self.session = self.session, None
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network", "DOM"):
+            self.call(f"{domain}.enable")
+        assert before is not None
+        return before
+
+    def switch(self, session: str) -> str:
+        """Back to another page; the one that was left."""
+        before, self.session = self.session, session
+        self.call("Page.bringToFront")  # what is behind another page takes no input
+        assert before is not None
+        return before
+
     def run(self, expression: str) -> Any:
         """The value of a JavaScript expression in the page; a promise is waited for."""
         answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)

@@ -60,6 +60,7 @@ __all__ = [
     "point_from_options",
     "portable_file",
     "question_from_options",
+    "record_from_options",
     "slice_from",
     "slice_from_mapping",
     "slice_from_options",
@@ -156,7 +157,7 @@ def slice_from_options(
     sets, ranges = tuple(sets), tuple(ranges)
     if config is not None and mechanism is None and slice is None and count is None and not sets and not ranges:
         return load(config)
-    return slice_of(_record_from_options(config, slice, sets, ranges, count, mechanism))
+    return slice_of(record_from_options(config, slice, sets, ranges, count, mechanism))
 
 
 def question_from_options(
@@ -187,7 +188,7 @@ def question_from_options(
     if config is not None and not changed:
         tree = read_file(config)
         return checked_family(tree) if "free" in tree.entries else checked_slice(tree)
-    record = _record_from_options(config, slice, sets, ranges, count, mechanism, free)
+    record = record_from_options(config, slice, sets, ranges, count, mechanism, free)
     if members is not None:
         if record.free is None:
             raise ConfigError("there are members where a parameter is free: add --free NAME=LO:HI", key="--members")
@@ -201,16 +202,26 @@ def _members(text: str) -> Node:
     return items[0] if len(items) == 1 else Sequence(items, place)
 
 
-def _record_from_options(
-    config: str | Path | None,
-    slice: str | None,
-    sets: tuple[str, ...],
-    ranges: tuple[str, ...],
-    count: str | Count | None,
-    mechanism: str | None,
+def record_from_options(
+    config: str | Path | None = None,
+    slice: str | None = None,
+    sets: tuple[str, ...] = (),
+    ranges: tuple[str, ...] = (),
+    count: str | Count | None = None,
+    mechanism: str | None = None,
     free: str | None = None,
 ) -> Record:
-    """The record with what the options change in it."""
+    """The record with what the options change in it.
+
+    Parameters
+    ----------
+    config, slice, sets, ranges, count, mechanism, free : as of `question_from_options`.
+
+    Raises
+    ------
+    ConfigError
+        For a key or an option that is wrong; what the values are worth is not looked at.
+    """
     if config is not None and mechanism is not None:
         raise ConfigError("the record says which mechanism is meant: leave one out", key="--mechanism")
     record = record_of(read_file(config)) if config is not None else Record()

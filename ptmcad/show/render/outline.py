@@ -1,8 +1,9 @@
 """The outline of a region map in a view: the walls of its stacks as polylines, for drawing.
 
 Guarantee: each wall is the branch that the map names, from exact root isolation of the stored polynomials at rational
-abscissae; every vertex is within 2^-17 of the view's size of the branch, and two neighbouring vertices are so near that
-their chord misses the branch's middle by at most `TOLERANCE` of the view's size, up to the depth of subdivision.
+abscissae; every vertex is within 2^-17 of the view's size of the branch (2^-14 in a coarser outline), and two
+neighbouring vertices are so near that their chord misses the branch's middle by at most `TOLERANCE`, or what is asked
+for, of the view's size, up to the depth of subdivision.
 
 Not guaranteed: the shape between the vertices. Nothing but pictures may be decided by an outline.
 """
@@ -29,6 +30,7 @@ from ptmcad.text.plane import PlanePolynomial
 
 TOLERANCE = 1.5e-4
 DEPTH = 7
+_BITS, _COARSE_BITS = 17, 14
 _LIMIT = Fraction(1, 2**48)
 """A stack's ends are seen as limits from this fraction of its width: a square root's error is 2^-24 of its size."""
 
@@ -149,14 +151,19 @@ class Outline:
         return image.T if self.swapped else image
 
 
-def outline(result: RegionMap, view: View | None = None) -> Outline:
-    """The outline of a map in a view, the whole window when None."""
-    return _outline(Same(result), View.whole(result) if view is None else view)
+def outline(result: RegionMap, view: View | None = None, tolerance: float = TOLERANCE) -> Outline:
+    """The outline of a map in a view, the whole window when None.
+
+    Parameters
+    ----------
+    tolerance : how far a chord may miss its branch, as a share of the view's size; the vertices are on it in any case.
+    """
+    return _outline(Same(result), View.whole(result) if view is None else view, tolerance)
 
 
 # a map is drawn into several files, in several sizes and into the report
 @lru_cache(maxsize=32)
-def _outline(of: Same[RegionMap], view: View) -> Outline:
+def _outline(of: Same[RegionMap], view: View, tolerance: float) -> Outline:
     result = of.it
     base = result.base
     curves = by_component(curves_of(result.components, base))
@@ -166,7 +173,7 @@ def _outline(of: Same[RegionMap], view: View) -> Outline:
     for number, stack in enumerate(result.stacks):
         ends = _ends(result, stack, roots)
         if ends[0] < high and ends[1] > low:
-            stacks.append(_Tracer(result, view, curves, stack, number).trace(ends))
+            stacks.append(_Tracer(result, view, curves, (number, stack), tolerance).trace(ends))
     lines = []
     for k, abscissa in enumerate(roots):
         component = _vertical_component(result, k)
@@ -219,14 +226,19 @@ def _vertical_component(result: RegionMap, critical: int) -> int | None:
 class _Tracer:
     """Traces the walls of one stack within a view."""
 
-    def __init__(self, result: RegionMap, view: View, curves: dict[int, Curve], stack: Stack, number: int) -> None:
-        self.stack, self.number = stack, number
+    def __init__(
+        self, result: RegionMap, view: View, curves: dict[int, Curve], numbered: tuple[int, Stack], tolerance: float
+    ) -> None:
+        self.number, self.stack = numbered
+        stack = self.stack
         self.curves = {n: curves[n] for n in {w.component for w in stack.walls}}
         axis = result.slice.axes[1 - result.base]
         self.fibre = (from_fraction(axis.low), from_fraction(axis.high))
         self.base, self.shown = view.along(result.base), view.along(1 - result.base)
         self.edges = (self._height(axis.low), self._height(axis.high))
-        self.width = from_fraction((self.shown[1] - self.shown[0]) / 2**17)
+        self.tolerance = tolerance
+        bits = _BITS if tolerance <= TOLERANCE else _COARSE_BITS
+        self.width = from_fraction((self.shown[1] - self.shown[0]) / 2**bits)
 
     def trace(self, ends: Interval) -> StackOutline:
         """The stack's walls from end to end, or to the view's edge."""
@@ -245,7 +257,7 @@ class _Tracer:
             for s, t in pending:
                 middle = (s + t) / 2
                 columns[middle] = self._column(_between(low, high, middle))
-                if _deviation(columns[s], columns[middle], columns[t]) > TOLERANCE:
+                if _deviation(columns[s], columns[middle], columns[t]) > self.tolerance:
                     following += [(s, middle), (middle, t)]
             pending = following
         ordered = np.array([columns[s] for s in sorted(columns)])

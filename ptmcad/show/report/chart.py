@@ -41,7 +41,7 @@ MAP_PIXELS = 300
 _WALLS, _RIMS, SLACK = 0.1, 0.25, 0.3
 """By how much, in the picture's units, walls and a certified map's rims may depart to have fewer corners, and these
 together with the rounding to the grid. A unit is less than a pixel where the page is largest."""
-_RIM_WIDTH = 0.7
+RIM_WIDTH = 0.7
 """Of a certified map's rims, in the picture's units: no less than twice `SLACK`."""
 LABEL, _LETTER = 42, 0.55
 """Size of the counts' type on phones, in the picture's units, and a character's width against it, on the whole."""
@@ -69,7 +69,7 @@ def chart(seen: Shapes) -> Chart:
     ]
     places = tuple(seen.view.approximate_position((c.sample[0], c.sample[1])) for c in result.cells)
     return Chart(
-        whole=_picture(seen, "map", tips, _region_labels(seen)),
+        whole=_picture(seen, "map", tips, region_labels(seen)),
         details=tuple(_picture(zoom.outline, f"detail-{letter}", (), ()) for letter, zoom in marks),
         places=places,
         thin_walls=any(not separates for _, separates, _ in seen.walls()),
@@ -187,20 +187,32 @@ def _paints(region: Region, count: Count) -> list[str]:
 def _areas(seen: Shapes) -> Iterator[str]:
     """An exact map's regions, walls and cells, these from the left and from below."""
     result = seen.result
-    for number, region in enumerate(result.regions):
+    for number, outline in region_outlines(seen):
+        for paint in _paints(result.regions[number], result.slice.count):
+            yield f'<path class="fill" fill="{paint}" d="{outline}"/>'
+    for (separates, component), line in wall_lines(seen).items():
+        kind = "wall strong" if separates else "wall"
+        yield f'<path class="{kind}" data-curve="{component}" d="{line}"/>'
+    for number, polygons in seen.cells(_WALLS / SIDE):
+        yield f'<path class="cell" data-cell="{number}" d="{"".join(map(_closed, polygons))}"/>'
+
+
+def region_outlines(seen: Shapes) -> Iterator[tuple[int, str]]:
+    """Every region that is seen, and its outline as the data of a path, in steps of the grid."""
+    tolerance = (_WALLS if seen.result.cover is None else _RIMS) / SIDE
+    for number in range(len(seen.result.regions)):
         # one path for all parts: where two of them share an edge no seam is left
-        outline = "".join(_closed(p) for p in seen.polygons(number, _WALLS / SIDE))
+        outline = "".join(_closed(p) for p in seen.polygons(number, tolerance))
         if outline:
-            for paint in _paints(region, result.slice.count):
-                yield f'<path class="fill" fill="{paint}" d="{outline}"/>'
+            yield number, outline
+
+
+def wall_lines(seen: Shapes) -> dict[tuple[bool, int], str]:
+    """The walls as such data: those that do not separate regions first, then by components."""
     lines: dict[tuple[bool, int], list[str]] = {}
     for component, separates, line in seen.walls(_WALLS / SIDE):
         lines.setdefault((separates, component), []).append(_open(line))
-    for (separates, component), pieces in sorted(lines.items()):
-        kind = "wall strong" if separates else "wall"
-        yield f'<path class="{kind}" data-curve="{component}" d="{"".join(pieces)}"/>'
-    for number, polygons in seen.cells(_WALLS / SIDE):
-        yield f'<path class="cell" data-cell="{number}" d="{"".join(map(_closed, polygons))}"/>'
+    return {kind: "".join(pieces) for kind, pieces in sorted(lines.items())}
 
 
 def _rimmed_areas(seen: Shapes, name: str) -> Iterator[str]:
@@ -218,7 +230,7 @@ def _rimmed_areas(seen: Shapes, name: str) -> Iterator[str]:
         if used:
             for paint in _paints(region, result.slice.count):
                 yield f'<g class="fill" fill="{paint}">{used}</g>'
-    rims = f'href="#{name}-rims" stroke-width="{_RIM_WIDTH * GRID:g}"'
+    rims = f'href="#{name}-rims" stroke-width="{RIM_WIDTH * GRID:g}"'
     yield f'<use class="rim" {rims}/>'
     for n in outlines:
         yield f'<use class="cell" href="#{name}-{n}" data-cell="{n}"/>'
@@ -239,7 +251,7 @@ def counts_text(part: Cell | Region, model: Model) -> str:
     return counted(model, total) if stable is None else f"{stable} stable of {counted(model, total)}"
 
 
-def _region_labels(seen: Shapes) -> list[Label]:
+def region_labels(seen: Shapes) -> list[Label]:
     """For each region into which its count can be written, even in the larger type of phones, a point deep inside."""
     pixels = 60
     image = seen.raster(pixels, pixels)

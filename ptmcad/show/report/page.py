@@ -140,7 +140,7 @@ def harmless(data: object) -> str:
     return text
 
 
-def _drawing(model: Model) -> dict[str, Any]:
+def drawing_of(model: Model) -> dict[str, Any]:
     """What the script draws of a mechanism, by the numbers of its points; of a system only the unknowns' names."""
     unknowns = {"unknowns": [symbol(name) for name in (*model.angles, *model.reals)]}
     if not isinstance(model, Mechanism):
@@ -186,7 +186,7 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "work": _work(model),
         "landscape": len(model.angles) == len(model.unknowns) == 2 and model.has_potential,
         "index": index_words(len(model.unknowns) + 1),
-        "mechanism": _drawing(model),
+        "mechanism": drawing_of(model),
         "follow": tape(result),
         "regions": [{"area": certified_digits(r.area), "counts": counts_text(r, model)} for r in result.regions],
         "stacks": [list(s.cells) for s in result.stacks],

@@ -1,0 +1,54 @@
+"""``ptmcad explore``: a local page with a slider for each parameter and a map that follows them."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+import click
+
+from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.paths import out_option
+from ptmcad.cli.slices import Asked, slice_options
+from ptmcad.process.extras import require_aiohttp
+
+
+@click.command("explore")
+@slice_options
+@click.option("--free", metavar="NAME=LO:HI", help="A third parameter: its slider's maps share one computation.")
+@click.option("--slider", "sliders", multiple=True, metavar="NAME=LO:HI",
+              help="The ends of a parameter's slider. Repeatable.")  # fmt: skip
+@click.option(
+    "--port", type=click.IntRange(0, 65535), default=0, help="Port to listen on.  [default: any that is free]"
+)
+@click.option("--open", "opened", is_flag=True, help="Open the page in the browser.")
+@out_option
+@limit_options
+def command(
+    *, asked: Asked, free: str | None, sliders: tuple[str, ...], port: int, opened: bool, out: Path, limits: Limits
+) -> None:
+    """Explore the slices of CONFIG in the browser: drag a parameter and see the exact map follow.
+
+    Prints an address, which works once and in one browser; the page is served on this machine alone, until Ctrl-C.
+    Figures that the page saves go into the folder --out. Needs the extra `explore`: pip install 'ptmcad[explore]'.
+
+    \b
+    Examples:
+        ptmcad explore configs/families/equal-loads.yaml
+        ptmcad explore configs/fig4.yaml --slider k=50:200 --open
+        ptmcad explore --slice rho,L2 --set F3=F --set F4=F --free F=-40:0
+    """
+    require_aiohttp()
+    record = asked.record(free)
+    with held(limits):
+        from ptmcad.explore.panel import panel_of
+
+        panel = panel_of(record, sliders)
+        from ptmcad.explore.server import serve
+
+        def announce(address: str) -> None:
+            click.echo(f"explore   {address}\n          works once, in one browser; Ctrl-C ends it")
+            if opened:
+                click.launch(address)
+
+        asyncio.run(serve(panel, out, port, announce))

@@ -1,0 +1,108 @@
+"""The page's parts: its HTML, filled with the panel, and the scripts and style sheets that it shares with the report.
+
+Guarantee: the data cannot end the element they stand in, and nothing of the record is taken for markup.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from html import escape
+from importlib.resources import files
+from string import Template
+from typing import Any, NamedTuple
+
+from ptmcad.explore.panel import Panel
+from ptmcad.mechanism import Mechanism
+from ptmcad.question.config.resolution import number_of
+from ptmcad.show.render.axes import symbol
+from ptmcad.show.report.chart import RIM_WIDTH
+from ptmcad.show.report.frame import SIDE
+from ptmcad.show.report.packing import packed
+from ptmcad.show.report.page import drawing_of, harmless
+from ptmcad.show.report.pathdata import GRID
+from ptmcad.text.numerals import shortest_text, text_of
+from ptmcad.version import __version__
+
+
+class Asset(NamedTuple):
+    """A file of a package, and its type."""
+
+    package: str
+    kind: str
+
+
+_STYLE, _SCRIPT = "text/css", "text/javascript"
+ASSETS = {
+    "page.css": Asset("ptmcad.show.report", _STYLE),
+    "explore.css": Asset("ptmcad.explore", _STYLE),
+    "theme.js": Asset("ptmcad.show.report", _SCRIPT),
+    "mechanism.js": Asset("ptmcad.show.report", _SCRIPT),
+    "ask.js": Asset("ptmcad.explore", _SCRIPT),
+    "explore.js": Asset("ptmcad.explore", _SCRIPT),
+}
+
+
+@cache
+def asset(name: str) -> str:
+    """The text of one of `ASSETS`."""
+    return (files(ASSETS[name].package) / name).read_text(encoding="utf-8")
+
+
+def page(panel: Panel, secret: str) -> str:
+    """The page as HTML text.
+
+    Parameters
+    ----------
+    secret : what the page shows the server with every question.
+    """
+    record = panel.record
+    return Template((files("ptmcad.explore") / "explore.html").read_text(encoding="utf-8")).substitute(
+        title=escape(record.title or record.name),
+        name=escape(record.name),
+        side=SIDE,
+        shrunk=f"scale({1 / GRID:g})",
+        window=escape(" and ".join(record.axes)),
+        version=escape(__version__),
+        data=harmless(_data(panel, secret)),
+    )
+
+
+def _data(panel: Panel, secret: str) -> dict[str, Any]:
+    record, model = panel.record, panel.model
+    ends = {name: (number_of(w.low), number_of(w.high)) for name, w in record.axes.items()}
+    return {
+        "secret": secret,
+        "side": SIDE,
+        "grid": GRID,
+        "rim": RIM_WIDTH * GRID,
+        "cells": packed([]),
+        "name": record.name,
+        "drawable": isinstance(model, Mechanism),
+        "told": model.tells_stability,
+        "mechanism": drawing_of(model),
+        "axes": [
+            {"name": name, "symbol": symbol(name), "low": float(low), "high": float(high)}
+            for name, (low, high) in ends.items()
+        ],
+        "sliders": [
+            {
+                "name": slider.name,
+                "symbol": symbol(slider.name),
+                "low": float(slider.low),
+                "high": float(slider.high),
+                "ends": [text_of(slider.low), text_of(slider.high)],
+                "step": shortest_text(slider.step),
+                "value": text_of(slider.value),
+                "free": slider.free,
+            }
+            for slider in panel.sliders
+        ],
+    }
+
+
+def refusal(status: int, reason: str) -> str:
+    """A page that says why there is none."""
+    return (
+        f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{status}</title>'
+        f"<h1>{status}</h1><p>{escape(reason)}</p></html>\n"
+    )
