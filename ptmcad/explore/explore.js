@@ -21,7 +21,7 @@ const view = {
 
 const sameValues = (one, other) => one !== null && DATA.sliders.every(({ name }) => one[name] === other[name]);
 const told = (values) => DATA.sliders.filter(({ free }, k) => free || k === 0 || view.values[DATA.sliders[k].name] !== DATA.sliders[k].value
-  || values[DATA.sliders[k].name] !== DATA.sliders[k].value).map(({ name, symbol }) => `${symbol} = ${values[name]}`).join(", ");
+  || values[DATA.sliders[k].name] !== DATA.sliders[k].value).map(({ name, symbol }) => `${symbol} = ${values[name]}`).join(", ") || "the slice of the record";
 
 const maps = new Latest("map", (status, data, { question, asked }) => {
   if (status !== 200) {
@@ -97,6 +97,8 @@ function tell() {
   const late = view.of === null || !sameValues(view.of, view.values);
   byId("map").classList.toggle("late", late && view.of !== null && !view.refused);
   state.className = view.refused ? "refused" : late ? "late" : "";
+  const changed = DATA.sliders.some(({ name, value }) => view.values[name] !== value); // a title may name the values at first
+  document.querySelector("h1").textContent = changed ? `${DATA.name}: ${told(view.values)}` : DATA.title;
   state.replaceChildren();
   if (view.shown) {
     const { certified, undetermined, regions, settled } = view.shown;
@@ -304,6 +306,7 @@ byId("reset").addEventListener("click", () => {
   changed(DATA.sliders[0].name, DATA.sliders[0].value);
 });
 
+byId("reset").hidden = !DATA.sliders.length;
 byId("sliders").append(...DATA.sliders.map(buildSlider));
 movePoint(view.share);
 wantMap(false);

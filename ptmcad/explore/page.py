@@ -77,6 +77,7 @@ def _data(panel: Panel, secret: str) -> dict[str, Any]:
         "rim": RIM_WIDTH * GRID,
         "cells": packed([]),
         "name": record.name,
+        "title": record.title or record.name,
         "drawable": isinstance(model, Mechanism),
         "told": model.tells_stability,
         "mechanism": drawing_of(model),

@@ -95,7 +95,7 @@ class Panel:
         if not changed:
             return self.record
         scalars = {name: Scalar(text_of(value), Place(name)) for name, value in changed.items()}
-        name = self.record.name + "".join(f"-{n}{text_of(v).replace('/', '_')}" for n, v in changed.items())
+        name = self.record.name + "".join(f"-{n}-{text_of(v).replace('/', '_')}" for n, v in changed.items())
         return replace(
             self.record,
             name=name if len(name) <= MAX_NAME else f"{self.record.name[: MAX_NAME - 9]}-explored",
@@ -142,7 +142,7 @@ class Families:
 
 
 def panel_of(record: Record, ranges: Iterable[str] = ()) -> Panel:
-    """The sliders of a record: its free parameter, then every parameter that is a number.
+    """The sliders of a record: its free parameter, then every parameter that is a number; there may be none.
 
     Parameters
     ----------
@@ -174,20 +174,23 @@ def panel_of(record: Record, ranges: Iterable[str] = ()) -> Panel:
         low, high = ends.pop(name) if name in ends else _around(record.model, name, value)
         sliders.append(Slider(name, min(low, value), max(high, value), _step(low, high), value))
     if ends:
-        names = ", ".join(slider.name for slider in sliders)
+        names = ", ".join(slider.name for slider in sliders) or "none, as no parameter is a number"
         raise ConfigError(f"{shown(next(iter(ends)), 40)} has no slider; sliders are {names}", key="--slider")
-    if not sliders:
-        raise ConfigError("no parameter of this record is a number that could be dragged: fix one, or let one be free")
     return Panel(record, tuple(sliders))
 
 
 def _numbers(record: Record, member: Slice) -> dict[str, Fraction]:
     """The parameters that are written as numbers, in the order of the model's; an alias is not beside its own."""
     texts = written_in(record, member)
+    known = record.model.parameters
+    for name in tuple(texts):  # of free lengths, which a slice has by the springs' own names alone
+        if name not in record.values and known[name].alias_of in record.values:
+            del texts[name]
+            texts[known[name].alias_of] = record.values[known[name].alias_of].text
     free = None if record.free is None else record.free[0]
     return {
         name: number_of(Scalar(texts[name], Place(name)))
-        for name in record.model.parameters
+        for name in known
         if name in texts and name != free and not names_in(texts[name])
     }
 

@@ -43,8 +43,8 @@ def map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
     seen: Shapes = shapes(result) if result.cover is not None else outline(result, None, TOLERANCE if fine else COARSE)
     slice = result.slice
     fills = [fill_of(region, slice.count) for region in result.regions]
-    drawn = dict(region_outlines(seen))
-    lines = wall_lines(seen)
+    simpler = fine or result.cover is not None
+    drawn, lines = dict(region_outlines(seen, simpler)), wall_lines(seen, simpler)
     return {
         "regions": [
             {

@@ -88,6 +88,7 @@ def test_while_a_map_is_computed_the_old_one_stays_and_the_page_says_so(view: Br
     said = view.run(f"{FIRST}.value = -250; {FIRST}.dispatchEvent(new Event('input')); [state.textContent,"
                     " strong.getAttribute('d'), byId('map').classList.contains('late')]")  # fmt: skip
     assert said == ["Shown: F = -20 (exact, 2 regions). Computing F = -25.0 …", before, True]
+    assert view.run("document.querySelector('h1').textContent") == "equal-loads: F = -25.0"
     view.until(SETTLED)
     assert view.run("state.textContent") == "Shown: F = -25.0 (exact, 2 regions). "
     assert view.run("document.querySelector('#strong').getAttribute('d')") != before

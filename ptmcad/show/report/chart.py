@@ -197,9 +197,14 @@ def _areas(seen: Shapes) -> Iterator[str]:
         yield f'<path class="cell" data-cell="{number}" d="{"".join(map(_closed, polygons))}"/>'
 
 
-def region_outlines(seen: Shapes) -> Iterator[tuple[int, str]]:
-    """Every region that is seen, and its outline as the data of a path, in steps of the grid."""
-    tolerance = (_WALLS if seen.result.cover is None else _RIMS) / SIDE
+def region_outlines(seen: Shapes, simpler: bool = True) -> Iterator[tuple[int, str]]:
+    """Every region that is seen, and its outline as the data of a path, in steps of the grid.
+
+    Parameters
+    ----------
+    simpler : whether to look for corners that can be left out, of which a coarse outline has few.
+    """
+    tolerance = (_WALLS if seen.result.cover is None else _RIMS) / SIDE if simpler else 0.0
     for number in range(len(seen.result.regions)):
         # one path for all parts: where two of them share an edge no seam is left
         outline = "".join(_closed(p) for p in seen.polygons(number, tolerance))
@@ -207,10 +212,11 @@ def region_outlines(seen: Shapes) -> Iterator[tuple[int, str]]:
             yield number, outline
 
 
-def wall_lines(seen: Shapes) -> dict[tuple[bool, int], str]:
+def wall_lines(seen: Shapes, simpler: bool = True) -> dict[tuple[bool, int], str]:
     """The walls as such data: those that do not separate regions first, then by components."""
+    tolerance = _WALLS / SIDE if simpler else 0.0
     lines: dict[tuple[bool, int], list[str]] = {}
-    for component, separates, line in seen.walls(_WALLS / SIDE):
+    for component, separates, line in seen.walls(tolerance):
         lines.setdefault((separates, component), []).append(_open(line))
     return {kind: "".join(pieces) for kind, pieces in sorted(lines.items())}
 
