@@ -163,6 +163,8 @@ def test_bad_questions_and_limits_are_told() -> None:
     free_length = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"l0": "1/5"}, "free": {"F3": [-4, 0]}}
     with pytest.raises(ConfigError, match="certified engine"):
         ptmcad.changes(free_length)
+    with pytest.raises(ConfigError, match="choose stable"):
+        ptmcad.changes(LOADS | {"count": "admissible"})
     with pytest.raises(LimitReached):
         ptmcad.changes(of("u^2 - c + a^2 + b^2", -1, 3), timeout=1e-9)
     with pytest.raises(DegenerateSliceError, match="at c = "):
