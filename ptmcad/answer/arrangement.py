@@ -68,9 +68,9 @@ def _matched(graphs: list[list[list[int]]], colours: list[Colours]) -> tuple[int
         return None
     sizes = Counter(first)
     if len(sizes) == len(first):
+        # regions of one colour have neighbours of the same colours: what keeps colours keeps neighbours
         places = {colour: n for n, colour in enumerate(second)}
-        found = tuple(places[colour] for colour in first)
-        return found if _same(graphs, found) else None
+        return tuple(places[colour] for colour in first)
     colour = min((c for c in sizes if sizes[c] > 1), key=lambda c: (sizes[c], c))
     chosen = first.index(colour)
     for other in (n for n, c in enumerate(second) if c == colour):
@@ -83,7 +83,7 @@ def _matched(graphs: list[list[list[int]]], colours: list[Colours]) -> tuple[int
 
 
 def _refined(graphs: list[list[list[int]]], colours: list[Colours]) -> tuple[list[int], list[int]]:
-    """The coarsest colours, numbered alike in both graphs, in which equal ones have neighbours of equal colours."""
+    """The coarsest colours, numbered alike, of which each has the same colours around it wherever in the two graphs."""
     now = _numbered(colours)
     while True:
         finer: list[Colours] = [
@@ -99,7 +99,3 @@ def _refined(graphs: list[list[list[int]]], colours: list[Colours]) -> tuple[lis
 def _numbered(colours: list[Colours]) -> list[list[int]]:
     numbers = {colour: n for n, colour in enumerate(sorted({*colours[0], *colours[1]}, key=repr))}
     return [[numbers[colour] for colour in of] for of in colours]
-
-
-def _same(graphs: list[list[list[int]]], found: tuple[int, ...]) -> bool:
-    return all(sorted(found[m] for m in around) == graphs[1][found[n]] for n, around in enumerate(graphs[0]))

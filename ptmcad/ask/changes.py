@@ -22,6 +22,7 @@ from ptmcad.algebra.real_roots import RealRoot, refine, simplest_between
 from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.changes import Change, Changes
 from ptmcad.ask.changewords import described
+from ptmcad.ask.classification import check_count
 from ptmcad.ask.engines import is_certified
 from ptmcad.ask.members import Common, in_common, in_space
 from ptmcad.errors import ConfigError, HypothesisError, LimitReached
@@ -96,6 +97,7 @@ def changes_of(common: Common, tolerance: Fraction = TOLERANCE, options: Options
             f"{text_of(certified[0])} is of the certified engine",
             key="changes",
         )
+    check_count(asked.member(asked.values[0]))
     members = Members(common, options)
     found = _critical(members)
     if isinstance(found, OutOfReach):

@@ -196,9 +196,8 @@ def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
     return FamilyMap(stored.name, stored.free, stored.values, members, stored.surfaces, stored.title, stored.changes)
 
 
-def each_member(path: Path, ask: Callable[[RegionMap], Any]) -> list[Any]:
-    """What is asked of every member of the family in a file, each announced by its value."""
-    family = read_family_file(path, whole=False)
+def each_member(family: FamilyMap, ask: Callable[[RegionMap], Any]) -> list[Any]:
+    """What is asked of every member of a family, each announced by its value."""
     answers = []
     for value, member in family:
         click.echo(f"{family.free.name} = {text_of(value)}")

@@ -38,7 +38,7 @@ from ptmcad.exact.stages import (
 )
 from ptmcad.exact.variety import Known
 from ptmcad.question.domain import prove_slice
-from ptmcad.question.slice import Slice
+from ptmcad.question.slice import Slice, without_free_lengths
 
 _NO_WALL = Wall(0, 0)
 """Of points on the window's edge, which are none of a stack's."""
@@ -82,9 +82,12 @@ def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing,
 
     Raises
     ------
+    ConfigError
+        When springs have a free length.
     HypothesisError
         When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
     """
+    without_free_lengths(slice.model, slice.parameters, "an arrangement is")
     prove_slice(slice)
     problem = problem_of(slice)._replace(known=known)
     variety = variety_of(problem, base=base)

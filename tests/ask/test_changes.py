@@ -54,6 +54,10 @@ ASTROID = {
                      "2 regions of 0 solutions appear", id="two ovals of Cassini's appear, and join at 1/16"),
         pytest.param(of(["u^2 - c^2 + (a - 1/3)^2 + b^2", "v^2 - c^2 + (a + 1/3)^2 + b^2"], "1/10", "3/5"),
                      ["0.33333333"], "a region of 4 solutions appears", id="two discs of radius c touch at 1/3"),
+        pytest.param(of(["u^2 - b + a + c", "v^2 - 1/4 + a^2 + b^2"], 0, 1), ["0.70710678"],
+                     "a region of 4 solutions vanishes", id="a line leaves a circle: two surfaces touch"),
+        pytest.param(of("(a - c)*u^3 + u - b", -2, 2), ["-1", "-0.85185185", "1", "1.1481481"],
+                     "a region of 3 solutions appears", id="two roots leave to infinity where a = c"),
         pytest.param(ASTROID, ["0.5", "1.4142136"], "the region of 2 solutions splits into 4",
                      id="the pendulum's astroid: its cusps reach the sides, its arcs the corners"),
         pytest.param(of("u^2 - c*b + a", -2, 2), ["-1", "1"], "the region of 2 solutions leaves a = 1",
@@ -159,6 +163,8 @@ def test_bad_questions_and_limits_are_told() -> None:
     free_length = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"l0": "1/5"}, "free": {"F3": [-4, 0]}}
     with pytest.raises(ConfigError, match="certified engine"):
         ptmcad.changes(free_length)
+    with pytest.raises(ConfigError, match="choose stable"):
+        ptmcad.changes(LOADS | {"count": "admissible"})
     with pytest.raises(LimitReached):
         ptmcad.changes(of("u^2 - c + a^2 + b^2", -1, 3), timeout=1e-9)
     with pytest.raises(DegenerateSliceError, match="at c = "):

@@ -155,6 +155,11 @@ def test_changes_are_told_with_their_kind(
     assert "--changes has no effect here" in capsys.readouterr().err
 
 
+def test_it_is_said_that_changes_are_not_verified(disc: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["verify", str(disc / "disc.json")]) == 0
+    assert "not checked  changes" in capsys.readouterr().out
+
+
 def test_other_commands_ask_for_a_member(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["locate", str(folder / "loads.json"), "--at", "rho=1,L2=1"]) == 2
     assert "give the file of one of its members" in capsys.readouterr().err

@@ -11,6 +11,7 @@ from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import Merge
+from ptmcad.errors import ConfigError
 from ptmcad.exact.arrangement import picture_of
 
 SLICES = ("fig2", "fig4", "fig5-caption", "rods", "systems/kuramoto", "systems/cubic-and-quadratic")
@@ -57,6 +58,11 @@ def test_sides_and_points_are_where_the_map_has_them(name: str, base: int) -> No
                 if not seen or seen[-1] != region:
                     seen.append(region)
         assert _is_subsequence(seen, side)  # short stretches may lie between the points
+
+
+def test_free_lengths_are_the_other_engine_s() -> None:
+    with pytest.raises(ConfigError, match="an arrangement is"):
+        picture_of(ptmcad.load("configs/free02.yaml"))
 
 
 def _is_subsequence(short: list[int], long: tuple[int, ...]) -> bool:
