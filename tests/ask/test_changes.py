@@ -81,6 +81,9 @@ def test_what_is_the_same_on_both_sides_is_told_apart() -> None:
     assert [number.text() for number in found.others] == ["0"]  # over which the surface vanishes identically
     assert len(found.between) == len(found.arrangements) == 3
     assert found.reason.endswith("but at 3 values")
+    assert repr(found) == "<Changes of c in [-2, 2]: 2, complete>"
+    assert "the arrangement is the same on both sides: 0" in found.table()
+    assert "changes of the arrangement" in found._repr_html_()
 
 
 def test_a_rational_value_is_looked_at_itself() -> None:
