@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from ptmcad.answer.boundaries import Boundary, Grid
+    from ptmcad.answer.changes import Changes
     from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.field import Field
@@ -355,6 +356,19 @@ def _family_repr_html(self: FamilyMap) -> str:
     return text_html(self.table())
 
 
+def _changes_table(self: Changes) -> str:
+    """A line for each change, for the terminal: its value, how it is known, and what changes."""
+    from ptmcad.show.changestable import changes_table
+
+    return changes_table(self)
+
+
+def _changes_repr_html(self: Changes) -> str:
+    from ptmcad.show.notebook import text_html
+
+    return text_html(self.table())
+
+
 def _variety_text(self: SliceVariety, format: str = "text") -> str:
     """The variety in one of the formats of `ptmcad.show.export.FORMATS`.
 
@@ -467,6 +481,7 @@ METHODS["RegionMap"] = {
     "explore": _map_explore,
 }
 METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "_repr_html_": _family_repr_html}
+METHODS["Changes"] = {"table": _changes_table, "_repr_html_": _changes_repr_html}
 METHODS["SliceVariety"] = {"text": _variety_text, "_repr_html_": _variety_repr_html}
 METHODS["Poses"] = {
     "table": _poses_table,

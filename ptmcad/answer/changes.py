@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
+from ptmcad.answer import with_methods
 from ptmcad.answer.arrangement import Arrangement
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
@@ -34,7 +36,8 @@ class Change:
         return isinstance(self.value, AlgebraicNumber)
 
 
-@dataclass(frozen=True, slots=True)
+@with_methods
+@dataclass(frozen=True, slots=True, repr=False)
 class Changes:
     """All changes that were found in the open range of the free parameter.
 
@@ -65,3 +68,13 @@ class Changes:
 
     def __len__(self) -> int:
         return len(self.changes)
+
+    def __repr__(self) -> str:
+        known = "complete" if self.complete else "not proved complete"
+        return f"<Changes of {self.free.name} in [{self.free.low}, {self.free.high}]: {len(self)}, {known}>"
+
+    if TYPE_CHECKING:  # `ptmcad.methods` has it
+
+        def table(self) -> str: ...
+
+        def _repr_html_(self) -> str: ...

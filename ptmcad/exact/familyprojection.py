@@ -32,9 +32,9 @@ from ptmcad.exact.cad.curves import Curve
 from ptmcad.exact.cad.projection import predicted_cost, project
 
 MAX_WORK = 5 * 10**10
-"""Of all discriminants and resultants in three variables together, by `space.predicted_work`; about a minute."""
-MAX_COST = 10**10
-"""Of the second projection, by `projection.predicted_cost`; it adapts the first one's discriminants."""
+"""Of all discriminants and resultants in three variables together, by `space.predicted_work`; a minute or two."""
+MAX_COST = 5 * 10**9
+"""Of the second projection, by `projection.predicted_cost`; some minutes."""
 
 
 class OutOfReach(NamedTuple):

@@ -1,14 +1,17 @@
 """The changes of a family as text for the terminal: a line for each, with what is known of its value.
 
-Guarantee: the digits of an exact value are right; of an enclosure both ends are shown.
+Guarantee: the digits of an exact value are right; the ends of an enclosure are rounded outwards.
 """
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from ptmcad.answer.changes import Change, Changes
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.numerals import approximate_text, shortest_text
+from ptmcad.text.numerals import decimal, shortest_text
 
+_DIGITS = 10
 _OTHERS = 8
 """Values at which nothing changes that are listed; more are counted."""
 
@@ -41,7 +44,12 @@ def value_text(change: Change) -> str:
     """The value with ten digits, or the two ends of its enclosure."""
     if isinstance(change.value, AlgebraicNumber):
         return change.value.text()
-    return f"{approximate_text(change.value.low)} to {approximate_text(change.value.high)}"
+    return f"{_rounded(change.value.low, up=False)} to {_rounded(change.value.high, up=True)}"
+
+
+def _rounded(value: Fraction, up: bool) -> str:
+    """An end of an enclosure, rounded outwards."""
+    return f"-{decimal(-value, not up, _DIGITS)}" if value < 0 else decimal(value, up, _DIGITS)
 
 
 def _kind(change: Change) -> str:

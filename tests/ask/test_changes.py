@@ -81,6 +81,9 @@ def test_what_is_the_same_on_both_sides_is_told_apart() -> None:
     assert [number.text() for number in found.others] == ["0"]  # over which the surface vanishes identically
     assert len(found.between) == len(found.arrangements) == 3
     assert found.reason.endswith("but at 3 values")
+    assert repr(found) == "<Changes of c in [-2, 2]: 2, complete>"
+    assert "the arrangement is the same on both sides: 0" in found.table()
+    assert "changes of the arrangement" in found._repr_html_()
 
 
 def test_a_rational_value_is_looked_at_itself() -> None:
@@ -150,11 +153,13 @@ def test_random_quadrics(quadric: tuple[int, ...], plane: tuple[int, ...]) -> No
 
 def test_where_elimination_is_out_of_reach_that_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(asking, "critical_values", lambda *_: OutOfReach("that would take too long"))
-    found = ptmcad.changes(of("u^2 - c + a^2 + b^2", -1, 3))
+    found = ptmcad.changes(of("u^2 - c - 1/3 + a^2 + b^2", -1, 3))
     assert not found.complete
     assert found.reason.startswith("found by sampling")
     assert found.reason.endswith("not proved complete: that would take too long")
     assert all(not change.is_exact and change.value.high - change.value.low <= 4e-6 for change in found)
+    low, _, high = found.table().splitlines()[1].split("enclosed")[0].partition(" to ")
+    assert Fraction(low.strip()) <= found.changes[0].value.low < found.changes[0].value.high <= Fraction(high.strip())
 
 
 def test_bad_questions_and_limits_are_told() -> None:
