@@ -37,6 +37,11 @@ $(VENV)/.installed: pyproject.toml scripts/setup-venv
 	$(BIN)/ptmcad warm-up
 	@touch $@
 
+# A real cluster of Dask's is for one slow test: not worth its fifteen packages in every environment.
+$(VENV)/.installed-slow: $(VENV)/.installed-test
+	$(PIP) --editable '.[test,distributed]'
+	@touch $@
+
 $(VENV)/.installed-test: $(VENV)/.installed
 	$(PIP) --editable '.[test]'
 	@touch $@
@@ -75,7 +80,7 @@ test: $(VENV)/.installed-test
 	$(BIN)/python -m pytest --numprocesses $$(($(JOBS) + 1)) --dist worksteal
 
 # The slow tests, and those of the fast ones that draw examples, with all of their examples.
-test-slow: $(VENV)/.installed-test
+test-slow: $(VENV)/.installed-slow
 	$(BIN)/python -m pytest --numprocesses $(JOBS) -m 'slow or hypothesis' --hypothesis-profile thorough
 
 test-oldest: $(OLDEST)/.installed

@@ -15,10 +15,13 @@ TYPE_CHECKING = False  # type checkers take it for true; the module typing would
 if TYPE_CHECKING:
     from typing import Any
 
+    from ptmcad.answer.changes import Change, Changes
     from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.poses import Pose, Poses
     from ptmcad.answer.regionmap import RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
+    from ptmcad.answer.sweep import Sweep
+    from ptmcad.ask.changes import changes
     from ptmcad.ask.classification import classify
     from ptmcad.ask.families import family
     from ptmcad.ask.ranges import intervals, operation_widths, pose_paths
@@ -29,6 +32,7 @@ if TYPE_CHECKING:
     from ptmcad.question.config import make_mechanism as Mechanism
     from ptmcad.question.config import make_system as System
     from ptmcad.question.slice import Count, Point, Slice
+    from ptmcad.sweeping.run import sweep
     from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
     from ptmcad.verification import VerifyReport, verify
 
@@ -43,6 +47,9 @@ _HOMES = {
     "open_cad": "ask.stepwise",
     "AlgebraicNumber": "text.enclosure",
     "Enclosure": "text.enclosure",
+    "changes": "ask.changes",
+    "Change": "answer.changes",
+    "Changes": "answer.changes",
     "classify": "ask.classification",
     "family": "ask.families",
     "FamilyMap": "answer.family",
@@ -50,6 +57,8 @@ _HOMES = {
     "Pose": "answer.poses",
     "Poses": "answer.poses",
     "solve": "ask.solving",
+    "Sweep": "answer.sweep",
+    "sweep": "sweeping.run",
     "intervals": "ask.ranges",
     "operation_widths": "ask.ranges",
     "pose_paths": "ask.ranges",
@@ -64,6 +73,8 @@ _HOMES = {
 
 __all__ = [
     "AlgebraicNumber",
+    "Change",
+    "Changes",
     "Count",
     "Enclosure",
     "FamilyMap",
@@ -74,9 +85,11 @@ __all__ = [
     "RegionMap",
     "Slice",
     "SliceVariety",
+    "Sweep",
     "System",
     "VerifyReport",
     "__version__",
+    "changes",
     "classify",
     "counts_at",
     "discriminant_variety",
@@ -90,6 +103,7 @@ __all__ = [
     "slice_from_options",
     "slice_variety",
     "solve",
+    "sweep",
     "verify",
 ]
 

@@ -9,6 +9,7 @@ from ptmcad.answer import METHODS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import Any
 
     from pandas import DataFrame
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from ptmcad.answer.poses import Poses
     from ptmcad.answer.regionmap import Location, RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
+    from ptmcad.answer.sweep import Member, Sweep
     from ptmcad.show.widget import Explorer
 
 
@@ -393,6 +395,60 @@ def _poses_from_json(_cls: type[Poses], text: str) -> Poses:
     return read_poses(text)
 
 
+def _sweep_iter(self: Sweep) -> Iterator[Member]:
+    from ptmcad.sweeping.index import members
+
+    return members(self)
+
+
+def _sweep_getitem(self: Sweep, number: int) -> Member:
+    from ptmcad.sweeping.index import members
+
+    return next(members(self, [number]))
+
+
+def _sweep_table(self: Sweep) -> str:
+    """One screen: what has become of the members, and some of them."""
+    from ptmcad.show.sweeps.table import table
+
+    return table(self, self.__iter__)
+
+
+def _sweep_result(self: Sweep, number: int) -> RegionMap:
+    """The region map of a member.
+
+    Raises
+    ------
+    ConfigError
+        When there is none.
+    """
+    from ptmcad.sweeping.index import member_map
+
+    return member_map(self, self[number])
+
+
+def _sweep_to_csv(self: Sweep) -> str:
+    """All members as CSV, in their order: the same text however the sweep was computed."""
+    from ptmcad.show.sweeps.table import csv_text
+
+    return csv_text(self, self.__iter__)
+
+
+def _sweep_to_dataframe(self: Sweep) -> DataFrame:
+    """A row for each member as a pandas data frame, with the extra ``data``.
+
+    Raises
+    ------
+    ConfigError
+        When pandas is not installed.
+    """
+    from ptmcad.show.data import pandas_frame
+    from ptmcad.show.sweeps.table import columns, counts_in, frame_rows
+
+    names = [*columns(self, counts_in(self)), "seconds", "attempts"]
+    return pandas_frame(frame_rows(self, self.__iter__), names, ("same_as", "cells", "regions", "attempts"))
+
+
 METHODS["RegionMap"] = {
     "locate": _locate,
     "to_json": _map_to_json,
@@ -417,5 +473,13 @@ METHODS["Poses"] = {
     "to_json": _poses_to_json,
     "from_json": classmethod(_poses_from_json),
     "_repr_html_": _poses_repr_html,
+}
+METHODS["Sweep"] = {
+    "__iter__": _sweep_iter,
+    "__getitem__": _sweep_getitem,
+    "table": _sweep_table,
+    "result": _sweep_result,
+    "to_csv": _sweep_to_csv,
+    "to_dataframe": _sweep_to_dataframe,
 }
 METHODS["Motion"] = {"save": _motion_save, "_repr_html_": _motion_repr_html}

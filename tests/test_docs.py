@@ -150,8 +150,8 @@ def test_every_key_is_in_a_table(path: Path, schema_tables: object) -> None:
 
 
 def test_a_keyword_that_no_table_shows_is_an_error(schema_tables: object) -> None:
-    with pytest.raises(ValueError, match="dependentRequired"):
-        schema_tables.page("Title", "x", {"properties": {"a": {"dependentRequired": {}}}})  # type: ignore[attr-defined]
+    with pytest.raises(ValueError, match="dependentSchemas"):
+        schema_tables.page("Title", "x", {"properties": {"a": {"dependentSchemas": {}}}})  # type: ignore[attr-defined]
 
 
 # -------------------------------------------------------------------------------------------------------- the build

@@ -33,7 +33,7 @@ def discriminant(p: Coefficients, check: Check = nothing) -> fmpz_poly:
     n = len(p) - 1
     if n < 2:
         return fmpz_poly([1])
-    bound = min(floor((2 * n - 2) * _offset(p, a) - a * n * (n - 1)) for a in _slopes(p))
+    bound = discriminant_degree(p)
 
     def at(k: int) -> fmpz:
         value = fmpz_poly([c(k) for c in p])
@@ -52,7 +52,7 @@ def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_
     n, m = len(p) - 1, len(q) - 1
     if n == 0 or m == 0:
         return (p[0] ** m) if n == 0 else (q[0] ** n)
-    bound = min(floor(m * _offset(p, a) + n * _offset(q, a) - a * n * m) for a in _slopes(p) | _slopes(q))
+    bound = resultant_degree(p, q)
 
     def at(k: int) -> fmpz:
         left, right = fmpz_poly([c(k) for c in p]), fmpz_poly([c(k) for c in q])
@@ -67,6 +67,18 @@ def resultant(p: Coefficients, q: Coefficients, check: Check = nothing) -> fmpz_
         return value
 
     return interpolate(at, bound, check)
+
+
+def discriminant_degree(p: Coefficients) -> int:
+    """A bound for the degree of the discriminant, from the degrees of the coefficients; negative where that is zero."""
+    n = len(p) - 1
+    return min(floor((2 * n - 2) * _offset(p, a) - a * n * (n - 1)) for a in _slopes(p)) if n > 1 else 0
+
+
+def resultant_degree(p: Coefficients, q: Coefficients) -> int:
+    """A bound for the degree of the resultant, from the degrees of the coefficients alone."""
+    n, m = len(p) - 1, len(q) - 1
+    return min(floor(m * _offset(p, a) + n * _offset(q, a) - a * n * m) for a in _slopes(p) | _slopes(q))
 
 
 def balanced(polynomials: Sequence[Coefficients]) -> tuple[list[tuple[fmpz_poly, ...]], int]:

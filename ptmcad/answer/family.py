@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ptmcad.answer import with_methods
+from ptmcad.answer.changes import Changes
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.slice import Axis
 from ptmcad.text.terms import terms_text
@@ -35,6 +36,7 @@ class FamilyMap:
     members : the map at each of the values.
     surfaces : irreducible polynomials of the surfaces on which solutions meet, in the axes and the free parameter;
         empty where algebra does not compute the family in common, as with free lengths.
+    changes : where between the ends of the range the arrangement of the regions changes; None when not asked for.
     """
 
     name: str
@@ -43,6 +45,7 @@ class FamilyMap:
     members: tuple[RegionMap, ...]
     surfaces: tuple[SpaceTerms, ...] = ()
     title: str = ""
+    changes: Changes | None = None
 
     @property
     def axes(self) -> tuple[Axis, Axis]:

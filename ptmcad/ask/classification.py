@@ -129,7 +129,7 @@ def region_map(slice: Slice, options: Options, known: Known | None = None) -> Re
     ConfigError, HypothesisError, LimitReached
         As `classify` does.
     """
-    _check_count(slice)
+    check_count(slice)
     certified = is_certified(slice, options.engine)
     if not options.areas:
         _check_no_areas(options)
@@ -267,7 +267,7 @@ def check_resumable(slice: Slice, earlier: RegionMap) -> None:
         )
 
 
-def _check_count(slice: Slice) -> None:
+def check_count(slice: Slice) -> None:
     """Without free lengths every spring that is not of length zero is longer than its own: stable says it all."""
     if slice.count is Count.ADMISSIBLE and not slice.has_free_lengths:
         raise ConfigError(

@@ -1,52 +1,28 @@
-"""The region maps of a family's members, from the discriminant variety that they have in common.
+"""The region maps of a family's members, and where they change.
 
-Guarantee: a member's map is that of its slice alone, timings apart. What cannot be computed in common, is computed for
-the member alone.
+Guarantee: that of `ptmcad.ask.members`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from fractions import Fraction
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, Literal
 
-from ptmcad.answer.family import FamilyMap, SpaceTerms
-from ptmcad.answer.regionmap import RegionMap
-from ptmcad.ask.classification import region_map
-from ptmcad.ask.engines import is_certified
-from ptmcad.errors import ConfigError, DegenerateSliceError, ExpressionError, InfiniteSolutionsError
-from ptmcad.options import DEFAULTS, Options, Progress
+from ptmcad.answer.family import FamilyMap
+from ptmcad.ask.members import in_common, members_of
+from ptmcad.errors import ConfigError
+from ptmcad.options import Options, Progress
 from ptmcad.question.config import Family, family_from
 from ptmcad.text.parsing import number_for
-
-if TYPE_CHECKING:
-    from ptmcad.exact.family import FamilyVariety
-
-
-class Common(NamedTuple):
-    """A family with what its members have in common; nothing where there is no variety of its own."""
-
-    family: Family
-    variety: FamilyVariety | None
-
-    @property
-    def surfaces(self) -> tuple[SpaceTerms, ...]:
-        """The polynomials of the surfaces on which solutions meet."""
-        if self.variety is None:
-            return ()
-        return tuple(
-            tuple((tuple(map(int, powers)), int(c)) for powers, c in p.terms())  # type: ignore[misc]
-            for p in self.variety.critical
-        )
 
 
 def family(
     question: str | Path | Mapping[str, Any] | Family,
-    values: Iterable[Any] | None = None,
+    values: Iterable[Any] | Literal["between"] | None = None,
     *,
+    changes: bool = False,
     engine: str = "auto",
     areas: bool = True,
     jobs: int | None = None,
@@ -57,7 +33,9 @@ def family(
     Parameters
     ----------
     question : the file of a record with ``free``, or a mapping like one.
-    values : of the free parameter; those that the record states when None.
+    values : of the free parameter; those that the record states when None. ``"between"`` stands for one between each
+        two neighbouring changes.
+    changes : whether to find where the arrangement of the regions changes, too; see `ptmcad.changes`.
     engine, areas, jobs, progress : as of `ptmcad.classify`, for each member.
 
     Raises
@@ -74,55 +52,20 @@ def family(
     [(-20, 2), (-10, 2)]
     """
     asked = family_from(question)
-    if values is not None:
+    if values is not None and values != "between":
         chosen = sorted({number_for(asked.free.name, value) for value in values})
         if not chosen:
             raise ConfigError("give at least one value of the free parameter", key="values")
         asked = replace(asked, values=tuple(chosen))
     options = Options(engine=engine, areas=areas, jobs=jobs, progress=progress)
     common = in_common(asked, options)
+    found = None
+    if changes or values == "between":
+        from ptmcad.ask.changes import changes_of  # which loads the exact engine
+
+        found = changes_of(common, options=options)
+    if found is not None and values == "between":
+        asked = replace(asked, values=found.between)
+        common = common._replace(family=asked)
     members = tuple(result for _, result in members_of(common, options))
-    return FamilyMap(asked.name, asked.free, asked.values, members, common.surfaces, asked.record.title)
-
-
-def members_of(common: Common, options: Options = DEFAULTS) -> Iterator[tuple[Fraction, RegionMap]]:
-    """The maps at the family's values, one by one."""
-    for value in common.family.values:
-        yield value, member_map(common, value, options)
-
-
-def member_map(common: Common, value: Fraction, options: Options = DEFAULTS) -> RegionMap:
-    """The region map at a value of the free parameter.
-
-    Raises
-    ------
-    ConfigError, HypothesisError, LimitReached
-        As `ptmcad.classify` does.
-    """
-    slice = common.family.member(value)
-    if common.variety is None or is_certified(slice, options.engine):
-        return region_map(slice, options)
-    from ptmcad.algebra.polynomials import from_fraction
-
-    return region_map(slice, options, partial(common.variety.at, from_fraction(value)))
-
-
-def in_common(asked: Family, options: Options = DEFAULTS) -> Common:
-    """What the members of a family have in common, computed once.
-
-    Nothing, where all members are certified, where the parameters are too large to be expanded in three variables, or
-    where a generic member is exceptional; then each says so itself.
-    """
-    if all(is_certified(asked.member(value), options.engine) for value in asked.values):
-        return Common(asked, None)
-    from ptmcad.exact.family import family_variety
-    from ptmcad.exact.models import system_from
-    from ptmcad.exact.models.space import space_parameters
-
-    system = system_from(asked.model)
-    x, y = (a.name for a in asked.axes)
-    try:
-        parameters = space_parameters(system.ring.parameters, asked.text, (x, y, asked.free.name))
-        return Common(asked, family_variety(system, parameters))
-    except (ExpressionError, DegenerateSliceError, InfiniteSolutionsError):
-        return Common(asked, None)
+    return FamilyMap(asked.name, asked.free, asked.values, members, common.surfaces, asked.record.title, found)

@@ -42,6 +42,7 @@ COMMANDS = {
     "range": "ptmcad.cli.range",
     "report": "ptmcad.cli.report",
     "stress": "ptmcad.cli.stress",
+    "sweep": "ptmcad.cli.sweep",
     "variety": "ptmcad.cli.variety",
     "verify": "ptmcad.cli.verify",
     "warm-up": "ptmcad.cli.warm_up",

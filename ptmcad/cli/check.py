@@ -9,7 +9,7 @@ import click
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.values import files
 from ptmcad.errors import MAX_FAULTS, ConfigError
-from ptmcad.question.config import Family, question_from_options
+from ptmcad.question.config import Family, asks_for_sweep, load_sweep, question_from_options
 
 
 @click.command("check")
@@ -19,14 +19,16 @@ def command(*, record: Path, limits: Limits) -> int:
     """Say everything that is wrong with a problem record, or what it asks.
 
     Prints each fault on a line of its own, with file, line and key, and ends with exit status 2. Of a record without
-    one, it prints what is asked, how many complex solutions there are, and roughly what the map will cost.
+    one, it prints what is asked, how many complex solutions there are, and roughly what the map will cost. Of a
+    sweep it prints that of the first member, how many there are, and how long they take, by one of them.
 
     \b
     Example:
         ptmcad check configs/fig4.yaml
     """
     try:
-        asked = question_from_options(record)
+        sweeping = load_sweep(record) if asks_for_sweep(record) else None
+        asked = question_from_options(record) if sweeping is None else sweeping.slice(0)
     except ConfigError as error:
         for fault in error.faults:
             click.echo(f"error: {fault}", err=True)
@@ -37,9 +39,15 @@ def command(*, record: Path, limits: Limits) -> int:
         with clock_stopped(limits.timeout):  # the time that the import takes is not the computation's
             from ptmcad.ask.checking import check, check_text
         slice = asked.member(asked.values[len(asked.values) // 2]) if isinstance(asked, Family) else asked
-        for line in check_text(check(slice)):
+        found = check(slice)
+        for line in check_text(found):
             click.echo(line)
         if isinstance(asked, Family):
             click.echo(f"{'family':<12}of {len(asked.values)} such slices, {asked.free.name} from {asked.free.low} to "
                        f"{asked.free.high}; above is the one in the middle")  # fmt: skip
+        if sweeping is not None:
+            from ptmcad.sweeping.estimate import sweep_text
+
+            for line in sweep_text(sweeping, found):
+                click.echo(line)
     return 0

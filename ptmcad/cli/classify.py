@@ -249,7 +249,9 @@ def _resumed(slice: Slice, path: Path) -> Any:
     return earlier
 
 
-def _classify_family(family: Family, options: Options, output: Output, limits: Limits, resume: Path | None) -> None:
+def _classify_family(
+    family: Family, third: Third, options: Options, output: Output, limits: Limits, resume: Path | None
+) -> None:
     """Classify and draw the members of a family."""
     report_idle((
         Idle("resume", resume is not None, "the members of a family are classified anew"),
@@ -257,12 +259,14 @@ def _classify_family(family: Family, options: Options, output: Output, limits: L
         *idle_drawing(output.formats),
     ))  # fmt: skip
     with held(limits):
-        result = family_to_files(family, options, Wanted(output.out, output.formats, output.no_timings, output.drawing))
+        further = (third.changes, third.between)
+        wanted = Wanted(output.out, output.formats, output.no_timings, output.drawing, *further)
+        result = family_to_files(family, options, wanted)
     click.echo(result.table())
     own = [f"{family.name}{end}.{kind}" for kind in output.formats for end in ("", SOLID) if kind in PICTURES]
     own += [f"{family.name}.json"] if "json" in output.formats else []
     report_written(output.out, own)
-    files = sum(len(names_of("", (kind,))) for kind in output.formats if kind not in PICTURES) * len(family.values)
+    files = sum(len(names_of("", (kind,))) for kind in output.formats if kind not in PICTURES) * len(result.values)
     if files:
         click.echo(f"          and {files} files of the members, {result.members[0].slice.name} and so on")
 
@@ -270,8 +274,14 @@ def _classify_family(family: Family, options: Options, output: Output, limits: L
 @click.command("classify")
 @slice_options
 @click.option("--free", metavar="NAME=LO:HI", help="A third parameter: the map of each member of a family.")
-@click.option("--members", metavar="VALUE,..|N",
-              help="Values of the free parameter, or how many.  [default: the record's, or 9]")  # fmt: skip
+@click.option("--members", metavar="VALUE,..|N|between",
+              help="Values of the free parameter, how many, or one between each two neighbouring changes.  "
+                   "[default: the record's, or 9]")  # fmt: skip
+@click.option(
+    "--changes",
+    is_flag=True,
+    help="Find the values of the free parameter at which regions appear, split, join, reach a side or vanish.",
+)
 @click.option("--count", type=click.Choice([c.value for c in Count]), help="What distinguishes two regions.")
 @click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
 @out_option
@@ -290,7 +300,8 @@ def _classify_family(family: Family, options: Options, output: Output, limits: L
     "--tolerance",
     callback=share_of,
     metavar="EPS",
-    help="Stop when this share of the window is undetermined (certified engine).",
+    help="Stop when this share of the window is undetermined (certified engine); with --changes, the width of "
+    "enclosures as a share of the range.",
 )
 @file_option("--resume", ".json", "RESULT", "Go on from a stored certified map of the same slice.")
 @click.option(
@@ -312,7 +323,8 @@ def command(
 
     With a third parameter (--free, or `free:` in the record) there is a map for each of its --members, computed from
     what they have in common: NAME.png shows them side by side, NAME-3d.png one above the other, and NAME.json names the
-    files of the members' own maps.
+    files of the members' own maps. --changes says at which values the arrangement of the regions changes: exactly and
+    with proof where algebra can eliminate, else enclosed.
 
     Springs with a free length (--set l0=1/5) are the certified engine's: it leaves a part of the window undetermined,
     which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the best map so far, from the first level of the
@@ -325,14 +337,19 @@ def command(
         ptmcad classify --slice rho,L2 --range rho=0:2 --range L2=0:2 --set F3=-10 --set F4=-10 --out fig4
         ptmcad classify --slice rho,F --range rho=0:2 --range F=-10:0 --set F3=F --set F4=F --format json
         ptmcad classify --slice rho,L2 --set F3=F --set F4=F --free F=-40:0 --members -40,-20,-10,-1
+        ptmcad classify --slice rho,L2 --set F3=F --set F4=2*F --free F=-40:0 --changes --members between
         ptmcad classify --slice rho,L2 --range rho=1/20:2 --range L2=0:2 --set l0=1/5 --set F3=-10 --set F4=-10
     """
     slice = asked.question(count, third)
     options = replace(options, timeout=limits.timeout)
     if isinstance(slice, Family):
-        _classify_family(slice, options, output, limits, resume)
+        _classify_family(slice, third, options, output, limits, resume)
         return
-    report_idle((*_idle(slice, options), *idle_drawing(output.formats)))
+    report_idle((
+        *_idle(slice, options),
+        Idle("changes", third.changes, "no parameter is free: add --free NAME=LO:HI"),
+        *idle_drawing(output.formats),
+    ))  # fmt: skip
     spent = 0.0
     with held(limits):
         if resume is not None:

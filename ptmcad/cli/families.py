@@ -10,10 +10,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from ptmcad.answer.changes import Changes
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, PICTURES, Drawing, names_of
@@ -28,17 +29,28 @@ from ptmcad.show.document.family import FORMAT, read_family, write_family
 from ptmcad.text.numerals import text_of
 from ptmcad.text.textfile import read_text
 
+if TYPE_CHECKING:
+    from ptmcad.ask.members import Common
+
 SOLID = "-3d"
 """Behind a family's name, in that of its picture in three dimensions."""
 
 
 class Wanted(NamedTuple):
-    """What is to be written of a family, and where."""
+    """What is to be written of a family, and where.
+
+    Attributes
+    ----------
+    changes : whether to find where the arrangement of the regions changes.
+    between : whether the members are those between the changes.
+    """
 
     out: Path
     formats: tuple[str, ...]
     no_timings: bool
     drawing: Drawing
+    changes: bool = False
+    between: bool = False
 
     @property
     def pictures(self) -> tuple[str, ...]:
@@ -64,11 +76,15 @@ def family_to_files(family: Family, options: Options, wanted: Wanted) -> FamilyM
     check_writable(wanted.out, names)
     members: list[RegionMap] = []
     with ProgressBar() as progress:
-        from ptmcad.ask.families import in_common, member_map
+        from ptmcad.ask.members import in_common, member_map
 
         progress("variety of the family", 0, 1)
         common = in_common(family, options)
         ends = None if options.timeout is None else time.monotonic() + options.timeout
+        changes = _changes(common, replace(options, progress=progress), wanted)
+        if changes is not None and wanted.between:
+            family = replace(family, values=changes.between)
+            common = common._replace(family=family)
         for number, value in enumerate(family.values):
             progress("members", number, len(family.values))
             left = None if ends is None else max(ends - time.monotonic(), 0.01)
@@ -81,9 +97,19 @@ def family_to_files(family: Family, options: Options, wanted: Wanted) -> FamilyM
                 raise _at(error, f"{family.free.name} = {text_of(value)}") from error
             _write_member(found, wanted)
             members.append(found)
-    result = FamilyMap(family.name, family.free, family.values, tuple(members), common.surfaces, family.record.title)
+    title = family.record.title
+    result = FamilyMap(family.name, family.free, family.values, tuple(members), common.surfaces, title, changes)
     write_files(wanted.out, _writers(result, family.name, wanted))
     return result
+
+
+def _changes(common: Common, options: Options, wanted: Wanted) -> Changes | None:
+    """Where the arrangement changes, if that is asked for."""
+    if not (wanted.changes or wanted.between):
+        return None
+    from ptmcad.ask.changes import TOLERANCE, changes_of
+
+    return changes_of(common, options.tolerance or TOLERANCE, options)
 
 
 def _at(error: PtmcadError, place: str) -> PtmcadError:
@@ -167,12 +193,11 @@ def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
     members = tuple(read_result(path.parent / file, whole=whole) for file in stored.files)
     if any(member.slice.axes != members[0].slice.axes for member in members):
         raise ConfigError("its members are not of one family: their axes differ", file=str(path))
-    return FamilyMap(stored.name, stored.free, stored.values, members, stored.surfaces, stored.title)
+    return FamilyMap(stored.name, stored.free, stored.values, members, stored.surfaces, stored.title, stored.changes)
 
 
-def each_member(path: Path, ask: Callable[[RegionMap], Any]) -> list[Any]:
-    """What is asked of every member of the family in a file, each announced by its value."""
-    family = read_family_file(path, whole=False)
+def each_member(family: FamilyMap, ask: Callable[[RegionMap], Any]) -> list[Any]:
+    """What is asked of every member of a family, each announced by its value."""
     answers = []
     for value, member in family:
         click.echo(f"{family.free.name} = {text_of(value)}")

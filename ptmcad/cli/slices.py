@@ -20,11 +20,21 @@ from ptmcad.question.slice import Slice
 F = TypeVar("F", bound=Callable[..., Any])
 
 
+BETWEEN = "between"
+"""In place of the members' values."""
+
+
 class Third(NamedTuple):
-    """The free parameter of a family, and its members, as they were typed."""
+    """The free parameter of a family, its members, and whether changes are wanted, as they were typed."""
 
     free: str | None
     members: str | None
+    changes: bool
+
+    @property
+    def between(self) -> bool:
+        """Whether a member is wanted between each two neighbouring changes."""
+        return self.members == BETWEEN
 
 
 class Asked(NamedTuple):
@@ -64,8 +74,9 @@ class Asked(NamedTuple):
         ConfigError
             For anything wrong with the record or the options.
         """
+        members = None if third.between else third.members
         return question_from_options(
-            self.config, self.axes, self.sets, self.ranges, count, self.mechanism, third.free, third.members
+            self.config, self.axes, self.sets, self.ranges, count, self.mechanism, third.free, members
         )
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cli.families import each_member, is_family
+from ptmcad.cli.families import each_member, is_family, read_family_file
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
@@ -25,9 +25,9 @@ from ptmcad.cli.values import files
 def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
 
-    Of a family each member is checked. Prints what was checked, and how. The exit status is 0 when every check passed,
-    1 when one failed (the first violated claim is printed with a witness), 2 when the file cannot be read, 3 when a
-    limit was reached before that.
+    Of a family each member is checked, but not where it changes between them. Prints what was checked, and how. The
+    exit status is 0 when every check passed, 1 when one failed (the first violated claim is printed with a witness),
+    2 when the file cannot be read, 3 when a limit was reached before that.
 
     \b
     Example:
@@ -36,7 +36,11 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
     """
     with held(limits):
         if is_family(result):
-            return int(max(each_member(result, lambda member: _verified(member, seed, boxes))))
+            family = read_family_file(result, whole=False)
+            status = int(max(each_member(family, lambda member: _verified(member, seed, boxes))))
+            if family.changes is not None:
+                click.echo("not checked  changes                 where between the members the arrangement changes")
+            return status
         return _verified(read_result(result, whole=False), seed, boxes)
 
 

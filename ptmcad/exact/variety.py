@@ -100,7 +100,7 @@ def discriminant_variety(
     escaping = [] if equations.is_compact else _with_poles(algebra, singular, equations.unbounded)
     seen.adopt([f for f in singular if f not in escaping], Kind.CRITICAL)
     seen.adopt(escaping, Kind.INFINITY)
-    for polynomial in _sign_changes(equations, algebra):
+    for polynomial in sign_changes(equations, algebra):
         seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
     suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in seen.found]
     if "infinity" in without:
@@ -108,10 +108,10 @@ def discriminant_variety(
     else:
         hidden = [f for f in suspects if seen.outside(f)]
         visible = [f for f in suspects if f not in hidden]
-        harmless = _harmless(equations, rows, jacobian_norm, visible) if _settles(equations) else []
+        regular = harmless(equations, rows, jacobian_norm, visible) if settles(equations) else []
         seen.adopt(poles_at_points(algebra, hidden, equations.unbounded), Kind.INFINITY, NO_POINT)
-        seen.adopt(poles_at_points(algebra, harmless, equations.unbounded), Kind.INFINITY, HARMLESS)
-        doubtful = [f for f in visible if f not in harmless]
+        seen.adopt(poles_at_points(algebra, regular, equations.unbounded), Kind.INFINITY, HARMLESS)
+        doubtful = [f for f in visible if f not in regular]
         poles = poles_at_points(algebra, doubtful, equations.unbounded)
         poles += _with_poles(algebra, [f for f in doubtful if f not in poles], equations.unbounded)
         seen.adopt(poles, Kind.INFINITY)
@@ -227,7 +227,7 @@ def _lifted(p: UnknownPolynomial, equations: SliceSystem) -> UnknownPolynomial:
     return {(*m, *(0,) * (equations.unknowns - len(m))): c for m, c in p.items()}
 
 
-def _sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[Coefficient]:
+def sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[Coefficient]:
     """The norms of the conditions, over those solutions at which they are not zero all over the slice."""
     for p in equations.inequalities:
         yield norm(algebra, p)[0]
@@ -251,7 +251,7 @@ def _with_poles(
     return [f for f in suspects if any(pole.gcd(f).total_degree() > 0 for pole in poles)]
 
 
-def _settles(equations: SliceSystem) -> bool:
+def settles(equations: SliceSystem) -> bool:
     """Whether real solutions that stay regular settle everything: they stay bounded, and nothing else is asked of them.
 
     The sign of a condition can change across a curve where its norm does not vanish, at a solution that is real there
@@ -260,7 +260,7 @@ def _settles(equations: SliceSystem) -> bool:
     return equations.is_compact and not equations.inequalities and not equations.stability
 
 
-def _harmless(
+def harmless(
     equations: SliceSystem, rows: Sequence[Vector], jacobian_norm: Ratio, suspects: Sequence[Coefficient]
 ) -> list[Coefficient]:
     """Those of the curves across which no real count can change: near them det H stays away from 0 at all solutions.

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from ptmcad.ask.families import Common, in_common
+from ptmcad.ask.members import Common, in_common
 from ptmcad.errors import ConfigError, ExpressionError, shown
 from ptmcad.mechanism import Kind, Model
 from ptmcad.options import Options

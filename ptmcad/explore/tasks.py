@@ -17,7 +17,7 @@ from typing import Any
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.classification import region_map
 from ptmcad.ask.engines import is_certified
-from ptmcad.ask.families import member_map
+from ptmcad.ask.members import member_map
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.explore.panel import Families, Panel, Values, number_within

@@ -19,6 +19,11 @@ ANYWIDGET_MISSING = (
     "a living map in a notebook needs the package anywidget, which is not installed: pip install 'ptmcad[notebook]'"
 )
 
+DISTRIBUTED_MISSING = (
+    "a scheduler's workers are asked through the package distributed (Dask), which is not installed: "
+    "pip install 'ptmcad[distributed]', here and on every worker"
+)
+
 AIOHTTP_MISSING = (
     "the explorer's page is served by the package aiohttp, which is not installed: pip install 'ptmcad[explore]'"
 )
@@ -46,6 +51,18 @@ def require_anywidget() -> None:
     """
     if find_spec("anywidget") is None:
         raise ConfigError(ANYWIDGET_MISSING)
+
+
+def require_distributed() -> None:
+    """Refuse what runs on a cluster.
+
+    Raises
+    ------
+    ConfigError
+        When distributed is not installed.
+    """
+    if find_spec("distributed") is None:
+        raise ConfigError(DISTRIBUTED_MISSING, key="--scheduler")
 
 
 def require_aiohttp() -> None:

@@ -118,17 +118,38 @@ def data_frame(result: RegionMap, what: str, options: Mapping[str, Any]) -> Data
     if unknown:
         known = ", ".join(_OPTIONS.get(what, ())) or "none"
         raise ConfigError(f"the table {what} has no option {unknown[0]!r}; its options: {known}")
+    if what == "grid":
+        grid: DataFrame = _pandas().DataFrame(grid_columns(result, result.grid(**options)))
+        return grid
+    return pandas_frame(_rows(result, what, options), None, _MAY_BE_MISSING)
+
+
+def pandas_frame(rows: Iterable[Row], columns: Sequence[str] | None, whole: Iterable[str]) -> DataFrame:
+    """Rows as a data frame.
+
+    Parameters
+    ----------
+    columns : their names in order; those of the rows when None.
+    whole : columns of whole numbers that may be missing: pandas' own ``Int64``.
+
+    Raises
+    ------
+    ConfigError
+        When pandas is not installed.
+    """
+    table: DataFrame = _pandas().DataFrame(list(rows), columns=columns)
+    for name in whole:
+        if name in table:
+            table[name] = table[name].astype("Int64")
+    return table
+
+
+def _pandas() -> Any:
     try:
         import pandas as pd
     except ModuleNotFoundError as error:
         raise ConfigError("a data frame needs the package pandas: pip install pandas") from error
-    if what == "grid":
-        return pd.DataFrame(grid_columns(result, result.grid(**options)))
-    table = pd.DataFrame(list(_rows(result, what, options)))
-    for name in _MAY_BE_MISSING:
-        if name in table:
-            table[name] = table[name].astype("Int64")
-    return table
+    return pd
 
 
 _MAY_BE_MISSING = ("stable", "total", "admissible", "component", "left", "right", "stack")

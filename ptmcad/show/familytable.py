@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.show.changestable import changes_table
 from ptmcad.show.table import area_by_count, area_text
 from ptmcad.text.numerals import shortest_text
 
@@ -22,6 +23,8 @@ def family_table(family: FamilyMap) -> str:
         sizes = ", ".join(f"{len(terms)} terms of degree {_degree(terms)}" for terms in family.surfaces)
         many = "surfaces" if len(family.surfaces) > 1 else "surface"
         lines.append(f"computed once for all: {many} where solutions meet, {sizes}")
+    if family.changes is not None:
+        lines.append(changes_table(family.changes))
     return "\n".join(lines)
 
 

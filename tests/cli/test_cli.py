@@ -305,6 +305,11 @@ def help_examples() -> list[str]:
     return examples
 
 
+FAMILY = """\
+system: {unknowns: {x: real}, potential: "x^4/4 + (a + c)*x^2/2 + b*x"}
+axes: {a: [-1, 1], b: [-1, 1]}
+sweep: {c: [0, 1]}
+"""
 LONG = ("bench configs", "bench --method", "stress all", "stress --random", "stress stiffness")
 DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value length:k1", "--path", "--quantity th1")
 """In commands that the tests of README.md, of `ptmcad range`, its branches, fields and films run too."""
@@ -313,7 +318,8 @@ DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value leng
 @pytest.mark.usefixtures("coarse")
 @pytest.mark.parametrize("example", [
     pytest.param(e, marks=pytest.mark.slow) if e.startswith(LONG) or any(d in e for d in DOCUMENTED) else e
-    for e in help_examples() if not e.startswith(("classify", "explore", "paper"))  # the explorer never ends
+    # the explorer never ends
+    for e in help_examples() if not e.startswith(("classify", "explore", "paper")) and "--scheduler" not in e
 ])  # fmt: skip
 def test_help_examples_about_a_result_run(
     shipped: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, example: str
@@ -322,6 +328,7 @@ def test_help_examples_about_a_result_run(
     monkeypatch.chdir(tmp_path)
     Path("slice-L2-rho.json").write_text(shipped("fig2").to_json(), encoding="utf-8")
     Path("points.csv").write_text("rho,L2\n7/10,3/2\n", encoding="utf-8")
+    Path("loads.yaml").write_text(FAMILY, encoding="utf-8")
     for folder in ("configs", "docs"):
         Path(folder).symlink_to(ROOT / folder)
     for name in ("measured.csv", "heavier.json"):

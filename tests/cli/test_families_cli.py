@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
+import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli import run
+from ptmcad.exact.familyprojection import OutOfReach
 from ptmcad.show.document.family import read_family
 
 RECORD = """name: loads
@@ -24,7 +26,7 @@ members: [-40, -10]
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("family")
     (folder / "loads.yaml").write_text(RECORD)
-    arguments = ["classify", str(folder / "loads.yaml"), "--out", str(folder), "--format", "json,png,csv", "--no-areas"]
+    arguments = ["classify", str(folder / "loads.yaml"), "--out", str(folder), "--format", "json,csv", "--no-areas"]
     assert run(arguments) == 0
     return folder
 
@@ -34,7 +36,6 @@ def test_members_have_files_of_their_own_and_the_family_names_them(folder: Path)
     assert stored.files == ("loads-F-40.json", "loads-F-10.json")
     for file in stored.files:
         assert len(RegionMap.from_json((folder / file).read_text()).regions) == 2
-    assert {path.name for path in folder.glob("loads*.png")} == {"loads.png", "loads-3d.png"}
     assert len(list(folder.glob("loads-F*.csv"))) == 6
 
 
@@ -56,6 +57,7 @@ def test_a_family_is_drawn_again(folder: Path, tmp_path: Path, capsys: pytest.Ca
     arguments = ["plot", str(folder / "loads.json"), "--out", str(tmp_path), "--format", "svg", "--style", "beamer"]
     assert run(arguments) == 0
     text = (tmp_path / "loads.svg").read_text()
+    assert {path.name for path in tmp_path.iterdir()} == {"loads.svg", "loads-3d.svg"}
     assert "F = −40" in text
     assert "F = −10" in text
     capsys.readouterr()
@@ -83,6 +85,79 @@ def test_damaged_families_are_refused(
     path.write_text(json.dumps(change(json.loads((folder / "loads.json").read_text()))))  # type: ignore[operator]
     assert run(["verify", str(path)]) == 2
     assert message in capsys.readouterr().err
+
+
+DISC = """name: disc
+system: {unknowns: {u: real}, equations: ["u^2 - c + a^2 + b^2"]}
+axes: {a: [-1, 1], b: [-1, 1]}
+free: {c: [-1, 3]}
+"""
+
+
+@pytest.fixture(name="disc", scope="module")
+def changing(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("disc")
+    (folder / "disc.yaml").write_text(DISC)
+    wanted = ["--changes", "--members", "between", "--format", "json", "--no-areas"]
+    assert run(["classify", str(folder / "disc.yaml"), "--out", str(folder), *wanted]) == 0
+    return folder
+
+
+def test_a_member_between_the_changes_and_the_changes_in_the_file(disc: Path) -> None:
+    stored = read_family((disc / "disc.json").read_text())
+    assert stored.changes is not None
+    assert stored.changes.complete
+    assert [change.value.text() for change in stored.changes] == ["0", "1", "2"]
+    assert stored.values == stored.changes.between
+    assert len(stored.files) == 4
+    asked = ptmcad.changes(disc / "disc.yaml")
+    assert asked == stored.changes
+    assert ptmcad.family(disc / "disc.yaml", "between", areas=False).changes == asked
+    assert "exact" in ptmcad.family(disc / "disc.yaml", [1], areas=False, changes=True).table()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda found: found | {"complete": "yes"}, "neither true nor false"),
+        (lambda found: found | {"between": found["between"][1:]}, "do not lie between"),
+        (lambda found: found | {"between": [found["between"][0]] * 4}, "do not lie between"),
+        (lambda found: found | {"found": [{"value": {"low": "0", "high": "1/10"}, "words": []}]}, "not exact"),
+        (lambda found: found | {"others": [{"low": "1", "high": "0"}]}, "exchanged"),
+        (lambda found: found | {"at_ends": [[], [3]]}, "sentences"),
+        (lambda found: {k: v for k, v in found.items() if k != "between"}, "missing"),
+    ],
+)
+def test_damaged_changes_are_refused(disc: Path, change: object, message: str) -> None:
+    data = json.loads((disc / "disc.json").read_text())
+    with pytest.raises(ValueError, match=message):
+        read_family(json.dumps(data | {"changes": change(data["changes"])}))  # type: ignore[operator]
+
+
+def test_changes_are_told_with_their_kind(
+    disc: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    common = ["--out", str(disc), "--format", "json", "--no-areas"]
+    asked = ["classify", str(disc / "disc.yaml"), *common, "--members=1/2,2/3"]
+    assert run([*asked, "--changes", "--set", "c=c"]) == 2
+    capsys.readouterr()
+    assert run([*asked, "--changes"]) == 0
+    out = capsys.readouterr().out
+    assert "changes of the arrangement for c between -1 and 3: 3" in out
+    assert "  1  exact  the region of 0 solutions splits into 4" in out
+    assert "proved by elimination: within the range nothing can change but at 3 values" in out
+    monkeypatch.setattr("ptmcad.ask.changes.critical_values", lambda *_: OutOfReach("for a reason"))
+    assert run([*asked, "--changes", "--tolerance", "1/100"]) == 0
+    out = capsys.readouterr().out
+    assert "enclosed  a region of 2 solutions appears" in out
+    assert "not proved complete: for a reason" in out
+    assert run(["classify", "--slice", "L2,rho", "--changes", *common]) == 0
+    assert "--changes has no effect here" in capsys.readouterr().err
+
+
+def test_it_is_said_that_changes_are_not_verified(disc: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["verify", str(disc / "disc.json")]) == 0
+    assert "not checked  changes" in capsys.readouterr().out
 
 
 def test_other_commands_ask_for_a_member(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

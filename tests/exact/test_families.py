@@ -11,7 +11,7 @@ from flint import fmpq
 import ptmcad
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import SPACE, UnknownPolynomial, at_third
-from ptmcad.ask.families import Common, in_common, member_map
+from ptmcad.ask.members import Common, in_common, member_map
 from ptmcad.errors import PtmcadError
 from ptmcad.exact.models.space import space_parameters
 from ptmcad.options import Options
@@ -74,7 +74,7 @@ def _random_values(name: str, number: int) -> list[Fraction]:
         ("equal loads", [Fraction(-10), Fraction(-1, 3), Fraction(0)]),  # without load a component splits off
         ("two loads, 446 terms", [Fraction(-10), Fraction(0)]),
         ("system with a condition", [Fraction(0), Fraction(1, 3), Fraction(-1)]),
-        ("chain", [Fraction(1)]),
+        pytest.param("chain", [Fraction(1)], marks=pytest.mark.slow),
     ],
 )
 def test_members_are_their_slices_alone(name: str, values: list[Fraction]) -> None:

@@ -10,7 +10,7 @@ from support.maps import CONFIGS, shipped
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.classification import region_map
-from ptmcad.ask.families import in_common, member_map
+from ptmcad.ask.members import in_common, member_map
 from ptmcad.exact import sparing
 from ptmcad.options import Options
 from ptmcad.question.config import family_from, load

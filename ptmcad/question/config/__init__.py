@@ -35,6 +35,7 @@ from ptmcad.question.config.record import (
     record_of,
 )
 from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, point_of, slice_of
+from ptmcad.question.config.sweeps import Sweeping, asks_for_sweep, load_sweep, settled, sweep_from, swept_names
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
@@ -47,9 +48,12 @@ __all__ = [
     "Family",
     "Kind",
     "Parameter",
+    "Sweeping",
+    "asks_for_sweep",
     "family_from",
     "file_name",
     "load",
+    "load_sweep",
     "make_mechanism",
     "make_system",
     "point_from_mapping",
@@ -60,6 +64,7 @@ __all__ = [
     "slice_from",
     "slice_from_mapping",
     "slice_from_options",
+    "sweep_from",
 ]
 
 
@@ -114,6 +119,11 @@ def family_from(question: str | Path | Mapping[str, Any] | Family) -> Family:
     if isinstance(question, Family):
         return question
     return checked_family(_tree_of(question) if isinstance(question, Mapping) else read_file(question))
+
+
+def _released(record: Record, free: str | None) -> set[str]:
+    """What has no value in a record and may be given one: what is free, and what is swept."""
+    return {*swept_names(record), *(() if free is None else (free,))}
 
 
 def slice_from_options(
@@ -223,7 +233,7 @@ def record_from_options(
         values = {n: value for n, value in record.values.items() if n != name}
         record = replace(record, free=(name, window), members=None, values=values, title="", reference={})
     released = None if record.free is None else record.free[0]
-    given_sets, given_ranges = settings_of(sets, record.model, released), ranges_of(ranges)
+    given_sets, given_ranges = settings_of(sets, record.model, _released(record, released)), ranges_of(ranges)
     if released is not None and released in given_sets:
         number = number_of(given_sets.pop(released), f"the value of {released}")
         record = replace(bound(record, released, number), name=member_name(record, released, number))
@@ -234,6 +244,8 @@ def record_from_options(
         record = with_axes(record, slice, given_sets, given_ranges)
     elif config is None:
         raise ConfigError(f"give a problem record (a YAML file), or two axes such as --slice {FIRST},{SECOND}")
+    if record.sweep is not None:
+        record, given_sets = settled(record, given_sets)
     for name, value in given_sets.items():
         if name in record.axes:
             raise value.place.error(f"{name} is an axis and cannot be fixed too: choose other axes with --slice")
@@ -243,7 +255,7 @@ def record_from_options(
             axes = " and ".join(record.axes)
             raise window.place.error(f"{name} is not an axis; the axes are {axes}{did_you_mean(name, record.axes)}")
         record = replace(record, axes={**record.axes, name: window})
-    if slice is not None or given_sets or given_ranges:
+    if slice is not None or sets or given_ranges:
         record = replace(record, title="", reference={})
     if count is not None:
         text = count.value if isinstance(count, Count) else count
@@ -297,7 +309,7 @@ def point_from_options(
     """
     record = record_of(read_file(config)) if config is not None else Record()
     released = None if record.free is None else record.free[0]
-    given = settings_of(sets, record.model, released)
+    given = settings_of(sets, record.model, _released(record, released))
     if released in given:
         record = bound(record, released, number_of(given.pop(released), f"the value of {released}"))
         released = None
@@ -313,12 +325,14 @@ def point_from_options(
         if name == released:
             record = bound(record, name, number_of(scalar, f"the value of {name}"))
             continue
-        if name in record.model.parameters:
+        if name in record.model.parameters or name in swept_names(record):
             given[name] = scalar
         elif name in record.axes:
             axes[name] = constant(number_of(scalar, "the value of this axis"))
         else:
             raise scalar.place.error(unknown_parameter(name, record.model))
+    if record.sweep is not None:
+        record, given = settled(record, given)
     for name in record.axes:
         if name not in given and name not in axes:
             raise ConfigError(

@@ -11,15 +11,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.errors import ConfigError, Faults
 from ptmcad.mechanism import Model
+from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.record import Record, Window, read_record
 from ptmcad.question.config.resolution import axis_of, number_of, slice_of, written_in
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import names_in
-from ptmcad.text.syntax import parse
-from ptmcad.text.tree import Number, replaced, to_text
 from ptmcad.text.yamltree import Node, Scalar, Sequence, Tree
 
 MEMBERS = 9
@@ -125,21 +124,10 @@ def checked_family(tree: Tree) -> Family:
 
 def bound(record: Record, name: str, value: Fraction) -> Record:
     """The record with a number in place of its free parameter, and without answers, which are of another slice."""
-    number = Number(value)
-    values = {}
-    for parameter, scalar in record.values.items():
-        try:
-            tree = parse(scalar.text)
-        except ExpressionError:
-            values[parameter] = scalar  # which `slice_of` refuses in better words
-            continue
-        other = replaced(tree, name, number)
-        values[parameter] = scalar if other is tree else Scalar(to_text(other), scalar.place)
-    if name in record.model.parameters:
-        assert record.free is not None
-        values[name] = Scalar(to_text(number), record.free[1].place)
+    assert record.free is not None
+    found = with_numbers(record, {name: value}, {name: record.free[1].place})
     title = f"{record.title}, {name} = {text_of(value)}" if record.title else ""
-    return replace(record, values=values, free=None, members=None, title=title, reference={})
+    return replace(found, free=None, members=None, title=title, reference={})
 
 
 def member_name(record: Record, name: str, value: Fraction) -> str:

@@ -5,7 +5,7 @@ Guarantee: whatever is wrong is a `ConfigError` that names the option.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 from ptmcad.errors import ConfigError
@@ -17,15 +17,15 @@ from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Place, Scalar
 
 
-def settings_of(sets: Iterable[str], model: Model, free: str | None = None) -> dict[str, Scalar]:
-    """``NAME=VALUE`` texts, for parameters of a model and the one that is free in a record."""
+def settings_of(sets: Iterable[str], model: Model, released: Collection[str] = ()) -> dict[str, Scalar]:
+    """``NAME=VALUE`` texts, for parameters of a model and what is free or swept in a record."""
     settings: dict[str, Scalar] = {}
     for text in sets:
         name, equals, value = (part.strip() for part in text.partition("="))
         if not equals or not name or not value:
             raise ConfigError(f"{text[:80]!r} is not NAME=VALUE, such as {FIRST}=3/2", key="--set")
         place = Place(f"--set {name[:40]}")
-        if name not in model.parameters and name != free:
+        if name not in model.parameters and name not in released:
             raise place.error(unknown_parameter(name, model))
         if name in settings:
             raise place.error("is given twice: leave one out")

@@ -20,8 +20,8 @@ from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count, unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
-RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "free", "members", "count",
-               "units", "reference")  # fmt: skip
+RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "free", "members", "sweep",
+               "count", "units", "reference")  # fmt: skip
 _MAX_NAME = 100
 _MAX_TITLE = 300
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -44,6 +44,7 @@ class Record:
     Attributes
     ----------
     values_place : where the values are given, or would be; None of what is no record.
+    sweep : what is swept, as it is written; `ptmcad.question.config.sweeps` reads it.
     """
 
     name: str = ""
@@ -57,6 +58,7 @@ class Record:
     units: Mapping[str, str] = field(default_factory=dict)
     reference: Mapping[str, Any] = field(default_factory=dict)
     place: Place = field(default_factory=Place)
+    sweep: Node | None = None
     count_place: Place = field(default_factory=lambda: Place("count"))
     values_place: Place | None = None
     described: Described | None = None
@@ -121,6 +123,7 @@ def read_record(tree: Tree, faults: Faults) -> Record:
         "axes": lambda node: _axes(node, faults),
         "free": _free,
         "members": lambda node: node,
+        "sweep": lambda node: node,
         "count": count_of,
         "units": _units,
         "reference": _reference,

@@ -50,6 +50,12 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
     faults : what was found in the record before, and is raised with the rest.
     """
     faults = faults or Faults()
+    if record.sweep is not None:
+        with faults:
+            raise record.sweep.place.error(
+                "the record asks for a sweep: `ptmcad sweep` answers it, and --set NAME=VALUE chooses one member"
+            )
+        faults.check()  # of what is swept nothing can be said here
     if record.free is not None:
         with faults:
             refuse_free(*record.free)
@@ -164,7 +170,7 @@ def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fracti
     for name, expression in resolved.items():
         place = record.place_of(name)
         value = expression.constant()
-        _check_number(name, mechanism.kind(name), value, place)
+        check_number(name, mechanism.kind(name), value, place)
         values[name] = value
     _check_shorthands_are_used(record, mechanism, set(record.values))
     left_out = {*mechanism.shorthands, *mechanism.idle}  # the parameters that they stand for are there
@@ -245,13 +251,13 @@ def axis_of(name: str, window: Window, model: Model) -> Axis:
 
 
 def number_of(scalar: Scalar, what: str = "the end of a range") -> Fraction:
-    names = _names_in_scalar(scalar)
+    names = names_in_scalar(scalar)
     if names and names[0].lower() not in ("nan", "inf", "infinity"):
         raise scalar.place.error(f"{what} is a number, not an expression in {names[0][:40]}")
     return _parsed(scalar, {}).constant()
 
 
-def _names_in_scalar(scalar: Scalar) -> tuple[str, ...]:
+def names_in_scalar(scalar: Scalar) -> tuple[str, ...]:
     """The names in a scalar's text; raises `ConfigError` at its place."""
     try:
         return names_in(scalar.text)
@@ -313,7 +319,7 @@ class _Resolution:
             cycle = " -> ".join((*chain[chain.index(name) :], name))
             raise scalar.place.error(f"the definition goes round in a circle: {cycle}")
         names = {}
-        for other in _names_in_scalar(scalar):
+        for other in names_in_scalar(scalar):
             if other in self.known:
                 names[other] = self.resolve(other, (*chain, name))
                 if other in self.faulty:
@@ -330,14 +336,14 @@ def _check_value(name: str, expression: Expression, record: Record, axes: tuple[
     if expression.degree > MAX_DEGREE:
         raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
     if expression.is_constant:
-        _check_number(name, record.model.kind(name), expression.constant(), place)
+        check_number(name, record.model.kind(name), expression.constant(), place)
         return
     problem = fault(name, record.model.kind(name), expression, axes, READING_WORK)
     if problem:
         raise place.error(problem)
 
 
-def _check_number(name: str, kind: Kind, value: Fraction, place: Place) -> None:
+def check_number(name: str, kind: Kind, value: Fraction, place: Place) -> None:
     """Refuse a number that the geometry excludes."""
     if (kind.is_positive and value <= 0) or (kind.may_vanish and value < 0):
         least = "not negative" if kind.may_vanish else "positive"
@@ -349,7 +355,7 @@ def _check_shorthands_are_used(record: Record, mechanism: Model, given: set[str]
     for shorthand, names in mechanism.shorthands.items():
         if shorthand not in record.values or not given.issuperset(names):
             continue
-        if not any(shorthand in _names_in_scalar(s) for name, s in record.values.items() if name != shorthand):
+        if not any(shorthand in names_in_scalar(s) for name, s in record.values.items() if name != shorthand):
             raise record.values[shorthand].place.error(
                 f"has no effect, since {_listed(names)} are all given: leave it out"
             )

@@ -12,9 +12,11 @@ from itertools import pairwise
 from pathlib import PurePath
 from typing import Any, NamedTuple
 
+from ptmcad.answer.changes import Changes
 from ptmcad.answer.family import FamilyMap, SpaceTerms
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Axis
+from ptmcad.show.document.changes import changes_from, written_changes
 from ptmcad.text.numerals import fraction_of, text_of
 
 FORMAT = "ptmcad-family/1"
@@ -30,6 +32,7 @@ class StoredFamily(NamedTuple):
     values: tuple[Fraction, ...]
     files: tuple[str, ...]
     surfaces: tuple[SpaceTerms, ...]
+    changes: Changes | None = None
 
 
 def write_family(family: FamilyMap, files: Sequence[str]) -> str:
@@ -47,6 +50,8 @@ def write_family(family: FamilyMap, files: Sequence[str]) -> str:
         "surfaces": [[[*powers, str(c)] for powers, c in terms] for terms in family.surfaces],
         "members": [{"value": text_of(value), "file": file} for value, file in zip(family.values, files, strict=True)],
     }
+    if family.changes is not None:
+        data["changes"] = written_changes(family.changes)
     lines = [f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}" for key, value in data.items()]
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
@@ -60,7 +65,8 @@ def read_family(text: str) -> StoredFamily:
         When the text is not such a document.
     """
     data = json.loads(text)
-    if not isinstance(data, dict) or set(data) != {"format", "name", "title", "free", "surfaces", "members"}:
+    keys = {"format", "name", "title", "free", "surfaces", "members"}
+    if not isinstance(data, dict) or not keys <= set(data) <= keys | {"changes"}:
         raise ValueError("it has other keys than a family")
     if data["format"] != FORMAT:
         raise ValueError(f"it is not of the format {FORMAT}")
@@ -73,11 +79,12 @@ def read_family(text: str) -> StoredFamily:
         surfaces = tuple(
             tuple(((int(i), int(j), int(k)), int(c)) for i, j, k, c in terms) for terms in data["surfaces"]
         )
-    except (KeyError, TypeError, AttributeError, ConfigError) as error:
+        changes = changes_from(data["changes"], axis) if "changes" in data else None
+    except (KeyError, TypeError, AttributeError, IndexError, ConfigError) as error:
         raise ValueError(f"a part of it is missing or of another kind: {error}") from error
     if not 1 <= len(values) <= MAX_MEMBERS or any(a >= b for a, b in pairwise(values)):
         raise ValueError("the members' values do not increase")
-    return StoredFamily(_text(data["name"]), _text(data["title"]), axis, values, files, surfaces)
+    return StoredFamily(_text(data["name"]), _text(data["title"]), axis, values, files, surfaces, changes)
 
 
 def _text(value: Any) -> str:

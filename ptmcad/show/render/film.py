@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import subprocess
 import tempfile
+from collections.abc import Callable
 from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
 from subprocess import DEVNULL, PIPE
+from typing import Protocol
 
 import numpy as np
 from PIL import Image
@@ -19,7 +21,7 @@ from ptmcad.answer.motion import Motion
 from ptmcad.errors import ConfigError
 from ptmcad.process.extras import require_ffmpeg
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.stage import Stage
+from ptmcad.show.render.stage import Pixels, Stage
 from ptmcad.show.style import Style
 
 FORMATS = ("gif", "mp4")
@@ -27,6 +29,15 @@ REST = 0.8
 """Seconds for which the first and the last picture stand."""
 COLOURS, SAMPLES = 128, 6
 """Of a GIF, chosen from so many of its pictures."""
+
+
+class Pictures(Protocol):
+    """Pictures of one size, each made when it is asked for; to be used within `printing.settings`."""
+
+    def __len__(self) -> int: ...
+
+    def frame(self, number: int) -> Pixels:
+        """The picture with this number."""
 
 
 def save_film(motion: Motion, path: Path, style: Style, fps: int, dpi: int) -> None:
@@ -39,24 +50,47 @@ def save_film(motion: Motion, path: Path, style: Style, fps: int, dpi: int) -> N
     OSError
         When the file cannot be written.
     """
+    save_pictures(lambda: Stage(motion, style, dpi), path, style, fps)
+
+
+def save_pictures(make: Callable[[], Pictures], path: Path, style: Style, fps: int) -> None:
+    """Write pictures one after the other as a file, whose suffix gives the format.
+
+    Parameters
+    ----------
+    make : gives the pictures, within the style's settings.
+
+    Raises
+    ------
+    ConfigError
+        For another suffix, or MP4 without ffmpeg, or what ``make`` refuses.
+    OSError
+        When the file cannot be written.
+    """
     suffix = path.suffix.lower().removeprefix(".")
     if suffix not in FORMATS:
         raise ConfigError(f"{path.name}: the format {suffix!r} is not among {', '.join(FORMATS)}", key="--format")
-    if suffix == "mp4":
-        _write_mp4(motion, style, path, fps, dpi)
-    else:
-        path.write_bytes(gif_bytes(motion, style, fps, dpi))
+    with settings(style):
+        if suffix == "mp4":
+            _write_mp4(make(), path, fps)
+        else:
+            path.write_bytes(_gif(make(), fps))
 
 
 def gif_bytes(motion: Motion, style: Style, fps: int, dpi: int) -> bytes:
-    """The motion as the content of an animated GIF, in the same colours throughout, so that nothing flickers."""
+    """The motion as the content of an animated GIF."""
     with settings(style):
-        stage = Stage(motion, style, dpi)
-        number = len(motion.steps)
-        chosen = sorted({round(k * (number - 1) / (SAMPLES - 1)) for k in range(SAMPLES)})
-        sample = Image.fromarray(np.concatenate([stage.frame(k) for k in chosen]))
-        palette = sample.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-        drawn = [Image.fromarray(frame).quantize(palette=palette, dither=Image.Dither.NONE) for frame in stage.frames()]
+        return _gif(Stage(motion, style, dpi), fps)
+
+
+def _gif(pictures: Pictures, fps: int) -> bytes:
+    """The content of an animated GIF, in the same colours throughout, so that nothing flickers."""
+    number = len(pictures)
+    chosen = sorted({round(k * (number - 1) / (SAMPLES - 1)) for k in range(SAMPLES)})
+    sample = Image.fromarray(np.concatenate([pictures.frame(k) for k in chosen]))
+    palette = sample.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    frames = (Image.fromarray(pictures.frame(k)) for k in range(number))
+    drawn = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     pause = max(2, round(100 / fps)) * 10  # hundredths of a second are what the format knows
     durations = [pause] * len(drawn)
     durations[0] = durations[-1] = max(pause, round(1000 * REST))
@@ -67,12 +101,11 @@ def gif_bytes(motion: Motion, style: Style, fps: int, dpi: int) -> bytes:
     return data.getvalue()
 
 
-def _write_mp4(motion: Motion, style: Style, path: Path, fps: int, dpi: int) -> None:
+def _write_mp4(pictures: Pictures, path: Path, fps: int) -> None:
     """Give ffmpeg one picture after the other."""
     program, rest = require_ffmpeg(), round(REST * fps)
-    with settings(style), tempfile.TemporaryFile() as said:
-        stage = Stage(motion, style, dpi)
-        tall, wide, _ = stage.frame(0).shape
+    with tempfile.TemporaryFile() as said:
+        tall, wide, _ = pictures.frame(0).shape
         command = [
             program, "-loglevel", "error", "-nostats", "-y",
             "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{wide}x{tall}", "-r", str(fps), "-i", "-",
@@ -80,13 +113,13 @@ def _write_mp4(motion: Motion, style: Style, path: Path, fps: int, dpi: int) -> 
             "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-movflags", "+faststart",
             "-f", "mp4", str(path),
         ]  # fmt: skip
-        last = len(motion.steps) - 1
+        last = len(pictures) - 1
         numbers = [*[0] * rest, *range(last + 1), *[last] * rest]
         process = subprocess.Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=said)
         assert process.stdin is not None  # a pipe
         with suppress(BrokenPipeError), process:  # where it has ended before, its status tells
             for number in numbers:
-                process.stdin.write(stage.frame(number).tobytes())
+                process.stdin.write(pictures.frame(number).tobytes())
         if process.returncode:
             said.seek(0)
             words = " ".join(said.read().decode(errors="replace").split())[-300:]

@@ -133,6 +133,9 @@ class Stage:
             self.curve = self._axes((left + 0.35, foot, wide - 0.35, chart), "energy")
             self._energy()
 
+    def __len__(self) -> int:
+        return len(self.motion.steps)
+
     def frames(self) -> Iterator[Pixels]:
         """The pictures as arrays of red, green and blue, shape (height, width, 3), in the order of the steps."""
         for number in range(len(self.motion.steps)):

@@ -58,9 +58,9 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
     check_numbers(result)
     seen = _outline(result)
     drawn = chart(seen)
-    style, script = _asset("page.css"), "".join(_asset(name) for name in SCRIPTS)
-    return Template(_asset("page.html")).substitute(
-        policy=escape(_policy(style, script)),
+    style, script = asset("page.css"), "".join(asset(name) for name in SCRIPTS)
+    return Template(asset("page.html")).substitute(
+        policy=escape(policy_of(style, script)),
         title=escape(result.slice.heading),
         name=escape(result.slice.name),
         what=_shown(result.slice.model),
@@ -115,11 +115,13 @@ def _details(drawn: Chart) -> str:
     return f'<div class="details" role="group" aria-label="Views of thin regions">{views}</div>'
 
 
-def _asset(name: str) -> str:
+def asset(name: str) -> str:
+    """A file of this package as text."""
     return (files("ptmcad.show.report") / name).read_text(encoding="utf-8")
 
 
-def _policy(style: str, script: str) -> str:
+def policy_of(style: str, script: str) -> str:
+    """What a page may do: use this style sheet and run this script."""
     return (
         f"default-src 'none'; style-src '{_hash(style)}'; script-src '{_hash(script)}'; base-uri 'none'; "
         "form-action 'none'"

@@ -12,7 +12,7 @@ function unpacked({ length, columns }) {
   }
   return rows;
 }
-DATA.cells = unpacked(DATA.cells);
+if (DATA.cells) DATA.cells = unpacked(DATA.cells); // the atlas of a sweep has none
 
 function svg(name, attributes, text) {
   const element = document.createElementNS("http://www.w3.org/2000/svg", name);

@@ -1,0 +1,175 @@
+"""Polynomials over Z[u, w]: coefficients of one in three variables, discriminants, resultants, and common zeros.
+
+Guarantee: exact. As in `resultants`, proved bounds for the degrees say from how many values results are interpolated.
+
+The ring Z[u, w] is that of `polynomials.PLANE`: u stands for the free parameter of a family, w for one of its axes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import gcd
+
+from flint import fmpq, fmpz, fmpz_poly
+
+from ptmcad.algebra import resultants
+from ptmcad.algebra.polynomials import PLANE, Coefficient, UnivariatePolynomial, coefficients_in, irreducible_factors
+from ptmcad.algebra.resultants import Check, interpolate, nothing
+from ptmcad.algebra.window import Interval
+
+Rows = Sequence[Coefficient]
+"""A polynomial in v over Z[u, w]: its coefficients, constant first, the last one not zero."""
+
+
+def rows_in(p: Coefficient, axis: int) -> tuple[Coefficient, ...]:
+    """An element of Z[x, y, z] as a polynomial in one axis (0 or 1) over Z[u, w], u being z and w the other axis."""
+    rows: list[dict[tuple[int, ...], int]] = [{} for _ in range(int(p.degrees()[axis]) + 1)]
+    for powers, c in p.terms():
+        rows[int(powers[axis])][int(powers[2]), int(powers[1 - axis])] = int(c)
+    return tuple(PLANE.from_dict(row) for row in rows)
+
+
+def at_value(rows: Rows, v: fmpq) -> Coefficient:
+    """A positive multiple of the polynomial's value at a rational v, in Z[u, w]."""
+    a, b, top = int(v.p), int(v.q), len(rows) - 1
+    return sum((row * (a**i * b ** (top - i)) for i, row in enumerate(rows)), PLANE.constant(0))
+
+
+def discriminant(rows: Rows, check: Check = nothing) -> Coefficient:
+    """The discriminant with respect to v, for degree at least 1, up to a nonzero constant."""
+    (shorter,), powers = _deflated([rows])
+    return _inflated(_interpolated([shorter], lambda ps: resultants.discriminant(ps[0], check), _of_one, check), powers)
+
+
+def resultant(p: Rows, q: Rows, check: Check = nothing) -> Coefficient:
+    """The resultant with respect to v, up to a nonzero constant."""
+    shorter, powers = _deflated([p, q])
+    return _inflated(
+        _interpolated(shorter, lambda ps: resultants.resultant(ps[0], ps[1], check), _of_two, check), powers
+    )
+
+
+def predicted_work(polynomials: Sequence[Rows]) -> int:
+    """Of the discriminant of one, or the resultant of two: values, times the cube of the degree, times bits."""
+    shorter, _ = _deflated(polynomials)
+    bound = _of_one if len(polynomials) == 1 else _of_two
+    values = 1
+    for variable in (0, 1):
+        values *= max(bound([_degrees(rows, variable) for rows in shorter]), 0) + 1
+    bits = max(_bits(row) for p in shorter for row in p)
+    return values * sum(len(p) - 1 for p in shorter) ** 3 * max(bits, 1)
+
+
+def common_zeros(rows: Rows, check: Check = nothing) -> list[UnivariatePolynomial]:
+    """Irreducible polynomials among whose roots is the u of each common zero (u, w) of all coefficients.
+
+    Parameters
+    ----------
+    rows : without a common factor that is not constant.
+    """
+    present = [row for row in rows if not row.is_zero()]
+    if any(row.is_constant() for row in present):
+        return []
+    found = []
+    for factor in irreducible_factors(min(present, key=len)):
+        if factor.degrees()[1] == 0:
+            found.append(coefficients_in(factor, 1)[0])
+            continue
+        others = [row for row in present if not (row % factor).is_zero()]
+        common = UnivariatePolynomial([])
+        for other in others:
+            common = common.gcd(resultants.resultant(coefficients_in(factor, 1), coefficients_in(other, 1), check))
+            if common.degree() == 0:
+                break
+        found += [p for p, _ in common.factor()[1]] if common.degree() > 0 else []
+    return found
+
+
+def nowhere_zero(p: Coefficient, box: Sequence[Interval]) -> bool:
+    """Whether an element of Z[x, y, z] is proved to have no zero in an open box, by its Bernstein coefficients there.
+
+    False means that the test did not decide. If all Bernstein coefficients are >= 0 and one is positive, then so is p
+    in the interior; with c + d t over 1 + t for a variable between c and d they show as coefficients of powers of t,
+    up to binomials.
+    """
+    table = {tuple(map(int, powers)): int(c) for powers, c in p.terms()}
+    for variable, (low, high) in enumerate(box):
+        scale = int(low.q) * int(high.q)
+        ends = (int(low * scale), int(high * scale), scale)
+        table = _substituted(table, variable, ends)
+    values = table.values()
+    return all(c >= 0 for c in values) or all(c <= 0 for c in values)
+
+
+def _substituted(
+    table: dict[tuple[int, ...], int], variable: int, ends: tuple[int, int, int]
+) -> dict[tuple[int, ...], int]:
+    """(scale (1 + t))^n times the polynomial at (low + high t) / (scale (1 + t)), by exponents."""
+    low, high, scale = ends
+    degree = max(powers[variable] for powers in table)
+    line, unit = fmpz_poly([low, high]), fmpz_poly([scale, scale])
+    images = [line**i * unit ** (degree - i) for i in range(degree + 1)]
+    found: dict[tuple[int, ...], int] = {}
+    for powers, c in table.items():
+        for k, factor in enumerate(images[powers[variable]].coeffs()):
+            place = (*powers[:variable], k, *powers[variable + 1 :])
+            found[place] = found.get(place, 0) + c * int(factor)
+    return {place: c for place, c in found.items() if c}
+
+
+def _bits(row: Coefficient) -> int:
+    return max((int(c).bit_length() for _, c in row.terms()), default=0)
+
+
+def _degrees(rows: Rows, variable: int) -> tuple[UnivariatePolynomial, ...]:
+    """A power of one variable for each coefficient, that of its degree: all that bounds of degrees look at."""
+    return tuple(
+        UnivariatePolynomial([] if row.is_zero() else [*([0] * int(row.degrees()[variable])), 1]) for row in rows
+    )
+
+
+def _of_one(ps: Sequence[Sequence[fmpz_poly]]) -> int:
+    return resultants.discriminant_degree(ps[0])
+
+
+def _of_two(ps: Sequence[Sequence[fmpz_poly]]) -> int:
+    return resultants.resultant_degree(ps[0], ps[1])
+
+
+def _interpolated(
+    polynomials: Sequence[Rows],
+    compute: Callable[[Sequence[Sequence[fmpz_poly]]], fmpz_poly],
+    bound: Callable[[Sequence[Sequence[fmpz_poly]]], int],
+    check: Check,
+) -> Coefficient:
+    """What is computed over Z[w] at integers u, as an element of Z[u, w]."""
+    degree = bound([_degrees(rows, 0) for rows in polynomials])
+    in_w = [[coefficients_in(row, 1) for row in rows] for rows in polynomials]  # of powers of w, in Z[u]
+
+    def at(k: int) -> fmpz_poly:
+        values = [[fmpz_poly([c(k) for c in row]) for row in rows] for rows in in_w]
+        return compute(values) if all(any(rows) for rows in values) else fmpz_poly([])
+
+    first = -(max(degree, 0) // 2)
+    values = [at(first + k) for k in range(degree + 1)]
+    found: dict[tuple[int, ...], fmpz] = {}
+    for j in range(max((len(value) for value in values), default=0)):
+        check()
+        entries = [value[j] for value in values]
+        column = interpolate(lambda k, entries=entries: entries[k - first], degree)  # type: ignore[misc]
+        found.update({(i, j): c for i, c in enumerate(column.coeffs()) if c})
+    return PLANE.from_dict(found)
+
+
+def _deflated(polynomials: Sequence[Rows]) -> tuple[list[Rows], tuple[int, int]]:
+    """The polynomials with u and w in place of their powers, as far as only such occur."""
+    exponents = [powers for rows in polynomials for row in rows for powers, _ in row.terms()]
+    k, m = (max(1, gcd(*(int(powers[variable]) for powers in exponents))) for variable in (0, 1))
+    return [
+        tuple(PLANE.from_dict({(int(i) // k, int(j) // m): c for (i, j), c in row.terms()}) for row in rows)
+        for rows in polynomials
+    ], (k, m)
+
+
+def _inflated(p: Coefficient, powers: tuple[int, int]) -> Coefficient:
+    return PLANE.from_dict({(int(i) * powers[0], int(j) * powers[1]): c for (i, j), c in p.terms()})

@@ -1,0 +1,220 @@
+"""``ptmcad sweep``: every member of a record's sweep classified, by all processors or a cluster, into a folder."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.sweep import State, Sweep
+from ptmcad.cli.drawing import share_of
+from ptmcad.cli.formats import formats_of
+from ptmcad.cli.gathering import gathered
+from ptmcad.cli.limits import Limits, held, limit_options
+from ptmcad.cli.pictures import picture, report_written
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.values import files, names
+from ptmcad.cli.values import formats as formats_known
+from ptmcad.errors import ConfigError, shown_path
+from ptmcad.process.extras import require_distributed, require_ffmpeg
+from ptmcad.process.handover import Topic, send
+from ptmcad.process.output import check_writable, text_writer, write_files
+from ptmcad.question.config import Sweeping, load_sweep
+
+FORMATS = ("csv", "html", "gif", "mp4")
+RETRIES = 2
+MAX_FRAMES = 240
+"""Pictures of a film; of more members some at equal distances are shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What is wanted of each member, as it was typed."""
+
+    engine: str
+    tolerance: Fraction | None
+    area_tolerance: Fraction | None
+    no_areas: bool
+    along: str | None
+    no_ranges: bool
+    member_timeout: float | None
+
+    def wanted(self, question: Sweeping) -> Any:
+        """The same for these slices, checked.
+
+        Raises
+        ------
+        ConfigError
+            For options that do not fit the slices, or one another.
+        """
+        from ptmcad.sweeping.member import Wanted
+        from ptmcad.sweeping.run import axes_of, checked
+
+        if self.no_ranges and self.along is not None:
+            raise ConfigError("ranges are not asked for, but their axis is given: leave one out", key="--no-ranges")
+        if self.no_areas and self.area_tolerance is not None:
+            raise ConfigError("areas are not asked for, but a tolerance is given: leave one out", key="--no-areas")
+        along = "" if self.no_ranges else self.along or axes_of(question)[0]
+        return checked(
+            question,
+            Wanted(self.engine, self.tolerance, self.area_tolerance, not self.no_areas, along, self.member_timeout),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class How:
+    """Which processes compute, and how often they try."""
+
+    jobs: int | None
+    scheduler: str | None
+    retries: int
+
+
+def _formats(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...]:
+    return () if value is None else formats_of(context, parameter, value, known=FORMATS)
+
+
+@click.command("sweep")
+@click.argument("config", type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@click.option("--out", type=click.Path(path_type=Path), help="Folder of the sweep.  [default: NAME-sweep]")
+@click.option("--format", "formats", callback=_formats, shell_complete=formats_known(FORMATS), metavar="LIST",
+              help="What to write of the whole sweep beside the index and the results: csv (a line for each member), "
+                   "html (an atlas), gif or mp4 (a film of the maps).  [default: none]")  # fmt: skip
+@click.option("--fps", type=click.IntRange(1, 60), default=8, show_default=True, help="Pictures of a film in a second.")
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N",
+              help="Number of worker processes on this machine.  [default: all processors]")  # fmt: skip
+@click.option("--scheduler", metavar="URL",
+              help="Address of a Dask scheduler, such as tcp://host:8786, whose workers compute instead; needs the "
+                   "extra ptmcad[distributed].")  # fmt: skip
+@click.option("--retries", type=click.IntRange(0, 100), default=RETRIES, show_default=True,
+              help="How often a member is tried again whose process died, or which a limit stopped.")  # fmt: skip
+@click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
+@click.option("--along", metavar="NAME", shell_complete=names,
+              help="The axis along which the widest operation range is found.  [default: the first]")  # fmt: skip
+@click.option("--no-ranges", is_flag=True, help="Leave the widest operation ranges out, often most of the work.")
+@click.option("--no-areas", is_flag=True, help="Leave the regions' areas out.")
+@click.option("--tolerance", callback=share_of, metavar="EPS",
+              help="Stop a member when this share of the window is undetermined (certified engine).")  # fmt: skip
+@click.option("--area-tolerance", callback=share_of, metavar="EPS",
+              help="Relative width of the areas' bounds (exact engine).")  # fmt: skip
+@click.option("--member-timeout", type=click.FloatRange(min=0, min_open=True, max=1e9), metavar="S",
+              help="Stop a member after S seconds, which is then a failure.")  # fmt: skip
+@limit_options
+@gathered(asked=Asked, how=How)
+def command(
+    *, config: Path, out: Path | None, formats: tuple[str, ...], fps: int, asked: Asked, how: How, limits: Limits
+) -> int:  # fmt: skip
+    """Classify every member of a sweep.
+
+    CONFIG is a record with the key `sweep`, which gives values to parameters: lists, ranges, and all combinations of
+    several. The folder gets an index of all members (index.sqlite: counts, areas, operation ranges, status, time) and
+    the result of each as JSON, which `locate`, `verify`, `report` and `plot` take. Members with the same slice are
+    computed once.
+
+    Stopped by whatever, the same command goes on: no member is computed again that is done. A member that fails is
+    recorded with the reason, tried again, and stops no other; while there are such the exit status is 3.
+
+    \b
+    Examples:
+        ptmcad sweep loads.yaml --format csv,html
+        ptmcad sweep loads.yaml --jobs 2 --no-ranges --out family
+        ptmcad sweep loads.yaml --scheduler tcp://localhost:8786
+    """
+    question = load_sweep(config)
+    if how.scheduler is not None:
+        require_distributed()
+    if "mp4" in formats:
+        require_ffmpeg()
+    folder = Path(f"{question.name}-sweep") if out is None else out
+    wanted_files = tuple(f"{question.name}.{kind}" for kind in formats)
+    with held(limits), ProgressBar() as progress:
+        from ptmcad.sweeping.run import sweep
+
+        wanted = asked.wanted(question)
+        check_writable(folder, wanted_files)
+        send(Topic.RESUMABLE, f"what is done is in {folder}; the same command goes on")
+        found = sweep(question, folder, how.jobs, how.scheduler, wanted, how.retries, limits.timeout, progress)
+        if wanted_files:
+            made = Made(found, how.jobs, fps, progress)
+            write_files(folder, {name: picture(name, made.write) for name in wanted_files})
+    click.echo(found.table())
+    report_written(folder, wanted_files)
+    return _status(found)
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A sweep that has run, of which files are written."""
+
+    sweep: Sweep
+    jobs: int | None
+    fps: int
+    progress: ProgressBar
+
+    def write(self, path: Path) -> None:
+        """The file of the whole sweep whose format the suffix says."""
+        kind = path.suffix.removeprefix(".")
+        if kind == "csv":
+            text_writer(self.sweep.to_csv())(path)
+        elif kind == "html":
+            self._atlas(path)
+        else:
+            self._film(path)
+
+    def _atlas(self, path: Path) -> None:
+        from ptmcad.show.report.atlas import atlas, chosen, frame_of
+        from ptmcad.sweeping.index import members
+        from ptmcad.sweeping.sketches import sketches
+
+        shown = list(members(self.sweep, chosen(self.sweep)))
+        done = [member.number for member in shown if member.state is State.DONE]
+        drawn = dict(sketches(self.sweep.folder, done, self.jobs, self.progress))
+        frame = frame_of(self.sweep, self._some().slice)
+        text_writer(atlas(self.sweep, frame, shown, drawn))(path)
+
+    def _film(self, path: Path) -> None:
+        from ptmcad.show.render.backend import load_matplotlib
+
+        load_matplotlib()
+        from ptmcad.show.render.sweepfilm import save_sweep_film
+        from ptmcad.show.style import DEFAULT
+
+        done = [member for member in self.sweep if member.state is State.DONE]
+        every = -(-len(done) // MAX_FRAMES)
+        shown = done[::every]
+
+        def seen(number: int) -> RegionMap:
+            self.progress("pictures", number, len(shown))
+            return self.sweep.result(shown[number].number)
+
+        self._some()
+        save_sweep_film(seen, [member.parameters for member in shown], path, DEFAULT, self.fps)
+
+    def _some(self) -> RegionMap:
+        """The map of the first member that has one.
+
+        Raises
+        ------
+        ConfigError
+            When none has.
+        """
+        first = next((member for member in self.sweep if member.state is State.DONE), None)
+        if first is None:
+            raise ConfigError("no member has a map, so there is nothing to draw", key="--format")
+        return self.sweep.result(first.number)
+
+
+def _status(found: Sweep) -> int:
+    """The exit status, after what there is to say of members without a result."""
+    missing = {state: number for state, number in found.states.items() if state is not State.DONE}
+    if not missing:
+        return 0
+    said = ", ".join(f"{number} {state.value}" for state, number in missing.items())
+    first = next((member for member in found if member.state is not State.DONE), None)
+    why = "" if first is None else f"; the first is member {first.number}: {first.error}"
+    click.echo(f"stopped: {said} of {len(found)} members, see {shown_path(found.folder)}{why}", err=True)
+    return 3

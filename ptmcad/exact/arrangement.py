@@ -1,0 +1,180 @@
+"""The arrangement of the regions of a slice, with one count for each part that the curves cut out, and no areas.
+
+Guarantee: exact, and that of the slice's region map.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from flint import fmpq
+
+from ptmcad.algebra.polynomials import UnivariatePolynomial
+from ptmcad.algebra.real_roots import disjoint, has_root_between, isolate, sign_at, squarefree_part
+from ptmcad.algebra.resultants import Check, nothing
+from ptmcad.algebra.window import Interval
+from ptmcad.answer.arrangement import Arrangement
+from ptmcad.answer.regionmap import Merge, Wall
+from ptmcad.exact.cad.curves import Curve
+from ptmcad.exact.cad.projection import Projection
+from ptmcad.exact.cad.stacks import StackData, heights_between
+from ptmcad.exact.counting import Equilibria
+from ptmcad.exact.regions import Link, members, merge
+from ptmcad.exact.stages import (
+    Neighbours,
+    Sample,
+    SampleCounts,
+    SliceProblem,
+    Stacks,
+    Variety,
+    crossings_of,
+    neighbours_of,
+    problem_of,
+    projection_of,
+    stacks_of,
+    variety_of,
+    with_keys,
+)
+from ptmcad.exact.variety import Known
+from ptmcad.question.domain import prove_slice
+from ptmcad.question.slice import Slice, without_free_lengths
+
+_NO_WALL = Wall(0, 0)
+"""Of points on the window's edge, which are none of a stack's."""
+
+
+class Picture(NamedTuple):
+    """A slice's arrangement with the decomposition in which points are found."""
+
+    arrangement: Arrangement
+    problem: SliceProblem
+    variety: Variety
+    projection: Projection
+    stacks: Stacks
+    neighbours: Neighbours
+
+    def region_at(self, at: Sample) -> int | None:
+        """The region of a point of the window; None on the curves, and on lines over critical abscissae."""
+        base = self.variety.base
+        u, v = at[base], at[1 - base]
+        place = 0
+        for r in self.projection.abscissae:
+            if r.low <= u <= r.high and sign_at(r.polynomial, u) == 0:
+                return None
+            place += _below(r.polynomial, r.low, r.high, u)
+        level = _level(self.variety.curves, u, v, self.problem.window[1 - base])
+        if level is None:
+            return None
+        first = sum(len(stack.heights) for stack in self.stacks.stacks[:place])
+        return self.neighbours.region_of[first + level]
+
+
+def picture_of(slice: Slice, known: Known | None = None, check: Check = nothing, base: int | None = None) -> Picture:
+    """The arrangement of a slice without free lengths.
+
+    Parameters
+    ----------
+    known : what is known of the equations from a family that the slice is of.
+    check : called now and then; may raise to stop.
+    base : 0 or 1, the axis over which the window is cut, on which the arrangement does not depend; the cheaper one when
+        None.
+
+    Raises
+    ------
+    ConfigError
+        When springs have a free length.
+    HypothesisError
+        When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the geometry.
+    """
+    without_free_lengths(slice.model, slice.parameters, "an arrangement is")
+    prove_slice(slice)
+    problem = problem_of(slice)._replace(known=known)
+    variety = variety_of(problem, base=base)
+    projection = projection_of(problem, variety, check=check)
+    stacks = stacks_of(problem, variety, projection)
+    crossings = crossings_of(problem, variety, stacks, check=check)
+    unknown = SampleCounts((), ((),) * len(stacks.points))
+    parts = neighbours_of(variety, projection, stacks, unknown, crossings)
+    counts = _counts(problem, stacks, parts, check)
+    neighbours = neighbours_of(variety, projection, stacks, counts, crossings)
+    region_of = neighbours.region_of
+    keys = tuple(counts.keys[cells[0]] for cells in members(region_of))
+    pairs = (
+        tuple(sorted((region_of[a.first], region_of[a.second])))
+        for a in neighbours.adjacencies
+        if a.merge is Merge.SEPARATED
+    )
+    sides = _sides(problem, variety, stacks, region_of)
+    arrangement = Arrangement(keys, frozenset((a, b) for a, b in pairs if a != b), sides)
+    return Picture(arrangement, problem, variety, projection, stacks, neighbours)
+
+
+def _counts(problem: SliceProblem, stacks: Stacks, parts: Neighbours, check: Check) -> SampleCounts:
+    """The counts at all samples, each computed once for cells that are joined off the curves."""
+    joined = [Link(a.first, a.second, None) for a in parts.adjacencies if a.component is None]
+    part_of = merge([()] * len(stacks.points), joined)
+    found: dict[int, Equilibria] = {}
+    for cells in members(part_of):
+        check()
+        found[part_of[cells[0]]] = problem.solved_at(min((stacks.points[n] for n in cells), key=_height))
+    return with_keys(problem, [found[part] for part in part_of])
+
+
+def _height(at: Sample) -> int:
+    return max(abs(int(n)) for value in at for n in (value.p, value.q))
+
+
+def _sides(
+    problem: SliceProblem, variety: Variety, stacks: Stacks, region_of: Sequence[int]
+) -> tuple[tuple[int, ...], ...]:
+    """The regions along low x, high x, low y, high y."""
+    numbers = iter(region_of)
+    rows = [tuple(next(numbers) for _ in stack.heights) for stack in stacks.stacks]
+    along = [_without_repetition([row[0] for row in rows]), _without_repetition([row[-1] for row in rows])]
+    base, fibre = problem.window[variety.base], problem.window[1 - variety.base]
+    across = [
+        _without_repetition([row[level] for level in _levels_at(variety.curves, edge, stack, fibre)])
+        for edge, stack, row in ((base[0], stacks.stacks[0], rows[0]), (base[1], stacks.stacks[-1], rows[-1]))
+    ]
+    return (*across, *along) if variety.base == 0 else (*along, *across)
+
+
+def _levels_at(curves: Sequence[Curve], edge: fmpq, stack: StackData, fibre: Interval) -> list[int]:
+    """The levels of a stack's cells along the window's edge at the end of its base, from below.
+
+    Not all cells reach the edge along an arc: two walls may end in one point of it.
+    """
+    product = UnivariatePolynomial([1])
+    for c in curves:
+        product *= c.fibre(edge)
+    roots = disjoint(isolate(squarefree_part(product), *fibre))
+    levels = []
+    for height in heights_between([(_NO_WALL, r) for r in roots], fibre):
+        traces = [c.trace(height) for c in curves]
+        u = stack.sample
+        while any(has_root_between(p, min(u, edge), max(u, edge)) for p in traces):
+            u = (u + edge) / 2
+        level = _level(curves, u, height, fibre)
+        assert level is not None  # the segment from the edge to this point meets no curve
+        levels.append(level)
+    return levels
+
+
+def _level(curves: Sequence[Curve], u: fmpq, v: fmpq, fibre: Interval) -> int | None:
+    """The number of walls below a point over an abscissa that is not critical; None on a wall."""
+    fibres = [c.fibre(u) for c in curves]
+    if any(sign_at(p, v) == 0 for p in fibres):
+        return None
+    return sum(len(isolate(p, fibre[0], v)) for p in fibres)
+
+
+def _below(p: UnivariatePolynomial, low: fmpq, high: fmpq, u: fmpq) -> bool:
+    """Whether the only root of p in [low, high], which is not u, is less than u."""
+    if not low < u < high:
+        return bool(u >= high)
+    return sign_at(p, u) == sign_at(p, high)
+
+
+def _without_repetition(regions: Sequence[int]) -> tuple[int, ...]:
+    return tuple(r for n, r in enumerate(regions) if n == 0 or regions[n - 1] != r)

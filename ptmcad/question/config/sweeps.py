@@ -1,0 +1,264 @@
+"""The key ``sweep`` of a record: which values some parameters take, and the slice of each member.
+
+Guarantee: whatever is wrong is a `ConfigError` with file, line and key. A member is the slice that the options
+``--set`` would ask for with the member's values. Values are exact rational numbers; a range ends exactly where it says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from ptmcad.errors import Faults
+from ptmcad.mechanism import Model
+from ptmcad.question.config.binding import with_numbers
+from ptmcad.question.config.objects import plain
+from ptmcad.question.config.record import Record, check_axis_name, number_text, read_record
+from ptmcad.question.config.resolution import check_number, names_in_scalar, number_of, slice_of
+from ptmcad.question.slice import Slice
+from ptmcad.question.sweep import Listed, Product, Spaced, Sweep, Values
+from ptmcad.text.syntax import did_you_mean
+from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python, read_file
+
+MAX_MEMBERS = 1_000_000
+"""Of a sweep; more would rather be asked in parts."""
+RANGE_KEYS = ("from", "to", "step", "steps")
+_EXAMPLE = "{F: [-10, -20]} or {F: {from: -40, to: 0, step: 5}}"
+
+
+@dataclass(frozen=True, slots=True)
+class Sweeping:
+    """A record and the values that its sweep gives to some of its parameters."""
+
+    record: Record
+    sweep: Sweep
+
+    @property
+    def name(self) -> str:
+        """The start of the names of the files that are written."""
+        return self.record.name or f"sweep-{'-'.join(self.sweep.names)}"
+
+    def __len__(self) -> int:
+        return len(self.sweep)
+
+    def slice(self, number: int) -> Slice:
+        """The slice of a member.
+
+        Raises
+        ------
+        ConfigError
+            When these values are not what the mechanism needs.
+        """
+        return slice_of(with_values(self.record, self.sweep[number]))
+
+
+def with_values(record: Record, values: Mapping[str, Fraction]) -> Record:
+    """The record with values for what it sweeps; its title and its published answers are those of another slice."""
+    return replace(with_numbers(record, values, {}), sweep=None, title="", reference={})
+
+
+def load_sweep(path: str | Path) -> Sweeping:
+    """Read a record with a sweep.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong in it, with file, line and key; its ``faults`` are all there are.
+    """
+    return checked_sweep(read_file(path))
+
+
+def asks_for_sweep(path: str | Path) -> bool:
+    """Whether a record has the key ``sweep``.
+
+    Raises
+    ------
+    ConfigError
+        When it cannot be read.
+    """
+    return "sweep" in read_file(path).entries
+
+
+def sweep_from(question: str | Path | Mapping[str, Any] | Sweeping) -> Sweeping:
+    """The sweep that is meant by a record's file, by a mapping like a record, or by itself.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong.
+    """
+    if isinstance(question, Sweeping):
+        return question
+    if not isinstance(question, Mapping):
+        return load_sweep(question)
+    node = from_python(plain(question), Place())
+    assert isinstance(node, Tree)  # of a mapping
+    return checked_sweep(node)
+
+
+def checked_sweep(tree: Tree) -> Sweeping:
+    """The sweep of a record.
+
+    Raises
+    ------
+    ConfigError
+        That knows all faults of the record; of the members the first is looked at, and every value's sign.
+    """
+    faults = Faults()
+    record = read_record(tree, faults)
+    if any((fault.key or "").split(".")[0] in ("mechanism", "system", "axes") for fault in faults.found):
+        faults.check()  # without these nothing can be said of the values
+    if record.sweep is None:
+        with faults:
+            raise tree.place.below("sweep").error(f"is missing: say what is swept, such as {_EXAMPLE}")
+    elif (sweep := _read(record.sweep, record, faults)) is not None and not faults.found:
+        slice_of(with_values(record, sweep[0]))
+        return Sweeping(record, sweep)
+    faults.check()
+    raise AssertionError("a fault was noted")
+
+
+def swept_names(record: Record) -> dict[str, Place]:
+    """What a record sweeps, with its places, as far as that can be read."""
+    found: dict[str, Place] = {}
+    node = record.sweep
+    for part in node.items if isinstance(node, Sequence) else (node,):
+        if isinstance(part, Tree):
+            found |= {name: entry.place for name, entry in part.entries.items()}
+    return found
+
+
+def _read(node: Node, record: Record, faults: Faults) -> Sweep | None:
+    """The sweep of a record; None where there is nothing to go on with."""
+    products = []
+    first: tuple[str, ...] = ()
+    parts = node.items if isinstance(node, Sequence) else (node,)
+    for part in parts:
+        with faults:
+            if not isinstance(part, Tree) or not part.entries:
+                raise part.place.error(f"expected parameters with their values, such as {_EXAMPLE}")
+            first = first or tuple(part.entries)
+            if set(part.entries) != set(first):
+                raise part.place.error(f"each mapping of the list sweeps the same parameters: {', '.join(first)}")
+            products.append(_product(part, record, faults))
+    if not parts:
+        with faults:
+            raise node.place.error(f"expected parameters with their values, such as {_EXAMPLE}")
+    if len(products) < max(len(parts), 1) or not all(product.values for product in products):
+        return None
+    sweep = Sweep(tuple(products))
+    with faults:
+        if len(sweep) > MAX_MEMBERS:
+            raise node.place.error(f"has {len(sweep)} members, more than {MAX_MEMBERS}: ask for a part of them")
+    return sweep
+
+
+def _product(node: Tree, record: Record, faults: Faults) -> Product:
+    found: dict[str, Values] = {}
+    for name, entry in node.entries.items():
+        with faults:
+            _check_name(name, entry.place, record)
+            found[name] = _values(entry)
+            if name in record.model.parameters:
+                for value in found[name].extremes:
+                    check_number(name, record.model.kind(name), value, entry.place)
+    return Product(found)
+
+
+def _check_name(name: str, place: Place, record: Record) -> None:
+    """Refuse a name that cannot be swept."""
+    check_axis_name(name, place)
+    if name in record.axes:
+        raise place.error(f"{name} is an axis and cannot be swept too: remove it here or from the axes")
+    if name in record.values:
+        raise place.error(f"{name} has a value under 'parameters' and cannot be swept too: leave one out")
+    if name not in record.model.parameters and not _used(name, record):
+        hint = did_you_mean(name, record.model.parameters) or ";"
+        raise place.error(
+            f"no parameter is called {name[:40]}{hint} or use it in an expression, {_example(record.model, name)}"
+        )
+
+
+def _example(model: Model, name: str) -> str:
+    parameter = next(iter(model.forces), next(iter(model.parameters), "F3"))
+    return f"such as {parameter}: {name[:40]} under 'parameters'"
+
+
+def _used(name: str, record: Record) -> bool:
+    return any(name in names_in_scalar(scalar) for scalar in record.values.values())
+
+
+def _values(node: Node) -> Values:
+    """The values of one parameter: a list, or a range."""
+    if isinstance(node, Sequence):
+        if not node.items:
+            raise node.place.error("the list is empty: give the values, such as [-10, -20]")
+        return Listed(tuple(number_of(number_text(item), "a value") for item in node.items))
+    if isinstance(node, Tree):
+        return _range(node)
+    raise node.place.error("expected a list such as [-10, -20], or a range such as {from: -40, to: 0, step: 5}")
+
+
+def _range(node: Tree) -> Spaced:
+    """The values of a range with its ends and the step between two values, or the number of values."""
+    for key, entry in node.entries.items():
+        if key not in RANGE_KEYS:
+            hint = did_you_mean(key, RANGE_KEYS) or f"; the keys are {', '.join(RANGE_KEYS)}"
+            raise entry.place.error(f"unknown key{hint}")
+    missing = [key for key in ("from", "to") if key not in node.entries]
+    if missing:
+        raise node.place.error(f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing")
+    if ("step" in node.entries) == ("steps" in node.entries):
+        raise node.place.error("give either step, the distance of two values, or steps, the number of values")
+    low, high = (_number(node, key) for key in ("from", "to"))
+    if low == high:
+        raise node.place.error(f"the range is empty: {low} to {high}; a list gives a single value")
+    return _by_step(node, low, high) if "step" in node.entries else _by_number(node, low, high)
+
+
+def _number(node: Tree, key: str) -> Fraction:
+    return number_of(number_text(node.entries[key]), f"'{key}'")
+
+
+def _by_step(node: Tree, low: Fraction, high: Fraction) -> Spaced:
+    step, place = _number(node, "step"), node.entries["step"].place
+    if step <= 0:
+        raise place.error(f"a step is positive, not {step}; a range may go down: from 0 to -40")
+    signed = step if high > low else -step
+    number = (high - low) / signed
+    if number.denominator != 1:
+        raise place.error(f"steps of {step} from {low} do not end at {high}: {high - low} is no multiple of {step}")
+    return _bounded(Spaced(low, signed, int(number) + 1), place)
+
+
+def _by_number(node: Tree, low: Fraction, high: Fraction) -> Spaced:
+    steps, place = _number(node, "steps"), node.entries["steps"].place
+    if steps.denominator != 1 or steps < 2:
+        raise place.error(f"the number of values, both ends among them, is a whole number from 2 on, not {steps}")
+    return _bounded(Spaced(low, (high - low) / (int(steps) - 1), int(steps)), place)
+
+
+def _bounded(found: Spaced, place: Place) -> Spaced:
+    if found.number > MAX_MEMBERS:
+        raise place.error(f"has {found.number} values, more than {MAX_MEMBERS}")
+    return found
+
+
+def settled(record: Record, given: Mapping[str, Scalar]) -> tuple[Record, dict[str, Scalar]]:
+    """A record of whose sweep some names have been given a value, or made axes, and the other values.
+
+    Raises
+    ------
+    ConfigError
+        When other parameters are still swept.
+    """
+    swept = swept_names(record)
+    new = {name: number_of(given[name], "a value") for name in given if name not in record.model.parameters}
+    left = {name: place for name, place in swept.items() if name not in given and name not in record.axes}
+    for name, place in left.items():
+        raise place.error(f"{name} is swept too: add --set {name}=VALUE, or ask `ptmcad sweep` for all of its values")
+    settled = replace(with_numbers(record, new, {}), sweep=None)
+    return settled, {name: scalar for name, scalar in given.items() if name not in new}

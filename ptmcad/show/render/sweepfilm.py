@@ -1,0 +1,105 @@
+"""Pictures of a sweep's maps, one after another in one frame, for a film.
+
+Guarantee: the frame, the colours and the legend are the same in all pictures, so that only the regions move. The values
+above a map are exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from ptmcad.answer.counts import counted_by
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.show.render.axes import symbol
+from ptmcad.show.render.film import save_pictures
+from ptmcad.show.render.legend import INK, head_of
+from ptmcad.show.render.painting import paint_of
+from ptmcad.show.render.plotting import draw_on
+from ptmcad.show.render.stage import Pixels
+from ptmcad.show.style import Place, Style
+from ptmcad.show.table import count_text
+from ptmcad.text.numerals import fraction_of, shortest_text
+
+SIZE = (7.0, 5.2)
+"""Inches of a picture."""
+_BOX = (0.11, 0.12, 0.62, 0.76)
+"""Of the map, as shares of the picture's sides: left, bottom, width, height."""
+_MAX_LENGTH = 90
+"""Characters of the values above a map."""
+
+
+class SweepFilm:
+    """The pictures; to be used within `printing.settings`.
+
+    Parameters
+    ----------
+    maps : gives each map when it is drawn, so that only one of them is in memory.
+    values : of what is swept, for each map.
+    """
+
+    def __init__(
+        self, maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]], style: Style, dpi: int
+    ) -> None:
+        self.maps, self.values, self.dpi = maps, values, dpi
+        self.style = style._replace(legend=Place.NONE, title="")
+        self.legend: dict[tuple[int, ...], Any] = {}
+        head = ""
+        for number in range(len(values)):
+            result = maps(number)
+            paint, count = paint_of(result, style), result.slice.count
+            head = head_of(result.slice)[0]
+            for region in result.regions:
+                fill = paint.fill(region)
+                self.legend[counted_by(region, count)] = Patch(
+                    facecolor=fill.face, hatch=fill.hatch or None, edgecolor=INK, linewidth=0.4,
+                    label=count_text(region, count),
+                )  # fmt: skip
+        self.head = head
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def frame(self, number: int) -> Pixels:
+        figure = Figure(figsize=SIZE, dpi=self.dpi, facecolor="white")
+        axes: Any = figure.add_axes(_BOX)
+        draw_on(axes, self.maps(number), False, self.style)
+        text = ",  ".join(f"{symbol(n)} = {shortest_text(fraction_of(v))}" for n, v in self.values[number].items())
+        figure.text(_BOX[0], 0.93, text if len(text) <= _MAX_LENGTH else f"{text[:_MAX_LENGTH]}…", fontsize=12)
+        figure.legend(
+            handles=[self.legend[count] for count in sorted(self.legend)], title=self.head, loc="upper left",
+            bbox_to_anchor=(_BOX[0] + _BOX[2] + 0.02, _BOX[1] + _BOX[3]), borderaxespad=0, frameon=False, fontsize=9,
+        )  # fmt: skip
+        canvas: Any = _canvas(figure)
+        canvas.draw()
+        return np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+
+def _canvas(figure: Figure) -> Any:
+    return FigureCanvasAgg(figure)
+
+
+def save_sweep_film(
+    maps: Callable[[int], RegionMap],
+    values: Sequence[Mapping[str, str]],
+    path: Path,
+    style: Style,
+    fps: int,
+    dpi: int = 100,
+) -> None:
+    """Write the maps as a GIF or, with the program ffmpeg, as MP4, by the file's suffix.
+
+    Raises
+    ------
+    ConfigError
+        For another suffix, or MP4 without ffmpeg.
+    OSError
+        When the file cannot be written.
+    """
+    save_pictures(lambda: SweepFilm(maps, values, style, dpi), path, style, fps)

@@ -1,0 +1,222 @@
+"""A sweep as one HTML page: all maps on a sheet, sliders, and areas, ranges and optima against what is swept.
+
+Guarantee: the page needs no network and no other file. Whatever a record, an error or a result says stands in it as
+text; its policy allows this page's own script and style and nothing else. The same sweep gives the same text.
+
+Not guaranteed: all maps of a sweep with more than `MAX_MAPS` members. Then members at equal distances are shown, and
+the page says so.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from html import escape
+from string import Template
+from typing import Any
+
+from ptmcad.answer.sweep import Member, State, Sweep
+from ptmcad.show.render.axes import symbol
+from ptmcad.show.render.colours import Fill
+from ptmcad.show.report.chart import hatch_id, pattern_defs
+from ptmcad.show.report.page import asset, harmless, policy_of
+from ptmcad.show.sweeps.sketch import SIDE, Sketch
+from ptmcad.show.sweeps.table import middle
+from ptmcad.text.numerals import fraction_of, shortest_text
+from ptmcad.version import __version__
+
+SCRIPTS = ("theme.js", "atlas.js")
+MAX_MAPS = 1024
+"""Maps of a page."""
+_MAX_ERROR = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """What all maps of a sweep have in common: the axes' names and windows as texts, and what is counted."""
+
+    axes: tuple[tuple[str, str, str], ...]
+    heading: str
+    counted: str
+
+
+def chosen(sweep: Sweep) -> Sequence[int]:
+    """The numbers of the members on the page."""
+    every = -(-len(sweep) // MAX_MAPS)
+    return range(0, len(sweep), every)
+
+
+def atlas(sweep: Sweep, frame: Frame, members: Sequence[Member], sketches: Mapping[int, Sketch]) -> str:
+    """The whole page as HTML text.
+
+    Parameters
+    ----------
+    members : those on the page, by their numbers.
+    sketches : the drawings of those that have a result.
+    """
+    style = asset("page.css") + asset("atlas.css")
+    script = "".join(asset(name) for name in SCRIPTS)
+    fills = {fill for s in sketches.values() for fill in (s.plate, *(fill for fill, _ in s.paths))}
+    values = {name: _sorted({member.parameters[name] for member in members}) for name in sweep.names}
+    columns = len(values[sweep.names[-1]]) if _is_table(values, members) else 0
+    return Template(asset("atlas.html")).substitute(
+        policy=escape(policy_of(style, script)),
+        title=escape(frame.heading or sweep.name),
+        name=escape(sweep.name),
+        banner="".join(_banners(sweep, members)),
+        patterns=pattern_defs(sorted(fills, key=lambda fill: (fill.face, fill.hatch))),
+        across=escape(_axis(frame, 0)),
+        up=escape(_axis(frame, 1)),
+        sheet="".join(_cell(sweep, member, sketches.get(member.number)) for member in members),
+        side=str(SIDE),
+        legend="".join(_legend(sketches.values(), frame)),
+        order=escape(_order(sweep, columns)),
+        version=escape(__version__),
+        data=harmless(_data(sweep, frame, members, values, columns)),
+        style=style,
+        script=script,
+    )
+
+
+def _is_table(values: Mapping[str, Sequence[str]], members: Sequence[Member]) -> bool:
+    """Whether two parameters are swept in all combinations, so that the sheet has a row for each value of the first."""
+    if len(values) != 2:
+        return False
+    first, second = values.values()
+    return len(first) * len(second) == len({tuple(m.parameters.values()) for m in members}) == len(members)
+
+
+def _order(sweep: Sweep, columns: int) -> str:
+    if columns:
+        return f"A row for each value of {symbol(sweep.names[0])}, a column for each of {symbol(sweep.names[1])}."
+    return f"In the order of the sweep over {', '.join(map(symbol, sweep.names))}."
+
+
+def _sorted(values: Iterable[str]) -> list[str]:
+    return sorted(values, key=fraction_of)
+
+
+def _axis(frame: Frame, number: int) -> str:
+    name, low, high = frame.axes[number]
+    return f"{symbol(name)} from {low} to {high}"
+
+
+def _banners(sweep: Sweep, members: Sequence[Member]) -> Iterator[str]:
+    missing = [f"{number} {state.value}" for state, number in sweep.states.items() if state is not State.DONE]
+    if missing:
+        yield f'<p class="banner">Of {len(sweep)} members {escape(", ".join(missing))}: these have no map.</p>'
+    if len(members) < len(sweep):
+        every = members[1].number - members[0].number if len(members) > 1 else len(sweep)
+        yield f'<p class="banner">The page shows one of {every} members; the index has all {len(sweep)}.</p>'
+
+
+def _cell(sweep: Sweep, member: Member, sketch: Sketch | None) -> str:
+    """One map of the sheet, as a button."""
+    label = ", ".join(f"{symbol(n)} = {_shown(member.parameters[n])}" for n in sweep.names)
+    if sketch is None:
+        return (
+            f'<button type="button" class="small none" data-m="{member.number}" aria-label="{escape(label)}: '
+            f'{escape(member.state.value)}"></button>'
+        )
+    drawn = [f'<path {_paint(sketch.plate)} d="M0 0H{SIDE}V{SIDE}H0z"/>'] if sketch.plate else []
+    for fill, data in sketch.paths:
+        drawn.append(f'<path fill="{escape(fill.face)}" d="{data}"/>')
+        if fill.hatch:
+            drawn.append(f'<path {_paint(Fill(fill.face, fill.hatch), hatched=True)} d="{data}"/>')
+    return (
+        f'<button type="button" class="small" data-m="{member.number}" aria-label="{escape(label)}">'
+        f'<svg viewBox="0 0 {SIDE} {SIDE}" aria-hidden="true">{"".join(drawn)}</svg></button>'
+    )
+
+
+def _legend(sketches: Iterable[Sketch], frame: Frame) -> Iterator[str]:
+    """The fills of all counts that occur, in the order of the counts."""
+    found = {text: fill for each in sketches for text, fill in each.legend}
+    for text, fill in sorted(found.items(), key=lambda item: [int(n) for n in re.findall(r"\d+", item[0])]):
+        hatch = f'<rect width="30" height="18" {_paint(fill, hatched=True)}/>' if fill.hatch else ""
+        yield (
+            f'<li><svg class="swatch" viewBox="0 0 30 18" aria-hidden="true"><rect width="30" height="18" '
+            f"{_paint(fill)}/>{hatch}</svg>{escape(frame.counted)}: {escape(text)}</li>"
+        )
+
+
+def _paint(fill: Fill, hatched: bool = False) -> str:
+    return f'fill="{f"url(#{hatch_id(fill.hatch)})" if hatched else escape(fill.face)}"'
+
+
+def _shown(value: str) -> str:
+    text = shortest_text(fraction_of(value))
+    return text if len(text) <= 14 else f"{float(fraction_of(value)):.6g}"
+
+
+def _data(
+    sweep: Sweep, frame: Frame, members: Sequence[Member], values: Mapping[str, Sequence[str]], columns: int
+) -> dict[str, Any]:
+    """What the script shows."""
+    places = {name: {value: k for k, value in enumerate(found)} for name, found in values.items()}
+    counts = sorted({a.count for m in members if m.summary for a in m.summary.areas}, key=_count_order)
+    along = next((m.summary.widest.along for m in members if m.summary and m.summary.widest), "")
+    over = next((name for name, _, _ in frame.axes if name != along), "")
+    return {
+        "columns": columns,
+        "counted": frame.counted,
+        "along": symbol(along),
+        "over": symbol(over),
+        "axes": [{"name": symbol(name), "low": low, "high": high} for name, low, high in frame.axes],
+        "swept": [
+            {"name": symbol(name), "texts": [_shown(v) for v in found], "values": [_float(v) for v in found]}
+            for name, found in values.items()
+        ],
+        "counts": counts,
+        "members": [_member_data(sweep, m, places, counts) for m in members],
+    }
+
+
+def _count_order(count: str) -> tuple[int, ...]:
+    return (-1,) if count == "?" else tuple(map(int, count.split("-")))
+
+
+def _float(value: str) -> float:
+    return float(fraction_of(value))
+
+
+def _member_data(
+    sweep: Sweep, member: Member, places: Mapping[str, Mapping[str, int]], counts: Sequence[str]
+) -> dict[str, Any]:
+    found = member.summary
+    data: dict[str, Any] = {"n": member.number, "p": [places[n][member.parameters[n]] for n in sweep.names]}
+    if found is None:
+        return data | {"e": f"{member.state.value}: {member.error}"[:_MAX_ERROR]}
+    areas = {area.count: area for area in found.areas}
+    data["a"] = [
+        _rounded(middle(areas[c].area)) if c in areas and areas[c].area[0] else _absent(areas, c) for c in counts
+    ]
+    data["r"] = found.regions
+    data["f"] = member.file
+    if found.widest is not None and found.widest.width is not None:
+        data["w"] = _rounded(middle(found.widest.width))
+        data["at"] = [_rounded(middle(place)) for place in found.widest.places[:4]]
+    return data
+
+
+def _absent(areas: Mapping[str, Any], count: str) -> float | None:
+    """The area of a count that no region has is zero; that of one whose areas were left out is not known."""
+    return None if count in areas else 0.0
+
+
+def _rounded(value: Fraction) -> float:
+    return float(f"{float(value):.6g}")
+
+
+def frame_of(sweep: Sweep, slice: Any) -> Frame:
+    """What the maps have in common, from the slice of one of them."""
+    axes = tuple((a.name, _shown_fraction(a.low), _shown_fraction(a.high)) for a in slice.axes)
+    fixed = [part for part in re.split(r", (?=\S+ = )", slice.heading) if part.partition(" = ")[0] not in sweep.names]
+    return Frame(axes, ", ".join(fixed) if not slice.title else slice.title, slice.count.value)
+
+
+def _shown_fraction(value: Fraction) -> str:
+    text = shortest_text(value)
+    return text if len(text) <= 14 else f"{float(value):.6g}"

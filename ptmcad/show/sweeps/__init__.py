@@ -1,0 +1,1 @@
+"""Sweeps as tables, as a page and as pictures one after another."""

@@ -1,0 +1,105 @@
+"""A map as a small drawing: the regions as paths of few characters, for a sheet of many maps.
+
+Guarantee: the same map gives the same text. A point of an outline is within `TOLERANCE` of the window's side, and the
+rounding to the drawing's grid, of the outline that the other pictures have.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
+from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.view import Floats
+from ptmcad.show.table import count_text
+
+SIDE = 800
+"""Steps of the drawing's grid along a side of the window."""
+TOLERANCE = 1 / 1600
+MAX_CHARACTERS = 6000
+"""Of one drawing; coarser outlines are taken for a map that needs more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sketch:
+    """What is painted: the plate's fill, and over it fills with the data of their SVG paths.
+
+    Attributes
+    ----------
+    legend : the counts that occur, as text, with their fills.
+    """
+
+    plate: Fill
+    paths: tuple[tuple[Fill, str], ...]
+    legend: tuple[tuple[str, Fill], ...]
+
+
+def sketch(result: RegionMap) -> Sketch:
+    """The drawing of a map.
+
+    Raises
+    ------
+    ValueError, IndexError, ArithmeticError
+        When the map contradicts itself.
+    """
+    seen = shapes(result)
+    largest = max(range(len(result.regions)), key=lambda k: result.regions[k].area, default=None)
+    plate = UNDETERMINED
+    if result.cover is None and largest is not None:
+        plate = fill_of(result.regions[largest], result.slice.count)
+    count = result.slice.count
+    legend = {count_text(region, count): fill_of(region, count) for region in result.regions}
+    pieces: dict[Fill, list[Floats]] = {}
+    for number, region in enumerate(result.regions):
+        fill = fill_of(region, result.slice.count)
+        if fill != plate:
+            pieces.setdefault(fill, []).extend(seen.polygons(number))
+    for factor in (1, 3, 9):
+        drawn = Sketch(plate, tuple((fill, _data(found, factor * TOLERANCE)) for fill, found in pieces.items()),
+                       tuple(legend.items()))  # fmt: skip
+        if sum(len(data) for _, data in drawn.paths) <= MAX_CHARACTERS:
+            break
+    return drawn
+
+
+def _data(polygons: list[Floats], tolerance: float) -> str:
+    """Polygons as the data of one path, without those that have no area on the grid."""
+    parts = []
+    for polygon in polygons:
+        half = len(polygon) // 2
+        kept = np.concatenate([simplified(polygon[:half], tolerance), simplified(polygon[half:], tolerance)])
+        placed = np.rint(np.stack([kept[:, 0], 1 - kept[:, 1]], axis=1) * SIDE).astype(int)
+        placed = placed[np.concatenate([[True], (placed[1:] != placed[:-1]).any(axis=1)])]
+        if len(placed) > 2:
+            corners = " ".join(f"{x} {y}" for x, y in placed.tolist())
+            parts.append(f"M{corners}z")
+    return "".join(parts)
+
+
+def simplified(line: Floats, tolerance: float) -> Floats:
+    """The corners of a polyline without which it would move by more than the tolerance (Douglas and Peucker).
+
+    >>> simplified(np.array([[0, 0], [1, 0.01], [2, 0], [2, 1]], dtype=float), 0.1).tolist()
+    [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]]
+    """
+    if len(line) < 3:
+        return line
+    kept = {0, len(line) - 1}
+    waiting = [(0, len(line) - 1)]
+    while waiting:
+        first, last = waiting.pop()
+        if last - first < 2:
+            continue
+        along, inner = line[last] - line[first], line[first + 1 : last] - line[first]
+        square = float(along @ along)
+        share = np.clip(inner @ along / square, 0, 1) if square else np.zeros(len(inner))
+        off = np.hypot(*(inner - share[:, None] * along).T)
+        furthest = int(np.argmax(off))
+        if off[furthest] > tolerance:
+            middle = first + 1 + furthest
+            kept.add(middle)
+            waiting += [(first, middle), (middle, last)]
+    return line[sorted(kept)]

@@ -1,0 +1,150 @@
+"""A sweep as a table: a screen of text, CSV, rows of a data frame.
+
+Guarantee: the CSV is the sweep's canonical form, ordered by member: it is the same text whatever the order in which
+members were computed, the processes or the interruptions. What differs between runs, seconds and attempts, is not in
+it. Numbers are exact, or decimals that bound from outside; cells that begin as a spreadsheet's formula would are
+texts of this program's, but for errors, which are quoted with an apostrophe then.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterable, Iterator
+from fractions import Fraction
+from io import StringIO
+from typing import Any
+
+from ptmcad.answer.sweep import CountedArea, Member, State, Sweep
+from ptmcad.text.numerals import fraction_of, shortest_text
+
+Members = Callable[[], Iterable[Member]]
+"""What gives the members once more from the first."""
+Row = dict[str, Any]
+_FIRST = ("member", "state", "status", "same_as", "cells", "regions", "undetermined")
+_LAST = ("along", "width_low", "width_high", "at_low", "at_high", "proof", "remark", "error", "file", "digest")
+_SHOWN = 12
+"""Members on a screen; half of them are the first ones, and half the last."""
+_WORDS = {
+    State.DONE: "done",
+    State.REFUSED: "refused, as no map of these values is possible",
+    State.FAILED: "failed",
+    State.WAITING: "waiting",
+}
+
+
+def table(sweep: Sweep, members: Members) -> str:
+    """One screen: what has become of the members, and some of them."""
+    states = "; ".join(f"{number} {_WORDS[state]}" for state, number in sweep.states.items())
+    lines = [f"sweep {sweep.name} over {', '.join(sweep.names)}: {len(sweep)} members, {states}"]
+    shown, left_out = _some(members(), len(sweep))
+    if not shown:
+        return lines[0]
+    head = [*sweep.names, "regions", "areas", "widest range"]
+    rows = [head, *(_cells(sweep, member) for member in shown)]
+    if left_out:
+        rows.insert(1 + _SHOWN // 2, ["…"] + [""] * (len(head) - 1))
+    wide = [max(len(row[k]) for row in rows) for k in range(len(head))]
+    lines += ["  ".join(f"{cell:<{w}}" for cell, w in zip(row, wide, strict=True)).rstrip() for row in rows]
+    return "\n".join(lines)
+
+
+def _some(members: Iterable[Member], number: int) -> tuple[list[Member], bool]:
+    """The first and the last members, and whether there are others between."""
+    few = number <= _SHOWN
+    kept = [m for m in members if few or m.number < _SHOWN // 2 or m.number >= number - _SHOWN // 2]
+    return kept, not few
+
+
+def _cells(sweep: Sweep, member: Member) -> list[str]:
+    values = [shortest_text(fraction_of(member.parameters[name])) for name in sweep.names]
+    found = member.summary
+    if found is None:
+        return [*values, member.state.value, member.error[:60], ""]
+    areas = "; ".join(f"{area.count}: {_rounded(area.area)}" for area in found.areas if area.area[0])
+    width = found.widest.width if found.widest is not None else None
+    return [*values, str(found.regions), areas, "" if width is None else _rounded(width)]
+
+
+def _rounded(bounds: tuple[str, str]) -> str:
+    return f"{float(middle(bounds)):.4g}"
+
+
+def middle(bounds: tuple[str, str]) -> Fraction:
+    """The middle of two bounds."""
+    return (fraction_of(bounds[0]) + fraction_of(bounds[1])) / 2
+
+
+def csv_text(sweep: Sweep, members: Members) -> str:
+    """All members as CSV, one a line."""
+    counts = counts_in(members())
+    text = StringIO()
+    writer = csv.DictWriter(text, columns(sweep, counts), lineterminator="\n")
+    writer.writeheader()
+    for member in members():
+        writer.writerow(row(sweep, member, counts))
+    return text.getvalue()
+
+
+def counts_in(members: Iterable[Member]) -> tuple[str, ...]:
+    """The counts of regions that occur in any member, in increasing order."""
+    found = {area.count for member in members if member.summary for area in member.summary.areas}
+    return tuple(sorted(found, key=_order))
+
+
+def _order(count: str) -> tuple[int, ...]:
+    return (-1,) if count == "?" else tuple(map(int, count.split("-")))
+
+
+def columns(sweep: Sweep, counts: Iterable[str]) -> list[str]:
+    """The names of the columns."""
+    by_count = [f"{what}_{count}{end}" for count in counts for what, end in _BY_COUNT]
+    return [_FIRST[0], *parameter_columns(sweep).values(), *_FIRST[1:], *by_count, *_LAST]
+
+
+_BY_COUNT = (("regions", ""), ("area", "_low"), ("area", "_high"))
+
+
+def parameter_columns(sweep: Sweep) -> dict[str, str]:
+    """The columns of what is swept: the names, with an underscore where the table has such a column already."""
+    own = {*_FIRST, *_LAST, "seconds", "attempts"}
+    return {name: f"{name}_" if name in own or name.startswith(("area_", "regions_")) else name for name in sweep.names}
+
+
+def row(sweep: Sweep, member: Member, counts: Iterable[str]) -> Row:
+    """A member's cells by the names of their columns."""
+    found = member.summary
+    cells: Row = {"member": member.number, "state": member.state.value, "same_as": member.same_as}
+    cells |= {column: member.parameters[name] for name, column in parameter_columns(sweep).items()}
+    cells |= {"error": _harmless(member.error), "file": member.file, "digest": member.digest}
+    if found is None:
+        return cells
+    cells |= {
+        "status": found.status, "cells": found.cells, "regions": found.regions, "undetermined": found.undetermined,
+    }  # fmt: skip
+    areas = {area.count: area for area in found.areas}
+    for count in counts:
+        area = areas.get(count, CountedArea(count, 0, ("0", "0")))
+        cells |= {f"regions_{count}": area.regions, f"area_{count}_low": area.area[0]}
+        cells[f"area_{count}_high"] = area.area[1]
+    if (widest := found.widest) is not None:
+        low, high = widest.width or ("", "")
+        at = widest.places[0] if widest.places else ("", "")
+        cells |= {"along": widest.along, "width_low": low, "width_high": high, "at_low": at[0], "at_high": at[1]}
+        cells |= {"proof": widest.proof, "remark": _harmless(widest.remark)}
+    return cells
+
+
+def _harmless(text: str) -> str:
+    """A text that no spreadsheet takes for a formula."""
+    return f"'{text}" if text[:1] in ("=", "+", "-", "@") else text
+
+
+def frame_rows(sweep: Sweep, members: Members) -> Iterator[Row]:
+    """Rows with numbers as floats, and what differs between runs."""
+    counts = counts_in(members())
+    exact = {"undetermined", *parameter_columns(sweep).values()}
+    exact |= {name for name in columns(sweep, counts) if name.endswith(("_low", "_high"))}
+    for member in members():
+        cells = row(sweep, member, counts)
+        floats = {name: float(fraction_of(cells[name])) if cells.get(name) else None for name in exact}
+        yield {**cells, **floats, "seconds": member.seconds, "attempts": member.attempts}

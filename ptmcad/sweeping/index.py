@@ -1,0 +1,334 @@
+"""The folder of a sweep: an index in SQLite, and below it the members' results, one JSON file each.
+
+Guarantee: whatever ends the process (``kill -9`` at any moment included), the index can be opened again, and each row
+that says *done* has its whole file: the file is put into place before the row is written. One process at a time uses a
+folder. Rows are never removed; what is written of a member does not depend on when or by whom it was computed, but for
+the columns ``seconds`` and ``attempts``.
+
+Not guaranteed: that rows of the last moments survive a machine that loses power; then those members are computed again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import sqlite3
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import astuple
+from pathlib import Path
+from typing import Any
+
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.sweep import CountedArea, Member, State, Summary, Sweep, Widest
+from ptmcad.errors import ConfigError, OutputError
+from ptmcad.sweeping.member import Failed, Found, Outcome, Refused
+from ptmcad.text.textfile import read_text
+
+if sys.platform != "win32":
+    import fcntl
+
+FORMAT = "ptmcad-sweep/1"
+INDEX, RESULTS, LOCK = "index.sqlite", "results", ".lock"
+MAX_BYTES = 60_000_000
+"""Of a member's result."""
+_IN_A_FOLDER = 1000
+"""Results of a folder below `RESULTS`: a million files in one are slow to list."""
+_TABLES = """
+CREATE TABLE IF NOT EXISTS sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS members (
+    number INTEGER PRIMARY KEY,
+    parameters TEXT NOT NULL,
+    slice BLOB,
+    same_as INTEGER,
+    state TEXT NOT NULL DEFAULT 'waiting',
+    status TEXT,
+    cells INTEGER,
+    regions INTEGER,
+    undetermined TEXT,
+    areas TEXT,
+    widest TEXT,
+    error TEXT NOT NULL DEFAULT '',
+    file TEXT NOT NULL DEFAULT '',
+    digest TEXT NOT NULL DEFAULT '',
+    size INTEGER,
+    seconds REAL,
+    attempts INTEGER NOT NULL DEFAULT 0
+);
+CREATE UNIQUE INDEX IF NOT EXISTS slices ON members (slice) WHERE same_as IS NULL;
+CREATE INDEX IF NOT EXISTS states ON members (state);
+"""
+_SHARED = "state, status, cells, regions, undetermined, areas, widest, error, file, digest, size"
+"""What members with the same slice have in common."""
+_TO_DO = "same_as IS NULL AND state IN ('waiting', 'failed')"
+_MEMBER = f"number, parameters, same_as, seconds, attempts, {_SHARED}"
+
+
+class Index:
+    """An open index, for writing; `opened` gives one."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._made: set[Path] = set()
+        # every statement is a transaction of its own, which a kill undoes or leaves whole
+        self.rows = sqlite3.connect(folder / INDEX, isolation_level=None)
+        self.rows.execute("PRAGMA journal_mode = WAL")
+        self.rows.execute("PRAGMA synchronous = NORMAL")
+        self.rows.executescript(_TABLES)
+
+    def claim(self, facts: dict[str, str], asked: str) -> None:
+        """Say of which question this is the index, or find that it is the same one.
+
+        Raises
+        ------
+        ConfigError
+            When the folder holds another sweep.
+        """
+        known = dict(self.rows.execute("SELECT key, value FROM sweep"))
+        wanted = {"format": FORMAT, "asked": asked, **facts}
+        if known and known != wanted:
+            what = "another version of ptmcad" if known.get("asked") == asked else "another record, or other options"
+            raise ConfigError(f"{self.folder} holds the sweep of {what}: choose another folder", key="--out")
+        with self.transaction():
+            self.rows.executemany("INSERT OR IGNORE INTO sweep VALUES (?, ?)", wanted.items())
+
+    @contextmanager
+    def transaction(self) -> Iterator[None]:
+        """Some steps of which all are done or none."""
+        self.rows.execute("BEGIN")
+        try:
+            yield
+        except BaseException:
+            self.rows.execute("ROLLBACK")
+            raise
+        self.rows.execute("COMMIT")
+
+    def plan(self, number: int, parameters: dict[str, str], slice: bytes | None, refused: str = "") -> bool:
+        """Enter a member; whether it is to be computed: one whose slice another one has shares that one's result."""
+        same = None
+        if slice is not None:
+            found = self.rows.execute(
+                "SELECT number FROM members WHERE slice = ? AND same_as IS NULL", (slice,)
+            ).fetchone()
+            same = found and found[0]
+        self.rows.execute(
+            "INSERT INTO members (number, parameters, slice, same_as, state, error) VALUES (?, ?, ?, ?, ?, ?)",
+            (number, json.dumps(parameters), slice, same, "refused" if refused else "waiting", refused),
+        )
+        return same is None and not refused
+
+    @property
+    def planned(self) -> int:
+        """How many members have been entered; they are the first ones."""
+        return int(self.rows.execute("SELECT COUNT(*) FROM members").fetchone()[0])
+
+    def count_waiting(self) -> int:
+        """How many of them are to be computed, each slice once."""
+        return int(self.rows.execute(f"SELECT COUNT(*) FROM members WHERE {_TO_DO}").fetchone()[0])
+
+    def waiting(self, below: int) -> Iterator[int]:
+        """The members with numbers below a bound that are to be computed, in their order, each once.
+
+        What is recorded meanwhile does not matter. Those that have failed before are among them.
+        """
+        last = -1
+        while found := self.rows.execute(
+            f"SELECT number FROM members WHERE number > ? AND number < ? AND {_TO_DO} ORDER BY number LIMIT 500",
+            (last, below),
+        ).fetchall():
+            yield from (number for (number,) in found)
+            last = found[-1][0]
+
+    def check_files(self) -> int:
+        """Have members computed again whose file is not there or not whole; how many these are."""
+        rows = self.rows.execute("SELECT number, file, size FROM members WHERE state = 'done' AND same_as IS NULL")
+        lost = [(number,) for number, file, size in rows if _size(self.folder / file) != size]
+        with self.transaction():
+            self.rows.executemany("UPDATE members SET state = 'waiting' WHERE number = ?", lost)
+        return len(lost)
+
+    def record(self, number: int, outcome: Outcome) -> None:
+        """Enter what became of a member; a failed one stays to be tried again."""
+        if isinstance(outcome, Found):
+            data = outcome.text.encode()
+            file = self._write(number, data)
+            found = outcome.summary
+            self.rows.execute(
+                "UPDATE members SET state = 'done', status = ?, cells = ?, regions = ?, undetermined = ?, areas = ?, "
+                "widest = ?, error = '', file = ?, digest = ?, size = ?, seconds = ?, attempts = attempts + 1 "
+                "WHERE number = ?",
+                (
+                    found.status, found.cells, found.regions, found.undetermined,
+                    json.dumps([astuple(area) for area in found.areas]),
+                    None if found.widest is None else json.dumps(astuple(found.widest)),
+                    file, hashlib.sha256(data).hexdigest(), len(data), outcome.seconds, number,
+                ),
+            )  # fmt: skip
+            return
+        state = State.REFUSED if isinstance(outcome, Refused) else State.FAILED
+        seconds = None if isinstance(outcome, Failed) else outcome.seconds
+        self.rows.execute(
+            "UPDATE members SET state = ?, error = ?, seconds = ?, attempts = attempts + 1 WHERE number = ?",
+            (state.value, outcome.error, seconds, number),
+        )
+
+    def _write(self, number: int, data: bytes) -> str:
+        """Put a result's file into place, whole; its name below the folder."""
+        name = f"{RESULTS}/{number // _IN_A_FOLDER:03}/{number:06}.json"
+        path = self.folder / name
+        if path.parent not in self._made:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._made.add(path.parent)
+        hidden = path.with_name(f".{path.name}.tmp")  # which a later run for the same member writes over
+        hidden.write_bytes(data)
+        hidden.replace(path)
+        return name
+
+    def share(self) -> None:
+        """Give members the result of the first one with the same slice."""
+        columns = _SHARED.split(", ")
+        self.rows.execute(
+            f"UPDATE members SET {', '.join(f'{c} = first.{c}' for c in columns)} FROM members AS first "
+            "WHERE first.number = members.same_as"
+        )
+
+    def states(self) -> dict[State, int]:
+        """Numbers of members by what has become of them."""
+        return _states(self.rows)
+
+    def close(self) -> None:
+        """Close it; the index is then one file."""
+        self.rows.close()
+
+
+def _size(path: Path) -> int | None:
+    try:
+        return path.stat().st_size
+    except OSError:  # not there any more: the member is computed again
+        return None
+
+
+@contextmanager
+def opened(folder: Path) -> Iterator[Index]:
+    """The index of a folder, made if there is none, which no other process opens meanwhile.
+
+    Raises
+    ------
+    OutputError
+        When the folder cannot be written to, or another process uses it.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        lock = os.open(folder / LOCK, os.O_CREAT | os.O_RDWR, 0o666)
+    except OSError as error:
+        raise OutputError(f"the folder {folder} cannot be written to: {error.strerror}") from error
+    try:
+        if sys.platform != "win32":
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError as error:
+                raise OutputError(f"another process is working on the sweep in {folder}") from error
+        try:
+            with closing(Index(folder)) as index:
+                yield index
+        except sqlite3.DatabaseError as error:
+            raise OutputError(f"{folder / INDEX}: {error}") from error
+    finally:
+        os.close(lock)
+
+
+# ------------------------------------------------------------------------------------------------------------- reading
+
+
+@contextmanager
+def _reading(folder: Path) -> Iterator[sqlite3.Connection]:
+    path = folder / INDEX
+    if not path.is_file():
+        raise ConfigError("there is no sweep in this folder", file=str(folder))
+    try:
+        with closing(sqlite3.connect(path)) as rows:
+            yield rows
+    except sqlite3.DatabaseError as error:
+        raise ConfigError(f"is damaged, or no index of a sweep: {error}", file=str(path)) from error
+
+
+def read_sweep(folder: Path) -> Sweep:
+    """The sweep in a folder.
+
+    Raises
+    ------
+    ConfigError
+        When there is none.
+    """
+    with _reading(folder) as rows:
+        known = dict(rows.execute("SELECT key, value FROM sweep"))
+        if known.get("format") != FORMAT:
+            raise ConfigError(f"is no index of a sweep of the form {FORMAT}", file=str(folder / INDEX))
+        states = _states(rows)
+        states[State.WAITING] = int(known["members"]) - sum(n for s, n in states.items() if s is not State.WAITING)
+        return Sweep(known["name"], folder, tuple(json.loads(known["names"])), {s: n for s, n in states.items() if n})
+
+
+def _states(rows: sqlite3.Connection) -> dict[State, int]:
+    found = dict(rows.execute("SELECT state, COUNT(*) FROM members GROUP BY state"))
+    return {state: found[state.value] for state in State if found.get(state.value)}
+
+
+def members(sweep: Sweep, numbers: Iterable[int] | None = None) -> Iterator[Member]:
+    """Members of a sweep as far as they were entered, all in their order or those with these numbers.
+
+    Raises
+    ------
+    ConfigError
+        When the index is gone or damaged.
+    """
+    with _reading(sweep.folder) as rows:
+        if numbers is None:
+            yield from (_member(row) for row in rows.execute(f"SELECT {_MEMBER} FROM members ORDER BY number"))
+            return
+        for number in numbers:
+            row = rows.execute(f"SELECT {_MEMBER} FROM members WHERE number = ?", (number,)).fetchone()
+            if row is None:
+                raise IndexError(f"there is no member {number} yet")
+            yield _member(row)
+
+
+def _member(row: tuple[Any, ...]) -> Member:
+    number, parameters, same_as, seconds, attempts, state, status, cells, regions, open_share, areas, widest = row[:12]
+    error, file, digest, _ = row[12:]
+    summary = None
+    if state == State.DONE.value:
+        counted = tuple(CountedArea(count, n, (low, high)) for count, n, (low, high) in json.loads(areas))
+        summary = Summary(status, cells, regions, open_share, counted, _widest(widest))
+    return Member(
+        number, json.loads(parameters), State(state), summary, same_as, error, file, digest, seconds, attempts
+    )  # fmt: skip
+
+
+def _widest(text: str | None) -> Widest | None:
+    if text is None:
+        return None
+    along, width, places, proof, remark = json.loads(text)
+    return Widest(
+        along, None if width is None else (width[0], width[1]), tuple((p[0], p[1]) for p in places), proof, remark
+    )
+
+
+def member_map(sweep: Sweep, member: Member) -> RegionMap:
+    """The region map of a member, from its file.
+
+    Raises
+    ------
+    ConfigError
+        When it has none, or the file is not the one that the index names.
+    """
+    path = sweep.folder / member.file
+    if member.state is not State.DONE:
+        raise ConfigError(f"member {member.number} has no result: {member.error or member.state.value}")
+    text = read_text(path, MAX_BYTES, "a member's result")
+    if hashlib.sha256(text.encode()).hexdigest() != member.digest:
+        raise ConfigError("has been changed since it was computed: remove it, and `ptmcad sweep` makes it anew",
+                          file=str(path))  # fmt: skip
+    return RegionMap.from_json(text)
