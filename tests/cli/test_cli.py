@@ -317,7 +317,8 @@ DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value leng
 @pytest.mark.usefixtures("coarse")
 @pytest.mark.parametrize("example", [
     pytest.param(e, marks=pytest.mark.slow) if e.startswith(LONG) or any(d in e for d in DOCUMENTED) else e
-    for e in help_examples() if not e.startswith(("classify", "paper")) and "--scheduler" not in e
+    # the explorer never ends
+    for e in help_examples() if not e.startswith(("classify", "explore", "paper")) and "--scheduler" not in e
 ])  # fmt: skip
 def test_help_examples_about_a_result_run(
     shipped: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, example: str
