@@ -41,6 +41,11 @@ def test_a_member_is_the_slice_that_one_would_type() -> None:
     assert [str(value) for value in family.values] == ["-4", "-7/2", "-3", "-5/2", "-2", "-3/2", "-1", "-1/2", "0"]
 
 
+def test_a_free_length_may_be_free_from_zero_on() -> None:
+    family = family_from({"axes": {"rho": [1, 2], "L2": [1, 2]}, "free": {"l0": [0, 1]}, "members": 2})
+    assert [family.member(value).has_free_lengths for value in family.values] == [False, True]
+
+
 def test_a_parameter_of_the_model_may_be_free() -> None:
     family = family_from({"axes": {"rho": [0, 2], "L2": [0, 2]}, "free": {"F3": [-4, 0]}, "members": [-1]})
     assert family.member(Fraction(-1)).parameters["F3"].constant() == -1

@@ -98,7 +98,7 @@ def family_of(record: Record, faults: Faults | None = None) -> Family:
     first = slices[0]
     assert first is not None
     text = written_in(record, first)
-    if name not in text and not any(name in names_in(written) for written in text.values()):
+    if name not in record.model.parameters and not any(name in names_in(s.text) for s in record.values.values()):
         example = next((n for n in record.model.parameters if n not in record.axes), "")
         use = f": use it in an expression, such as {example}: {name}" if example else ""
         raise window.place.error(f"the free parameter {name} is not used: no parameter depends on it{use}")
