@@ -5,8 +5,8 @@ Guarantee: each map is that of its member alone, timings apart.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -36,6 +36,7 @@ class FamilyMap:
     members : the map at each of the values.
     surfaces : irreducible polynomials of the surfaces on which solutions meet, in the axes and the free parameter;
         empty where algebra does not compute the family in common, as with free lengths.
+    text : what each parameter of the members is written as, in the axes, the free parameter and one another.
     changes : where between the ends of the range the arrangement of the regions changes; None when not asked for.
     """
 
@@ -46,6 +47,7 @@ class FamilyMap:
     surfaces: tuple[SpaceTerms, ...] = ()
     title: str = ""
     changes: Changes | None = None
+    text: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def axes(self) -> tuple[Axis, Axis]:

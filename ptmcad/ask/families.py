@@ -68,4 +68,6 @@ def family(
         asked = replace(asked, values=found.between)
         common = common._replace(family=asked)
     members = tuple(result for _, result in members_of(common, options))
-    return FamilyMap(asked.name, asked.free, asked.values, members, common.surfaces, asked.record.title, found)
+    return FamilyMap(
+        asked.name, asked.free, asked.values, members, common.surfaces, asked.record.title, found, asked.text
+    )

@@ -24,7 +24,7 @@ from ptmcad.cli.stored import MAX_BYTES, read_result
 from ptmcad.errors import ConfigError, LimitReached, PtmcadError, shown, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
-from ptmcad.question.config import Family
+from ptmcad.question.config import Family, fault_of_member
 from ptmcad.show.document.family import FORMAT, read_family, write_family
 from ptmcad.text.numerals import text_of
 from ptmcad.text.textfile import read_text
@@ -98,8 +98,11 @@ def family_to_files(family: Family, options: Options, wanted: Wanted) -> FamilyM
             _write_member(found, wanted)
             members.append(found)
     title = family.record.title
-    result = FamilyMap(family.name, family.free, family.values, tuple(members), common.surfaces, title, changes)
-    write_files(wanted.out, _writers(result, family.name, wanted))
+    result = FamilyMap(
+        family.name, family.free, family.values, tuple(members), common.surfaces, title, changes, family.text
+    )
+    if writers := _writers(result, family.name, wanted):
+        write_files(wanted.out, writers)
     return result
 
 
@@ -191,9 +194,17 @@ def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
         reason = shown(" ".join(str(error).split()), 300)
         raise ConfigError(f"is damaged or not a {FORMAT} file: {reason}", file=str(path)) from error
     members = tuple(read_result(path.parent / file, whole=whole) for file in stored.files)
-    if any(member.slice.axes != members[0].slice.axes for member in members):
-        raise ConfigError("its members are not of one family: their axes differ", file=str(path))
-    return FamilyMap(stored.name, stored.free, stored.values, members, stored.surfaces, stored.title, stored.changes)
+    for value, file, member in zip(stored.values, stored.files, members, strict=True):
+        if member.slice.axes != members[0].slice.axes:
+            raise ConfigError("its members are not of one family: their axes differ", file=str(path))
+        if fault := fault_of_member(member.slice, stored.text, stored.free.name, value):
+            place = f"{stored.free.name} = {text_of(value)}"
+            raise ConfigError(
+                f"is not the member at {place} that {path.name} names: {fault}", file=str(path.parent / file)
+            )
+    return FamilyMap(
+        stored.name, stored.free, stored.values, members, stored.surfaces, stored.title, stored.changes, stored.text
+    )
 
 
 def each_member(family: FamilyMap, ask: Callable[[RegionMap], Any]) -> list[Any]:

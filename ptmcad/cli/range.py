@@ -24,7 +24,7 @@ from ptmcad.cli.values import formats as formats_known
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import ptm
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
-from ptmcad.question.config import file_name, load, slice_from_options
+from ptmcad.question.config import file_name, names_in_record, slice_from_options
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Slice
 from ptmcad.text.parsing import rational
@@ -68,7 +68,7 @@ def slice_and_line(asked: AskedLine) -> tuple[Slice, dict[str, str]]:
     if asked.over is None and other not in at:
         raise ConfigError(f"the other axis, {other}, has no value: add {other}=VALUE", key="--at")
     fixed = tuple(f"{name}={value}" for name, value in at.items() if name != other)
-    known = (ptm() if asked.config is None else load(asked.config).model).parameters
+    known = ptm().parameters if asked.config is None else names_in_record(asked.config)[1]
     for name in at:
         if name != other and name not in known:
             raise ConfigError(f"'{name}' is neither an axis nor a parameter", key="--at")
@@ -98,7 +98,7 @@ def _axes(asked: AskedLine) -> tuple[str, ...]:
     """The axes' names before the options of the line are looked at."""
     if asked.axes is not None:
         return tuple(name.strip() for name in asked.axes.split(","))
-    return () if asked.config is None else load(asked.config).axis_names
+    return () if asked.config is None else names_in_record(asked.config)[0]
 
 
 def _formats(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import re
 from dataclasses import replace
 from fractions import Fraction
 from math import inf
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.few import few
+from support.pages import data_of
 
 import ptmcad
 from ptmcad.certified.evaluation import program, run
@@ -134,7 +134,7 @@ def test_where_all_are_counted_the_samples_say_which_are_stable(
     assert name == "brusselator" or any(stable < total for stable, total in (map(int, p.split(" of ")) for p in pairs))
     said = f"at the samples {', '.join(sorted(pairs))}; it may change within a region, see --count stable"
     assert f"stable    {said}" in result.table() and said in page(result)
-    kinds = re.findall(r'"kind":"(\w+)"', page(result))
+    kinds = [pose["kind"] for cell in data_of(page(result))["cells"] for pose in cell["equilibria"]]
     assert kinds.count("stable") == sum(set(s.signs) == {"+"} for c in result.cells for s in c.solutions)
     assert kinds.count("unstable") == sum(len(c.solutions) for c in result.cells) - kinds.count("stable")
 

@@ -66,6 +66,28 @@ def test_a_family_is_drawn_again(folder: Path, tmp_path: Path, capsys: pytest.Ca
     assert "give a member's file" in capsys.readouterr().err
 
 
+def test_another_map_under_a_members_name_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = folder / "swapped.json"
+    data = json.loads((folder / "loads.json").read_text())
+    data["members"][0]["file"] = data["members"][1]["file"]
+    path.write_text(json.dumps(data))
+    for command in ("verify", "plot"):
+        assert run([command, str(path)]) == 2
+        assert "is not the member at F = -40 that swapped.json names: F3 is -10, not -40" in capsys.readouterr().err
+
+
+def test_numbers_alone_are_written_too(folder: Path, tmp_path: Path) -> None:
+    record = str(folder / "loads.yaml")
+    assert run(["classify", record, "--out", str(tmp_path), "--format", "csv", "--no-areas"]) == 0
+    assert len(list(tmp_path.iterdir())) == 6
+
+
+def test_a_member_has_ranges(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for given in (["--set", "F=-10", "--at", "L2=1"], ["--at", "L2=1,F=-10"]):
+        assert run(["range", str(folder / "loads.yaml"), "--along", "rho", *given]) == 0
+        assert "0.2149411958 to 0.8034910267" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,12 +16,18 @@ from ptmcad.show.render.multiples import draw_multiples
 from ptmcad.show.render.solid import MAX_FLOORS, draw_solid
 from ptmcad.show.style import styled
 
+RECORD: dict[str, Any] = {
+    "name": "cubic",
+    "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b + c*x^2"]},
+    "axes": {"a": [-2, 2], "b": [-2, 2]},
+    "free": {"c": [0, 3]},
+    "members": 7,
+}
+
 
 @pytest.fixture(name="family", scope="module")
 def small() -> FamilyMap:
-    record = {"name": "cubic", "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b + c*x^2"]},
-              "axes": {"a": [-2, 2], "b": [-2, 2]}, "free": {"c": [0, 3]}, "members": 7}  # fmt: skip
-    return ptmcad.family(record, areas=False)
+    return ptmcad.family(RECORD, areas=False)
 
 
 def test_every_member_has_its_chart_its_value_and_the_same_colours(family: FamilyMap) -> None:
@@ -60,10 +67,16 @@ def test_the_same_bytes_twice(family: FamilyMap, tmp_path: Path) -> None:
 def test_of_many_maps_a_few_are_filled_and_of_the_others_there_are_curves(family: FamilyMap) -> None:
     axes = family.plot(solid=True).axes[0]
     kinds = [type(found).__name__ for found in axes.collections]
-    filled = sum(len(result.regions) for k, result in enumerate(family.members) if k in (0, 2, 3, 4, 6))
-    assert MAX_FLOORS == 5
-    assert kinds.count("Poly3DCollection") == filled
+    assert MAX_FLOORS == len(family.members) == 7
     assert kinds.count("Line3DCollection") == 7
+    assert len(axes.patches) == sum(len(result.regions) for result in family.members)
+    assert "curves of the other members" not in [text.get_text() for text in family.plot(solid=True).texts]
+    more = ptmcad.family(RECORD, values=[0, 1, 2, 3, "1/2", "3/2", "5/2", "1/4"], areas=False)
+    drawn = more.plot(solid=True)
+    assert "curves of the other members" in [text.get_text() for text in drawn.texts]
+    left_out = [n for n in range(8) if n not in (0, 1, 2, 4, 5, 6, 7)]
+    whole = sum(len(result.regions) for result in more.members)
+    assert len(drawn.axes[0].patches) == whole - sum(len(more.members[n].regions) for n in left_out)
 
 
 def test_the_table_has_a_line_for_each_member(family: FamilyMap) -> None:

@@ -19,7 +19,7 @@ from typing import Any
 
 from ptmcad.errors import A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
-from ptmcad.question.config.family import Family, bound, checked_family, family_of, member_name
+from ptmcad.question.config.family import Family, bound, checked_family, family_of, fault_of_member, member_name
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
 from ptmcad.question.config.options import ranges_of, settings_of, with_axes
@@ -51,11 +51,13 @@ __all__ = [
     "Sweeping",
     "asks_for_sweep",
     "family_from",
+    "fault_of_member",
     "file_name",
     "load",
     "load_sweep",
     "make_mechanism",
     "make_system",
+    "names_in_record",
     "point_from_mapping",
     "point_from_options",
     "portable_file",
@@ -262,6 +264,19 @@ def record_from_options(
         place = Place("--count")
         record = replace(record, count=count_of(Scalar(text, place)), count_place=place)
     return record
+
+
+def names_in_record(config: str | Path) -> tuple[tuple[str, ...], frozenset[str]]:
+    """The names of a record's axes, and of all that a value can be given to: parameters, and what is free or swept.
+
+    Raises
+    ------
+    ConfigError
+        For keys and shapes that are wrong; values are not looked at.
+    """
+    record = record_of(read_file(config))
+    others = [record.free[0]] if record.free is not None else []
+    return tuple(record.axes), frozenset((*record.model.parameters, *others, *swept_names(record)))
 
 
 def point_from_mapping(values: Mapping[str, object], model: Model | None = None) -> dict[str, Fraction]:

@@ -11,14 +11,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from ptmcad.errors import ConfigError, Faults
+from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism import Model
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.record import Record, Window, read_record
 from ptmcad.question.config.resolution import axis_of, number_of, slice_of, written_in
 from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.numerals import text_of
-from ptmcad.text.parsing import names_in
+from ptmcad.text.parsing import names_in, parse
 from ptmcad.text.yamltree import Node, Scalar, Sequence, Tree
 
 MEMBERS = 9
@@ -128,6 +129,34 @@ def bound(record: Record, name: str, value: Fraction) -> Record:
     found = with_numbers(record, {name: value}, {name: record.free[1].place})
     title = f"{record.title}, {name} = {text_of(value)}" if record.title else ""
     return replace(found, free=None, members=None, title=title, reference={})
+
+
+def fault_of_member(slice: Slice, text: Mapping[str, str], free: str, value: Fraction) -> str:
+    """What shows that a slice is not a family's member at a value, in words; empty where it is.
+
+    Parameters
+    ----------
+    text : of the family's parameters, as `Family.text`.
+    """
+    known = {name: axis(k) for k, name in enumerate(slice.axis_names)} | {free: constant(value)}
+
+    def resolved(name: str, chain: tuple[str, ...] = ()) -> Expression:
+        if name not in known:
+            if name not in text or name in chain:
+                raise ExpressionError(f"the family says nothing of {name}")
+            named = {other: resolved(other, (*chain, name)) for other in names_in(text[name])}
+            known[name] = parse(text[name], named)
+        return known[name]
+
+    for name, found in slice.parameters.items():
+        try:
+            wanted = resolved(name)
+        except ExpressionError as error:
+            return error.message
+        if wanted != found:
+            shown = (expression.to_text(slice.axis_names) for expression in (found, wanted))
+            return "{} is {}, not {}".format(name, *shown)
+    return ""
 
 
 def member_name(record: Record, name: str, value: Fraction) -> str:

@@ -18,6 +18,7 @@ from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import plain
 from ptmcad.question.config.record import Record, check_axis_name, number_text, read_record
 from ptmcad.question.config.resolution import check_number, names_in_scalar, number_of, slice_of
+from ptmcad.question.examples import FIRST
 from ptmcad.question.slice import Slice
 from ptmcad.question.sweep import Listed, Product, Spaced, Sweep, Values
 from ptmcad.text.syntax import did_you_mean
@@ -183,7 +184,7 @@ def _check_name(name: str, place: Place, record: Record) -> None:
 
 
 def _example(model: Model, name: str) -> str:
-    parameter = next(iter(model.forces), next(iter(model.parameters), "F3"))
+    parameter = next(iter(model.forces), next(iter(model.parameters), FIRST))
     return f"such as {parameter}: {name[:40]} under 'parameters'"
 
 

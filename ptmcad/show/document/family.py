@@ -6,7 +6,7 @@ Guarantee: numbers are exact; the maps themselves are documents of their own, in
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import PurePath
@@ -21,6 +21,8 @@ from ptmcad.text.numerals import fraction_of, text_of
 
 FORMAT = "ptmcad-family/1"
 MAX_MEMBERS = 10_000
+MAX_TEXT = 10_000
+"""Characters of a parameter."""
 
 
 class StoredFamily(NamedTuple):
@@ -32,6 +34,7 @@ class StoredFamily(NamedTuple):
     values: tuple[Fraction, ...]
     files: tuple[str, ...]
     surfaces: tuple[SpaceTerms, ...]
+    text: Mapping[str, str]
     changes: Changes | None = None
 
 
@@ -47,6 +50,7 @@ def write_family(family: FamilyMap, files: Sequence[str]) -> str:
         "name": family.name,
         "title": family.title,
         "free": {"name": family.free.name, "low": text_of(family.free.low), "high": text_of(family.free.high)},
+        "parameters": dict(family.text),
         "surfaces": [[[*powers, str(c)] for powers, c in terms] for terms in family.surfaces],
         "members": [{"value": text_of(value), "file": file} for value, file in zip(family.values, files, strict=True)],
     }
@@ -65,7 +69,7 @@ def read_family(text: str) -> StoredFamily:
         When the text is not such a document.
     """
     data = json.loads(text)
-    keys = {"format", "name", "title", "free", "surfaces", "members"}
+    keys = {"format", "name", "title", "free", "parameters", "surfaces", "members"}
     if not isinstance(data, dict) or not keys <= set(data) <= keys | {"changes"}:
         raise ValueError("it has other keys than a family")
     if data["format"] != FORMAT:
@@ -80,15 +84,16 @@ def read_family(text: str) -> StoredFamily:
             tuple(((int(i), int(j), int(k)), int(c)) for i, j, k, c in terms) for terms in data["surfaces"]
         )
         changes = changes_from(data["changes"], axis) if "changes" in data else None
+        parameters = {_text(name): _text(written, MAX_TEXT) for name, written in data["parameters"].items()}
     except (KeyError, TypeError, AttributeError, IndexError, ConfigError) as error:
         raise ValueError(f"a part of it is missing or of another kind: {error}") from error
     if not 1 <= len(values) <= MAX_MEMBERS or any(a >= b for a, b in pairwise(values)):
         raise ValueError("the members' values do not increase")
-    return StoredFamily(_text(data["name"]), _text(data["title"]), axis, values, files, surfaces, changes)
+    return StoredFamily(_text(data["name"]), _text(data["title"]), axis, values, files, surfaces, parameters, changes)
 
 
-def _text(value: Any) -> str:
-    if not isinstance(value, str) or not value.isprintable() or len(value) > 300:
+def _text(value: Any, most: int = 300) -> str:
+    if not isinstance(value, str) or not value.isprintable() or len(value) > most:
         raise TypeError("expected a short text")
     return value
 

@@ -16,7 +16,7 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
-from ptmcad.show.render.legend import INK, STRONG, THIN, Type, draw_legend
+from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, draw_legend
 from ptmcad.show.render.multiples import family_entries, in_words, paint_of_family, title_of
 from ptmcad.show.render.painting import Paint
 from ptmcad.show.render.printing import save, settings
@@ -24,7 +24,7 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.style import MIN_FONT, Place, Style
 
 SIZE = (6.4, 5.2)
-MAX_FLOORS = 5
+MAX_FLOORS = 7
 """Of filled maps: more would hide each other."""
 
 
@@ -53,7 +53,10 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     title = title_of(family) if style.title is None else style.title
     paint = paint_of_family(family, style)
     type = Type(font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, style.strong * THIN / STRONG)
-    entries = [] if style.legend is Place.NONE else family_entries(family, paint)
+    told = family_entries(family, paint)
+    if len(family.values) > MAX_FLOORS:
+        told.append(Entry(("curves of the other members",), THIN))
+    entries = [] if style.legend is Place.NONE else told
     legend = max((type.entry_width(entry) for entry in entries), default=0.0) + (1.2 * em if entries else 0.0)
     head = 2 * em if title else 0.0
     axes: Any = Axes3D(figure, rect=(0.02, 0.03, (wide - legend) / wide - 0.06, (tall - head) / tall - 0.03),
@@ -74,8 +77,9 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     axes.set_ylabel(axis_name(slice, 1), **how)
     axes.set_zlabel(symbol(family.free.name), **how)
     axes.tick_params(labelsize=max(MIN_FONT, 0.85 * font), pad=0)
-    for each in (axes.xaxis, axes.yaxis, axes.zaxis):
-        each.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 2.5, 5, 10]))
+    for each, end in ((axes.xaxis, "upper"), (axes.yaxis, "lower"), (axes.zaxis, None)):
+        # at the corner that two axes share, one number would lie on the other
+        each.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 2.5, 5, 10], prune=end))
     axes.set_box_aspect((1, 1, 1.05), zoom=0.92)
     if title:
         figure.text(
@@ -92,7 +96,9 @@ def _ends(axis: Any) -> tuple[float, float]:
 
 def _floor(axes: Any, result: RegionMap, height: float, paint: Paint, least: tuple[int, ...] | None) -> None:
     """A member's map at its height, filled so that one sees through where the count is least, or its curves alone."""
-    from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Curve
+    from mpl_toolkits.mplot3d.art3d import Line3DCollection, pathpatch_2d_to_3d
 
     seen = shapes(result)
     (left, right), (low, high) = (_ends(axis) for axis in result.slice.axes)
@@ -103,14 +109,15 @@ def _floor(axes: Any, result: RegionMap, height: float, paint: Paint, least: tup
 
     if least is not None:
         for number, region in enumerate(result.regions):
-            polygons = [lifted(polygon) for polygon in seen.polygons(number)]
+            polygons = [Curve(polygon * scale + origin, closed=False) for polygon in seen.polygons(number)]
             if polygons:
-                axes.add_collection3d(
-                    Poly3DCollection(
-                        polygons, facecolors=paint.fill(region).face, linewidths=0, zorder=height, antialiaseds=False,
-                        alpha=0.3 if counted_by(region, result.slice.count) == least else 0.85,
-                    )
+                # one path for all parts, as on the page: where two of them share an edge no seam is left
+                patch = PathPatch(
+                    Curve.make_compound_path(*polygons), facecolor=paint.fill(region).face, linewidth=0, zorder=height,
+                    alpha=0.3 if counted_by(region, result.slice.count) == least else 0.85, gid=f"{height}-{number}",
                 )  # fmt: skip
+                axes.add_patch(patch)
+                pathpatch_2d_to_3d(patch, z=height)
     strong = [lifted(line) for _, separates, line in seen.walls() if separates]
     strong += [lifted(line) for line in seen.edges()]
     if strong:

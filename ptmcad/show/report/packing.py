@@ -22,8 +22,8 @@ def packed(rows: Sequence[Row], inner: Sequence[str] = ()) -> dict[str, Any]:
     ----------
     inner : names of entries that are such rows themselves.
 
-    >>> packed([{"a": "x", "b": 1}, {"a": "x", "b": 2}])
-    {'length': 2, 'columns': {'a': {'of': ['x'], 'at': []}, 'b': {'of': [1, 2]}}}
+    >>> packed([{"a": "equilibria", "b": 1}, {"a": "equilibria", "b": 2}])
+    {'length': 2, 'columns': {'a': {'of': ['equilibria'], 'at': []}, 'b': {'of': [1, 2]}}}
     """
     columns: dict[str, Any] = {}
     for name in rows[0] if rows else ():
