@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from ptmcad.answer.family import FamilyMap
 from ptmcad.ask.members import in_common, members_of
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, expect
 from ptmcad.options import Options, Progress
 from ptmcad.question.config import Family, family_from
 from ptmcad.text.parsing import number_for
@@ -53,6 +53,7 @@ def family(
     """
     asked = family_from(question)
     if values is not None and values != "between":
+        expect(values, Iterable, "values", "values of the free parameter, such as [-20, -10]")
         chosen = sorted({number_for(asked.free.name, value) for value in values})
         if not chosen:
             raise ConfigError("give at least one value of the free parameter", key="values")

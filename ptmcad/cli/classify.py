@@ -218,6 +218,13 @@ def _names_of_savings(_context: click.Context, parameter: click.Parameter, names
     return names
 
 
+def _one(_context: click.Context, parameter: click.Parameter, given: tuple[str, ...]) -> str | None:
+    """An option that is given once, where it is; of more than one the last would count and nobody be told."""
+    if len(given) > 1:
+        raise ConfigError("a family has one free parameter: `ptmcad sweep` goes through several", key=parameter.opts[0])
+    return given[0] if given else None
+
+
 def _idle(slice: Slice, options: Options) -> tuple[Idle, ...]:
     """The options that the slice's engine does not need."""
     from ptmcad.ask.engines import is_certified
@@ -273,7 +280,8 @@ def _classify_family(
 
 @click.command("classify")
 @slice_options
-@click.option("--free", metavar="NAME=LO:HI", help="A third parameter: the map of each member of a family.")
+@click.option("--free", multiple=True, callback=_one, metavar="NAME=LO:HI",
+              help="A third parameter: a map for each member of a family.")  # fmt: skip
 @click.option("--members", metavar="VALUE,..|N|between",
               help="Values of the free parameter, how many, or one between each two neighbouring changes.  "
                    "[default: the record's, or 9]")  # fmt: skip

@@ -82,6 +82,11 @@ def test_numbers_alone_are_written_too(folder: Path, tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == 6
 
 
+def test_two_free_parameters_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["classify", "--slice", "rho,L2", "--free", "F3=-10:-5", "--free", "F4=-3:-2"]) == 2
+    assert "--free: a family has one free parameter: `ptmcad sweep` goes through several" in capsys.readouterr().err
+
+
 def test_a_member_has_ranges(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for given in (["--set", "F=-10", "--at", "L2=1"], ["--at", "L2=1,F=-10"]):
         assert run(["range", str(folder / "loads.yaml"), "--along", "rho", *given]) == 0

@@ -67,8 +67,11 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     axes.computed_zorder = False
     least = min(counted_by(r, slice.count) for result in family.members for r in result.regions)
     floors = set(np.linspace(0, len(family.values) - 1, min(MAX_FLOORS, len(family.values))).round().astype(int))
-    for number, (value, result) in enumerate(family):
-        _floor(axes, result, float(value), paint, least if number in floors else None)
+    axes.set(xlim=_ends(slice.axes[0]), ylim=_ends(slice.axes[1]), zlim=_ends(family.free))
+    # what is added is taken for further data, beside limits that matplotlib leaves at infinity
+    with np.errstate(over="ignore", invalid="ignore"):
+        for number, (value, result) in enumerate(family):
+            _floor(axes, result, float(value), paint, least if number in floors else None)
     how = {"fontsize": 0.95 * font, "labelpad": 0.3 * font}
     axes.set(
         xlim=_ends(slice.axes[0]), ylim=_ends(slice.axes[1]), zlim=_ends(family.free),
