@@ -53,6 +53,8 @@ class PathEnd:
     target : the stable pose beyond, to which the mechanism goes, close to ``at``; None at the window's edge, and where
         the energy, of one value for each pose, does not tell it: under a moment it may turn for ever.
     target_energy : its energy, if it has one.
+    among : whether it is proved that the pose vanishes together with one or more of the others in ``meeting``, and
+        not with which of them.
     """
 
     fate: Fate
@@ -63,6 +65,7 @@ class PathEnd:
     energy: Enclosure | None = None
     target: PathPoint | None = None
     target_energy: Enclosure | None = None
+    among: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -268,3 +268,104 @@ def test_a_minimum_in_three_angles_is_followed() -> None:
         2 * sin(t[2]) - sin(t[1] - t[2]) / 3,
     )
     assert max(map(abs, slopes)) < 1e-12
+
+
+PENDULUMS: dict[str, Any] = {
+    "name": "pendulums",
+    "mechanism": {
+        "parameters": {
+            "k": {"kind": "stiffness", "default": 1},
+            "W": {"kind": "force"},
+            "H": {"kind": "force"},
+            "k2": {"kind": "stiffness", "default": "1.00001"},
+        },
+        "unknowns": {"th": "angle", "phi": "angle"},
+        "points": {
+            "O": [0, 0],
+            "P": ["sin(th)", "cos(th)"],
+            "G": [0, "cos(th)"],
+            "Q": ["sin(phi)", "cos(phi)"],
+            "G2": [0, "cos(phi)"],
+        },
+        "springs": [{"between": ["G", "P"], "k": "k"}, {"between": ["G2", "Q"], "k": "k2"}],
+        "loads": {"P": ["H", "-W"], "Q": ["H", "-W"]},
+    },
+    "axes": {"H": ["-3/2", "3/2"], "W": [0, 1]},
+}
+"""Two pendulums that do not act upon each other, each upright between springs: folds at H = +-0.65 for W = 1/8."""
+
+
+def test_a_pose_goes_on_between_two_critical_values_near_each_other() -> None:
+    """The hanging pendulums fold nowhere, whatever the upright ones do at 0.649519 and 0.649528."""
+    slice = ptmcad.slice_from_mapping(PENDULUMS)
+    found = pose_paths(slice, "H", {"W": "1/8"}, 0).paths
+    assert [(p.low.fate, p.high.fate) for p in found] == [
+        (Fate.WINDOW, Fate.WINDOW),
+        (Fate.SNAP, Fate.SNAP),
+        (Fate.VANISH, Fate.VANISH),
+        (Fate.VANISH, Fate.VANISH),
+    ]
+    assert all(e.meeting == (0, 1) and not e.leaving for p in found[1:] for e in (p.low, p.high))
+    assert float(found[1].high.at) > float(found[2].high.at) > 0.6495  # type: ignore[arg-type]
+
+
+def test_equal_pendulums_fold_together() -> None:
+    """That all four poses of two upright pendulums meet is told by exchanging the two."""
+    parameters = {**PENDULUMS["mechanism"]["parameters"], "k2": {"kind": "stiffness", "default": 1}}
+    slice = ptmcad.slice_from_mapping({**PENDULUMS, "mechanism": {**PENDULUMS["mechanism"], "parameters": parameters}})
+    hanging, *_, upright = pose_paths(slice, "H", {"W": "1/8"}, 0).paths
+    assert (hanging.low.fate, hanging.high.fate) == (Fate.WINDOW, Fate.WINDOW)
+    assert upright.high.fate is Fate.SNAP and not upright.high.among
+    assert upright.high.meeting == (0, 1, 1, 2) and upright.high.leaving == ()
+
+
+def test_solutions_that_may_meet_in_several_ways_are_not_told_apart() -> None:
+    """x^2 = b and y^2 = 2 b: the four solutions vanish at b = 0, in pairs or all together as far as signs tell."""
+    slice = system(unknowns={"x": "real", "y": "real"}, potential="x^3/3 - b*x + y^3/3 - 2*b*y + a - a")
+    found = pose_paths(slice, "b", {"a": 1}, 1)
+    (path,) = found.paths
+    assert path.low.fate is Fate.VANISH and path.low.among
+    assert path.low.meeting == (0, 1, 1, 2) and path.low.leaving == ()
+    assert "the stable solution meets one or more of a saddle, a saddle and a maximum and vanishes;" in path_table(
+        found
+    )
+    data = json.loads(document("x", "x", {"path": path_data(found)}))
+    schema = json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8"))
+    jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
+    assert data["path"]["paths"][0]["low"]["among"] is True and "among" not in data["path"]["paths"][0]["high"]
+
+
+def test_losing_stability_is_no_merger() -> None:
+    """There are eight solutions on both sides of b = 0.71660, and a fold of others comes soon, at 0.71665."""
+    asked = {
+        "unknowns": {"x": "real", "t": "angle"},
+        "equations": ["x^3 - a*x + b*cos(t)", "sin(t)*x - 1/5 + cos(t)^2/3 - a*sin(t)^2/4"],
+        "positive": ["3 - x^2", "x*sin(t) + 1/2"],
+        "stable": ["3*x^2 - a", "x*cos(t) + 1"],
+    }
+    found = pose_paths(system(**asked), "b", {"a": "3/2"}, Fraction(1, 2)).paths
+    assert [(p.low.fate, p.high.fate) for p in found] == [(Fate.WINDOW, Fate.UNSTABLE)] * 2
+    counts = ptmcad.ask.ranges.intervals(system(**asked), "b", {"a": "3/2"})
+    assert counts.changes[-2].before.total == counts.changes[-2].after.total == 8
+
+
+def test_folds_at_the_same_value_far_apart_are_two() -> None:
+    """x (x^4 - 2 x^2 + 1 - b): pairs meet at x = 1 and at x = -1, both at b = 0."""
+    slice = system(unknowns={"x": "real"}, potential="x^6/6 - x^4/2 + (1 - b)*x^2/2 + a - a")
+    found = pose_paths(slice, "b", {"a": "1/2"}, Fraction(1, 4))
+    assert [p.low.fate for p in found.paths] == [Fate.VANISH, Fate.WINDOW, Fate.VANISH]
+    for path in (found.paths[0], found.paths[2]):
+        assert path.low.meeting == (0, 1) and path.low.leaving == () and not path.low.among
+    assert path_table(found).count("fold: the stable solution merges with a maximum and both vanish") == 2
+
+
+def test_a_fold_that_can_not_be_told_from_a_pitchfork_is_undecided() -> None:
+    """Two minima and a maximum become one minimum: which of them meet is told by symmetry, and without it not at all."""
+    plain = "x^4/4 - b*x^2/2 + a - a"
+    even = pose_paths(system(unknowns={"x": "real"}, potential=plain), "b", {"a": 1}, 1)
+    assert [p.low.fate for p in even.paths] == [Fate.VANISH, Fate.VANISH]
+    assert all(p.low.meeting == (0, 0, 1) and p.low.leaving == (0,) for p in even.paths)
+    skew = "x^4/4 - b*x^2/2 + x^5/10 - b*x^3/6 + a - a"  # the slope is x (x^2 - b) (1 + x/2)
+    odd = pose_paths(system(unknowns={"x": "real"}, potential=skew), "b", {"a": 1}, 1)
+    near = [p for p in odd.paths if abs(float(p.points[0].reals[0])) < 1.5]
+    assert len(near) == 2 and all(p.low.fate is Fate.UNDECIDED and not p.low.meeting for p in near)

@@ -125,14 +125,15 @@ def from_equations(
         ring,
         tuple(equations),
         jacobian,
-        tuple(_terms(ring, e) for e in equations),
-        tuple(tuple(_terms(ring, d) for d in row) for row in jacobian),
+        tuple(terms_of(ring, e) for e in equations),
+        tuple(tuple(terms_of(ring, d) for d in row) for row in jacobian),
         asked.pop("potential", None),
         **asked,
     )
 
 
-def _terms(ring: TrigonometricRing, p: TrigonometricPolynomial) -> Terms:
+def terms_of(ring: TrigonometricRing, p: TrigonometricPolynomial) -> Terms:
+    """An element of a system's ring, sorted for evaluation at many points."""
     return tuple(
         (monomial, tuple((tuple((k, e) for k, e in enumerate(powers) if e), c) for powers, c in part.items()))
         for monomial, part in ring.split(p).items()
@@ -298,7 +299,7 @@ def polynomial_at(
     system: ParametricSystem, p: TrigonometricPolynomial, values: Mapping[str, fmpq]
 ) -> RationalPolynomial:
     """Any element of the system's ring with rational numbers for the parameters, exactly."""
-    return _specialised(system, _terms(system.ring, p), values)
+    return _specialised(system, terms_of(system.ring, p), values)
 
 
 def _specialised(system: ParametricSystem, terms: Terms, values: Mapping[str, fmpq]) -> RationalPolynomial:

@@ -1,7 +1,7 @@
 """Paths of stable poses along a line: how far each one can be followed, and where it snaps to.
 
-Guarantee: the pose at every step of a path is the same branch (`tracking`). A branch that is said to end at a critical
-value is not continued beyond it: all equilibria on the far side but those named were reached from other equilibria.
+Guarantee: the pose at every step of a path is the same branch (`tracking`). What a branch is said to meet at a critical
+value, and that it vanishes there, is proved (`meeting`); that it is not bridged is not enough for that.
 
 Where a stable pose vanishes and one is left, as always with the paper's mechanism, which never has more than two
 (theorem 1 of docs/method.md), the energy descends to it from the place where the first one was: on a torus every
@@ -22,15 +22,13 @@ from flint import arb, ctx
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
-from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
-from ptmcad.exact.counting import equilibria
-from ptmcad.exact.models import ParametricSystem, system_from
-from ptmcad.exact.models.system import polynomial_at
+from ptmcad.exact.models import system_from
 from ptmcad.exact.poses import exact_poses
 from ptmcad.exact.ranges.line import critical_values
+from ptmcad.exact.ranges.meeting import parameters_at, value_at, what_meets
 from ptmcad.exact.ranges.tracking import (
     BITS,
     Family,
@@ -38,7 +36,6 @@ from ptmcad.exact.ranges.tracking import (
     Vector,
     at_value,
     bridge,
-    coordinates_of,
     follow,
     value_of,
 )
@@ -85,14 +82,14 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
     if any(n.compare(value) == 0 for n in numbers):
         raise ConfigError(f"{along} = {value} is a critical value: start beside it", key="--path")
     system = system_from(slice.model)
-    poses = exact_poses(slice.model, _parameters(system, line, value), DIGITS)
+    family = Family(slice.model, system, line.parameters)
+    poses = exact_poses(slice.model, parameters_at(family, line, value), DIGITS)
     stable = [k for k, pose in enumerate(poses.equilibria) if pose.stable or not slice.model.tells_stability]
     if number is not None and number - 1 not in stable:
         what = "stable poses" if slice.model.tells_stability else "solutions"
         raise ConfigError(
             f"{number} is none of the {len(stable)} {what} at {along} = {value}, counted from 1", key="--pose"
         )
-    family = Family(slice.model, system, line.parameters)
     chosen = stable if number is None else [number - 1]
     return PosePaths(
         slice.name,
@@ -103,11 +100,6 @@ def pose_paths(slice: Slice, along: str, at: Mapping[str, Any], start: object, n
         tuple(_path(family, line, numbers, poses.equilibria[k], k + 1, value) for k in chosen),
         moved(slice.model, line.parameters),
     )
-
-
-def _parameters(system: ParametricSystem, line: Line, value: Fraction) -> dict[str, Fraction]:
-    used = system.ring.parameters
-    return {n: e.evaluate(value, Fraction(0)) for n, e in line.parameters.items() if n in used}
 
 
 def _path(
@@ -180,18 +172,25 @@ def _one_way(
         near, far = _ends(number, side)
         following = _ends(numbers[k + 1], side)[0] if k + 1 < len(numbers) else edge
         gap = min(abs(near - current.value), abs(following - far)) / 8
-        crossed, after = None, far
-        while crossed is None and gap > window * _MIN_DISTANCE:
-            after = _beside(far, side, gap)
-            steps, done = follow(family, current, _beside(near, -side, gap), window / _MIN_STEPS)
-            reached += steps
-            current = steps[-1] if steps else current
-            if not done:
-                return reached, PathEnd(Fate.UNDECIDED, number, _point(family, current))
-            crossed = bridge(family, current, after)
-            gap = gap / 4
+        crossed, end = None, None
+        for least in _distances(window, gap):
+            while crossed is None and gap > least:
+                after = _beside(far, side, gap)
+                steps, done = follow(family, current, _beside(near, -side, gap), window / _MIN_STEPS)
+                reached += steps
+                current = steps[-1] if steps else current
+                if not done:
+                    return reached, PathEnd(Fate.UNDECIDED, number, _point(family, current))
+                crossed = bridge(family, current, after)
+                gap = gap / 4
+            if crossed is not None:
+                break
+            end = _meeting(family, line, number, current, after)
+            if len(end.meeting) > 1 or end.fate is Fate.VANISH:
+                break
         if crossed is None:
-            return reached, _meeting(family, line, number, current, after)
+            assert end is not None
+            return reached, end
         if (fate := _condition(family, line, crossed)) is not None:
             return reached, PathEnd(fate, number, _point(family, current))
         reached.append(crossed)
@@ -201,6 +200,16 @@ def _one_way(
     return reached, PathEnd(
         Fate.WINDOW if done else Fate.UNDECIDED, edge, _point(family, steps[-1] if steps else current)
     )
+
+
+def _distances(window: Fraction, gap: Fraction) -> tuple[Fraction, Fraction]:
+    """How near to a critical value a branch is followed before it is asked what it meets: at first, and at last.
+
+    Where the next critical value is near, the distance is a part of that to it: a branch that only passes is bridged.
+    """
+    least = window * _MIN_DISTANCE
+    first = least if gap > least else gap / 2**12
+    return first, first / 2**10
 
 
 def _ends(number: AlgebraicNumber, side: int) -> tuple[Fraction, Fraction]:
@@ -221,7 +230,7 @@ def _condition(family: Family, line: Line, reached: Reached) -> Fate | None:
     if not system.has_index:
         conditions += [(Fate.UNSTABLE, p) for p in system.stability]
     for fate, p in conditions:
-        value = _value(family, line, reached, p)
+        value = value_at(family, line, reached, p)
         if not value > 0:
             return fate if value < 0 else Fate.UNDECIDED
     return None
@@ -230,31 +239,19 @@ def _condition(family: Family, line: Line, reached: Reached) -> Fate | None:
 def _meeting(family: Family, line: Line, number: AlgebraicNumber, current: Reached, after: Fraction) -> PathEnd:
     """Which solutions meet at a critical value that the path does not pass."""
     stopped = PathEnd(Fate.UNDECIDED, number, _point(family, current))
-    before, beyond = _equilibria(family, line, current.value), _equilibria(family, line, after)
-    if before is None or beyond is None:
+    found = what_meets(family, line, current, after)
+    if found is None:
         return stopped
-    stable = [place for place, negative in beyond if negative == 0]
-    meeting, own = [], False
-    for place, negative in before:
-        ours = _close(family, place.point, current.point)
-        across = None if ours else bridge(family, place, after)
-        if across is None:
-            meeting.append(negative)
-            own = own or ours
-        else:
-            images = [k for k, (image, _) in enumerate(beyond) if _close(family, across.point, image.point)]
-            if len(images) != 1:
-                return stopped
-            del beyond[images[0]]
-    leaving = [negative for _, negative in beyond]
-    if not own:
-        return stopped
-    met = replace(stopped, fate=Fate.VANISH, meeting=tuple(sorted(meeting)), leaving=tuple(sorted(leaving)))
-    if not (_descends(family, line) and len(stable) == 1):
+    stable = [s.place for s in found.beyond if s.negative == 0]
+    told = _descends(family, line) and len(stable) == 1
+    if len(found.meeting) == len(found.leaving) == 1 and not told:
+        return stopped  # it goes on, and has not been followed
+    met = replace(stopped, fate=Fate.VANISH, meeting=found.meeting, leaving=found.leaving, among=found.among)
+    if not told:
         return met
     return replace(
         met,
-        fate=Fate.MERGE if 0 in leaving else Fate.SNAP,
+        fate=Fate.MERGE if 0 in found.leaving else Fate.SNAP,
         energy=_energy(family, line, current),
         target=_point(family, stable[0]),
         target_energy=_energy(family, line, stable[0]),
@@ -267,56 +264,11 @@ def _descends(family: Family, line: Line) -> bool:
     return system.has_index and system.is_on_torus and not moved(family.model, line.parameters)
 
 
-def _equilibria(family: Family, line: Line, value: Fraction) -> list[tuple[Reached, int]] | None:
-    """All solutions at a value that is not critical, with their Morse indices; None when one was not enclosed.
-
-    Without a potential the number is 0 for a stable solution and 1 for another.
-    """
-    values = _parameters(family.system, line, value)
-    found = []
-    for solution in equilibria(family.system, {n: from_fraction(v) for n, v in values.items()}).solutions:
-        with ctx.workprec(BITS):
-            center = [arb(x) for x in solution.center]
-            turns = 2 * family.angles
-            angles = (arb.atan2(s, c) for c, s in zip(center[:turns:2], center[1:turns:2], strict=True))
-            guess = (*angles, *center[turns:])
-        place = at_value(family, value, guess)
-        if place is None:
-            return None
-        stable = family.system.tells_stability and not solution.signs.strip("+")
-        negative = solution.signs.count("-") if family.system.has_index else int(not stable)
-        found.append((Reached(value, place, place), negative))
-    return found
-
-
 def _energy(family: Family, line: Line, reached: Reached) -> Enclosure:
     """The potential at a place."""
     potential = family.system.potential
     assert potential is not None  # snaps and mergers are those of a potential
-    return enclosure_of(_value(family, line, reached, potential))
-
-
-def _value(family: Family, line: Line, reached: Reached, p: TrigonometricPolynomial) -> arb:
-    """An element of the system's ring at a place."""
-    values = {n: from_fraction(v) for n, v in _parameters(family.system, line, reached.value).items()}
-    with ctx.workprec(BITS):
-        coordinates = coordinates_of(reached.point, family.angles)
-        total = arb(0)
-        for monomial, coefficient in polynomial_at(family.system, p, values).items():
-            term = arb(coefficient)
-            for value, e in zip(coordinates, monomial, strict=True):
-                for _ in range(e):
-                    term = term * value
-            total += term
-        return total
-
-
-def _close(family: Family, first: Vector, second: Vector) -> bool:
-    """Whether the boxes overlap, whole turns apart."""
-    with ctx.workprec(BITS):
-        apart = [a - b for a, b in zip(first, second, strict=True)]
-        turned = [(d / 2).sin() for d in apart[: family.angles]]
-        return all(d.contains(0) for d in (*turned, *apart[family.angles :]))
+    return enclosure_of(value_at(family, line, reached, potential))
 
 
 def _point(family: Family, reached: Reached) -> PathPoint:

@@ -17,7 +17,7 @@ from flint import arb, arb_mat, ctx, fmpq
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
-from ptmcad.exact.models.system import ParametricSystem, Terms
+from ptmcad.exact.models.system import ParametricSystem, Terms, terms_of
 from ptmcad.mechanism import Model
 from ptmcad.text.expressions import Expression, Term
 
@@ -55,6 +55,14 @@ class Family:
             tuple(terms for _, terms in equations),
             tuple(tuple(_specialised(h, numbers)[0] for h in row) for row in self.system.jacobian_terms),
         )
+
+    def conditions(self, low: Fraction, high: Fraction, point: Vector) -> Vector:
+        """The left sides of the inequalities for all parameters from low to high, at balls of the unknowns."""
+        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
+        numbers = [_dual(self.parameters[name], value) for name in self.system.ring.parameters]
+        coordinates = coordinates_of(point, self.angles)
+        terms = (terms_of(self.system.ring, p) for p in self.system.inequalities)
+        return tuple(_evaluated(_specialised(t, numbers)[0], coordinates) for t in terms)
 
 
 Dual = tuple[arb, arb]

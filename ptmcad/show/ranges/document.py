@@ -170,6 +170,7 @@ def _path_end(end: PathEnd) -> dict[str, Any]:
         "last": _point(end.last),
         "meeting": list(end.meeting),
         "leaving": list(end.leaving),
+        **({"among": True} if end.among else {}),
         "energy": None if end.energy is None else settled(end.energy, DIGITS),
         "target": None if end.target is None else _point(end.target),
         "target_energy": None if end.target_energy is None else settled(end.target_energy, DIGITS),

@@ -206,6 +206,8 @@ def _event(end: PathEnd, model: Model) -> str:
     left = _listed([_kind(k, model) for k in end.leaving])
     if not others:
         return f"{followed} goes on as {left}" if end.leaving else f"{followed} vanishes alone"
+    if end.among:
+        return f"{followed} meets one or more of {_listed(others)} and vanishes"
     merges = f"{followed} merges with {_listed(others)}"
     if not end.leaving:
         return f"fold: {merges} and both vanish" if len(others) == 1 else f"{merges} and all vanish"

@@ -1,0 +1,354 @@
+"""Which solutions meet where a branch ends: those in a region that no solution enters or leaves meanwhile.
+
+Guarantee: of the solutions on both sides of a critical value those that are bridged by one tube are nondegenerate and
+meet none. A region of unknowns on whose boundary the equations vanish for no value between the two sides keeps its
+solutions, so the sum of the signs of the Jacobian's determinants in it is the same on both sides, and the same is true
+around each place where solutions meet (the degree of a map). A grouping is proved where it is the only one that keeps
+this sum, and that the symmetries of the equations leave alone.
+
+Reference: Deimling, Nonlinear Functional Analysis, 1 (the degree; that it is the same along a homotopy).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from itertools import permutations, product
+from typing import NamedTuple
+
+from flint import arb, arb_mat, ctx
+
+from ptmcad.algebra.polynomials import UnknownPolynomial, from_fraction
+from ptmcad.algebra.trigonometric import TrigonometricPolynomial
+from ptmcad.exact.counting import equilibria
+from ptmcad.exact.models.system import on_slice, polynomial_at
+from ptmcad.exact.ranges.line import system_on
+from ptmcad.exact.ranges.tracking import BITS, Family, Reached, Vector, at_value, bridge, coordinates_of
+from ptmcad.question.line import Line
+
+_MAX_GROUP = 8
+"""Solutions of which all groupings are looked through: of eight there are 4140."""
+_MAX_SIGNS = 8
+"""Coordinates of which all changes of signs, and of order, are tried as symmetries."""
+_MAX_PIECES = 4000
+_MAX_DEPTH = 60
+"""Into how many pieces, and how often, a region's boundary is cut."""
+
+
+class Solution(NamedTuple):
+    """A solution at one value: its place, and how many negative eigenvalues it has.
+
+    Without a potential the number is 0 for a stable solution and 1 for another.
+    """
+
+    place: Reached
+    negative: int
+
+
+class Meeting(NamedTuple):
+    """What a branch meets.
+
+    Attributes
+    ----------
+    meeting, leaving : as in `ptmcad.answer.paths.PathEnd`.
+    among : whether the branch is proved to vanish with one or more of those, and not with which.
+    beyond : all solutions on the far side.
+    """
+
+    meeting: tuple[int, ...]
+    leaving: tuple[int, ...]
+    among: bool
+    beyond: tuple[Solution, ...]
+
+
+class _Member(NamedTuple):
+    """A solution that is not bridged."""
+
+    solution: Solution
+    ahead: bool
+    shifted: Vector
+    sign: int
+
+
+def parameters_at(family: Family, line: Line, value: Fraction) -> dict[str, Fraction]:
+    """The system's parameters at a value of the line."""
+    used = family.system.ring.parameters
+    return {n: e.evaluate(value, Fraction(0)) for n, e in line.parameters.items() if n in used}
+
+
+def value_at(family: Family, line: Line, reached: Reached, p: TrigonometricPolynomial) -> arb:
+    """An element of the system's ring at a place."""
+    values = {n: from_fraction(v) for n, v in parameters_at(family, line, reached.value).items()}
+    with ctx.workprec(BITS):
+        coordinates = coordinates_of(reached.point, family.angles)
+        total = arb(0)
+        for monomial, coefficient in polynomial_at(family.system, p, values).items():
+            term = arb(coefficient)
+            for value, e in zip(coordinates, monomial, strict=True):
+                for _ in range(e):
+                    term = term * value
+            total += term
+        return total
+
+
+def what_meets(family: Family, line: Line, current: Reached, after: Fraction) -> Meeting | None:
+    """What a branch meets at the only critical value between its place and another value; None where not proved."""
+    before, beyond = _solutions(family, line, current.value), _solutions(family, line, after)
+    if before is None or beyond is None:
+        return None
+    unmatched = _unmatched(family, line, current, after, before, beyond)
+    if unmatched is None:
+        return None
+    members = [_member(family, current, s, ahead) for s, ahead in unmatched]
+    if not all(m.sign for m in members):
+        return None
+    group = _region(family, current, after, members)
+    if group is None:
+        return _without_region(family, unmatched, tuple(beyond))
+    classes = _own_classes(group, _symmetries(family, line, group))
+    if not classes:
+        return None
+    if len(classes) > 1 and any(group[k].ahead for c in classes for k in c):
+        return None
+    chosen = [group[k] for k in sorted(frozenset().union(*classes))]
+    met, left = (tuple(sorted(m.solution.negative for m in chosen if m.ahead is side)) for side in (False, True))
+    return Meeting(met, left, len(classes) > 1, tuple(beyond))
+
+
+def _solutions(family: Family, line: Line, value: Fraction) -> list[Solution] | None:
+    """All solutions at a value that is not critical; None when one was not enclosed."""
+    values = parameters_at(family, line, value)
+    found = []
+    for solution in equilibria(family.system, {n: from_fraction(v) for n, v in values.items()}).solutions:
+        with ctx.workprec(BITS):
+            center = [arb(x) for x in solution.center]
+            turns = 2 * family.angles
+            angles = (arb.atan2(s, c) for c, s in zip(center[:turns:2], center[1:turns:2], strict=True))
+            guess = (*angles, *center[turns:])
+        place = at_value(family, value, guess)
+        if place is None:
+            return None
+        stable = family.system.tells_stability and not solution.signs.strip("+")
+        negative = solution.signs.count("-") if family.system.has_index else int(not stable)
+        found.append(Solution(Reached(value, place, place), negative))
+    return found
+
+
+def _unmatched(
+    family: Family,
+    line: Line,
+    current: Reached,
+    after: Fraction,
+    before: Sequence[Solution],
+    beyond: Sequence[Solution],
+) -> list[tuple[Solution, bool]] | None:
+    """The solutions that no tube leads across, the branch's own first, and whether each is on the far side."""
+    own = [s for s in before if _close(family, s.place.point, current.point)]
+    if len(own) != 1:
+        return None
+    left, lost = list(beyond), [(own[0], False)]
+    for solution in before:
+        if solution is own[0]:
+            continue
+        across = bridge(family, solution.place, after)
+        if across is None:
+            lost.append((solution, False))
+            continue
+        images = [k for k, image in enumerate(left) if _close(family, across.point, image.place.point)]
+        if len(images) == 1:
+            del left[images[0]]
+        elif images or not any(value_at(family, line, across, p) < 0 for p in family.system.inequalities):
+            return None
+    return lost + [(solution, True) for solution in left]
+
+
+def _close(family: Family, first: Vector, second: Vector) -> bool:
+    """Whether the boxes overlap, whole turns apart."""
+    with ctx.workprec(BITS):
+        apart = [a - b for a, b in zip(first, second, strict=True)]
+        turned = [(d / 2).sin() for d in apart[: family.angles]]
+        return all(d.contains(0) for d in (*turned, *apart[family.angles :]))
+
+
+def _member(family: Family, current: Reached, solution: Solution, ahead: bool) -> _Member:
+    """A solution with its angles less than a turn from the branch's, and the sign of the Jacobian's determinant."""
+    with ctx.workprec(BITS):
+        shifted = []
+        for k, (a, b) in enumerate(zip(solution.place.point, current.point, strict=True)):
+            turns = round(float(((b - a) / (2 * arb.pi())).mid())) if k < family.angles else 0
+            shifted.append(a + 2 * turns * arb.pi())
+        value = solution.place.value
+        size = len(shifted)
+        rows = family.at(value, value).jacobian(solution.place.point)
+        det = arb_mat(size, size, [x for row in rows for x in row]).det()
+        return _Member(solution, ahead, tuple(shifted), 1 if det > 0 else -1 if det < 0 else 0)
+
+
+def _without_region(
+    family: Family, unmatched: Sequence[tuple[Solution, bool]], beyond: tuple[Solution, ...]
+) -> Meeting | None:
+    """What can be said without a region: a branch vanishes where nothing is left that it may have become."""
+    if family.system.inequalities or any(ahead for _, ahead in unmatched):
+        return None
+    if len(unmatched) > 1 and not family.system.is_on_torus:
+        return None  # some may go to infinity
+    return Meeting(tuple(sorted(s.negative for s, _ in unmatched)), (), len(unmatched) > 1, beyond)
+
+
+def _region(family: Family, current: Reached, after: Fraction, members: Sequence[_Member]) -> list[_Member] | None:
+    """The fewest solutions around the branch's own, the first, in a region that none enters or leaves."""
+    with ctx.workprec(BITS):
+        own = members[0]
+
+        def distance(m: _Member) -> float:
+            return max(float(abs(a - b).mid()) for a, b in zip(m.shifted, own.shifted, strict=True))
+
+        ordered = sorted(members, key=distance)
+        for k in range(1, min(len(ordered), _MAX_GROUP) + 1):
+            group = ordered[:k]
+            if sum(m.sign for m in group if m.ahead) != sum(m.sign for m in group if not m.ahead):
+                continue
+            extent = distance(group[-1])
+            room = (distance(ordered[k]) - extent) / 2 if k < len(ordered) else max(3 * extent, 0.1)
+            for margin in (m for m in (2 * extent, extent / 2, room) if 0 < m <= room):
+                box = [_hull([m.shifted[i] for m in group], margin) for i in range(len(own.shifted))]
+                if _isolates(family, box, current.value, after, group, ordered[k:]):
+                    return group
+    return None
+
+
+def _hull(balls: Sequence[arb], margin: float) -> tuple[arb, arb]:
+    """The ends, exact numbers, of a span around balls."""
+    low = min(b.lower() for b in balls) - margin
+    high = max(b.upper() for b in balls) + margin
+    return low.mid(), high.mid()
+
+
+def _isolates(
+    family: Family,
+    box: Sequence[tuple[arb, arb]],
+    start: Fraction,
+    end: Fraction,
+    group: Sequence[_Member],
+    others: Sequence[_Member],
+) -> bool:
+    """Whether a box holds the group and none of the others, and its boundary no solution from one value to another."""
+    if not all(high - low < 6 for low, high in box[: family.angles]):
+        return False
+    held = all(low < x < high for m in group for x, (low, high) in zip(m.shifted, box, strict=True))
+    if not held or not all(_outside(family, m.shifted, box) for m in others):
+        return False
+    low, high = sorted((start, end))
+    at = family.at(low, high)
+    whole = tuple(a.union(b) for a, b in box)
+    if not all(p > 0 for p in family.conditions(low, high, whole)):
+        return False
+    faces = [(*whole[:i], side, *whole[i + 1 :]) for i, sides in enumerate(box) for side in sides]
+    stack, pieces = [(face, 0) for face in faces], 0
+    while stack:
+        piece, depth = stack.pop()
+        pieces += 1
+        if any(not value.contains(0) for value in at.equations(piece)):
+            continue
+        if depth == _MAX_DEPTH or pieces > _MAX_PIECES:
+            return False
+        widest = max(range(len(piece)), key=lambda i: float(piece[i].rad()))
+        if piece[widest].rad() == 0:
+            return False
+        middle = piece[widest].mid()
+        for part in (piece[widest].lower().union(middle), middle.union(piece[widest].upper())):
+            stack.append(((*piece[:widest], part, *piece[widest + 1 :]), depth + 1))
+    return True
+
+
+def _outside(family: Family, point: Vector, box: Sequence[tuple[arb, arb]]) -> bool:
+    """Whether a point is certainly outside a box, by any number of whole turns."""
+    for k, (x, (low, high)) in enumerate(zip(point, box, strict=True)):
+        if k >= family.angles:
+            if x < low or x > high:
+                return True
+            continue
+        turn = 2 * arb.pi()
+        if all(y < low or y > high for y in (x - turn, x, x + turn)):
+            return True
+    return False
+
+
+def _symmetries(family: Family, line: Line, group: Sequence[_Member]) -> list[tuple[int, ...]]:
+    """How exchanges of unknowns and coordinates' signs that leave the equations alone on the line permute the group."""
+    if len(group) <= 2:
+        return []
+    equations = on_slice(*system_on(line)).equations
+    with ctx.workprec(BITS):
+        places = [coordinates_of(m.shifted, family.angles) for m in group]
+        found = []
+        for order, signs in _changes(family.angles, len(group[0].shifted)):
+            if not all(any(_proportional(_changed(e, order, signs), f) for f in equations) for e in equations):
+                continue
+            moved = [[s * place[k] for k, s in zip(order, signs, strict=True)] for place in places]
+            images = [
+                [
+                    k
+                    for k, (other, place) in enumerate(zip(group, places, strict=True))
+                    if other.ahead is m.ahead and all(a.overlaps(b) for a, b in zip(image, place, strict=True))
+                ]
+                for m, image in zip(group, moved, strict=True)
+            ]
+            if all(len(i) == 1 for i in images):
+                found.append(tuple(i[0] for i in images))
+    return found
+
+
+def _changes(angles: int, unknowns: int) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
+    """For each coordinate which one comes to its place, and with which sign: of angles both coordinates together."""
+    width = angles + unknowns
+    if width > _MAX_SIGNS:
+        return
+    for first, last in product(permutations(range(angles)), permutations(range(2 * angles, width))):
+        order = (*(i for k in first for i in (2 * k, 2 * k + 1)), *last)
+        for signs in product((1, -1), repeat=width):
+            yield order, signs
+
+
+def _changed(p: UnknownPolynomial, order: Sequence[int], signs: Sequence[int]) -> UnknownPolynomial:
+    """A polynomial at changed coordinates."""
+    result = {}
+    for monomial, coefficient in p.items():
+        odd = sum(e for e, s in zip(monomial, signs, strict=True) if s < 0) % 2
+        powers = [0] * len(order)
+        for k, e in zip(order, monomial, strict=True):
+            powers[k] = e
+        result[tuple(powers)] = -coefficient if odd else coefficient
+    return result
+
+
+def _proportional(first: UnknownPolynomial, second: UnknownPolynomial) -> bool:
+    """Whether two polynomials are the same up to a factor."""
+    if first.keys() != second.keys():
+        return False
+    some = next(iter(first))
+    return all(first[m] * second[some] == second[m] * first[some] for m in first)
+
+
+def _own_classes(group: Sequence[_Member], symmetries: Sequence[Sequence[int]]) -> set[frozenset[int]]:
+    """With which of the group, by number, the first may be where it ends: by each grouping that is possible."""
+    found = set()
+    for grouping in _groupings(len(group)):
+        sums = [sum(group[k].sign * (-1 if group[k].ahead else 1) for k in part) for part in grouping]
+        if any(sums):
+            continue
+        parts = {frozenset(part) for part in grouping}
+        if all(frozenset(s[k] for k in part) in parts for s in symmetries for part in parts):
+            found.add(next(part for part in parts if 0 in part))
+    return found
+
+
+def _groupings(size: int) -> Iterator[list[list[int]]]:
+    """All partitions of the numbers below a size."""
+    if size == 0:
+        yield []
+        return
+    for smaller in _groupings(size - 1):
+        for k in range(len(smaller)):
+            yield [[*part, size - 1] if i == k else part for i, part in enumerate(smaller)]
+        yield [*smaller, [size - 1]]
