@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from numbers import Rational
 from operator import index
 from typing import SupportsIndex
 
@@ -45,7 +46,7 @@ def integer_of(digits: str) -> int:
 
 
 def exactly(number: object) -> Fraction:
-    """The value of a number of Python's or numpy's: an integer, a Fraction, or a float's exact binary value.
+    """The value of a number: an integer, a rational of any library's, or a float's exact binary value.
 
     >>> exactly(0.5), exactly(0.1) == Fraction(1, 10)
     (Fraction(1, 2), False)
@@ -59,11 +60,19 @@ def exactly(number: object) -> Fraction:
     """
     # numpy's truth values are indices before numpy 2
     truth = isinstance(number, bool) or getattr(getattr(number, "dtype", None), "kind", "") == "b"
-    if isinstance(number, SupportsIndex) and not truth:
-        return Fraction(index(number))
+    refusal = f"{number!r} of type {type(number).__name__} is not an exact number"
+    if truth or isinstance(number, type):  # a class has its numbers' methods
+        raise TypeError(refusal)
+    if isinstance(number, SupportsIndex):
+        try:
+            return Fraction(index(number))
+        except TypeError as error:  # an array
+            raise TypeError(refusal) from error
+    if isinstance(number, Rational):
+        return Fraction(int(number.numerator), int(number.denominator))
     ratio = getattr(number, "as_integer_ratio", None)
-    if ratio is None or truth:
-        raise TypeError(f"{number!r} of type {type(number).__name__} is not an exact number")
+    if ratio is None:
+        raise TypeError(refusal)
     try:
         return Fraction(*ratio())
     except (ValueError, OverflowError) as error:

@@ -8,6 +8,7 @@ from fractions import Fraction
 from math import pi
 from typing import Any
 
+import numpy as np
 import pytest
 import sympy
 
@@ -61,6 +62,33 @@ def test_a_mapping_with_a_mechanism_is_classified(mechanism: Any) -> None:
     assert again.slice == result.slice
 
 
+def test_numbers_equations_and_arrays_of_other_libraries() -> None:
+    x, a, b = sympy.symbols("x a b")
+    cubic = ptmcad.System(unknowns={"x": "real"}, equations=["x^3 - (a*x - b)"])
+    equation = sympy.Eq(x**3, a * x - b)
+    for equations in ([equation], np.array([equation], dtype=object), sympy.Matrix([x**3 - (a * x - b)])):
+        other = ptmcad.System(unknowns={x: "real"}, equations=equations)
+        at = ptmcad.counts_at(other, a=sympy.Integer(1), b=sympy.Rational(1, 10))
+        assert at == ptmcad.counts_at(cubic, a=1, b="1/10")
+    # a float of SymPy's is the decimal that it prints, as in an expression
+    assert ptmcad.counts_at(cubic, a=sympy.Float(1), b=sympy.Float("0.1")) == at
+    question = {"system": cubic, "axes": {"a": np.array([-1, 1]), "b": np.linspace(-1, 1, 2)}}
+    assert ptmcad.slice_from_mapping(question) == ptmcad.slice_from_mapping(
+        {"system": cubic, "axes": {"a": [-1, 1], "b": [-1, 1]}}
+    )
+    pose = ptmcad.solve(model=ptmcad.Mechanism(PENDULUM), W=sympy.Rational(1, 10), H=sympy.Rational(-1, 3))
+    assert pose.parameters["H"] == Fraction(-1, 3)
+
+
+def test_functions_in_place_of_symbols_are_refused() -> None:
+    q = sympy.Function("q")(sympy.Symbol("t"))
+    refusal = r"q\(t\) is a function of SymPy's: use a symbol in its place, such as sympy.Symbol\('q'\)"
+    with pytest.raises(ConfigError, match=refusal):
+        ptmcad.System(unknowns={q: "real"}, equations=["x"])
+    with pytest.raises(ConfigError, match=refusal):
+        ptmcad.System(unknowns={"q": "real"}, equations=[sympy.cos(q) - q])
+
+
 def test_the_built_in_mechanism_as_an_object() -> None:
     ptm = ptmcad.slice_from_options(slice="rho,L2").model
     question = {"mechanism": ptm, "axes": {"rho": [0, 2], "L2": [0, 2]}}
@@ -93,6 +121,8 @@ def test_what_is_wrong_is_said() -> None:
         ptmcad.System("x^3")  # type: ignore[arg-type]
     with pytest.raises(ConfigError, match="is not an exact number"):
         ptmcad.Mechanism({**PENDULUM, "points": {**PENDULUM["points"], "O": [object(), 0]}})
+    with pytest.raises(ConfigError, match=r"equations: <class 'int'> of type type is not an exact number"):
+        ptmcad.System(unknowns={"x": "real"}, equations=[int])
     with pytest.raises(ConfigError, match="unknown parameter 'K'"):
         ptmcad.counts_at(ptmcad.Mechanism(PENDULUM), K=1)
     with pytest.raises(ConfigError, match=r"use ptmcad\.solve"):

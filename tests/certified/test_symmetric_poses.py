@@ -95,3 +95,40 @@ def test_poses_are_followed_from_a_symmetric_start() -> None:
     slice = ptmcad.slice_from_mapping({"mechanism": PENDULUM, "axes": {"W": [0, 4], "l0": [0, 1]}})
     paths = ptmcad.pose_paths(slice, "W", {"l0": "1/2"}, 1)
     assert len(paths.paths) == 1
+
+
+def test_a_relaxed_spring_has_exactly_its_free_length() -> None:
+    """Without a load |AP|^2 = 10 - 6 cos th = l0^2 at the stable poses, which no symmetry explains."""
+    poses = ptmcad.solve(model=ptmcad.Mechanism(PENDULUM), l0="12/5", W=0).equilibria
+    assert [pose.stable for pose in poses] == [True, True, False, False]
+    for pose in poses[:2]:
+        spring = pose.springs[0]
+        assert (spring.length.exact, spring.force.exact, pose.energy.exact) == (Fraction(12, 5), 0, 0)
+        assert float(pose.cosines_sines[0]) == pytest.approx((10 - 2.4**2) / 6)
+
+
+@pytest.mark.parametrize("change", [{"W": "1e-30"}, {"M": "1e-30"}])
+def test_a_spring_that_is_nearly_relaxed_is_not_taken_for_one_that_is(change: dict[str, str]) -> None:
+    moved = {**PENDULUM, "parameters": {**PENDULUM["parameters"], "M": {"kind": "force"}}, "moments": {"th": "M"}}
+    at = {"W": "0", "M": "0", **change}
+    pose = ptmcad.solve(model=ptmcad.Mechanism(moved), l0="12/5", **at).equilibria[0]
+    assert 0 < abs(float(pose.springs[0].force)) < 1e-28
+    assert 0 < abs(float(pose.energy)) < 1e-28
+
+
+def test_springs_of_which_one_is_relaxed() -> None:
+    """Two bars: where Q's spring is relaxed, the gradient of P's is that of one unknown alone."""
+    arm = {
+        "parameters": {"l0": {"kind": "free length"}},
+        "unknowns": {"th": "angle", "phi": "angle"},
+        "points": {
+            "A": [2, 1], "B": [-1, "3/2"], "P": ["sin(th)", "cos(th)"],
+            "Q": ["sin(th) + sin(phi)", "cos(th) + cos(phi)"],
+        },
+        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}, {"between": ["B", "Q"], "k": 1, "free": "l0"}],
+    }  # fmt: skip
+    poses = ptmcad.solve(model=ptmcad.Mechanism(arm), l0="3/2").equilibria
+    relaxed = [tuple(spring.force.exact == 0 for spring in pose.springs) for pose in poses]
+    assert (relaxed.count((True, True)), relaxed.count((False, True))) == (2, 4)
+    for pose, (first, second) in zip(poses, relaxed, strict=True):
+        assert (pose.energy.exact == 0) == (first and second)

@@ -17,6 +17,7 @@ from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.points import PlainCounter, plain_counter
+from ptmcad.certified.plain.relaxed import relaxed_numbers
 from ptmcad.certified.plain.symmetric import fixed_turns, rational_numbers
 from ptmcad.certified.potential import potential
 from ptmcad.certified.tape import Tape, record
@@ -36,7 +37,7 @@ NOT_TOLD = (
 )
 ZERO = (
     "a number of an equilibrium could not be distinguished from zero, or from a short decimal that ends in 5, so that "
-    "not all of its digits are known: change a value a little"
+    "not all of its digits are known: change a value a little, such as 3/2 to 1.5000001"
 )
 
 
@@ -133,6 +134,9 @@ def _pose(
                 settled = enclosed(numbers[name], digits) if exact is None else Enclosure(exact, exact)
                 if settled is not None:
                     found[name] = settled
+        if attempt == 1:
+            unsettled = [n for n in range(len(mechanism.springs)) if f"force {n}" not in found]
+            found |= relaxed_numbers(mechanism, parameters, unsettled, (whole, box), bits)
         if found.keys() >= numbers.keys() and f"eigenvalue {size - 1}" in found:
             return assembled(mechanism, parameters, found, solution.signs.count("-")), bits
         bits *= 2

@@ -302,7 +302,7 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
         place = Place(name)
         if name not in model.parameters:
             raise ConfigError(unknown_parameter(name, model))
-        given[name] = number_text(from_python(value, place))
+        given[name] = number_text(from_python(plain(value), place))
     return point_of(Record(model=model, values=given), {})
 
 

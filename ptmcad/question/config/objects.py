@@ -1,6 +1,7 @@
 """Mechanisms and systems from Python's objects: strings, numbers and SymPy expressions, in mappings as YAML has them.
 
-Guarantee: SymPy is never imported; an object of it is taken as the text that it prints, with exact numbers as they are.
+Guarantee: neither SymPy nor numpy is imported; an object of SymPy is taken as the text that it prints, with exact
+numbers as they are, an equation of it as its left side minus its right side, and an array as the list of its entries.
 """
 
 from __future__ import annotations
@@ -56,19 +57,52 @@ def make_system(description: Mapping[Any, Any] | None = None, /, **entries: Any)
 
 
 def plain(value: object) -> object:
-    """A value as `ptmcad.text.yamltree.from_python` takes it: models as their descriptions, SymPy's objects as text."""
+    """A value as `ptmcad.text.yamltree.from_python` takes it: models as their descriptions, SymPy's objects as text.
+
+    Raises
+    ------
+    ConfigError
+        For what depends on an undefined function of SymPy's, such as ``q(t)``.
+    """
     if isinstance(value, Model):
         return value.name if value.name in built_in() else {"name": value.name, **value.source}
     if isinstance(value, Mapping):
-        return {str(key) if _is_symbolic(key) else key: plain(entry) for key, entry in value.items()}
+        return {_text(key) if _is_symbolic(key) else key: plain(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
         return [plain(entry) for entry in value]
-    return str(value) if _is_symbolic(value) else value
+    shape: Any = getattr(value, "shape", None)
+    if isinstance(shape, tuple) and shape:  # an array of numpy's; SymPy's matrices give their entries row by row
+        entries: Any = value
+        return [plain(entry) for entry in entries]
+    return _text(value) if _is_symbolic(value) else value
+
+
+def _text(value: Any) -> str:
+    """An object of SymPy as the text of an expression."""
+    function = _undefined_function(value)
+    if function is not None:
+        raise ConfigError(
+            f"{function} is a function of SymPy's: use a symbol in its place, such as "
+            f"sympy.Symbol({function.func.__name__!r})"
+        )
+    if getattr(value, "rel_op", None) == "==":
+        return f"{value.lhs} - ({value.rhs})"
+    return str(value)
+
+
+def _undefined_function(value: Any) -> Any:
+    """The first undefined function in an object of SymPy, such as one of its dynamicsymbols; None without any."""
+    if type(value).__module__ is None:
+        return value
+    found = (_undefined_function(part) for part in getattr(value, "args", ()))
+    return next((function for function in found if function is not None), None)
 
 
 def _is_symbolic(value: object) -> bool:
     """Whether it is an object of SymPy, which nobody has who has not imported it."""
-    return type(value).__module__.partition(".")[0] == "sympy"
+    # SymPy makes the class of an undefined function when it is named, in no module
+    modules = (getattr(kind, "__module__", None) or "" for kind in type(value).__mro__)
+    return any(module.partition(".")[0] == "sympy" for module in modules)
 
 
 def _model(kind: str, description: Mapping[Any, Any] | None, entries: Mapping[str, Any]) -> Model:

@@ -1,0 +1,85 @@
+"""Springs that are proved to have exactly their free lengths at an equilibrium, so that their forces are exactly zero.
+
+Guarantee: exact. Let S be some springs and R the energy of all the rest. Where |d_s|^2 = l0_s^2 for all s in S and the
+slopes of R vanish, all slopes of the energy do: each is that of R plus multiples of the |d_s| - l0_s. If these
+equations, without those that vanish identically, are as many as the unknowns, interval Newton can prove that they have
+a zero in a box; if the box holds one equilibrium only, that is the zero.
+
+Balls alone would never tell such a force from its neighbours. The lemma is that of interval Newton as in
+`ptmcad.certified.arb_isolation`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+from flint import arb, ctx, fmpq
+
+from ptmcad.certified.arb_isolation import Box, newton
+from ptmcad.certified.formula import Graph
+from ptmcad.certified.plain.problem import FIRST
+from ptmcad.certified.potential import potential
+from ptmcad.certified.system import system
+from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism.evaluate import value_at
+from ptmcad.mechanism.work import split_moments
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.tree import names_of
+
+
+def relaxed_numbers(
+    mechanism: Mechanism,
+    parameters: Mapping[str, Fraction],
+    springs: Collection[int],
+    boxes: tuple[Box, Box],
+    precision: int,
+) -> dict[str, Enclosure]:
+    """The lengths and forces of these springs, if all are proved to be relaxed, and the energy if it is rational then.
+
+    Parameters
+    ----------
+    springs : their numbers in the description.
+    boxes : one that holds no other equilibrium, and a narrower one around the equilibrium.
+    precision : in bits.
+
+    Returns
+    -------
+    By name, as exact enclosures; nothing where there is no proof.
+    """
+    free = {n: value_at(mechanism.springs[n].free, parameters) for n in springs}
+    if not free or not all(value > 0 for value in free.values()) or _has_steady_moment(mechanism, parameters):
+        return {}
+    graph = Graph()
+    unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, FIRST)}
+    values = {name: graph.constant(value) for name, value in parameters.items()}
+    others = tuple(spring for n, spring in enumerate(mechanism.springs) if n not in free)
+    rest = potential(replace(mechanism, springs=others), values, unknowns)
+    equations = [graph.derivative(rest.energy, v.variable) for v in unknowns.values()]
+    equations = [slope for slope in equations if slope.value != 0]
+    for n, value in free.items():
+        (x0, y0), (x1, y1) = (rest.points[end] for end in (mechanism.springs[n].start, mechanism.springs[n].end))
+        equations.append((x1 - x0).squared() + (y1 - y0).squared() - value**2)
+    if len(equations) != len(unknowns):
+        return {}
+    whole, narrow = boxes
+    with ctx.workprec(precision):
+        around = list(narrow)
+        for v in unknowns.values():
+            around[v.variable] = arb(narrow[v.variable].mid(), arb(fmpq(1, 2 ** (precision // 2))))
+            if not whole[v.variable].contains(around[v.variable]):
+                return {}
+    step = newton(system(equations, [v.variable for v in unknowns.values()]), tuple(around), precision)
+    if step is None or not step[1]:
+        return {}
+    found = {f"length {n}": value for n, value in free.items()} | {f"force {n}": Fraction(0) for n in free}
+    if rest.energy.value is not None:
+        found["energy"] = rest.energy.value
+    return {name: Enclosure(value, value) for name, value in found.items()}
+
+
+def _has_steady_moment(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> bool:
+    """Whether there is a moment, other than zero, that is no part of the energy."""
+    steady = (tree for _, tree in split_moments(mechanism).steady)
+    return any(not parameters.keys() >= set(names_of(tree)) or value_at(tree, parameters) != 0 for tree in steady)
