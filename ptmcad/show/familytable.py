@@ -8,7 +8,7 @@ from __future__ import annotations
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.changestable import changes_table
-from ptmcad.show.table import area_by_count, area_text
+from ptmcad.show.table import NOT_COMPUTED, area_by_count, area_text, areas_are_known
 from ptmcad.text.numerals import shortest_text
 
 
@@ -34,6 +34,6 @@ def _degree(terms: tuple[tuple[tuple[int, int, int], int], ...]) -> int:
 
 def _areas(result: RegionMap) -> str:
     known = area_by_count(result)
-    if len(known) > 1 and not any(low for low, _ in known.values()):
-        return f"not computed; counts {', '.join(known)}"
+    if known and not areas_are_known(result):
+        return f"{NOT_COMPUTED}; counts {', '.join(known)}"
     return "; ".join(f"{count}: {area_text(result, bounds)}" for count, bounds in known.items())
