@@ -207,11 +207,9 @@ def _draw_bars(axes: Any, found: OperationWidths | CertifiedWidths) -> None:
     scale = scale_of(found.over.low, found.over.high)
     nearest = min((b - a for a, b in pairwise(sorted(rows))), default=scale.high - scale.low)
     thick = min(MAX_BAR, SHARE_OF_ROW * nearest / (scale.high - scale.low) * WIDE * 72)
-    bars = [
-        (place, *_ends_of(interval, found.along))
-        for place, row in zip(rows, found.rows, strict=True)
-        for interval in row.operation
-    ]
+    bars: list[tuple[float, float, float]] = []
+    for row in found.rows:
+        bars += [(scaled(row.value, found.over), *_ends_of(i, found.along)) for i in row.operation]
     places, lows, highs = ([bar[k] for bar in bars] for k in range(3))
     axes.vlines(places, lows, highs, color=fill_of_index((2, 3, 1)).face, linewidth=thick, capstyle="butt", gid="bars")
     for ends in (lows, highs):
