@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.text.bounds import share_text
 
 Bounds = tuple[Fraction, Fraction]
 
@@ -65,5 +66,5 @@ class Comparison:
         return low / whole, min(high / whole, Fraction(1))
 
     def __repr__(self) -> str:
-        low, high = (float(100 * share) for share in self.share)
-        return f"<Comparison of {self.first.slice.name} and {self.second.slice.name}: {low:.4g} to {high:.4g} % differ>"
+        share = share_text(self.share, self.undetermined is not None)
+        return f"<Comparison of {self.first.slice.name} and {self.second.slice.name}: {share} differ>"

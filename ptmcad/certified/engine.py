@@ -38,6 +38,7 @@ from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import DEFAULTS, Options
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice
+from ptmcad.text.bounds import percent
 from ptmcad.version import __version__
 
 TOLERANCE = Fraction(1, 1000)
@@ -275,8 +276,7 @@ class _Run:
         if so_far.undetermined == 1:
             raise LimitReached(f"{why} before anything was decided: there is no map to save yet")
         raise LimitReached(
-            f"{why} with {_percent(so_far.undetermined)} undetermined, more than the tolerance of "
-            f"{_percent(tolerance)}",
+            f"{why} with {percent(so_far.undetermined)} undetermined, more than the tolerance of {percent(tolerance)}",
             partial=so_far,
         )
 
@@ -285,7 +285,7 @@ class _Run:
         if progress is None:
             return None
         best = min(undetermined, Fraction(1) if self.best is None else self.best.undetermined)
-        what, share = f"undetermined {_percent(best)}", float(best)
+        what, share = f"undetermined {percent(best)}", float(best)
 
         def report(treated: int, waiting: int) -> None:
             level = treated / max(treated + 8 * waiting, 1)  # most of those that wait are cut again
@@ -340,11 +340,6 @@ def _overlap(cover: Cover) -> float:
     """How many times the rectangles cover their union, on average."""
     left, right, bottom, top = rectangle_array(cover).T.astype(np.float64)
     return float(((right - left) * (top - bottom)).sum()) / max(union_area(cover, COMPILED), 1)
-
-
-def _percent(share: Fraction) -> str:
-    percent = 100 * float(share)
-    return f"{percent:.0f} %" if percent >= 10 else f"{percent:.2g} %"
 
 
 def _versions() -> dict[str, str]:

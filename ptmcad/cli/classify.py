@@ -37,6 +37,7 @@ from ptmcad.process.output import (
 from ptmcad.question.config import Family
 from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Count, Slice
+from ptmcad.text.bounds import percent
 
 FORMATS = ("json", *PICTURES, *DATA)
 MIN_SECONDS = 0.01
@@ -151,7 +152,7 @@ def _hand_over(output: Output, result: Any) -> str:
 
 def _open_share(result: Any) -> str:
     """How much of a certified map is undetermined, in brackets."""
-    return "" if result.cover is None else f" ({float(100 * result.undetermined):.2g} % undetermined)"
+    return "" if result.cover is None else f" ({percent(result.undetermined)} undetermined)"
 
 
 def _save(result: Any, name: str, output: Output) -> None:

@@ -23,7 +23,8 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.report.chart import counts_text, hatch_id, pattern_defs, region_labels, region_outlines, wall_lines
 from ptmcad.show.report.frame import RIM, SIDE, frame, room
-from ptmcad.show.table import certified_digits, count_text
+from ptmcad.show.table import count_text
+from ptmcad.text.bounds import certified_digits
 from ptmcad.text.numerals import approximate_text
 
 COARSE = 5e-4

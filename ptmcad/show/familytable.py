@@ -9,7 +9,7 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.changestable import changes_table
-from ptmcad.show.table import area_by_count, area_text, count_text
+from ptmcad.show.table import NOT_COMPUTED, area_by_count, area_text, areas_are_known, count_text
 from ptmcad.text.numerals import shortest_text
 
 
@@ -37,6 +37,6 @@ def _areas(result: RegionMap) -> str:
     found = area_by_count(result)
     in_order = sorted(result.regions, key=lambda region: counted_by(region, result.slice.count))
     known = {text: found[text] for text in (count_text(region, result.slice.count) for region in in_order)}
-    if len(known) > 1 and not any(low for low, _ in known.values()):
-        return f"not computed; counts {', '.join(known)}"
+    if known and not areas_are_known(result):
+        return f"{NOT_COMPUTED}; counts {', '.join(known)}"
     return "; ".join(f"{count}: {area_text(result, bounds)}" for count, bounds in known.items())

@@ -17,7 +17,8 @@ from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.mechanism import Mechanism
 from ptmcad.show.style import DEFAULT
-from ptmcad.show.table import certified_digits, count_text, index_heading
+from ptmcad.show.table import NOT_COMPUTED, areas_are_known, count_text, index_heading
+from ptmcad.text.bounds import certified_digits
 from ptmcad.text.enclosure import Enclosure
 
 if TYPE_CHECKING:
@@ -58,7 +59,8 @@ def map_html(result: RegionMap) -> str:
 def _region_row(result: RegionMap, number: int, region: Region) -> tuple[str, ...]:
     index = " ".join(map(str, region.index)) if region.index else "varies"
     total = "varies" if region.total is None else str(region.total)
-    return str(number), count_text(region, result.slice.count), total, index, certified_digits(region.area, DIGITS)
+    area = certified_digits(region.area, DIGITS) if areas_are_known(result) else NOT_COMPUTED
+    return str(number), count_text(region, result.slice.count), total, index, area
 
 
 def poses_html(poses: Poses) -> str:

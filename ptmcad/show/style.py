@@ -224,7 +224,11 @@ def _palette(value: Any) -> str | tuple[str, ...]:
             f"{(wrong or [value])[0]!r} is neither {', '.join(PALETTES)} nor a colour such as #c7e4f6 or orange",
             key="palette",
         )
-    return tuple(_hexadecimal(c) for c in colours)
+    faces = [_hexadecimal(c) for c in colours]
+    twice = next((c for k, c in enumerate(colours) if faces[k] in faces[:k]), None)
+    if twice is not None:
+        raise ConfigError(f"{twice!r} is there twice: two counts would look alike", key="palette")
+    return tuple(faces)
 
 
 def _hexadecimal(colour: str) -> str:

@@ -6,13 +6,14 @@ from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
 
-from ptmcad.answer.regionmap import COMPILATION, Region, RegionMap, Status
+from ptmcad.answer.regionmap import COMPILATION, Region, RegionMap
 from ptmcad.answer.words import index_words, noun
 from ptmcad.cover.rectangles import Cover
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.question.slice import Count
 from ptmcad.show.units import area_unit
-from ptmcad.text.numerals import decimal, magnitude
+from ptmcad.text.bounds import certified_digits, interval_text, percent
+from ptmcad.text.numerals import magnitude
 
 _NAMES = {
     Count.STABLE: "stable",
@@ -47,29 +48,30 @@ def count_text(region: Region, count: Count) -> str:
     return f"({', '.join(map(str, region.index))})" if region.index else "?"
 
 
-def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
-    """The longest decimal, of at most ``most`` digits, that is within one unit of its last digit of both bounds.
-
-    Two decimals, joined by "to", when not even two digits are certain (or the one that is asked for).
-    """
-    low, high = bounds
-    middle = (low + high) / 2
-    if high == 0:
-        return "0"
-    top = magnitude(middle)
-    for exponent in range(top - most, top + (most == 1)):
-        unit = Fraction(10) ** exponent
-        digits = round(middle / unit)
-        if len(str(digits)) <= most and digits > 0 and high - digits * unit <= unit and digits * unit - low <= unit:
-            return decimal(digits * unit, up=False, digits=most)
-    return f"{decimal(low, up=False, digits=2)} to {decimal(high, up=True, digits=2)}"
-
-
 def area_text(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
     """An area as it is printed everywhere: one number of an exact map, both bounds of a certified one, and its unit."""
     text = certified_digits(bounds) if result.cover is None else interval_text(bounds)
     known = area_unit(result.slice)
     return f"{text} {known}" if known else text
+
+
+NOT_COMPUTED = "not computed"
+"""What is said of areas that are not known, which then all have the window's as their upper bound."""
+
+
+def areas_are_known(result: RegionMap) -> bool:
+    """Whether areas were computed: of an exact map that leaves them out, or is not as far, none has a lower bound."""
+    return result.cover is not None or any(region.area[0] for region in result.regions)
+
+
+def region_area(result: RegionMap, number: int) -> str:
+    """The area of one region: that of its count, as the legend and the table have it, where no other one has it."""
+    region, count = result.regions[number], result.slice.count
+    if not areas_are_known(result):
+        return NOT_COMPUTED
+    text = count_text(region, count)
+    alone = sum(count_text(other, count) == text for other in result.regions) == 1
+    return area_text(result, area_by_count(result)[text] if alone else region.area)
 
 
 def area_by_count(result: RegionMap) -> dict[str, tuple[Fraction, Fraction]]:
@@ -87,25 +89,6 @@ def area_by_count(result: RegionMap) -> dict[str, tuple[Fraction, Fraction]]:
         )
         for text in dict(bounds)
     }
-
-
-def interval_text(bounds: tuple[Fraction, Fraction]) -> str:
-    """Both bounds, rounded outwards by a hundredth of their distance at most.
-
-    >>> interval_text((Fraction("1.69822"), Fraction("1.75450"))), interval_text((Fraction(0), Fraction(2)))
-    ('1.6982 to 1.7545', '0 to 2')
-    """
-    low, high = bounds
-    if low >= high:
-        return certified_digits(bounds)
-    digits = max(2, magnitude(high) - magnitude(high - low) + 3)
-    return f"{_down_to(low, digits, high)} to {decimal(high, up=True, digits=digits)}"
-
-
-def _down_to(value: Fraction, digits: int, largest: Fraction) -> str:
-    """The value rounded down to the decimal place that ``digits`` digits of the largest end in."""
-    unit = Fraction(10) ** (magnitude(largest) + 1 - digits)
-    return decimal(value // unit * unit, up=False)
 
 
 def _short(value: Fraction) -> str:
@@ -167,17 +150,18 @@ def table(result: RegionMap) -> str:
     if result.cover is not None:
         bounds = _by_count(bounds, result)
     areas = "; ".join(f"{text}: {area_text(result, area)}" for text, area in bounds)
-    if result.status is Status.EXACT and len(bounds) > 1 and not any(low for _, (low, _) in bounds):
-        areas = "not computed"
+    missing = bool(result.regions) and not areas_are_known(result)
+    if missing:
+        areas = NOT_COMPUTED
     widths = [(high - low) / low for _, (low, high) in bounds if low]
     known = widths and len(widths) == len(bounds) and min(widths) >= 0  # a damaged file may say anything
     error = _short(max(widths)) if known else "unknown"
-    bound = "no area bounds" if areas == "not computed" else f"area bounds within {error}"
+    bound = "no area bounds" if missing else f"area bounds within {error}"
     if result.cover is not None and bounds:
         # relative to a region that is hardly larger than its border a width says nothing
         bound = f"area bounds at most {_short(max(high - low for _, (low, high) in bounds))} apart"
-    share = float(100 * result.undetermined)  # nothing is misclassified by either engine, see docs/error.md
-    wrong = "nothing undetermined" if share == 0 else f"{share:.2g} % undetermined"
+    # nothing is misclassified by either engine, see docs/error.md
+    wrong = f"{percent(result.undetermined)} undetermined" if result.undetermined else "nothing undetermined"
     return "\n".join(
         [
             f"regions   {len(result.regions)} of {len(result.cells)} cells, {result.status.value}",

@@ -74,7 +74,8 @@ def exactly(number: object) -> Fraction:
     if ratio is None:
         raise TypeError(refusal)
     try:
-        return Fraction(*ratio())
+        # numerator and denominator of a Fraction made from numpy's integers are such
+        return Fraction(*map(int, ratio()))
     except (ValueError, OverflowError) as error:
         raise ValueError(f"{number!r} is not a number that can be computed with") from error
 

@@ -162,7 +162,7 @@ def test_a_band_with_free_lengths(at: list[str], tmp_path: Path, capsys: pytest.
     assert [row["value"] for row in data["bands"]["rows"]] == (["3/2"] if at else ["1/2", "1", "3/2"])
     assert ("enclosed" in data) == bool(at)
     picture = (tmp_path / "x-over.svg").read_text(encoding="utf-8")
-    assert "above: where there are at least two stable equilibria" in picture
+    assert "bars: where there are at least two stable equilibria" in picture
 
 
 @pytest.mark.parametrize(

@@ -188,7 +188,7 @@ HOW_ENDED = {
     signal.SIGHUP: "the terminal was closed (SIGHUP)",
 }
 FIRST_WORDS = tuple(words.encode() for words in HOW_ENDED.values())
-CERTIFIED = "Result.cover, Result.undetermined = 'of a certified map', 0.25\n"
+CERTIFIED = "Result.cover, Result.undetermined = 'of a certified map', __import__('fractions').Fraction(1, 4)\n"
 
 
 @linux

@@ -355,3 +355,21 @@ def test_no_text_is_smaller_than_is_read_on_paper(size: str) -> None:
     made = figure(bands(SLIVERS), styled(size=size, font_size=6))
     assert min(t.get_fontsize() for t in texts(made)) == MIN_FONT
     assert (len(made.axes) > 1) == (size == "8x5in")
+
+
+def test_a_dark_style_leaves_text_that_is_read_on_white() -> None:
+    style = user_styled(mpl_style="dark_background")
+    with settings(style):
+        figure = figure_of(shipped("fig4"), samples=False, dpi=100, style=style)
+    axes = figure.axes[0]
+    inks = [t.get_color() for t in figure.findobj(Text) if t.get_text()]
+    inks += [spine.get_edgecolor() for spine in axes.spines.values()]
+    inks += [line.get_color() for line in axes.xaxis.get_ticklines()]
+    assert max(sum(to_rgb(ink)) for ink in inks) < 1.5
+    assert to_rgb(axes.get_facecolor()) == (1, 1, 1)
+
+
+@pytest.mark.parametrize("palette", ["red,red", "red,#FF0000", "red,blue,#f00"])
+def test_a_palette_with_one_colour_twice_is_refused(palette: str) -> None:
+    with pytest.raises(ConfigError, match="is there twice"):
+        styled("default", None, palette=palette)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from support.maps import shipped
 
@@ -13,6 +14,7 @@ from ptmcad.text.numerals import (
     MAX_EXPONENT,
     approximate_text,
     decimal,
+    exactly,
     fraction_of,
     integer_of,
     integer_text,
@@ -146,3 +148,9 @@ def test_decimals_have_18_digits_unless_told_otherwise() -> None:
 def test_the_shortest_text(value: Fraction, text: str) -> None:
     assert shortest_text(value) == text
     assert fraction_of(text) == value
+
+
+def test_fractions_of_numpys_integers_are_plain_ones() -> None:
+    value = exactly(Fraction(np.int64(3), 400))
+    assert value == Fraction(3, 400)
+    assert type(value.numerator) is int is type(value.denominator)

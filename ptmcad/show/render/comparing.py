@@ -21,7 +21,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
 from ptmcad.show.render.fitting import LEAST, Parts, overhang, rewrapped
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries, percent
+from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import whole_title
@@ -29,7 +29,8 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, Place, Style
-from ptmcad.show.table import area_text, certified_digits, count_text, interval_text
+from ptmcad.show.table import area_text, count_text
+from ptmcad.text.bounds import percent, share_text
 
 SIDE = 2.7
 """Inches of a map in 9 points, in a picture that grows with what it shows."""
@@ -98,9 +99,7 @@ def _area(comparison: Comparison, bounds: Bounds) -> str:
 
 def _share(comparison: Comparison) -> str:
     """How much of the window is different."""
-    low, high = (100 * share for share in comparison.share)
-    certified = comparison.undetermined is not None
-    return f"{interval_text((low, high)) if certified else certified_digits((low, high), 4)} %"
+    return share_text(comparison.share, comparison.undetermined is not None)
 
 
 def _undetermined(comparison: Comparison) -> str:

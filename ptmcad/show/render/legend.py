@@ -8,7 +8,6 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 from ptmcad.answer.counts import counted_by
@@ -16,8 +15,8 @@ from ptmcad.answer.regionmap import Region, RegionMap
 from ptmcad.answer.words import counted, noun
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
-from ptmcad.show.table import area_by_count, area_text, count_text, index_heading
-from ptmcad.text.numerals import decimal
+from ptmcad.show.table import area_by_count, area_text, areas_are_known, count_text, index_heading
+from ptmcad.text.bounds import percent
 
 STRONG, THIN, INK = 1.3, 0.5, "#111111"
 """Widths in points of walls that separate regions and of others, and the colour of both."""
@@ -126,9 +125,10 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
     groups: dict[str, list[Region]] = {}
     for region in sorted(result.regions, key=lambda r: (counted_by(r, count), -r.area[0])):
         groups.setdefault(count_text(region, count), []).append(region)
+    known = areas_are_known(result)
     yield Entry(head_of(result.slice), strong=True)
     for text, regions in groups.items():
-        areas = _areas(result, text, regions) if wording.areas else []
+        areas = _areas(result, text, regions) if wording.areas and known else []
         yield Entry((_with_total(text, regions, result), *areas), wording.fill(regions[0]))
     yield Entry(())
     if result.cover is not None and result.undetermined:
@@ -143,11 +143,6 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
         yield Entry(("sample point of a cell",), "dot")
     if hidden:
         yield Entry((f"{hidden} more region{'s are' if hidden > 1 else ' is'} too thin for a label",))
-
-
-def percent(share: Fraction) -> str:
-    """A share of the window in percent: two digits, rounded up."""
-    return f"{decimal(100 * share, up=True, digits=2)} %"
 
 
 def _with_total(text: str, regions: list[Region], result: RegionMap) -> str:

@@ -7,6 +7,7 @@ the machine. Global state of matplotlib is neither used nor changed.
 
 from __future__ import annotations
 
+import logging
 import re
 import warnings
 from collections.abc import Iterator
@@ -129,7 +130,8 @@ def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str)
         from matplotlib.backends.backend_ps import FigureCanvasPS
 
         canvas = FigureCanvasPS(figure)
-        canvas.print_eps(data, metadata={"Creator": "ptmcad", "Title": _ascii(title)})
+        with _opaque():
+            canvas.print_eps(data, metadata={"Creator": "ptmcad", "Title": _ascii(title)})
         return _CHANGING.sub(b"", data.getvalue())
     else:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -137,6 +139,21 @@ def printed(figure: Figure, suffix: str, dpi: int, title: str, description: str)
         canvas = FigureCanvasAgg(figure)
         canvas.print_png(data, metadata={"Software": None, "Title": title})
     return data.getvalue()
+
+
+@contextmanager
+def _opaque() -> Iterator[None]:
+    """PostScript knows no transparency; that the little there is becomes opaque is nothing to log."""
+
+    def other(record: logging.LogRecord) -> bool:
+        return "transparency" not in record.getMessage()
+
+    log = logging.getLogger("matplotlib.backends.backend_ps")
+    log.addFilter(other)
+    try:
+        yield
+    finally:
+        log.removeFilter(other)
 
 
 def _ascii(text: str) -> str:

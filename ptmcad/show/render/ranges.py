@@ -11,6 +11,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -45,6 +46,8 @@ from ptmcad.show.units import unit, with_unit
 from ptmcad.text.enclosure import Enclosure
 
 BAR, LABELS, ROOM = 0.62, 0.42, 0.36
+MAX_BAR, SHARE_OF_ROW = 6.0, 0.6
+"""Of a row's bar: points at most, and how much of the way to the next row."""
 _DIGITS = 7
 _COLUMNS = 100
 
@@ -158,7 +161,11 @@ def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figur
     else:
         lines = [widest_text(found)]
     mark = "; diamond: the widest" if maxima else ""
-    texts = [f"above: {_where(found)}; below: how wide that is at the tabulated values{mark}"]
+    texts = [
+        f"bars: {_where(found)}, at the tabulated values of {symbol(found.over.name)}",
+        "(between the bars nothing is drawn, as it is not tabulated there)",
+        f"below: how wide that is at the same values{mark}",
+    ]
     texts += [part for line in lines for part in textwrap.wrap(line, _COLUMNS)]
     foot = 0.55 + 0.2 * len(texts)
     tall = 2.3 + 1.9 + 0.35 + foot + 0.1
@@ -171,7 +178,7 @@ def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figur
         points = []
         for row in found.rows:
             points += [(scaled(row.value, over), float(i.width)) for i in row.operation]
-        _draw_band(upper, found)
+        _draw_bars(upper, found)
         lower.plot([p[0] for p in points], [p[1] for p in points], "o", color=INK, markersize=2.5)
         for m in maxima:
             ends = [scaled(v, over) for v in (m.at.low, m.at.high)]
@@ -194,56 +201,23 @@ def draw_widths(slice: Slice, found: OperationWidths | CertifiedWidths) -> Figur
     return figure
 
 
-def _draw_band(axes: Any, found: OperationWidths | CertifiedWidths) -> None:
-    """The operation ranges as bands from row to row, as bars where a range has none in the rows beside it."""
-    face = fill_of_index((2, 3, 1)).face
-    rows = [(scaled(row.value, found.over), [_ends_of(i, found.along) for i in row.operation]) for row in found.rows]
-    for chain in chains(rows):
-        xs, lows, highs = ([float(part[k]) for part in chain] for k in range(3))
-        if len(chain) == 1:
-            axes.plot(xs * 2, [lows[0], highs[0]], color=face, linewidth=3.0, solid_capstyle="butt")
-        else:
-            axes.fill_between(xs, lows, highs, facecolor=face, linewidth=0)
-        for ends in (lows, highs):
-            axes.plot(xs, ends, color=INK, linewidth=1.2, marker="_" if len(chain) == 1 else "", markersize=4)
+def _draw_bars(axes: Any, found: OperationWidths | CertifiedWidths) -> None:
+    """A bar for each operation range at its row; nothing between the rows, where nothing is computed."""
+    rows = [scaled(row.value, found.over) for row in found.rows]
+    scale = scale_of(found.over.low, found.over.high)
+    nearest = min((b - a for a, b in pairwise(sorted(rows))), default=scale.high - scale.low)
+    thick = min(MAX_BAR, SHARE_OF_ROW * nearest / (scale.high - scale.low) * WIDE * 72)
+    bars: list[tuple[float, float, float]] = []
+    for row in found.rows:
+        bars += [(scaled(row.value, found.over), *_ends_of(i, found.along)) for i in row.operation]
+    places, lows, highs = ([bar[k] for bar in bars] for k in range(3))
+    axes.vlines(places, lows, highs, color=fill_of_index((2, 3, 1)).face, linewidth=thick, capstyle="butt", gid="bars")
+    for ends in (lows, highs):
+        axes.plot(places, ends, "_", color=INK, markersize=thick, markeredgewidth=1.2, gid="ends")
 
 
 def _ends_of(interval: OperationSpan | CertifiedRange, along: Axis) -> tuple[float, float]:
     return _scaled_end(interval.low, along), _scaled_end(interval.high, along)
-
-
-Interval = tuple[float, float]
-
-
-def chains(rows: Sequence[tuple[float, Sequence[Interval]]]) -> list[list[tuple[float, float, float]]]:
-    """Intervals of neighbouring rows that go together, as (place of the row, low, high).
-
-    Those of two rows that have as many go together in their order; else two that meet each other and no other ones.
-
-    >>> chains([(0, [(0, 1), (5, 6)]), (1, [(0, 2)]), (2, [(1, 3)])])
-    [[(0, 0, 1), (1, 0, 2), (2, 1, 3)], [(0, 5, 6)]]
-    """
-    done: list[list[tuple[float, float, float]]] = []
-    before: dict[Interval, list[tuple[float, float, float]]] = {}
-    last: Sequence[Interval] = ()
-    for place, here in rows:
-        if len(here) == len(last):
-            pairs = dict(zip(here, last, strict=True))
-        else:
-            meeting = [(b, a) for b in here for a in last if a[0] < b[1] and b[0] < a[1]]
-            pairs = {
-                b: a for b, a in meeting
-                if sum(other[0] == b for other in meeting) == sum(other[1] == a for other in meeting) == 1
-            }  # fmt: skip
-        now = {}
-        for interval in here:
-            chain = before[pairs[interval]] if interval in pairs else []
-            if not chain:
-                done.append(chain)
-            chain.append((place, *interval))
-            now[interval] = chain
-        before, last = now, here
-    return done
 
 
 def _where(found: OperationWidths | CertifiedWidths) -> str:

@@ -42,7 +42,7 @@ from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import DEFAULT, Place, Style
-from ptmcad.show.table import area_text, count_text
+from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
 
 RESOLVED = 42
 """What is thinner than three pixels of this many to the inch (5 points) is taken for hidden by the walls around it."""
@@ -321,7 +321,8 @@ def _inset(
     if any(sliver.cell is not None for sliver in zoom.slivers):
         title = f"{', '.join(names)}\nunstable ones differ, zoomed"
     elif len(names) == 1:
-        title = f"{names[0]}\narea {area_text(result, result.regions[number].area)}, zoomed"
+        area = f"area {region_area(result, number)}, " if areas_are_known(result) else ""
+        title = f"{names[0]}\n{area}zoomed"
     else:
         title = textwrap.shorten(", ".join(names), 34, placeholder=" …") + "\nzoomed"
     axes.set_title(title, fontsize=layout.texts.inset, loc="left", pad=3)
@@ -352,7 +353,9 @@ def description(result: RegionMap) -> str:
     """What the picture shows, in words."""
     count = result.slice.count
     window = " and ".join(f"{a.name} from {a.low} to {a.high}" for a in result.slice.axes)
-    regions = "; ".join(f"{count_text(r, count)} ({area_text(result, r.area)})" for r in result.regions)
-    return (
-        f"Regions of equal count ({count.value} {noun(result.slice.model)}; area in brackets) over {window}: {regions}."
+    known = areas_are_known(result)
+    regions = "; ".join(
+        count_text(r, count) + (f" ({area_text(result, r.area)})" if known else "") for r in result.regions
     )
+    bracket = "; area in brackets" if known else ""
+    return f"Regions of equal count ({count.value} {noun(result.slice.model)}{bracket}) over {window}: {regions}."

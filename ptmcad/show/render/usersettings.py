@@ -1,7 +1,7 @@
 """Settings of a user's own for matplotlib: a matplotlibrc, a file of a style, or a style's name.
 
 Guarantee: only what they set counts, and nothing of it stays when the picture is drawn; what would change the meaning
-of text or what files hold is left out.
+of text or what files hold is left out, and colours that could not be read on white, such as those of a dark style.
 """
 
 from __future__ import annotations
@@ -19,6 +19,12 @@ from ptmcad.show.style import USER, Style, styled
 
 _OWN = ("text.usetex", "text.parse_math", "svg.", "pdf.", "ps.", "pgf.", "savefig.", "path.", "backend", "interactive",
         "toolbar", "timezone", "webagg", "keymap", "animation", "docstring", "date.epoch")  # fmt: skip
+
+_INKS = ("text.color", "axes.labelcolor", "axes.titlecolor", "axes.edgecolor", "xtick.color", "xtick.labelcolor",
+         "ytick.color", "ytick.labelcolor", "hatch.color", "patch.edgecolor")  # fmt: skip
+_GROUNDS = ("axes.facecolor",)
+MIDDLE = 0.6
+"""The lightest ink on white, and the darkest ground for black, from 0 to 1."""
 
 
 def user_settings(name: str) -> dict[str, Any]:
@@ -48,7 +54,17 @@ def user_settings(name: str) -> dict[str, Any]:
                 names = ", ".join(n for n in style.available if not n.startswith("_"))
                 raise ConfigError(f"{name!r} is neither a file nor a style of matplotlib: {names}", key="mpl_style")
             found = style.library[name]
-    return {key: found[key] for key in found if not key.startswith(_OWN)}
+    return {key: found[key] for key in found if not key.startswith(_OWN) and not _is_lost(key, found[key])}
+
+
+def _is_lost(key: str, value: Any) -> bool:
+    """Whether a colour is of no use in pictures, which are on white: a light ink, or a dark ground."""
+    from matplotlib.colors import is_color_like, to_rgb
+
+    if key not in (*_INKS, *_GROUNDS) or not is_color_like(value):
+        return False
+    red, green, blue = to_rgb(value)
+    return (0.2126 * red + 0.7152 * green + 0.0722 * blue > MIDDLE) == (key in _INKS)
 
 
 @contextmanager

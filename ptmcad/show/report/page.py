@@ -33,7 +33,8 @@ from ptmcad.show.report.frame import SIDE
 from ptmcad.show.report.packing import packed
 from ptmcad.show.report.pathdata import GRID
 from ptmcad.show.report.tape import tape
-from ptmcad.show.table import certified_digits
+from ptmcad.show.table import NOT_COMPUTED, areas_are_known
+from ptmcad.text.bounds import certified_digits
 from ptmcad.version import __version__
 
 _POINT_DIGITS = 12
@@ -174,6 +175,7 @@ def _work(model: Model) -> str:
 def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
     """What the script shows and draws."""
     names, model = result.slice.axis_names, result.slice.model
+    known = areas_are_known(result)
     return {
         "side": SIDE,
         "grid": GRID,
@@ -188,7 +190,10 @@ def _data(result: RegionMap, drawn: Chart) -> dict[str, Any]:
         "index": index_words(len(model.unknowns) + 1),
         "mechanism": drawing_of(model),
         "follow": tape(result),
-        "regions": [{"area": certified_digits(r.area), "counts": counts_text(r, model)} for r in result.regions],
+        "regions": [
+            {"area": certified_digits(r.area) if known else NOT_COMPUTED, "counts": counts_text(r, model)}
+            for r in result.regions
+        ],
         "stacks": [list(s.cells) for s in result.stacks],
         "names": list(names),
         "cells": packed(

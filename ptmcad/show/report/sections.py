@@ -14,12 +14,13 @@ from ptmcad.answer.words import index_words, noun
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Count
 from ptmcad.show.render.colours import Fill, fill_of
-from ptmcad.show.render.legend import entries, percent
+from ptmcad.show.render.legend import entries
 from ptmcad.show.report.bounds import exactly
 from ptmcad.show.report.chart import Chart, counts_text, hatch_id
 from ptmcad.show.report.equilibria import both, distinct_parameters
 from ptmcad.show.report.reproduction import reproduction
-from ptmcad.show.table import certified_digits, stability_in_words
+from ptmcad.show.table import NOT_COMPUTED, areas_are_known, stability_in_words
+from ptmcad.text.bounds import certified_digits, percent
 from ptmcad.text.numerals import decimal, text_of
 
 _COUNTED = {
@@ -150,13 +151,15 @@ def _head_and_rest(lines: tuple[str, ...]) -> tuple[str, ...]:
 
 def regions(result: RegionMap) -> str:
     """Every region with counts, area and cells."""
-    rows = []
+    rows, known = [], areas_are_known(result)
     for number, region in enumerate(result.regions):
         index = "-".join(map(str, region.index)) if region.index else ""
         buttons = "".join(f'<button class="chip">{n}</button>' for n in region.cells)
         low, high = region.area
         middle = certified_digits(region.area)
-        if result.cover is not None:
+        if not known:
+            middle, bounds = NOT_COMPUTED, ""
+        elif result.cover is not None:
             bounds = f"proved: {decimal(low, up=False, digits=7)} to {decimal(high, up=True, digits=7)}"
         elif low == high:
             bounds = f"exactly {text_of(low)}"
@@ -168,7 +171,7 @@ def regions(result: RegionMap) -> str:
             (
                 f"{swatch(fill_of(region, result.slice.count))} {number}",
                 escape(counts_text(region, result.slice.model)) + (f" ({escape(index)})" if index else ""),
-                f"{middle}<br><small>{bounds}</small>",
+                f"{middle}<br><small>{bounds}</small>" if bounds else middle,
                 sample,
                 f'<span class="chips">{buttons}</span>',
             )

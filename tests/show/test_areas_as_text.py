@@ -1,0 +1,82 @@
+"""Areas and shares as text: the same in tables, legends, insets and pages, and nowhere where they were not computed."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from support.certified_maps import circle
+from support.maps import CONFIGS, shipped
+
+import ptmcad
+from ptmcad.answer.comparison import Change, Comparison
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.show.notebook import map_html
+from ptmcad.show.render.comparing import comparison_figure, in_words
+from ptmcad.show.render.legend import Entry, entries
+from ptmcad.show.render.printing import settings
+from ptmcad.show.render.regionmap import description
+from ptmcad.show.report import page
+from ptmcad.show.report.sections import regions
+from ptmcad.show.style import DEFAULT
+from ptmcad.show.table import areas_are_known, region_area, table
+from ptmcad.text.bounds import percent, share_text
+
+
+@pytest.fixture(scope="module")
+def bare() -> RegionMap:
+    return ptmcad.classify(ptmcad.load(CONFIGS / "fig4.yaml"), areas=False)
+
+
+@pytest.fixture(scope="module")
+def certified() -> RegionMap:
+    return circle(7)
+
+
+def words(legend: tuple[Entry, ...]) -> str:
+    return "\n".join(line for entry in legend for line in entry.lines)
+
+
+def test_areas_that_were_not_computed_are_nowhere(bare: RegionMap) -> None:
+    assert not areas_are_known(bare)
+    assert areas_are_known(shipped("fig4"))
+    assert "areas     not computed" in table(bare)
+    assert "area" in words(entries(shipped("fig4"), False, False, 0))
+    assert "area" not in words(entries(bare, False, False, 0))
+    assert "area" not in description(bare)
+    assert "area in brackets" in description(shipped("fig4"))
+    assert regions(bare).count("not computed") == len(bare.regions)
+    assert "apart" not in regions(bare)
+    assert "0 to 4" not in page(bare)
+    assert map_html(bare).count("<td>not computed</td>") == len(bare.regions)
+
+
+def test_a_comparison_tells_its_own_areas_only(bare: RegionMap) -> None:
+    with settings(DEFAULT):
+        figure = comparison_figure(bare.compare(bare), 100, DEFAULT)
+    assert not [text.get_text() for text in figure.texts if "area" in text.get_text()]
+
+
+def test_a_region_alone_with_its_count_has_the_area_of_the_count(certified: RegionMap) -> None:
+    legend = words(entries(certified, False, False, 0)).replace("\n", " ")
+    counts = [region.stable for region in certified.regions]
+    alone = [n for n, stable in enumerate(counts) if counts.count(stable) == 1]
+    assert alone
+    for number in alone:
+        assert f"area {region_area(certified, number)}" in legend
+        assert region_area(certified, number) in table(certified)
+
+
+def test_shares_are_rounded_up_wherever_they_are_told(certified: RegionMap) -> None:
+    share = percent(certified.undetermined)
+    assert Fraction(share.removesuffix(" %")) / 100 >= certified.undetermined
+    assert f"{share} undetermined" in table(certified)
+    assert f"undetermined {share}" in words(entries(certified, False, False, 0))
+    assert percent(Fraction("0.043034")) == "4.4 %"
+
+
+def test_a_comparison_says_its_share_at_the_prompt_as_in_words() -> None:
+    found = Comparison(*[shipped("fig4")] * 3, (Change(0, 1, 0, (Fraction("1.559386"), Fraction("1.559387"))),))
+    assert share_text(found.share, False) == "38.98 %"
+    assert "38.98 % differ" in repr(found)
+    assert "38.98 % of the window" in in_words(found)[0]
