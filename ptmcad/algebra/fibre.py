@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from flint import (
     Ordering,
@@ -29,6 +29,7 @@ from flint import (
 from ptmcad.algebra.groebner import Monomial, shifted
 from ptmcad.algebra.quotient import standard_monomials
 from ptmcad.algebra.real_roots import sign
+from ptmcad.errors import LimitReached
 
 RationalPolynomial = Mapping[Monomial, fmpq]
 
@@ -51,14 +52,42 @@ class Fibre(NamedTuple):
         return len(self.basis)
 
 
-def fibre(equations: Sequence[RationalPolynomial], unknowns: int) -> Fibre | None:
-    """The quotient by the given equations; None when there are infinitely many complex solutions."""
+class Work(NamedTuple):
+    """How much work a quotient may be, whatever the machine: about a second where each is as large as it may be.
+
+    Attributes
+    ----------
+    dimension : of the quotient.
+    polynomials, terms, bits : of the basis before it is reduced: how many, and what each may have.
+    """
+
+    dimension: int
+    polynomials: int
+    terms: int
+    bits: int
+
+
+def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: Work | None = None) -> Fibre | None:
+    """The quotient by the given equations; None when there are infinitely many complex solutions.
+
+    Raises
+    ------
+    LimitReached
+        When it is more work than `most`.
+    """
     context = fmpz_mpoly_ctx.get(tuple(f"u{k}" for k in range(unknowns)), Ordering.degrevlex)
     integral = []
     for equation in equations:
         scale = math.lcm(*(int(c.q) for c in equation.values()))
         integral.append(context.from_dict({m: int(c.p) * (scale // int(c.q)) for m, c in equation.items()}))
-    reduced = fmpz_mpoly_vec(integral, context).buchberger_naive().autoreduction()
+    if most is None:
+        found = fmpz_mpoly_vec(integral, context).buchberger_naive()
+    else:
+        limited: Any = fmpz_mpoly_vec(integral, context).buchberger_naive(limits=most[1:])  # a pair
+        found, done = limited
+        if not done:
+            raise LimitReached("the basis of the equations grows beyond what is counted at once")
+    reduced = found.autoreduction()
     rules: dict[Monomial, tuple[fmpq, dict[Monomial, fmpq]]] = {}
     for p in reduced:
         terms = [(tuple(int(e) for e in m), fmpq(c)) for m, c in p.terms()]
@@ -67,6 +96,8 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int) -> Fibre | Non
     basis = standard_monomials(tuple(rules), unknowns)
     if basis is None:
         return None
+    if most is not None and len(basis) > most.dimension:
+        raise LimitReached(f"there are {len(basis)} solutions with multiplicity, more than are counted at once")
     position = {m: i for i, m in enumerate(basis)}
     size = len(basis)
     table: dict[Monomial, list[fmpq]] = {m: [fmpq(int(i == k)) for i in range(size)] for m, k in position.items()}

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from ptmcad.ask.classification import check_taken
 from ptmcad.ask.engines import is_certified
-from ptmcad.errors import ConfigError, GeometryError, shown
+from ptmcad.errors import ConfigError, GeometryError, LimitReached, shown
 from ptmcad.mechanism import Mechanism, ptm
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
@@ -34,6 +34,10 @@ MAX_PROVED = 8
 """Complex solutions: of more it is not proved that the slice is degenerate, which takes seconds and more."""
 MAX_DEGREE, MAX_BOUND = 12, 400
 """Of an equation, and of the number of solutions by Bezout's theorem: beyond, too."""
+MAX_COUNTED = 40
+"""Solutions with multiplicity: of more it takes seconds to see how many are different."""
+MAX_BASIS = 100, 400, 4_000
+"""Polynomials, terms of each and bits of a number in a basis of the equations at a point."""
 _CLASSES = (
     (4, "a second or less"),
     (8, "seconds, on most slices"),
@@ -41,6 +45,7 @@ _CLASSES = (
     (20, "minutes to hours: try --timeout, and counts along lines by ptmcad range"),
 )
 _BEYOND = "hours or more: ask for counts at points or along lines instead"
+_UNCOUNTED = "not known: try single points first, by ptmcad solve"
 _LONG = 16
 """Complex solutions: with more of them the exact map takes so long that whoever asks for it is told."""
 _BY_INTERVALS = "; --engine certified encloses the map"
@@ -109,17 +114,18 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:
     values = point_values(problem.parameters, (from_fraction(sample[0]), from_fraction(sample[1])))
     degree, bound = degree_bound(problem.system, values)
     if degree > MAX_DEGREE or bound > MAX_BOUND:
-        return Check(slice, sample, None, "exact", "not known: try single points first, by ptmcad solve", bound)
-    found, doubt = _solutions(problem.system, values)
-    if doubt:
-        others = (point_values(problem.parameters, at) for at in points(problem.window))
-        if all(_solutions(problem.system, other)[1] for other in others):
-            if (found or 0) > MAX_PROVED:
-                seen = (
-                    f"at {len(SHARES)} points that were tried {doubt}; a slice where that is so everywhere is refused"
-                )
-                return Check(slice, sample, found, "exact", f"not known: {seen}")
-            prove_regular(problem)
+        return Check(slice, sample, None, "exact", _UNCOUNTED, bound)
+    others = (point_values(problem.parameters, at) for at in points(problem.window))
+    try:
+        found, doubt = _solutions(problem.system, values)
+        everywhere = bool(doubt) and all(_solutions(problem.system, other)[1] for other in others)
+    except LimitReached:
+        return Check(slice, sample, None, "exact", _UNCOUNTED, bound)
+    if everywhere:
+        if (found or 0) > MAX_PROVED:
+            seen = f"at {len(SHARES)} points that were tried {doubt}; a slice where that is so everywhere is refused"
+            return Check(slice, sample, found, "exact", f"not known: {seen}")
+        prove_regular(problem)
     if not found:
         return Check(slice, sample, None, "exact", f"not known: at the sample {doubt}")
     cost = next((cost for most, cost in _CLASSES if found <= most), _BEYOND)
@@ -127,12 +133,20 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:
 
 
 def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int | None, str]:
-    """The number of different complex solutions at a point, and what casts doubt on the slice, in words."""
+    """The number of different complex solutions at a point, and what casts doubt on the slice, in words.
+
+    Raises
+    ------
+    LimitReached
+        When they are not counted within about a second.
+    """
+    from ptmcad.algebra.fibre import Work
     from ptmcad.exact.point_system import solutions_at
 
-    different, multiplicity = solutions_at(system, values)
+    most = Work(MAX_COUNTED, *MAX_BASIS)
+    different, multiplicity = solutions_at(system, values, most=most)
     if system.inequalities:
-        counted, of = solutions_at(system, values, saturated=True)
+        counted, of = solutions_at(system, values, saturated=True, most=most)
         if counted == 0 and different != 0:
             return different, "each solution makes the left side of an inequality zero"
         if different != multiplicity or different is None:
@@ -164,9 +178,9 @@ def warning(slice: Slice) -> str:
     return f"the equations have {found.complex_solutions} complex solutions, and {takes} {found.cost}"
 
 
-def check_text(found: Check) -> Iterator[str]:
-    """The answer as lines of text."""
-    slice, model = found.slice, found.slice.model
+def asked_text(slice: Slice) -> Iterator[str]:
+    """What a slice asks as lines of text, before anything is computed."""
+    model = slice.model
     what = "mechanism" if isinstance(model, Mechanism) else "system"
     yield f"{what:<12}{model.name}"
     yield f"{'unknowns':<12}{', '.join(f'{name} ({kind.value})' for name, kind in model.unknowns.items())}"
@@ -189,10 +203,15 @@ def check_text(found: Check) -> Iterator[str]:
     ends = (f"{a.name} from {short_text(a.low)} to {short_text(a.high)}" for a in slice.axes)
     yield f"{'axes':<12}{', '.join(ends)}"
     yield f"{'count':<12}{slice.count.value}"
+
+
+def cost_text(found: Check) -> Iterator[str]:
+    """What it will cost as lines of text."""
+    slice = found.slice
     at = ", ".join(f"{a.name} = {short_text(value)}" for a, value in zip(slice.axes, found.sample, strict=True))
     number = "not counted" if found.complex_solutions is None else f"{found.complex_solutions} complex ones at {at}"
     if found.bound is not None:
-        number = f"at most {found.bound} complex ones, by the equations' degrees"
+        number = f"at most {found.bound} complex ones, or infinitely many, by the equations' degrees"
     yield f"{'solutions':<12}{number}"
     yield f"{'engine':<12}{found.engine}"
     yield f"{'cost':<12}{found.cost}"

@@ -37,10 +37,12 @@ def command(*, record: Path, limits: Limits) -> int:
         return 2
     with held(limits):
         with clock_stopped(limits.timeout):  # the time that the import takes is not the computation's
-            from ptmcad.ask.checking import check, check_text
+            from ptmcad.ask.checking import asked_text, check, cost_text
         slice = asked.member(asked.values[len(asked.values) // 2]) if isinstance(asked, Family) else asked
+        for line in asked_text(slice):  # whatever stops the rest, this is known
+            click.echo(line)
         found = check(slice)
-        for line in check_text(found):
+        for line in cost_text(found):
             click.echo(line)
         if isinstance(asked, Family):
             click.echo(f"{'family':<12}of {len(asked.values)} such slices, {asked.free.name} from {asked.free.low} to "

@@ -14,10 +14,10 @@ from flint import fmpq
 from ptmcad.algebra.fibre import (
     Fibre,
     UnivariateRepresentation,
+    Work,
     evaluate,
     fibre,
     hermite_matrix,
-    signature,
     univariate_representation,
 )
 from ptmcad.errors import HypothesisError
@@ -49,7 +49,9 @@ class PointSystem(NamedTuple):
         return (*self.inequalities, *self.stability)
 
 
-def point_system(system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False) -> PointSystem:
+def point_system(
+    system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False, most: Work | None = None
+) -> PointSystem:
     """The system at rational values of all parameters.
 
     Parameters
@@ -60,6 +62,8 @@ def point_system(system: ParametricSystem, values: Mapping[str, fmpq], saturated
     ------
     DegeneratePoint
         When there are infinitely many solutions.
+    LimitReached
+        When it is more work than `most`.
     """
     equations, jacobian = at_point(system, values)
     inequalities, stability = (
@@ -77,7 +81,7 @@ def point_system(system: ParametricSystem, values: Mapping[str, fmpq], saturated
         inverse = {(*m, 1): c for m, c in _product(inequalities).items()}
         generators.append({**inverse, (0,) * (width + 1): fmpq(-1)})
         width += 1
-    algebra = fibre(generators, width)
+    algebra = fibre(generators, width, most)
     if algebra is None:
         raise DegeneratePoint(f"infinitely many solutions at {text_of_point(values)}")
     if turns is not None:
@@ -139,17 +143,46 @@ def degree_bound(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[
 
 
 def solutions_at(
-    system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False
+    system: ParametricSystem, values: Mapping[str, fmpq], saturated: bool = False, most: Work | None = None
 ) -> tuple[int | None, int]:
     """Number of different complex solutions, and their number with multiplicity; (None, 0) for infinitely many.
 
     Parameters
     ----------
     saturated : whether solutions at which an inequality's polynomial vanishes are left out.
+
+    Raises
+    ------
+    LimitReached
+        When it is more work than `most`.
     """
+    saturated = saturated and bool(system.inequalities)
     try:
-        algebra = point_system(system, values, saturated and bool(system.inequalities)).algebra
+        point = point_system(system, values, most=most)
     except DegeneratePoint:
-        return None, 0
-    one = evaluate(algebra, {(0,) * len(algebra.multiplication): fmpq(1)})
-    return sum(signature(hermite_matrix(algebra, one))), algebra.dimension
+        if not saturated:
+            return None, 0
+        saturated = False  # below: they are left out of the algebra
+        try:
+            point = point_system(system, values, True, most)
+        except DegeneratePoint:
+            return None, 0
+    return _off(point, point.inequalities if saturated else ())
+
+
+def _off(point: PointSystem, conditions: Sequence[RationalPolynomial]) -> tuple[int, int]:
+    """Number of different solutions at which no condition vanishes, and their number with multiplicity.
+
+    Of the conditions' product p they are the ranks of Hermite's form with the weight p, and of multiplication by a high
+    power of p. A basis of the ideal with one more unknown, p's inverse, would say the same, and can take hours.
+    """
+    algebra = point.algebra
+    width = len(algebra.multiplication)
+    weight = evaluate(algebra, {(0,) * width: fmpq(1)})
+    for p in conditions:
+        weight = weight * evaluate(algebra, {(*m, *(0,) * (width - len(m))): c for m, c in p.items()})
+    different = hermite_matrix(algebra, weight).rank()
+    power = 1
+    while conditions and power < algebra.dimension and weight.rank() > different:
+        weight, power = weight * weight, 2 * power
+    return different, weight.rank() if conditions else algebra.dimension

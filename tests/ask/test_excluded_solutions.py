@@ -6,11 +6,15 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+from flint import fmpq
 
 import ptmcad
+from ptmcad.algebra.fibre import evaluate, hermite_matrix, signature
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.checking import check
 from ptmcad.errors import ConfigError, NothingToCountError
+from ptmcad.exact.point_system import point_system, solutions_at
+from ptmcad.exact.stages import point_values, problem_of
 from ptmcad.question.config import slice_from
 from ptmcad.verification import verify
 
@@ -104,3 +108,50 @@ MANY = {"unknowns": {"x": "real", "y": "real", "z": "real"},
 def test_check_does_not_count_more_than_it_can_at_once(system: dict[str, Any], bound: int) -> None:
     found = check(slice_from({"system": system, "axes": {"a": [0, 1], "b": [0, 1]}}))
     assert (found.complex_solutions, found.bound) == (None, bound)
+
+
+MANY_SIDES = [
+    ({"unknowns": {"x": "real", "y": "real", "t": "angle"},
+      "equations": ["x^2*cos(t) + y - a*sin(t)", "y^2*sin(t) - x*b", "x*y - cos(t)/5 + x^2"],
+      "positive": ["x + 2", "y + 2", "sin(t) + 1/2", "3 - x^2 - y^2"]}, 22),
+    ({"unknowns": {"t": "angle", "s": "angle", "x": "real", "y": "real"},
+      "equations": ["cos(t) + x*sin(s) - a", "sin(t) + y - b/2", "x^2 + y^2 - 2 + cos(s)/3", "cos(s - t) - y/3 - x/5"],
+      "positive": ["x + y + 1", "cos(t) + 3/4"]}, 16),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("system", "solutions"), MANY_SIDES)
+def test_check_answers_at_once_whatever_the_inequalities(system: dict[str, Any], solutions: int) -> None:
+    """A basis with the inverse of the inequalities' product takes minutes of each."""
+    assert check(slice_from({"system": system, "axes": {"a": [1, 3], "b": [1, 3]}})).complex_solutions == solutions
+
+
+@pytest.mark.parametrize("record", [CONTINUUM, DOUBLE], ids=["a continuum", "a double root"])
+def test_solutions_off_a_condition_are_as_many_as_the_saturated_ideal_has(record: dict[str, Any]) -> None:
+    problem = problem_of(slice_from(record))
+    values = point_values(problem.parameters, (fmpq(1, 3), fmpq(2, 5)))
+    algebra = point_system(problem.system, values, saturated=True).algebra
+    one = evaluate(algebra, {(0,) * len(algebra.multiplication): fmpq(1)})
+    expected = sum(signature(hermite_matrix(algebra, one))), algebra.dimension
+    assert solutions_at(problem.system, values, saturated=True) == expected
+
+
+def test_what_counts_is_taken_with_its_multiplicity() -> None:
+    system = {"unknowns": {"x": "real"}, "equations": ["x^3*(x - 1)^2*(x - a)*(x - b)"], "positive": ["x^2"]}
+    problem = problem_of(slice_from({"system": system, "axes": {"a": [2, 3], "b": [4, 5]}}))
+    values = point_values(problem.parameters, (fmpq(5, 2), fmpq(9, 2)))
+    assert solutions_at(problem.system, values) == (4, 7)
+    assert solutions_at(problem.system, values, saturated=True) == (3, 4)
+
+
+def test_check_does_not_count_where_a_basis_gets_large() -> None:
+    """Four angles with dense equations: no basis is computed to its end, though the degrees are small."""
+    terms = [f"{f}({x})" for x in "wxyz" for f in ("cos", "sin")]
+    squares = " + ".join(f"{(7 * k + 3 * n) % 11 + 1}*{p}*{q}"
+                         for k, p in enumerate(terms) for n, q in enumerate(terms[k:], 2))  # fmt: skip
+    equations = [f"{squares} - a", f"({squares})/2 + {terms[0]}*{terms[3]} + b*{terms[2]}",
+                 " + ".join(f"{k}*{p}" for k, p in enumerate(terms, 1)),
+                 " - ".join(f"{k}*{p}" for k, p in enumerate(reversed(terms), 3)) + " - 1"]  # fmt: skip
+    found = check(slice_from({"system": {"unknowns": dict.fromkeys("wxyz", "angle"), "equations": equations},
+                              "axes": {"a": [0, 1], "b": [0, 1]}}))  # fmt: skip
+    assert (found.complex_solutions, found.bound) == (None, 64)

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 import yaml
 
-from ptmcad.ask import classification
+from ptmcad.ask import checking, classification
 from ptmcad.ask.checking import check, warning
 from ptmcad.cli import run
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.question.config import load, slice_from_mapping
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -154,3 +154,15 @@ def test_long_numbers_are_shown_short(tmp_path: Path, capsys: pytest.CaptureFixt
     assert max(map(len, out.splitlines())) < 120
     assert "axes        a from about 1.23456789e-200 to about 7.77777777e-100, b from 0 to 2" in out
     assert "solutions   3 complex ones at a = about 3.7037037e-100, b = 38/35" in out
+
+
+def test_what_is_known_is_printed_before_the_rest_is_stopped(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def stopped(_: object) -> None:
+        raise LimitReached("stopped")
+
+    monkeypatch.setattr(checking, "check", stopped)
+    assert run(["check", str(CONFIGS / "fig4.yaml")]) == 3
+    out = capsys.readouterr().out
+    assert all(key in out for key in ("unknowns", "parameters", "axes")) and "solutions" not in out

@@ -161,19 +161,24 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
     empty = tuple(_empty(node, ""))
     data = plain_data(node)
     found = Faults()
-    model: Model = read_system(data, found) if is_system else read_mechanism(data, found)
-    if isinstance(model, Mechanism) and not found.found:
-        with found:
-            model = recognised(model)  # written down again, the built-in one is the same one
-    _check_use(model, {*used}, found)
+    model: Model | None = None
+    try:
+        model = read_system(data, found) if is_system else read_mechanism(data, found)
+        if isinstance(model, Mechanism) and not found.found:
+            with found:
+                model = recognised(model)  # written down again, the built-in one is the same one
+        _check_use(model, {*used}, found)
+    except ConfigError:  # so many faults that no more are looked for: they still have to be put where they stand
+        model = None
     # what is said of an empty value, or of a list because of one in it, says no more
     inner = [fault for fault in found.found if not any(_is_below(key, fault.key or "") for key in empty)]
-    for key in empty:
+    placed = [_place(node, key).error("has no value: write one, or leave the key out") for key in empty]
+    placed += [_place(node, fault.key or "").error(fault.message) for fault in inner]
+    if model is None:
+        raise ConfigError.of(placed)
+    for error in placed:
         with faults:
-            raise _place(node, key).error("has no value: write one, or leave the key out")
-    for fault in inner:
-        with faults:
-            raise _place(node, fault.key or "").error(fault.message)
+            raise error
     return Described(model, node, _doubtful(model, (*(fault.key or "" for fault in found.found), *empty)))
 
 
