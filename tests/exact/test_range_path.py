@@ -360,7 +360,7 @@ def test_folds_at_the_same_value_far_apart_are_two() -> None:
 
 
 def test_a_fold_that_can_not_be_told_from_a_pitchfork_is_undecided() -> None:
-    """Two minima and a maximum become one minimum: which of them meet is told by symmetry, and without it not at all."""
+    """Two minima and a maximum become one minimum: which of them meet is told by symmetry, or not at all."""
     plain = "x^4/4 - b*x^2/2 + a - a"
     even = pose_paths(system(unknowns={"x": "real"}, potential=plain), "b", {"a": 1}, 1)
     assert [p.low.fate for p in even.paths] == [Fate.VANISH, Fate.VANISH]
@@ -369,3 +369,9 @@ def test_a_fold_that_can_not_be_told_from_a_pitchfork_is_undecided() -> None:
     odd = pose_paths(system(unknowns={"x": "real"}, potential=skew), "b", {"a": 1}, 1)
     near = [p for p in odd.paths if abs(float(p.points[0].reals[0])) < 1.5]
     assert len(near) == 2 and all(p.low.fate is Fate.UNDECIDED and not p.low.meeting for p in near)
+
+
+def test_solutions_that_go_to_infinity_do_not_meet() -> None:
+    """b x^2 = 1: both solutions leave every region at b = 0, each at its own end of the line."""
+    found = pose_paths(system(unknowns={"x": "real"}, equations=["b*x^2 - 1 + a - a"]), "b", {"a": 1}, 1)
+    assert [(p.low.fate, p.low.meeting) for p in found.paths] == [(Fate.UNDECIDED, ())] * 2

@@ -192,7 +192,7 @@ def _without_region(
         return None
     if len(unmatched) > 1 and not family.system.is_on_torus:
         return None  # some may go to infinity
-    return Meeting(tuple(sorted(s.negative for s, _ in unmatched)), (), len(unmatched) > 1, beyond)
+    return Meeting(tuple(sorted(s.negative for s, _ in unmatched)), (), len(unmatched) > 2, beyond)
 
 
 def _region(family: Family, current: Reached, after: Fraction, members: Sequence[_Member]) -> list[_Member] | None:
