@@ -90,6 +90,7 @@ def check(slice: Slice) -> Check:
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
         check_taken(slice)
+        _check_bounded(slice)
         return Check(slice, at, None, "certified", _CERTIFIED)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return Check(slice, at, None, "exact", _BEYOND)
@@ -101,6 +102,16 @@ _CERTIFIED = (
     "grows as the tolerance falls, and where springs get short: begin with --tolerance 1/20 --timeout 60, and go on "
     "with --resume"
 )
+
+
+def _check_bounded(slice: Slice) -> None:
+    """Refuse free lengths where no bounds of lengths that are unknown are known, as the certified engine does."""
+    if slice.model == ptm() or not slice.model.reals:
+        return
+    from ptmcad.certified.plain.infinity import patches
+    from ptmcad.certified.plain.problem import problem_of
+
+    patches(problem_of(slice), slice.axes)
 
 
 def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:

@@ -10,6 +10,8 @@ from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.values import files
 from ptmcad.errors import MAX_FAULTS, ConfigError
 from ptmcad.question.config import Family, asks_for_sweep, load_sweep, question_from_options
+from ptmcad.question.config.model import located
+from ptmcad.text.yamltree import read_file
 
 
 @click.command("check")
@@ -41,7 +43,10 @@ def command(*, record: Path, limits: Limits) -> int:
         slice = asked.member(asked.values[len(asked.values) // 2]) if isinstance(asked, Family) else asked
         for line in asked_text(slice):  # whatever stops the rest, this is known
             click.echo(line)
-        found = check(slice)
+        try:
+            found = check(slice)
+        except ConfigError as error:
+            raise located(error, read_file(record)) from error
         for line in cost_text(found):
             click.echo(line)
         if isinstance(asked, Family):

@@ -114,8 +114,19 @@ def new_name(name: object, key: str, taken: Mapping[str, object]) -> str:
     return name
 
 
+class Unread(dict[str, tuple[Tree, Tree]]):
+    """Points of which nothing is known, because what lists them is missing or faulty: any name may be one's."""
+
+    def __missing__(self, name: str) -> tuple[Tree, Tree]:
+        return Number(Fraction(0)), Number(Fraction(0))
+
+
 def point_name(name: object, key: str, points: Mapping[str, object]) -> str:
-    """The name of a point that there is."""
+    """The name of a point that there is, or of one that there may be."""
+    if isinstance(name, str) and isinstance(points, Unread):
+        return name
+    if not points and not isinstance(points, Unread):
+        raise ConfigError(f"{as_written(name)} is no point's name: there are no points", key=key)
     if not isinstance(name, str):
         raise ConfigError(f"{as_written(name)} is no point's name; the points are {', '.join(points)}", key=key)
     if name not in points:

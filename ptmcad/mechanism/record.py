@@ -18,6 +18,7 @@ from ptmcad.mechanism.proofs import check_bars, check_symmetries, check_unknowns
 from ptmcad.mechanism.reading import (
     MAX_BODIES,
     Reader,
+    Unread,
     as_written,
     check_keys,
     constant,
@@ -167,8 +168,10 @@ class _Parts:
         return {}
 
     def points(self) -> dict[str, tuple[Tree, Tree]]:
-        found: dict[str, tuple[Tree, Tree]] = {}
-        for name, pair in self._mapping("points").items():
+        entries = self._mapping("points")
+        unread = any(fault.key == "points" for fault in self.faults.found)
+        found: dict[str, tuple[Tree, Tree]] = Unread() if unread else {}
+        for name, pair in entries.items():
             with self.faults:
                 found[name] = (_ZERO, _ZERO)  # known, whatever is wrong with it
                 new_name(name, f"points.{name}", {})

@@ -30,3 +30,87 @@ def test_every_fault_keeps_its_place_however_many_there_are(
     assert len(found) == min(springs, MAX_FAULTS)
     for n, fault in enumerate(found):
         assert fault.startswith(f"{5 + n}: mechanism.springs.{n + 1}.between: there is no point 'Z'")
+
+
+FREE = """\
+mechanism:
+  parameters: {a: {kind: length}, l0: {kind: free length, default: 1/2}, F: {}}
+  unknowns: %s
+  points: {A: [a, 3/10], P: %s}
+  springs: [{between: [A, P], k: 1, free: l0}]
+  torsion: %s
+  moments: %s
+axes: {a: [5/2, 4], F: [-1, 2]}
+count: total
+"""
+
+
+@pytest.mark.parametrize(
+    ("parts", "start", "remedy"),
+    [
+        (("{x: length, y: length}", "[x, y]", "[]", "{x: F*x}"), "3: mechanism.unknowns.x: no bound", "narrow the win"),
+        (
+            ("{t: angle, s: angle}", "[cos(t) + cos(s), sin(t) + sin(s)]", "[{angle: t - s, k: 1}]", "{t: F*sin(s)}"),
+            "7: mechanism.moments.t: the certified engine takes no moment",
+            "leave the free lengths out",
+        ),
+    ],
+    ids=["no bound", "no potential"],
+)
+def test_what_free_lengths_do_not_go_with_is_told_with_its_place(
+    parts: tuple[str, ...], start: str, remedy: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (fault,) = faults_of(FREE % parts, tmp_path, capsys)
+    assert fault.startswith(start) and remedy in fault and "choose exact" not in fault
+
+
+SLICE = "axes: {rho: [0, 1], L2: [1, 2]}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "starts"),
+    [
+        ("parameters: {k: -1}\n" + SLICE, ["1: parameters.k: k is -1"]),
+        ("parameters: {l0: -1, k2: -2}\n" + SLICE, ["1: parameters.k2: k2 is -2", "1: parameters.l0: l0 is -1"]),
+        (
+            "mechanism:\n  unknowns: {th: angle}\n  points: 7\n  bodies: {b: {at: O, angle: th, points: {Q: [1, 0]}}}\n"
+            "  springs: [{between: [A, P], k: 1}]\n  loads: {P: [0, 1]}\n" + SLICE,
+            ["3: mechanism.points: expected a mapping"],
+        ),
+        (
+            "mechanism:\n  unknowns: {th: angle}\n  bars: [[O, P]]\n  supports: {O: pin}\n" + SLICE,
+            ["1: mechanism.points: is missing"],
+        ),
+        (
+            SLICE + "units: {length: 5, mass: kg, force: []}\n",
+            ["2: units.length: a unit", "2: units.mass: unknown", "2: units.force: expected a text"],
+        ),
+        (
+            "parameters: {F3: F}\nfree: {F: [-10, 0]}\nmembers: [5, x, -3, 1/0, -3]\n" + SLICE,
+            [f"3: members: {what}" for what in ("5 is outside", "the value of a", "division by", "-3 is given twice")],
+        ),
+        (
+            "axes: {L2: [0, 2], rho: [3, 0], Z: [0, 1]}\n",
+            ["1: axes: 3 axes are given", "1: axes.rho: the range of rho is reversed"],
+        ),
+        (
+            "parameters: {k1: L1*rho, L1: k1 + t}\n" + SLICE,
+            ["1: parameters.L1: unknown name 't'", "1: parameters.L1: the definition goes round in a circle"],
+        ),
+        (
+            "parameters: {k1: L1 +, L2: 2*(}\naxes: {rho: [0, 1], W: [1, 2]}\n",
+            ["1: parameters.L2: ", "1: parameters.k1: "],
+        ),
+        (
+            "mechanism: {unknowns: {th: angel}, points: {P: [cos(th), 0]}}\n"
+            "system: {unknowns: {x: real}, equations: [x^2 - a*]}\n" + SLICE,
+            ["1: mechanism.unknowns.th: ", "2: system.equations.1: ", "2: system: a record is about"],
+        ),
+        ("mechanism: nosuch.yaml\n" + SLICE, ["1: mechanism: 'nosuch.yaml': there is no such file"]),
+    ],
+)
+def test_faults_are_told_together_and_none_that_follows_from_another(
+    text: str, starts: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = faults_of(text, tmp_path, capsys)
+    assert [fault[: len(start)] for fault, start in zip(found, starts, strict=True)] == starts

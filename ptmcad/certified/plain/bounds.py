@@ -66,10 +66,15 @@ def known_ranges(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Range, ...]
 def refusal(problem: Problem, found: Sequence[Range]) -> ConfigError:
     """What to raise where some unknowns have no range, with their names."""
     missing = [name for name, bounds in zip(problem.unknowns, found, strict=True) if not isfinite(sum(bounds))]
+    which = f"no bound of the unknown{'s' * (len(missing) > 1)} {', '.join(missing)} could be proved over the window"
+    if problem.cones:  # which no other engine takes
+        return ConfigError(
+            f"{which}, and the certified engine, which free lengths need, searches a bounded box: narrow the window, "
+            "or add a spring that holds what is not bounded",
+            key=f"unknowns.{missing[0]}",
+        )
     return ConfigError(
-        f"no bound of the unknown{'s' * (len(missing) > 1)} {', '.join(missing)} could be proved over the window, and "
-        "the certified engine searches a bounded box: choose exact, or narrow the window",
-        key="engine",
+        f"{which}, and the certified engine searches a bounded box: choose exact, or narrow the window", key="engine"
     )
 
 

@@ -128,8 +128,9 @@ def problem_of(slice: Slice) -> Problem:
         if others := sorted(set(names_of(tree)) & set(model.unknowns) - {unknown}):
             raise ConfigError(
                 f"the certified engine takes no {'moment' if unknown in model.angles else 'force on a length'} without "
-                f"a potential, and that on {unknown} depends on {others[0]}",
-                key="engine",
+                f"a potential, and that on {unknown} depends on {others[0]}: "
+                f"{'leave the free lengths out, which the exact engine does not take' if cones else 'choose exact'}",
+                key=f"moments.{unknown}" if cones else "engine",
             )
         k = ring.unknowns.index(unknown)
         gradient[k] = gradient[k] - evaluate(tree, ring)

@@ -93,7 +93,7 @@ def family_of(record: Record, faults: Faults | None = None) -> Family:
     assert free is not None
     values: tuple[Fraction, ...] = (free.low, free.high)
     with faults:
-        values = _values(free, record.members)
+        values = _values(free, record.members, faults)
     slices = [_located(record, name, value, faults) for value in values]
     faults.check()
     first = slices[0]
@@ -192,7 +192,7 @@ def _check_name(record: Record, name: str, window: Window) -> None:
         raise record.values[name].place.error(f"{name} is free and cannot be fixed too: remove it here or from free")
 
 
-def _values(free: Axis, members: Node | None) -> tuple[Fraction, ...]:
+def _values(free: Axis, members: Node | None, faults: Faults) -> tuple[Fraction, ...]:
     """Where members are wanted: at the values of a list, or at as many as a number says, evenly spaced."""
     if members is None:
         return _spaced(free, MEMBERS)
@@ -203,22 +203,23 @@ def _values(free: Axis, members: Node | None) -> tuple[Fraction, ...]:
         if number.denominator != 1 or not 2 <= number <= MAX_MEMBERS:
             raise members.place.error(f"write how many members there are, 2 to {MAX_MEMBERS}, or a list of values")
         return _spaced(free, int(number))
-    return _listed(free, members)
+    return _listed(free, members, faults)
 
 
-def _listed(free: Axis, members: Sequence) -> tuple[Fraction, ...]:
+def _listed(free: Axis, members: Sequence, faults: Faults) -> tuple[Fraction, ...]:
     if not 1 <= len(members.items) <= MAX_MEMBERS:
         raise members.place.error(f"{len(members.items)} values are given: a family has 1 to {MAX_MEMBERS} members")
-    values = set()
+    values: set[Fraction] = set()
     for item in members.items:
-        if not isinstance(item, Scalar):
-            raise item.place.error("expected a number")
-        value = number_of(item, "the value of a member")
-        if not free.low <= value <= free.high:
-            raise item.place.error(f"{text_of(value)} is outside of the range of {free.name}")
-        if value in values:
-            raise item.place.error(f"{text_of(value)} is given twice: leave one out")
-        values.add(value)
+        with faults:
+            if not isinstance(item, Scalar):
+                raise item.place.error("expected a number")
+            value = number_of(item, "the value of a member")
+            if not free.low <= value <= free.high:
+                raise item.place.error(f"{text_of(value)} is outside of the range of {free.name}")
+            if value in values:
+                raise item.place.error(f"{text_of(value)} is given twice: leave one out")
+            values.add(value)
     return tuple(sorted(values))
 
 

@@ -79,9 +79,13 @@ def described_in(record: Tree, faults: Faults) -> Described:
         When there is no description.
     """
     mechanism, system = (record.entries.get(key) for key in ("mechanism", "system"))
-    if mechanism is not None and system is not None:
-        raise system.place.error("a record is about a mechanism or about another system: leave one out")
     used = tuple(_names_in_values(record))
+    if mechanism is not None and system is not None:
+        for node, is_system in (mechanism, False), (system, True):
+            with faults:
+                if isinstance(node, Tree):
+                    _read(node, faults, used, is_system)
+        raise system.place.error("a record is about a mechanism or about another system: leave one out")
     if system is not None:
         if not isinstance(system, Tree):
             raise system.place.error("expected a mapping with unknowns and equations, or a potential")
@@ -105,6 +109,14 @@ def described_in(record: Tree, faults: Faults) -> Described:
     raise mechanism.place.error(
         f"unknown mechanism{hint}; a file that holds one ends in .yaml, and a mapping describes one"
     )
+
+
+def located(fault: ConfigError, record: Tree) -> ConfigError:
+    """A fault of a model that was read from a record, with the place of its key where the description has the key."""
+    node = described_in(record, Faults()).node
+    if node is None or not fault.key or fault.file is not None or _entry(node, fault.key) is None:
+        return fault
+    return _place(node, fault.key).error(fault.message)
 
 
 def named_model(name: Scalar) -> Model:
@@ -139,7 +151,12 @@ def _file_of(name: Scalar, record: str | None) -> Tree:
         raise name.place.error("the file is not in the record's folder nor below it: move it there")
     if path == itself:
         raise name.place.error("the record names itself as its mechanism's file")
-    return read_file(path)
+    try:
+        return read_file(path)
+    except ConfigError as error:
+        if error.line is not None:  # a place in that file, where something is to be mended
+            raise
+        raise name.place.error(f"{name.text!r:.100}: {error.message}") from error
 
 
 def _description(tree: Tree) -> Tree:

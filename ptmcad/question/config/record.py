@@ -125,7 +125,7 @@ def read_record(tree: Tree, faults: Faults) -> Record:
         "members": lambda node: node,
         "sweep": lambda node: node,
         "count": count_of,
-        "units": _units,
+        "units": lambda node: _units(node, faults),
         "reference": _reference,
     }
     for key, reader in readers.items():
@@ -252,7 +252,8 @@ def _axes(node: Node, faults: Faults) -> dict[str, Window]:
     if not isinstance(node, Tree):
         raise node.place.error(f"expected two axes with their ranges, such as {AXES}")
     if len(node.entries) != 2:
-        raise node.place.error(f"{len(node.entries)} axes are given: a slice has two, the horizontal one first")
+        with faults:
+            raise node.place.error(f"{len(node.entries)} axes are given: a slice has two, the horizontal one first")
     axes = {}
     for name, entry in node.entries.items():
         with faults:
@@ -291,18 +292,21 @@ def count_of(node: Node) -> Count:
     return Count(node.text)
 
 
-def _units(node: Node) -> dict[str, str]:
+def _units(node: Node, faults: Faults) -> dict[str, str]:
     """Units of quantities, which pictures and tables name."""
     if not isinstance(node, Tree):
         raise node.place.error(f"expected a mapping such as length: mm of {' and '.join(QUANTITIES)}")
+    units = {}
     for key, unit in node.entries.items():
-        if key not in QUANTITIES:
-            hint = did_you_mean(key, QUANTITIES) or f"; units are those of {' and '.join(QUANTITIES)}"
-            raise _node_place(unit, key, node).error(f"unknown quantity{hint}")
-        text = _text(unit, MAX_UNIT).strip()
-        if not text.isprintable() or re.fullmatch(r"[-+.\d]*", text):  # empty, or a number
-            raise unit.place.error("a unit is a short text such as mm")
-    return {key: _text(unit, MAX_UNIT).strip() for key, unit in node.entries.items()}
+        with faults:
+            if key not in QUANTITIES:
+                hint = did_you_mean(key, QUANTITIES) or f"; units are those of {' and '.join(QUANTITIES)}"
+                raise _node_place(unit, key, node).error(f"unknown quantity{hint}")
+            text = _text(unit, MAX_UNIT).strip()
+            if not text.isprintable() or re.fullmatch(r"[-+.\d]*", text):  # empty, or a number
+                raise unit.place.error("a unit is a short text such as mm")
+            units[key] = text
+    return units
 
 
 def _reference(node: Node) -> dict[str, Any]:

@@ -38,6 +38,9 @@ def checked_slice(tree: Tree) -> Slice:
     faults = Faults()
     record = read_record(tree, faults)
     if record.described is None or any((fault.key or "").partition(".")[0] == "axes" for fault in faults.found):
+        for name, window in record.axes.items() if record.described is not None else ():
+            with faults:
+                axis_of(name, window, record.model)
         faults.check()  # without these nothing can be said of the values
     return slice_of(record, faults)
 
@@ -90,18 +93,30 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
                 raise window.place.error(f"{name} is an unknown: an axis is a parameter, or a new name that one uses")
             axes.append(axis_of(name, window, record.model))
     resolution = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)})
+    for name in record.values:
+        with faults:
+            resolution.check_names(name)
     for name in record.model.parameters:
         with faults:
             resolution.resolve(name, ())
     resolved = {name: resolution.done[name] for name in record.model.parameters}
     if len(axes) == 2:
-        for name, expression in resolved.items():
+        wrong: set[str] = set()
+        for name in sorted(resolved, key=lambda name: bool(_inherited(name, record))):
+            if name in record.axes or name in resolution.faulty or _inherited(name, record) in wrong:
+                continue  # what has the value of another one is wrong with that one, where it stands
             with faults:
-                if name not in record.axes and name not in resolution.faulty:
-                    _check_value(name, expression, record, (axes[0], axes[1]))
+                wrong.add(name)
+                _check_value(name, resolved[name], record, (axes[0], axes[1]))
+                wrong.remove(name)
     else:
         faults.check()
     return (axes[0], axes[1]), resolved
+
+
+def _inherited(name: str, record: Record) -> str:
+    """The parameter whose value another one has, since it is given none; empty for one that has its own."""
+    return "" if name in record.values else record.model.parameters[name].alias_of or ""
 
 
 def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expression]) -> Slice:
@@ -285,12 +300,14 @@ class _Resolution:
     ----------
     done : names to what they stand for; 1 for one that could not be resolved.
     faulty : those, and what depends on them.
+    misnamed : those with a name in them that stands for nothing, which has been said.
     """
 
     def __init__(self, record: Record, free: Mapping[str, Expression]):
         self.record = record
         self.faulty = set(record.doubtful - free.keys())
         self.done = {**dict.fromkeys(self.faulty, constant(1)), **free}
+        self.misnamed: set[str] = set()
         self.parameters = record.model.parameters
         self.known = tuple(dict.fromkeys((*free, *self.parameters)))
 
@@ -309,6 +326,21 @@ class _Resolution:
                 raise
         return self.done[name]
 
+    def check_names(self, name: str) -> None:
+        """Refuse a name in a given value that stands for nothing; without it, what depends on the value is faulty."""
+        if name in self.done:
+            return
+        scalar = self.record.values[name]
+        try:
+            names = names_in_scalar(scalar)
+        except ConfigError:
+            return  # said where the value is resolved
+        for other in names:
+            if other not in self.known and other.lower() not in ("nan", "inf", "infinity"):
+                self.misnamed.add(name)
+                hint = did_you_mean(other, self.known) or f"; the names are {', '.join(self.known)}"
+                raise scalar.place.error(f"unknown name '{other[:40]}'{hint}")
+
     def _found(self, name: str, chain: tuple[str, ...]) -> Expression:
         scalar = self.record.values.get(name)
         if scalar is None:
@@ -324,10 +356,12 @@ class _Resolution:
                 names[other] = self.resolve(other, (*chain, name))
                 if other in self.faulty:
                     self.faulty.add(name)
-            elif other.lower() not in ("nan", "inf", "infinity"):
-                hint = did_you_mean(other, self.known) or f"; the names are {', '.join(self.known)}"
-                raise scalar.place.error(f"unknown name '{other[:40]}'{hint}")
-        return _parsed(scalar, names)
+            elif name in self.misnamed:
+                names[other] = constant(1)
+                self.faulty.add(name)
+            elif name in self.record.values:
+                self.check_names(name)
+        return constant(1) if name in self.misnamed else _parsed(scalar, names)
 
 
 def _check_value(name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis]) -> None:
