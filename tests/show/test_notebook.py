@@ -132,6 +132,7 @@ def test_answers_about_lines_and_comparisons_are_shown() -> None:
         ptmcad.intervals(slice, "rho", line),
         ptmcad.pose_paths(slice, "rho", line, "1"),
         ptmcad.operation_widths(slice, "rho", 2),
+        ptmcad.verify(shipped("fig2")),
     ]
     for answer in shown:
         assert getattr(answer, "_repr_html_")().startswith("<pre>")  # noqa: B009
