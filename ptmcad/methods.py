@@ -19,11 +19,14 @@ if TYPE_CHECKING:
     from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.field import Field
+    from ptmcad.answer.intervals import CountIntervals
     from ptmcad.answer.motion import Motion
+    from ptmcad.answer.paths import PosePaths
     from ptmcad.answer.poses import Poses
     from ptmcad.answer.regionmap import Location, RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
     from ptmcad.answer.sweep import Member, Sweep
+    from ptmcad.answer.widths import OperationWidths
     from ptmcad.show.widget import Explorer
 
 
@@ -463,6 +466,33 @@ def _sweep_to_dataframe(self: Sweep) -> DataFrame:
     return pandas_frame(frame_rows(self, self.__iter__), names, ("same_as", "cells", "regions", "attempts"))
 
 
+def _intervals_repr_html(self: CountIntervals) -> str:
+    from ptmcad.show.notebook import text_html
+    from ptmcad.show.ranges.table import table
+
+    return text_html(table(self))
+
+
+def _paths_repr_html(self: PosePaths) -> str:
+    from ptmcad.show.notebook import text_html
+    from ptmcad.show.ranges.table import path_table
+
+    return text_html(path_table(self))
+
+
+def _widths_repr_html(self: OperationWidths) -> str:
+    from ptmcad.show.notebook import text_html
+    from ptmcad.show.ranges.table import width_table
+
+    return text_html(width_table(self))
+
+
+def _comparison_repr_html(self: Comparison) -> str:
+    from ptmcad.show.notebook import comparison_html
+
+    return comparison_html(self)
+
+
 METHODS["RegionMap"] = {
     "locate": _locate,
     "to_json": _map_to_json,
@@ -497,4 +527,8 @@ METHODS["Sweep"] = {
     "to_csv": _sweep_to_csv,
     "to_dataframe": _sweep_to_dataframe,
 }
+METHODS["CountIntervals"] = {"_repr_html_": _intervals_repr_html}
+METHODS["PosePaths"] = {"_repr_html_": _paths_repr_html}
+METHODS["OperationWidths"] = {"_repr_html_": _widths_repr_html}
+METHODS["Comparison"] = {"_repr_html_": _comparison_repr_html}
 METHODS["Motion"] = {"save": _motion_save, "_repr_html_": _motion_repr_html}

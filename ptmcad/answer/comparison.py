@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
+from ptmcad.answer import with_methods
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.text.bounds import share_text
 
@@ -31,6 +32,7 @@ class Change:
     area: Bounds
 
 
+@with_methods
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """What is different between two exact maps, or two certified ones.

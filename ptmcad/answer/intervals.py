@@ -11,6 +11,7 @@ from enum import Enum
 from fractions import Fraction
 from itertools import groupby
 
+from ptmcad.answer import with_methods
 from ptmcad.answer.counts import Counts, MorseIndex
 from ptmcad.answer.regionmap import Kind
 from ptmcad.answer.words import kind_name
@@ -131,6 +132,7 @@ class OperationSpan(Span):
     parts: tuple[CountInterval, ...]
 
 
+@with_methods
 @dataclass(frozen=True, slots=True)
 class CountIntervals:
     """The answer for a line.

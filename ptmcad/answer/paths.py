@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
+from ptmcad.answer import with_methods
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
@@ -90,6 +91,7 @@ class PosePath:
     reverse: bool
 
 
+@with_methods
 @dataclass(frozen=True, slots=True)
 class PosePaths:
     """The paths of stable poses on a line; of all solutions where nothing says what a stable one is.

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
+from ptmcad.answer import with_methods
 from ptmcad.answer.intervals import End, OperationSpan
 from ptmcad.mechanism import Model
 from ptmcad.question.slice import Axis
@@ -53,6 +54,7 @@ class WidthRow:
     remark: str = ""
 
 
+@with_methods
 @dataclass(frozen=True, slots=True)
 class OperationWidths:
     """The answer of ``--over``; ``maxima`` is empty when there is no operation range in the window, and has several

@@ -22,12 +22,14 @@ from ptmcad.text.bounds import certified_digits
 from ptmcad.text.enclosure import Enclosure
 
 if TYPE_CHECKING:
+    from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.regionmap import Region
 
 DIGITS = 6
 MAX_ROWS = 20
 FPS, DPI = 20, 80
 """Of a film."""
+PAGE_DPI = 100
 
 
 def picture(result: RegionMap, kind: str) -> bytes | None:
@@ -77,6 +79,21 @@ def poses_html(poses: Poses) -> str:
     given = ", ".join(f"{name} = {value}" for name, value in poses.parameters.items())
     note = f"<div>{escape(poses.remark)}</div>" if poses.remark else ""
     return f"<div><b>{escape(model.name)}</b>: {escape(given)}, {poses.status.value}</div>{_table(head, rows)}{note}"
+
+
+def comparison_html(comparison: Comparison) -> str:
+    """Both maps and their difference, and how large that is."""
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render.comparing import draw_comparison, in_words
+
+    with TemporaryDirectory(prefix="ptmcad-") as folder:
+        path = Path(folder) / "difference.png"
+        draw_comparison(comparison, path, PAGE_DPI, DEFAULT)
+        data = b64encode(path.read_bytes()).decode()
+    words = "".join(f"<div>{escape(line)}</div>" for line in in_words(comparison))
+    return f'<img alt="{escape(repr(comparison))}" style="max-width:100%" src="data:image/png;base64,{data}">{words}'
 
 
 def motion_html(motion: Motion) -> str:

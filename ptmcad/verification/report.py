@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from html import escape
 from typing import TypeVar
 
 from ptmcad.errors import shown
@@ -62,6 +63,9 @@ class VerifyReport:
 
     def __repr__(self) -> str:
         return f"<VerifyReport: {self.violation or f'{sum(c.passed is True for c in self.checks)} checks passed'}>"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.table())}</pre>"
 
     def table(self) -> str:
         """One line for each check: the answer, the claim, the method and the detail."""

@@ -59,6 +59,18 @@ def test_pictures_say_what_they_show(stage: Stage, motion: Motion) -> None:
     assert said(stage, len(motion.steps) - 1)[1] == "one of exactly 4 equilibria, 1 stable"
 
 
+def test_the_key_says_whether_all_equilibria_are_in_the_energys_frame(stage: Stage, motion: Motion) -> None:
+    low, high = stage.curve.get_ylim()
+    others = [height for step in motion.steps for height, _ in step.others]
+    assert not all(low < height < high for height in others)
+    assert stage.curve.get_title(loc="right") == "dots: equilibria within the frame, stable ones blue"
+    heights = [step.height for step in motion.steps if step.height is not None]
+    steps = [replace(s, others=tuple((min(heights), stable) for _, stable in s.others)) for s in motion.steps]
+    with settings():
+        full = Stage(replace(motion, steps=tuple(steps)), DEFAULT, 60)
+    assert full.curve.get_title(loc="right") == "dots: all equilibria, stable ones blue"
+
+
 def test_what_is_fixed_stands_still_and_all_is_at_one_scale(stage: Stage, motion: Motion) -> None:
     nodes = [seen.nodes for seen in stage.sketches]
     assert {tuple(round(v, 9) for v in node["A1"]) for node in nodes} == {tuple(round(v, 9) for v in nodes[0]["A1"])}

@@ -124,3 +124,18 @@ def test_public_names_are_listed_before_they_are_loaded() -> None:
 @pytest.mark.parametrize("name", ptmcad.__all__)
 def test_public_names_exist(name: str) -> None:
     assert getattr(ptmcad, name) is not None
+
+
+def test_answers_about_lines_and_comparisons_are_shown() -> None:
+    slice, line = ptmcad.load(CONFIGS / "fig4.yaml"), {"L2": "3/2"}
+    shown = [
+        ptmcad.intervals(slice, "rho", line),
+        ptmcad.pose_paths(slice, "rho", line, "1"),
+        ptmcad.operation_widths(slice, "rho", 2),
+        ptmcad.verify(shipped("fig2")),
+    ]
+    for answer in shown:
+        assert getattr(answer, "_repr_html_")().startswith("<pre>")  # noqa: B009
+    html = getattr(shipped("fig4").compare(shipped("fig4")), "_repr_html_")()  # noqa: B009
+    assert "data:image/png" in html
+    assert "the same counts everywhere" in html

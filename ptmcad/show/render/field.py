@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from ptmcad.answer.boundaries import Boundary
@@ -27,6 +28,9 @@ LEFT, BOTTOM, SIDE, GAP, BAR, RIGHT, TOP = 0.85, 0.65, 4.6, 0.2, 0.2, 0.95, 0.6
 """In inches: the space at the map's left and below, its side, the space before the scale, the scale, its numbers."""
 COLOURS = "viridis"
 """Perceptually uniform, distinguishable to the colour-blind, and monotone on grey prints."""
+MIN_LINE = 16.0
+"""Pixels of the field: shorter contour lines are left out."""
+_LINES: dict[str, Any] = {"colors": "white", "linewidths": 0.6, "alpha": 0.85}
 _EMPTY = "#ffffff"
 _WORDS = ("energy", "stiffness", "barrier")
 
@@ -86,9 +90,13 @@ def field_figure(result: RegionMap, field: Field, boundaries: Sequence[Boundary]
             field.values, origin="lower", extent=extent, aspect="auto", cmap=COLOURS, interpolation="nearest",
             vmin=low, vmax=high if high > low else low + 1.0, gid="values",
         )  # fmt: skip
-        _contours(axes, result, field, extent, contours, (low, high))
+        levels = _contours(axes, result, field, extent, contours, (low, high))
         bar_axes = figure.add_axes(((LEFT + SIDE + GAP) / size[0], BOTTOM / size[1], BAR / size[0], SIDE / size[1]))
         bar = figure.colorbar(image, cax=bar_axes)
+        if levels:
+            # the lines' values are those at the bar
+            bar.set_ticks(levels)
+            bar.ax.hlines(levels, 0, 1, transform=bar.ax.get_yaxis_transform(), gid="levels", **_LINES)
         bar.ax.tick_params(labelsize=9)
         bar.set_label(_label(field), fontsize=10)
     else:
@@ -128,19 +136,32 @@ def _shares(result: RegionMap, points: Floats) -> Floats:
 
 def _contours(
     axes: Any, result: RegionMap, field: Field, extent: Sequence[float], number: int, ends: tuple[float, float]
-) -> None:
-    """Lines of equal value within each region, at round values."""
+) -> list[float]:
+    """Lines of equal value within each region, at round values; the values of those that are drawn."""
     from matplotlib.ticker import MaxNLocator
 
     if number < 1 or min(field.values.shape) < 2 or not ends[0] < ends[1]:
-        return
+        return []
     levels = [v for v in MaxNLocator(nbins=number + 1).tick_values(*ends) if ends[0] < v < ends[1]]
     if not levels:
-        return
+        return []
     rows, columns = field.values.shape
     x = extent[0] + (extent[1] - extent[0]) * (np.arange(columns) + 0.5) / columns
     y = extent[2] + (extent[3] - extent[2]) * (np.arange(rows) + 0.5) / rows
+    pixel = np.array([(extent[1] - extent[0]) / columns, (extent[3] - extent[2]) / rows])
+    found: dict[float, list[Floats]] = {}
     for region in np.unique(field.region[field.region >= 0]):
         own = np.where(field.region == region, field.values, np.nan)
         if (~np.isnan(own)).sum() > 3 and np.nanmin(own) < levels[-1] and np.nanmax(own) > levels[0]:
-            axes.contour(x, y, own, levels=levels, colors="white", linewidths=0.6, alpha=0.85)
+            traced = axes.contour(x, y, own, levels=levels)
+            for level, lines in zip(traced.levels, traced.allsegs, strict=True):
+                # along a ridge just above a level there are chains of rings, which pixels alone make
+                found.setdefault(float(level), []).extend(line for line in lines if _length(line / pixel) >= MIN_LINE)
+            traced.remove()
+    for lines in found.values():
+        axes.add_collection(LineCollection(lines, gid="contours", **_LINES), autolim=False)
+    return [level for level, lines in sorted(found.items()) if lines]
+
+
+def _length(points: Floats) -> float:
+    return float(np.hypot(*np.diff(points, axis=0).T).sum())

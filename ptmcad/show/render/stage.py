@@ -240,9 +240,12 @@ class Stage:
         heights = [step.height for step in steps if step.height is not None]
         low, high = min(heights), max(heights)
         room = 0.1 * (high - low) or 0.1 * abs(high) or 1.0
+        which = f"all {noun(self.mechanism)}"
         for wanted, colour in ((False, UNSTABLE), (True, STABLE)):
             dots = [(100 * s.share, h) for s in steps for h, stable in s.others if stable == wanted]
             inside = [(x, h) for x, h in dots if low - room < h < high + room]
+            if len(inside) < len(dots):
+                which = f"{noun(self.mechanism)} within the frame"
             if inside:
                 axes.plot(*zip(*inside, strict=True), "o", markersize=1.6, color=colour, zorder=2 + wanted)
         axes.set(xlim=(0, 100), ylim=(low - room, high + room))
@@ -254,7 +257,7 @@ class Stage:
         several = any(s.others for s in steps)
         axes.set_ylabel("energy", fontsize=SIZES[1], labelpad=2)
         if several:
-            axes.set_title(f"dots: all {noun(self.mechanism)}, stable ones blue", fontsize=SIZES[2], loc="right", pad=2)
+            axes.set_title(f"dots: {which}, stable ones blue", fontsize=SIZES[2], loc="right", pad=2)
 
     def _axes(self, box: tuple[float, float, float, float], gid: str) -> Any:
         width, tall = self.figure.get_size_inches()
