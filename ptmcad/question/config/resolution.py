@@ -325,7 +325,9 @@ class _Resolution:
                 if other in self.faulty:
                     self.faulty.add(name)
             elif other.lower() not in ("nan", "inf", "infinity"):
-                hint = did_you_mean(other, self.known) or f"; the names are {', '.join(self.known)}"
+                hint = did_you_mean(other, self.known) or (
+                    f"; the names are {', '.join(self.known)}" if self.known else "; no name is known here"
+                )
                 raise scalar.place.error(f"unknown name '{other[:40]}'{hint}")
         return _parsed(scalar, names)
 
