@@ -220,9 +220,13 @@ def cost_text(found: Check) -> Iterator[str]:
     """What it will cost as lines of text."""
     slice = found.slice
     at = ", ".join(f"{a.name} = {short_text(value)}" for a, value in zip(slice.axes, found.sample, strict=True))
-    number = "not counted" if found.complex_solutions is None else f"{found.complex_solutions} complex ones at {at}"
+    number = "not counted" if found.complex_solutions is None else _complex(found.complex_solutions, f" at {at}")
     if found.bound is not None:
-        number = f"at most {found.bound} complex ones, or infinitely many, by the equations' degrees"
+        number = "at most " + _complex(found.bound, ", or infinitely many, by the equations' degrees")
     yield f"{'solutions':<12}{number}"
     yield f"{'engine':<12}{found.engine}"
     yield f"{'cost':<12}{found.cost}"
+
+
+def _complex(number: int, rest: str) -> str:
+    return f"{number} complex one{'s' * (number != 1)}{rest}"

@@ -313,7 +313,9 @@ class _Names:
         if name == PI:
             raise ExpressionError("pi is no rational number: name a parameter in its place")
         if name not in known:
-            hint = did_you_mean(name, self.constants | self.angles) or f"; the names are {', '.join(known)}"
+            hint = did_you_mean(name, self.constants | self.angles) or (
+                f"; the names are {', '.join(known)}" if known else "; no name is known here"
+            )
             raise ExpressionError(f"unknown name '{name[:MAX_NAME]}'{hint}")
 
 

@@ -104,7 +104,8 @@ def _curves(result: RegionMap) -> str:
         (c.kind.value, c.polynomial.degrees, len(c.polynomial.terms)) for c in result.components if c.separates
     )
     curves = "; ".join(
-        f"{n} {kind} of degree {degrees[0]} in {names[0]}, {degrees[1]} in {names[1]} ({terms} terms)"
+        f"{n} {kind} of degree {degrees[0]} in {names[0]}, {degrees[1]} in {names[1]} "
+        f"({terms} term{'s' * (terms != 1)})"
         for (kind, degrees, terms), n in alike.items()
     )
     return f"curves    {curves or 'no curve changes the count'}"

@@ -338,7 +338,8 @@ class _Resolution:
         for other in names:
             if other not in self.known and other.lower() not in ("nan", "inf", "infinity"):
                 self.misnamed.add(name)
-                hint = did_you_mean(other, self.known) or f"; the names are {', '.join(self.known)}"
+                known = f"; the names are {', '.join(self.known)}" if self.known else "; no name is known here"
+                hint = did_you_mean(other, self.known) or known
                 raise scalar.place.error(f"unknown name '{other[:40]}'{hint}")
 
     def _found(self, name: str, chain: tuple[str, ...]) -> Expression:

@@ -15,7 +15,7 @@ from ptmcad.answer.intervals import CountIntervals, CriticalFreeLength, End, Spa
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
 from ptmcad.answer.widths import Maximum, OperationWidths, Place
 from ptmcad.answer.words import kind_name, noun
-from ptmcad.mechanism import Mechanism, Model
+from ptmcad.mechanism import Mechanism, Model, built_in
 from ptmcad.mechanism.moments import acting
 from ptmcad.show.ranges.numbers import end_text, known, settled, width_text
 from ptmcad.text.balls import enclosed
@@ -165,7 +165,8 @@ def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
 
 def _heights(model: Mechanism) -> list[str]:
     """What the heights of the moving points are called, such as y3 of A3."""
-    return [f"y{name[1:]}" if name[1:].isdigit() else f"y of {name}" for name in model.rising]
+    own = model.name in built_in()  # whose points are numbered
+    return [f"y{name[1:]}" if own and name[1:].isdigit() else f"y of {name}" for name in model.rising]
 
 
 def _side(path: PosePath, model: Mechanism) -> str:

@@ -1,0 +1,40 @@
+"""Words around one thing, around nothing, and around points that are not the paper's."""
+
+from __future__ import annotations
+
+import pytest
+
+import ptmcad
+from ptmcad.ask.checking import _complex
+from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Mechanism, ptm
+from ptmcad.show.ranges.table import _heights
+from ptmcad.show.table import table
+
+LINE = {"system": {"unknowns": {"x": "real"}, "equations": ["x - a + b"]}, "axes": {"a": [0, 1], "b": [0, 1]}}
+
+
+def test_heights_have_the_names_of_points() -> None:
+    arms = {
+        "unknowns": {"th": "angle", "phi": "angle"},
+        "points": {"O": [0, 0], "A2": ["sin(th)", "cos(th)"], "B2": ["sin(phi)", "cos(phi)"]},
+        "springs": [{"between": ["A2", "B2"], "k": 1}],
+        "loads": {"A2": ["H", "-W"]},
+        "parameters": {"H": {"kind": "force"}, "W": {"kind": "force"}},
+    }
+    assert _heights(ptmcad.Mechanism(arms)) == ["y of A2", "y of B2"]
+    own = ptm()
+    assert isinstance(own, Mechanism)
+    assert _heights(own) == ["y3", "y4"]
+
+
+def test_one_is_not_many() -> None:
+    assert _complex(1, " at a = 0") == "1 complex one at a = 0"
+    assert _complex(2, "") == "2 complex ones"
+    root = {**LINE, "system": {"unknowns": {"x": "real"}, "equations": ["x^2 - a"]}}
+    assert "(1 term)" in table(ptmcad.classify({**root, "axes": {"a": [-1, 1], "b": [0, 1]}}))
+
+
+def test_no_names_are_no_list() -> None:
+    with pytest.raises(ConfigError, match="; no name is known here"):
+        ptmcad.Mechanism(unknowns={"th": "angle"}, points={"O": ["c", 0], "P": ["sin(th)", "cos(th)"]})
