@@ -14,7 +14,6 @@ import click
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.regionmap import with_compilation
 from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of, share_of
-from ptmcad.cli.families import SOLID, Wanted, family_to_files
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
@@ -261,6 +260,9 @@ def _classify_family(
     family: Family, third: Third, options: Options, output: Output, limits: Limits, resume: Path | None
 ) -> None:
     """Classify and draw the members of a family."""
+    # with what stores and draws families, which a slice does without
+    from ptmcad.cli.families import SOLID, Wanted, family_to_files
+
     report_idle((
         Idle("resume", resume is not None, "the members of a family are classified anew"),
         Idle("explain", output.explain, "a family has a plan for each of its members: give one with --set"),
