@@ -9,8 +9,9 @@ import click
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.values import files
 from ptmcad.errors import MAX_FAULTS, ConfigError
-from ptmcad.question.config import Family, asks_for_sweep, load_sweep, question_from_options
+from ptmcad.question.config import Family, question_from_options
 from ptmcad.question.config.model import located
+from ptmcad.question.config.sweeps import asks_for_sweep, load_sweep
 from ptmcad.text.yamltree import read_file
 
 

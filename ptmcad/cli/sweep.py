@@ -23,7 +23,7 @@ from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.extras import require_distributed, require_ffmpeg
 from ptmcad.process.handover import Topic, send
 from ptmcad.process.output import check_writable, text_writer, write_files
-from ptmcad.question.config import Sweeping, load_sweep
+from ptmcad.question.config.sweeps import Sweeping, load_sweep
 
 FORMATS = ("csv", "html", "gif", "mp4")
 RETRIES = 2

@@ -15,7 +15,8 @@ from ptmcad.ask.members import Common, in_common
 from ptmcad.errors import ConfigError, ExpressionError, shown
 from ptmcad.mechanism import Kind, Model
 from ptmcad.options import Options
-from ptmcad.question.config.family import bound, family_of, member_name
+from ptmcad.question.config.binding import bound, member_name
+from ptmcad.question.config.family import family_of
 from ptmcad.question.config.record import Record
 from ptmcad.question.config.resolution import number_of, slice_of, written_in
 from ptmcad.question.slice import Slice

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ptmcad.ask.checking import Check
-from ptmcad.question.config import Sweeping
+from ptmcad.question.config.sweeps import Sweeping
 from ptmcad.sweeping.member import Failed, Wanted, Work, compute
 from ptmcad.sweeping.run import axes_of, processors
 

@@ -19,7 +19,7 @@ from ptmcad.answer.widths import Maximum
 from ptmcad.ask.classification import region_map
 from ptmcad.errors import ConfigError, HypothesisError, LimitReached, PtmcadError
 from ptmcad.options import Options
-from ptmcad.question.config import Sweeping
+from ptmcad.question.config.sweeps import Sweeping
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import decimal, text_of
 from ptmcad.version import __version__

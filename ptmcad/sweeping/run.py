@@ -24,7 +24,7 @@ from ptmcad.ask.classification import prepare
 from ptmcad.errors import ConfigError, LimitReached, PtmcadError
 from ptmcad.options import Progress
 from ptmcad.process.extras import require_distributed
-from ptmcad.question.config import Sweeping, sweep_from
+from ptmcad.question.config.sweeps import Sweeping, sweep_from
 from ptmcad.question.slice import Slice
 from ptmcad.sweeping.index import Index, opened, read_sweep
 from ptmcad.sweeping.member import Failed, Wanted, Work, reason

@@ -15,8 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.errors import ConfigError
-from ptmcad.question.config import load, load_sweep, point_from_options, slice_from_options, sweep_from
-from ptmcad.question.config.sweeps import RANGE_KEYS
+from ptmcad.question.config import load, point_from_options, slice_from_options
+from ptmcad.question.config.sweeps import RANGE_KEYS, load_sweep, sweep_from
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
 

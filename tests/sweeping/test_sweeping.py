@@ -26,7 +26,7 @@ from ptmcad.cli import run
 from ptmcad.cli import sweep as command
 from ptmcad.errors import ConfigError, LimitReached, OutputError
 from ptmcad.process import extras
-from ptmcad.question.config import sweep_from
+from ptmcad.question.config.sweeps import sweep_from
 from ptmcad.sweeping import index
 from ptmcad.sweeping import run as engine
 from ptmcad.sweeping.member import Failed, Found, Refused, Wanted, Work, compute
@@ -427,7 +427,7 @@ class Here:
     def close(self): pass
 values = {{"from": 1, "to": 100, "steps": 100}}
 record = {{"name": "many", "axes": {AXES!r}, "sweep": {{"k1": values, "k2": values}}}}
-from ptmcad.question.config import sweep_from
+from ptmcad.question.config.sweeps import sweep_from
 OUTCOME = compute(run.Work(sweep_from(record), run.Wanted(areas=False)), 0)
 run._workers = lambda work, jobs, scheduler: lambda: Here(work)
 sweep = run.sweep(record, {str(tmp_path / "many")!r}, progress=progress)

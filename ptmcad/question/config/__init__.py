@@ -19,7 +19,8 @@ from typing import Any
 
 from ptmcad.errors import A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
-from ptmcad.question.config.family import Family, bound, checked_family, family_of, fault_of_member, member_name
+from ptmcad.question.config.binding import bound, member_name, settled, swept_names
+from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
 from ptmcad.question.config.options import ranges_of, settings_of, with_axes
@@ -35,7 +36,6 @@ from ptmcad.question.config.record import (
     record_of,
 )
 from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, point_of, slice_of
-from ptmcad.question.config.sweeps import Sweeping, asks_for_sweep, load_sweep, settled, sweep_from, swept_names
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
@@ -48,13 +48,10 @@ __all__ = [
     "Family",
     "Kind",
     "Parameter",
-    "Sweeping",
-    "asks_for_sweep",
     "family_from",
     "fault_of_member",
     "file_name",
     "load",
-    "load_sweep",
     "make_mechanism",
     "make_system",
     "names_in_record",
@@ -66,7 +63,6 @@ __all__ = [
     "slice_from",
     "slice_from_mapping",
     "slice_from_options",
-    "sweep_from",
 ]
 
 

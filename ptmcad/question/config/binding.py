@@ -11,10 +11,13 @@ from fractions import Fraction
 
 from ptmcad.errors import ExpressionError
 from ptmcad.question.config.record import Record
+from ptmcad.question.config.resolution import number_of
+from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Number, Tree, names_of, replaced, to_text
-from ptmcad.text.yamltree import Place, Scalar
+from ptmcad.text.yamltree import Place, Scalar, Sequence
+from ptmcad.text.yamltree import Tree as Entries
 
 
 def with_numbers(record: Record, numbers: Mapping[str, Fraction], places: Mapping[str, Place]) -> Record:
@@ -33,6 +36,47 @@ def with_numbers(record: Record, numbers: Mapping[str, Fraction], places: Mappin
         if name in known
     }
     return replace(record, values={**record.values, **values, **fixed})
+
+
+def bound(record: Record, name: str, value: Fraction) -> Record:
+    """The record with a number in place of its free parameter, and without answers, which are of another slice."""
+    assert record.free is not None
+    found = with_numbers(record, {name: value}, {name: record.free[1].place})
+    title = f"{record.title}, {name} = {text_of(value)}" if record.title else ""
+    return replace(found, free=None, members=None, title=title, reference={})
+
+
+def member_name(record: Record, name: str, value: Fraction) -> str:
+    """The name of a member, and of its files: the record's, the parameter's, and its value."""
+    start = f"{record.name or 'family-' + '-'.join((*record.axes, name))}-{name}"
+    return f"{start}{text_of(value).replace('/', '_')}"
+
+
+def swept_names(record: Record) -> dict[str, Place]:
+    """What a record sweeps, with its places, as far as that can be read."""
+    found: dict[str, Place] = {}
+    node = record.sweep
+    for part in node.items if isinstance(node, Sequence) else (node,):
+        if isinstance(part, Entries):
+            found |= {name: entry.place for name, entry in part.entries.items()}
+    return found
+
+
+def settled(record: Record, given: Mapping[str, Scalar]) -> tuple[Record, dict[str, Scalar]]:
+    """A record of whose sweep some names have been given a value, or made axes, and the other values.
+
+    Raises
+    ------
+    ConfigError
+        When other parameters are still swept.
+    """
+    swept = swept_names(record)
+    new = {name: number_of(given[name], "a value") for name in given if name not in record.model.parameters}
+    left = {name: place for name, place in swept.items() if name not in given and name not in record.axes}
+    for name, place in left.items():
+        raise place.error(f"{name} is swept too: add --set {name}=VALUE, or ask `ptmcad sweep` for all of its values")
+    settled = replace(with_numbers(record, new, {}), sweep=None)
+    return settled, {name: scalar for name, scalar in given.items() if name not in new}
 
 
 def _with_numbers(scalar: Scalar, numbers: Mapping[str, Fraction]) -> Scalar:

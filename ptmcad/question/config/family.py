@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism import Model
-from ptmcad.question.config.binding import with_numbers
+from ptmcad.question.config.binding import bound, member_name
 from ptmcad.question.config.record import Record, Window, read_record
 from ptmcad.question.config.resolution import axis_of, number_of, slice_of, written_in
 from ptmcad.question.slice import Axis, Slice
@@ -123,14 +123,6 @@ def checked_family(tree: Tree) -> Family:
     return family_of(record, faults)
 
 
-def bound(record: Record, name: str, value: Fraction) -> Record:
-    """The record with a number in place of its free parameter, and without answers, which are of another slice."""
-    assert record.free is not None
-    found = with_numbers(record, {name: value}, {name: record.free[1].place})
-    title = f"{record.title}, {name} = {text_of(value)}" if record.title else ""
-    return replace(found, free=None, members=None, title=title, reference={})
-
-
 def fault_of_member(slice: Slice, text: Mapping[str, str], free: str, value: Fraction) -> str:
     """What shows that a slice is not a family's member at a value, in words; empty where it is.
 
@@ -157,12 +149,6 @@ def fault_of_member(slice: Slice, text: Mapping[str, str], free: str, value: Fra
             shown = (expression.to_text(slice.axis_names) for expression in (found, wanted))
             return "{} is {}, not {}".format(name, *shown)
     return ""
-
-
-def member_name(record: Record, name: str, value: Fraction) -> str:
-    """The name of a member, and of its files: the record's, the parameter's, and its value."""
-    start = f"{record.name or 'family-' + '-'.join((*record.axes, name))}-{name}"
-    return f"{start}{text_of(value).replace('/', '_')}"
 
 
 def _member(record: Record, name: str, value: Fraction) -> Slice:

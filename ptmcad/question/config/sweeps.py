@@ -22,7 +22,7 @@ from ptmcad.question.examples import FIRST
 from ptmcad.question.slice import Slice
 from ptmcad.question.sweep import Listed, Product, Spaced, Sweep, Values
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python, read_file
+from ptmcad.text.yamltree import Node, Place, Sequence, Tree, from_python, read_file
 
 MAX_MEMBERS = 1_000_000
 """Of a sweep; more would rather be asked in parts."""
@@ -120,16 +120,6 @@ def checked_sweep(tree: Tree) -> Sweeping:
         return Sweeping(record, sweep)
     faults.check()
     raise AssertionError("a fault was noted")
-
-
-def swept_names(record: Record) -> dict[str, Place]:
-    """What a record sweeps, with its places, as far as that can be read."""
-    found: dict[str, Place] = {}
-    node = record.sweep
-    for part in node.items if isinstance(node, Sequence) else (node,):
-        if isinstance(part, Tree):
-            found |= {name: entry.place for name, entry in part.entries.items()}
-    return found
 
 
 def _read(node: Node, record: Record, faults: Faults) -> Sweep | None:
@@ -246,20 +236,3 @@ def _bounded(found: Spaced, place: Place) -> Spaced:
     if found.number > MAX_MEMBERS:
         raise place.error(f"has {found.number} values, more than {MAX_MEMBERS}")
     return found
-
-
-def settled(record: Record, given: Mapping[str, Scalar]) -> tuple[Record, dict[str, Scalar]]:
-    """A record of whose sweep some names have been given a value, or made axes, and the other values.
-
-    Raises
-    ------
-    ConfigError
-        When other parameters are still swept.
-    """
-    swept = swept_names(record)
-    new = {name: number_of(given[name], "a value") for name in given if name not in record.model.parameters}
-    left = {name: place for name, place in swept.items() if name not in given and name not in record.axes}
-    for name, place in left.items():
-        raise place.error(f"{name} is swept too: add --set {name}=VALUE, or ask `ptmcad sweep` for all of its values")
-    settled = replace(with_numbers(record, new, {}), sweep=None)
-    return settled, {name: scalar for name, scalar in given.items() if name not in new}
