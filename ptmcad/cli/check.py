@@ -11,6 +11,7 @@ from ptmcad.cli.values import files
 from ptmcad.errors import MAX_FAULTS, ConfigError
 from ptmcad.question.config import Family, question_from_options
 from ptmcad.question.config.model import located
+from ptmcad.question.config.options import Typed
 from ptmcad.question.config.sweeps import asks_for_sweep, load_sweep
 from ptmcad.text.yamltree import read_file
 
@@ -31,7 +32,7 @@ def command(*, record: Path, limits: Limits) -> int:
     """
     try:
         sweeping = load_sweep(record) if asks_for_sweep(record) else None
-        asked = question_from_options(record) if sweeping is None else sweeping.slice(0)
+        asked = question_from_options(Typed(record)) if sweeping is None else sweeping.slice(0)
     except ConfigError as error:
         for fault in error.faults:
             click.echo(f"error: {fault}", err=True)

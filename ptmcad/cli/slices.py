@@ -14,6 +14,7 @@ import click
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.values import files, mechanisms, pair_of_names, settings
 from ptmcad.question.config import Family, question_from_options, record_from_options, slice_from_options
+from ptmcad.question.config.options import Typed
 from ptmcad.question.config.record import Record
 from ptmcad.question.slice import Slice
 
@@ -64,7 +65,7 @@ class Asked(NamedTuple):
         ConfigError
             For anything wrong with the record's keys or the options.
         """
-        return record_from_options(self.config, self.axes, self.sets, self.ranges, None, self.mechanism, free)
+        return record_from_options(self._typed(None)._replace(free=free))
 
     def question(self, count: str | None, third: Third) -> Slice | Family:
         """The slice that is meant, or the family where a third parameter is free.
@@ -75,9 +76,10 @@ class Asked(NamedTuple):
             For anything wrong with the record or the options.
         """
         members = None if third.between else third.members
-        return question_from_options(
-            self.config, self.axes, self.sets, self.ranges, count, self.mechanism, third.free, members
-        )
+        return question_from_options(self._typed(count)._replace(free=third.free, members=members))
+
+    def _typed(self, count: str | None) -> Typed:
+        return Typed(self.config, self.axes, self.sets, self.ranges, count, self.mechanism)
 
 
 def slice_options(command: F) -> F:

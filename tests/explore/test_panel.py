@@ -16,11 +16,12 @@ from ptmcad.explore.tasks import Tasks
 from ptmcad.options import Options
 from ptmcad.process import extras
 from ptmcad.question.config import load, record_from_options, slice_from_mapping
+from ptmcad.question.config.options import Typed
 from ptmcad.text.yamltree import plain_data, read_text
 
 
 def panel(name: str, ranges: tuple[str, ...] = ()) -> Panel:
-    return panel_of(record_from_options(CONFIGS / f"{name}.yaml"), ranges)
+    return panel_of(record_from_options(Typed(CONFIGS / f"{name}.yaml")), ranges)
 
 
 def ends(found: Panel) -> dict[str, tuple[Fraction, Fraction, Fraction]]:

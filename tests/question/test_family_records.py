@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import family_from, question_from_options, slice_from_mapping, slice_from_options
+from ptmcad.question.config.options import Typed
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Name, Number, names_of, replaced, to_text
 
@@ -98,10 +99,10 @@ def test_where_one_slice_is_wanted_the_free_parameter_needs_a_value(tmp_path: Pa
 
 
 def test_options_make_families() -> None:
-    family = question_from_options(slice="rho,L2", sets=["F4=F3"], free="F3=-2:0", members="-2,-1")
+    family = question_from_options(Typed(slice="rho,L2", sets=("F4=F3",), free="F3=-2:0", members="-2,-1"))
     assert [str(value) for value in family.values] == ["-2", "-1"]  # type: ignore[union-attr]
     with pytest.raises(ConfigError, match="there are members where a parameter is free"):
-        question_from_options(slice="rho,L2", members="3")
+        question_from_options(Typed(slice="rho,L2", members="3"))
 
 
 def test_the_free_parameter_may_become_an_axis(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from ptmcad.question.config.binding import bound, member_name, settled, swept_na
 from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
-from ptmcad.question.config.options import ranges_of, settings_of, with_axes
+from ptmcad.question.config.options import Typed, ranges_of, settings_of, with_axes
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.record import (
     RECORD_KEYS,
@@ -155,42 +155,25 @@ def slice_from_options(
     sets, ranges = tuple(sets), tuple(ranges)
     if config is not None and mechanism is None and slice is None and count is None and not sets and not ranges:
         return load(config)
-    return slice_of(record_from_options(config, slice, sets, ranges, count, mechanism))
+    return slice_of(record_from_options(Typed(config, slice, sets, ranges, count, mechanism)))
 
 
-def question_from_options(
-    config: str | Path | None = None,
-    slice: str | None = None,
-    sets: Iterable[str] = (),
-    ranges: Iterable[str] = (),
-    count: str | Count | None = None,
-    mechanism: str | None = None,
-    free: str | None = None,
-    members: str | None = None,
-) -> Slice | Family:
+def question_from_options(typed: Typed) -> Slice | Family:
     """The slice of the command line's options, or the family where a parameter stays free.
-
-    Parameters
-    ----------
-    config, slice, sets, ranges, count, mechanism : as of `slice_from_options`.
-    free : a text ``NAME=LO:HI``, the free parameter in place of the record's.
-    members : values separated by commas, or how many.
 
     Raises
     ------
     ConfigError
         For anything wrong, with file, line and key, or the option.
     """
-    sets, ranges = tuple(sets), tuple(ranges)
-    changed = sets or ranges or any(given is not None for given in (slice, count, mechanism, free, members))
-    if config is not None and not changed:
-        tree = read_file(config)
+    if typed.config is not None and typed == Typed(typed.config):
+        tree = read_file(typed.config)
         return checked_family(tree) if "free" in tree.entries else checked_slice(tree)
-    record = record_from_options(config, slice, sets, ranges, count, mechanism, free)
-    if members is not None:
+    record = record_from_options(typed)
+    if typed.members is not None:
         if record.free is None:
             raise ConfigError("there are members where a parameter is free: add --free NAME=LO:HI", key="--members")
-        record = replace(record, members=_members(members))
+        record = replace(record, members=_members(typed.members))
     return slice_of(record) if record.free is None else family_of(record)
 
 
@@ -200,26 +183,15 @@ def _members(text: str) -> Node:
     return items[0] if len(items) == 1 else Sequence(items, place)
 
 
-def record_from_options(
-    config: str | Path | None = None,
-    slice: str | None = None,
-    sets: tuple[str, ...] = (),
-    ranges: tuple[str, ...] = (),
-    count: str | Count | None = None,
-    mechanism: str | None = None,
-    free: str | None = None,
-) -> Record:
-    """The record with what the options change in it.
-
-    Parameters
-    ----------
-    config, slice, sets, ranges, count, mechanism, free : as of `question_from_options`.
+def record_from_options(typed: Typed) -> Record:
+    """The record with what the options change in it, but for the members.
 
     Raises
     ------
     ConfigError
         For a key or an option that is wrong; what the values are worth is not looked at.
     """
+    config, slice, sets, ranges, count, mechanism, free, _ = typed
     if config is not None and mechanism is not None:
         raise ConfigError("the record says which mechanism is meant: leave one out", key="--mechanism")
     record = record_of(read_file(config)) if config is not None else Record()

@@ -1,4 +1,4 @@
-"""The command line's options on slices: ``--set``, ``--range`` and ``--slice``.
+"""What is typed to ask about a slice, and the options ``--set``, ``--range`` and ``--slice``.
 
 Guarantee: whatever is wrong is a `ConfigError` that names the option.
 """
@@ -7,14 +7,38 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Model
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.record import Record, Window, check_axis_name
 from ptmcad.question.examples import FIRST, SECOND
+from ptmcad.question.slice import Count
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Place, Scalar
+
+
+class Typed(NamedTuple):
+    """What was typed to ask about a slice: a record, and what changes it.
+
+    Attributes
+    ----------
+    config, slice, sets, ranges, mechanism : as of `ptmcad.question.config.slice_from_options`.
+    counting : which count distinguishes two regions.
+    free : a text ``NAME=LO:HI``, the free parameter in place of the record's.
+    members : values of the free parameter separated by commas, or how many.
+    """
+
+    config: str | Path | None = None
+    slice: str | None = None
+    sets: tuple[str, ...] = ()
+    ranges: tuple[str, ...] = ()
+    counting: str | Count | None = None
+    mechanism: str | None = None
+    free: str | None = None
+    members: str | None = None
 
 
 def settings_of(sets: Iterable[str], model: Model, released: Collection[str] = ()) -> dict[str, Scalar]:
