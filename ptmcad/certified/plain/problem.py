@@ -122,7 +122,8 @@ def problem_of(slice: Slice) -> Problem:
     for cone in cones:
         asked = f"stiffness times free length of spring {cone.name}", Kind.FREE_LENGTH, cone.pull, slice.axes
         if problem := fault(*asked) or unproved(*asked):
-            raise GeometryError(problem)
+            number = next(n for n, spring in enumerate(model.springs, 1) if spring.name == cone.name)
+            raise GeometryError(problem, part=f"springs.{number}")
     gradient = list(_gradient(smooth, ring))
     for unknown, tree in split_moments(model).steady:
         if others := sorted(set(names_of(tree)) & set(model.unknowns) - {unknown}):

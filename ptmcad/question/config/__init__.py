@@ -33,6 +33,7 @@ from ptmcad.question.config.record import (
     number_text,
     portable_file,
     record_of,
+    with_place,
 )
 from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, point_of, slice_of
 from ptmcad.question.config.sweeps import Sweeping, asks_for_sweep, load_sweep, settled, sweep_from, swept_names
@@ -67,6 +68,7 @@ __all__ = [
     "slice_from_mapping",
     "slice_from_options",
     "sweep_from",
+    "with_place",
 ]
 
 
