@@ -195,7 +195,8 @@ def upper(end: End) -> Fraction:
 class CertifiedInterval:
     """An open interval, its ends' enclosures (exact at the window's edge), and the counts on it.
 
-    ``index`` and ``cones`` are None when nothing could be decided at ``sample``.
+    ``total`` is None when nothing could be decided at ``sample``; ``index`` is, too, where there is no potential, and
+    ``cones``, but for the paper's mechanism.
     """
 
     low: Enclosure
@@ -203,6 +204,12 @@ class CertifiedInterval:
     index: MorseIndex | None
     cones: int | None
     sample: Fraction
+    total: int | None
+
+    @property
+    def working(self) -> int | None:
+        """The number by which an operation range is found, as that of `Counts`; None where nothing is decided."""
+        return self.total if self.index is None else self.index[0]
 
 
 @dataclass(frozen=True, slots=True)

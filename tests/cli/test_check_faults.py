@@ -49,13 +49,8 @@ count: total
     ("parts", "start", "remedy"),
     [
         (("{x: length, y: length}", "[x, y]", "[]", "{x: F*x}"), "3: mechanism.unknowns.x: no bound", "narrow the win"),
-        (
-            ("{t: angle, s: angle}", "[cos(t) + cos(s), sin(t) + sin(s)]", "[{angle: t - s, k: 1}]", "{t: F*sin(s)}"),
-            "7: mechanism.moments.t: the certified engine takes no moment",
-            "leave the free lengths out",
-        ),
     ],
-    ids=["no bound", "no potential"],
+    ids=["no bound"],
 )
 def test_what_free_lengths_do_not_go_with_is_told_with_its_place(
     parts: tuple[str, ...], start: str, remedy: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
