@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 from flint import fmpz_mat
 
+from ptmcad.algebra.determinants import determinant
 from ptmcad.algebra.groebner import GroebnerBasis, Monomial, shifted
 from ptmcad.algebra.polynomials import (
     Coefficient,
@@ -332,47 +333,3 @@ def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:
             entries.append(total)
         matrix.append(entries)
     return matrix
-
-
-def determinant(rows: list[list[Ratio]]) -> Ratio:
-    """The determinant of a square matrix over Q(x, y): rows and columns made primitive, then Bareiss elimination."""
-    zero, one = (constant_like(rows[0][0][0], value) for value in (0, 1))
-    denominator = numerator = one
-    matrix: list[list[Coefficient]] = []
-    for row in rows:
-        scale = lcm(d for _, d in row)
-        matrix.append([n * (scale / d) for n, d in row])
-        denominator = denominator * scale
-    for j in range(len(matrix)):
-        common = common_factor(line[j] for line in matrix)
-        if common.is_zero():
-            return zero, one
-        if not common.is_one():
-            numerator = numerator * common
-            for line in matrix:
-                line[j] = line[j] / common
-    for i, line in enumerate(matrix):
-        common = common_factor(line)
-        if common.is_zero():
-            return zero, one
-        if not common.is_one():
-            numerator = numerator * common
-            matrix[i] = [c / common for c in line]
-    return ratio(numerator * _bareiss(matrix), denominator)
-
-
-def _bareiss(matrix: list[list[Coefficient]]) -> Coefficient:
-    size, previous, sign = len(matrix), constant_like(matrix[0][0], 1), 1
-    for k in range(size - 1):
-        candidates = [i for i in range(k, size) if not matrix[i][k].is_zero()]
-        if not candidates:
-            return constant_like(matrix[0][0], 0)
-        pivot = min(candidates, key=lambda i: (len(matrix[i][k]), i))
-        if pivot != k:
-            matrix[k], matrix[pivot] = matrix[pivot], matrix[k]
-            sign = -sign
-        for i in range(k + 1, size):
-            for j in range(k + 1, size):
-                matrix[i][j] = (matrix[k][k] * matrix[i][j] - matrix[i][k] * matrix[k][j]) / previous
-        previous = matrix[k][k]
-    return matrix[-1][-1] * sign

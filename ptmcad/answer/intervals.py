@@ -71,6 +71,13 @@ class Change:
         pair = changed in ({first: 1, first + 1: 1}, {first: -1, first + 1: -1})
         return first if pair else None
 
+    def _balanced(self) -> bool:
+        """Whether the alternating sum of the indices stays, as pairs keep it; what comes from infinity need not."""
+        if self.before.index is None or self.after.index is None:
+            return False
+        gains = [after - before for before, after in zip(self.before.index, self.after.index, strict=True)]
+        return sum(gains[::2]) == sum(gains[1::2])
+
     @property
     def text(self) -> str:
         """The event in words, read in the direction of growing values."""
@@ -79,7 +86,7 @@ class Change:
             return str(event.value)
         if event is Event.STABILITY:
             return str(event.value) if self.before.index is not None else "solutions change their stability"
-        what = event.value if self.before.index is not None or event is not Event.SEVERAL else "several solutions"
+        what = "several solutions" if event is Event.SEVERAL and not self._balanced() else event.value
         if first is not None and self.before.index is not None:
             names = [kind_name(k, len(self.before.index) - 1) for k in (first, first + 1)]
             what = " and ".join(f"one {'stable equilibrium' if name == 'minimum' else name}" for name in names)
@@ -188,7 +195,8 @@ def upper(end: End) -> Fraction:
 class CertifiedInterval:
     """An open interval, its ends' enclosures (exact at the window's edge), and the counts on it.
 
-    ``index`` and ``cones`` are None when nothing could be decided at ``sample``.
+    ``total`` is None when nothing could be decided at ``sample``; ``index`` is, too, where there is no potential, and
+    ``cones``, but for the paper's mechanism.
     """
 
     low: Enclosure
@@ -196,6 +204,12 @@ class CertifiedInterval:
     index: MorseIndex | None
     cones: int | None
     sample: Fraction
+    total: int | None
+
+    @property
+    def working(self) -> int | None:
+        """The number by which an operation range is found, as that of `Counts`; None where nothing is decided."""
+        return self.total if self.index is None else self.index[0]
 
 
 @dataclass(frozen=True, slots=True)

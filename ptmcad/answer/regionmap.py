@@ -70,6 +70,8 @@ class System:
     gradient : the equations, whose common zeros are meant: of a potential its derivatives by the unknowns.
     hessian : their derivatives by the unknowns.
     inequalities, stability : what is positive at solutions that count, and at stable ones.
+    moments : of a certified map, where some moment depends on another unknown than its own: what is taken off the
+        potential's derivatives by the unknowns, in their order; empty elsewhere.
     """
 
     unknowns: tuple[str, ...]
@@ -79,6 +81,7 @@ class System:
     hessian: tuple[tuple[str, ...], ...]
     inequalities: tuple[str, ...] = ()
     stability: tuple[str, ...] = ()
+    moments: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,7 +44,7 @@ def certified_widths(
             progress("rows", k, rows)
     working = operation_number(slice.model, ())
     table = tuple(
-        CertifiedRow(value, _ranges(row, working), any(i.index is None for i in row), remark)
+        CertifiedRow(value, _ranges(row, working), any(i.working is None for i in row), remark)
         for value, row, remark in found
     )
     return CertifiedWidths(slice.name, slice.axes[number], over, table, slice.model, working)
@@ -55,7 +55,7 @@ def _ranges(row: tuple[CertifiedInterval, ...], working: int) -> tuple[Certified
     ranges: list[CertifiedRange] = []
     before = False
     for interval in row:
-        inside = interval.index is not None and interval.index[0] >= working
+        inside = interval.working is not None and interval.working >= working
         if inside and before:
             ranges[-1] = CertifiedRange(ranges[-1].low, interval.high)
         elif inside:

@@ -17,6 +17,7 @@ from ptmcad.ask.classification import check_taken
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, GeometryError, LimitReached, shown
 from ptmcad.mechanism import Mechanism, ptm
+from ptmcad.process.timed import returns_within
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.numerals import short_text
@@ -32,6 +33,8 @@ MAX_SHOWN = 60
 """Characters of a parameter's value."""
 MAX_PROVED = 8
 """Complex solutions: of more it is not proved that the slice is degenerate, which takes seconds and more."""
+MAX_SECONDS = 4.0
+"""For that proof."""
 MAX_DEGREE, MAX_BOUND = 12, 400
 """Of an equation, and of the number of solutions by Bezout's theorem: beyond, too."""
 MAX_COUNTED = 40
@@ -118,7 +121,7 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:
     """The check of a slice that the exact engine takes."""
     from ptmcad.algebra.polynomials import from_fraction
     from ptmcad.exact.point_system import degree_bound
-    from ptmcad.exact.stages import point_values, problem_of, prove_regular
+    from ptmcad.exact.stages import point_values, problem_of
     from ptmcad.exact.witness import SHARES, points
 
     problem = problem_of(slice)
@@ -133,14 +136,24 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:
     except LimitReached:
         return Check(slice, sample, None, "exact", _UNCOUNTED, bound)
     if everywhere:
+        seen = f"at {len(SHARES)} points that were tried {doubt}"
         if (found or 0) > MAX_PROVED:
-            seen = f"at {len(SHARES)} points that were tried {doubt}; a slice where that is so everywhere is refused"
-            return Check(slice, sample, found, "exact", f"not known: {seen}")
-        prove_regular(problem)
+            return Check(
+                slice, sample, found, "exact", f"not known: {seen}; a slice where that is so everywhere is refused"
+            )
+        if not returns_within(MAX_SECONDS, _prove, slice):
+            late = "; that it is so everywhere, where the slice is refused, was not proved in the time"
+            return Check(slice, sample, found, "exact", f"not known: {seen}{late}")
     if not found:
         return Check(slice, sample, None, "exact", f"not known: at the sample {doubt}")
     cost = next((cost for most, cost in _CLASSES if found <= most), _BEYOND)
     return Check(slice, sample, found, "exact", cost + (_BY_INTERVALS if found > _LONG and _encloses(slice) else ""))
+
+
+def _prove(slice: Slice) -> None:
+    from ptmcad.exact.stages import problem_of, prove_regular
+
+    prove_regular(problem_of(slice))
 
 
 def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[int | None, str]:

@@ -4,8 +4,9 @@ Guarantee: critical values are enclosed as `ptmcad.certified.intervals` encloses
 solution, the pose at the end of a snap is one of all the proved stable ones there.
 
 Not guaranteed: that the points of a path are one branch. From each to the next it is followed in floating point by
-Newton's method in small parts, and found among the proved solutions again. Where it vanishes and several stable poses
-are left, steepest descent in floating point says to which of them it falls.
+Newton's method in small parts, and found among the proved solutions again. Nor which solutions meet where it vanishes:
+that is told by the numbers on both sides, of all solutions, wherever they are. Where several stable poses are left,
+steepest descent in floating point says to which of them it falls.
 """
 
 from __future__ import annotations

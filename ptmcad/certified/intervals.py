@@ -53,7 +53,14 @@ def certified_intervals(slice: Slice, along: str, at: Mapping[str, Any], digits:
         slice.axes[varying],
         {other: value},
         tuple(
-            CertifiedInterval(end(s.low), end(s.high), s.counts.index, s.counts.cones, s.sample)
+            CertifiedInterval(
+                end(s.low),
+                end(s.high),
+                s.counts.index,
+                s.counts.cones,
+                s.sample,
+                s.counts.total if s.counts.index is None else sum(s.counts.index),
+            )
             for s in found.stretches
         ),
         tuple(CertifiedChange(Enclosure(g.low, g.high), g.names, g.proved) for g in found.gaps),

@@ -6,6 +6,7 @@ Guarantee: the potential is written from the mechanism's description, in the nam
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from ptmcad.answer.regionmap import PlanStep, System
@@ -21,15 +22,26 @@ from ptmcad.text.tree import Chain, Negative, Number, Step, Tree, to_text
 def system_text(model: Model) -> System:
     """The potential, of a mechanism with square roots; gradient and Hessian are its derivatives by the unknowns.
 
-    The work of constant moments is in it, so that it has another value after each turn. Of a system without a
-    potential the equations. What is positive at solutions is there as the record says it.
+    The work of constant moments is in it, so that it has another value after each turn; where a moment depends on
+    another unknown, moments are stated beside it. Of a system without a potential the equations. What is positive at
+    solutions is there as the record says it.
     """
     if isinstance(model, ParametricSystem):
         potential = "" if model.potential is None else to_text(model.potential)
         texts = [tuple(map(to_text, trees)) for trees in (model.equations, model.inequalities, model.stability)]
         return System(tuple(model.unknowns), (), potential, texts[0], (), *texts[1:])
     assert isinstance(model, Mechanism)
-    return System(tuple(model.unknowns), (), _energy(model), (), ())
+    if model.has_potential:
+        return System(tuple(model.unknowns), (), _energy(model), (), ())
+    moments = {moment.unknown: to_text(moment.value) for moment in model.moments}
+    return System(
+        tuple(model.unknowns),
+        (),
+        _energy(replace(model, moments=())),
+        (),
+        (),
+        moments=tuple(moments.get(unknown, "0") for unknown in model.unknowns),
+    )
 
 
 def _energy(mechanism: Mechanism) -> str:

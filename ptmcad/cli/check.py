@@ -8,8 +8,13 @@ import click
 
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.values import files
+<<<<<<< HEAD
 from ptmcad.errors import MAX_FAULTS, ConfigError
 from ptmcad.question.config import Family, question_from_options
+=======
+from ptmcad.errors import MAX_FAULTS, ConfigError, GeometryError
+from ptmcad.question.config import Family, asks_for_sweep, load_sweep, question_from_options, with_place
+>>>>>>> h16
 from ptmcad.question.config.model import located
 from ptmcad.question.config.options import Typed
 from ptmcad.question.config.sweeps import asks_for_sweep, load_sweep
@@ -49,6 +54,8 @@ def command(*, record: Path, limits: Limits) -> int:
             found = check(slice)
         except ConfigError as error:
             raise located(error, read_file(record)) from error
+        except GeometryError as error:
+            raise with_place(error, read_file(record)) from error
         for line in cost_text(found):
             click.echo(line)
         if isinstance(asked, Family):

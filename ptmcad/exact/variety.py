@@ -23,6 +23,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from ptmcad.algebra.determinants import determinant
 from ptmcad.algebra.groebner import GroebnerBasis, MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import (
     Coefficient,
@@ -36,9 +37,9 @@ from ptmcad.algebra.quotient import (
     QuotientAlgebra,
     Vector,
     bounded_away_from_zero,
-    determinant,
     multiples,
     multiplication_denominator,
+    multiplicity,
     norm,
     poles_at_points,
     power_trace_denominators,
@@ -103,18 +104,17 @@ def discriminant_variety(
     for polynomial in sign_changes(equations, algebra):
         seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
     suspects = [f for f in irreducible_factors(multiplication_denominator(algebra)) if to_plane(f) not in seen.found]
+    hidden = [f for f in suspects if seen.outside(f)]
+    visible = [f for f in suspects if f not in hidden]
     if "infinity" in without:
-        seen.adopt(_with_poles(algebra, suspects, equations.unbounded), Kind.INFINITY)
+        seen.adopt(poles_at_points(algebra, hidden, equations.unbounded), Kind.INFINITY, NO_POINT)
+        seen.adopt(proved_poles(equations, algebra, visible), Kind.INFINITY)
     else:
-        hidden = [f for f in suspects if seen.outside(f)]
-        visible = [f for f in suspects if f not in hidden]
         regular = harmless(equations, rows, jacobian_norm, visible) if settles(equations) else []
         seen.adopt(poles_at_points(algebra, hidden, equations.unbounded), Kind.INFINITY, NO_POINT)
         seen.adopt(poles_at_points(algebra, regular, equations.unbounded), Kind.INFINITY, HARMLESS)
         doubtful = [f for f in visible if f not in regular]
-        poles = poles_at_points(algebra, doubtful, equations.unbounded)
-        poles += _with_poles(algebra, [f for f in doubtful if f not in poles], equations.unbounded)
-        seen.adopt(poles, Kind.INFINITY)
+        seen.adopt(proved_poles(equations, algebra, doubtful), Kind.INFINITY)
     if "sign-curve" in without:
         for minor in leading_minors(system, parameters) if system.has_index else ():
             seen.adopt(irreducible_factors(norm(algebra, _lifted(minor, equations))[0]), Kind.AUXILIARY)
@@ -249,6 +249,33 @@ def _with_poles(
         return []
     poles = [power_trace_denominators(algebra, k) for k in coordinates]
     return [f for f in suspects if any(pole.gcd(f).total_degree() > 0 for pole in poles)]
+
+
+def proved_poles(
+    equations: SliceSystem, algebra: QuotientAlgebra, suspects: Sequence[Coefficient]
+) -> list[Coefficient]:
+    """Those of the polynomials on which some coordinate of the solutions has a pole, with proof of every answer.
+
+    Where none is seen at points, there is none if another monomial order's multiplication matrices have none, as
+    characteristic polynomials are the same on every basis; of few solutions, or where that does not tell, the power
+    traces do, whose degrees grow with the square of the number of solutions.
+    """
+    poles = poles_at_points(algebra, suspects, equations.unbounded)
+    open_ones = [f for f in suspects if f not in poles]
+    if open_ones and algebra.dimension > MOST_TRACED:
+        other = quotient_algebra(groebner_basis(equations.equations, _reversed_order(equations)))
+        assert other is not None  # the ideal is zero-dimensional in any order
+        denominator = multiplication_denominator(other)
+        open_ones = [f for f in open_ones if multiplicity(denominator, f)]
+    return poles + _with_poles(algebra, open_ones, equations.unbounded)
+
+
+MOST_TRACED = 12
+"""Solutions up to which power traces are computed at once."""
+
+
+def _reversed_order(equations: SliceSystem) -> MonomialOrder:
+    return MonomialOrder(tuple(range(equations.unknowns))[::-1])
 
 
 def settles(equations: SliceSystem) -> bool:

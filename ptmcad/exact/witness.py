@@ -13,9 +13,10 @@ from itertools import combinations_with_replacement
 
 from flint import fmpq, fmpq_mat
 
+from ptmcad.algebra.determinants import determinant
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
 from ptmcad.algebra.polynomials import Ratio, evaluate
-from ptmcad.algebra.quotient import determinant, multiplication_denominator, quotient_algebra, trace_form
+from ptmcad.algebra.quotient import multiplication_denominator, quotient_algebra, trace_form
 from ptmcad.errors import DegenerateSliceError, HypothesisError, InfiniteSolutionsError, NothingToCountError
 from ptmcad.exact.models.system import ParametricSystem, on_slice, saturated
 from ptmcad.exact.point_system import solutions_at

@@ -164,12 +164,13 @@ def parameters_of(entries: Mapping[str, Any], faults: Faults) -> dict[str, Param
             if "default" in fields:
                 default = constant(fields["default"], f"{key}.default", _EXPRESSIONS)
             found[name] = Parameter(name, kind, default, _window(fields, f"{key}.range"))
-            for alias in listed(fields.get("alias", ()), f"{key}.alias", "[k1, k2]"):
-                new_name(alias, f"{key}.alias", {})
-                if alias in entries:
-                    raise ConfigError(f"'{alias}' is a parameter of its own: leave one out", key=f"{key}.alias")
-                new_name(alias, f"{key}.alias", found)
-                found[alias] = Parameter(alias, kind, name, found[name].window, name)
+            for n, alias in enumerate(listed(fields.get("alias", ()), f"{key}.alias", "[k1, k2]"), 1):
+                with faults:
+                    new_name(alias, f"{key}.alias.{n}", {})
+                    if alias in entries:
+                        raise ConfigError(f"'{alias}' is a parameter of its own: leave one out", key=f"{key}.alias.{n}")
+                    new_name(alias, f"{key}.alias.{n}", found)
+                    found[alias] = Parameter(alias, kind, name, found[name].window, name)
     return {name: p for last in (False, True) for name, p in found.items() if (p.kind is Kind.FREE_LENGTH) is last}
 
 

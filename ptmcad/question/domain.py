@@ -73,7 +73,7 @@ def prove(model: Model, parameters: Mapping[str, Expression], axes: Axes) -> Non
         kind = model.kind(name)
         problem = fault(name, kind, expression, axes) or unproved(name, kind, expression, axes)
         if problem:
-            raise GeometryError(problem)
+            raise GeometryError(problem, parameter=name)
 
 
 def prove_slice(slice: Slice) -> None:

@@ -14,11 +14,12 @@ from support.examples import examples
 from support.maps import CONFIGS, shipped
 
 from ptmcad import load
+from ptmcad.algebra.determinants import LEAST_INTERPOLATED, determinant
 from ptmcad.algebra.fibre import evaluate as multiplication
 from ptmcad.algebra.fibre import fibre, signature
 from ptmcad.algebra.groebner import MonomialOrder, groebner_basis
-from ptmcad.algebra.polynomials import PLANE, coefficients_in, evaluate, from_expression, to_plane
-from ptmcad.algebra.quotient import norm, quotient_algebra
+from ptmcad.algebra.polynomials import PLANE, coefficients_in, evaluate, from_expression, irreducible_factors, to_plane
+from ptmcad.algebra.quotient import multiplication_denominator, norm, quotient_algebra
 from ptmcad.algebra.real_roots import (
     disjoint,
     has_root_between,
@@ -31,9 +32,11 @@ from ptmcad.algebra.real_roots import (
 from ptmcad.algebra.resultants import discriminant, interpolate, resultant
 from ptmcad.algebra.window import nowhere_zero
 from ptmcad.answer.regionmap import Kind
+from ptmcad.exact import variety
 from ptmcad.exact.models import system_of
 from ptmcad.exact.models.system import SliceSystem, at_point, on_slice
-from ptmcad.exact.variety import hermite_determinant
+from ptmcad.exact.stages import problem_of
+from ptmcad.exact.variety import hermite_determinant, proved_poles
 
 X, Y = PLANE.gens()
 SYSTEM = system_of("ptm")
@@ -286,6 +289,44 @@ def test_norm_is_the_product_over_the_fibre(name: str) -> None:
         h = [[multiplication(over, hessian[i][j]) for j in (0, 1)] for i in (0, 1)]
         direct = (h[0][0] * h[1][1] - h[0][1] * h[1][0]).det()
         assert (direct == 0) == (expected == 0)
+
+
+@pytest.mark.parametrize("axis", [X, Y], ids=["x", "y"])
+@pytest.mark.parametrize("rank", [LEAST_INTERPOLATED - 1, LEAST_INTERPOLATED])
+def test_determinants_of_many_rows_in_one_axis(axis: fmpz_mpoly, rank: int) -> None:
+    """A triangular matrix with its rows mixed, of known determinant, and the same with a row that depends on others."""
+    size = LEAST_INTERPOLATED
+    diagonal = [(k + 2) * axis ** (k % 3) + k - 7 if k < rank else 0 * axis for k in range(size)]
+    rows = [
+        [d if i == j else (i * axis - j) ** 2 if j > i else 0 * axis for j in range(size)]
+        for i, d in enumerate(diagonal)
+    ]
+    for i in range(1, size):
+        rows[i] = [a + (axis + i) * b for a, b in zip(rows[i], rows[i - 1], strict=True)]
+    one = 0 * axis + 1
+    above, below = determinant([[(entry, 3 * axis**2 + 1) for entry in row] for row in rows])
+    assert above * (3 * axis**2 + 1) ** size == prod(diagonal, start=one) * below
+
+
+@pytest.mark.parametrize("name", ["forces", "mechanisms/two-bar-chain", "systems/orthogonal-3r"])
+def test_poles_by_another_order_are_those_by_power_traces(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = problem_of(load(CONFIGS / f"{name}.yaml"))
+    equations = on_slice(problem.system, problem.parameters)
+    unknowns = tuple(range(equations.unknowns))
+    algebra, other = (
+        quotient_algebra(groebner_basis(equations.equations, MonomialOrder(order)))
+        for order in (unknowns, unknowns[::-1])
+    )
+    assert algebra is not None and other is not None
+    suspects = irreducible_factors(multiplication_denominator(algebra))
+    by_traces = proved_poles(equations, algebra, suspects)
+    doubtful = irreducible_factors(multiplication_denominator(other))
+    regular = [f for f in suspects if f not in by_traces and f not in doubtful]
+    assert regular
+    monkeypatch.setattr(variety, "MOST_TRACED", 0)
+    assert set(map(str, proved_poles(equations, algebra, suspects))) == set(map(str, by_traces))
+    monkeypatch.setattr(variety, "power_trace_denominators", None)  # what the other order tells needs none
+    assert proved_poles(equations, algebra, regular) == []
 
 
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "fig5-text"])

@@ -148,6 +148,7 @@ def test_the_command_draws_and_tells_them(tmp_path: Path, capsys: pytest.Capture
     assert re.search(r"^pose 2 at rho = 1\.22: .*; y3 > 0 and y4 > 0 at all points that were computed$", out, re.M), out
     assert "  up: rho = 1.231662423: fold: the stable pose merges with a saddle and both vanish; the mechanism" in out
     assert "followed in floating point from one proved solution to the next" in out
+    assert "what meets at an end is told by the numbers on both sides of it, and is not proved" in out
     assert {path.name for path in tmp_path.iterdir()} == {"x.json", "x-path.svg"}
     data = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, SCHEMA, cls=jsonschema.Draft202012Validator)

@@ -11,7 +11,7 @@ import yaml
 from ptmcad.ask import checking, classification
 from ptmcad.ask.checking import check, warning
 from ptmcad.cli import run
-from ptmcad.errors import ConfigError, LimitReached
+from ptmcad.errors import ConfigError, DegenerateSliceError, LimitReached
 from ptmcad.question.config import load, slice_from_mapping
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -166,3 +166,15 @@ def test_what_is_known_is_printed_before_the_rest_is_stopped(
     assert run(["check", str(CONFIGS / "fig4.yaml")]) == 3
     out = capsys.readouterr().out
     assert all(key in out for key in ("unknowns", "parameters", "axes")) and "solutions" not in out
+
+
+def test_a_proof_that_takes_long_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    slice = slice_from_mapping({
+        "system": {"unknowns": {"x": "real"}, "equations": ["(x - a)^2"]}, "axes": {"a": [-2, 2], "b": [-2, 2]},
+    })  # fmt: skip
+    with pytest.raises(DegenerateSliceError, match="only 1 of 2 solutions are different"):
+        check(slice)
+    monkeypatch.setattr(checking, "MAX_SECONDS", 0.001)
+    found = check(slice)
+    assert found.complex_solutions == 1
+    assert found.cost.startswith("not known: at 5 points") and found.cost.endswith("not proved in the time")

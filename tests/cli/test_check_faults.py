@@ -49,13 +49,8 @@ count: total
     ("parts", "start", "remedy"),
     [
         (("{x: length, y: length}", "[x, y]", "[]", "{x: F*x}"), "3: mechanism.unknowns.x: no bound", "narrow the win"),
-        (
-            ("{t: angle, s: angle}", "[cos(t) + cos(s), sin(t) + sin(s)]", "[{angle: t - s, k: 1}]", "{t: F*sin(s)}"),
-            "7: mechanism.moments.t: the certified engine takes no moment",
-            "leave the free lengths out",
-        ),
     ],
-    ids=["no bound", "no potential"],
+    ids=["no bound"],
 )
 def test_what_free_lengths_do_not_go_with_is_told_with_its_place(
     parts: tuple[str, ...], start: str, remedy: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -114,3 +109,54 @@ def test_faults_are_told_together_and_none_that_follows_from_another(
 ) -> None:
     found = faults_of(text, tmp_path, capsys)
     assert [fault[: len(start)] for fault, start in zip(found, starts, strict=True)] == starts
+
+
+def test_every_fault_of_a_list_of_aliases_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (
+        "mechanism:\n  parameters:\n    L: {}\n    k:\n      kind: stiffness\n      alias:\n        - L\n        - k1\n"
+        "        - 2k\n        - k1\n        - cos\n  unknowns: {th: angle}\n\n"
+        "  points: {A: [1, 2], P: [cos(th), sin(th)]}\n  springs: [{between: [A, P], k: k1 + L}]\n"
+        "axes: {L: [0, 1], k1: [1, 2]}\n"
+    )
+    found = faults_of(text, tmp_path, capsys)
+    starts = [
+        "7: mechanism.parameters.k.alias.1: 'L' is a parameter of its own",
+        "9: mechanism.parameters.k.alias.3: '2k' is no name",
+        "10: mechanism.parameters.k.alias.4: the name 'k1' is given twice",
+        "11: mechanism.parameters.k.alias.5: 'cos' has a meaning of its own",
+    ]
+    assert len(found) == len(starts)
+    assert all(fault.startswith(start) for fault, start in zip(found, starts, strict=True)), found
+
+
+PULLED = """\
+mechanism:
+  parameters: {L: {kind: length}, k: {kind: stiffness, alias: [k1, k2]}, g: {}}
+  unknowns: {th: angle}
+  points: {A: [1, 2], P: [L*cos(th), L*sin(th)]}
+  springs:
+    - {between: [A, P], k: k1}
+    - {between: [A, P], k: k2, free: g}
+parameters:
+  L: (a - b)^2 + 10^-30*(a + b)
+  k: 1
+  g: %s
+axes: {a: [-1, 2], b: [-1, 2]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("free", "start"),
+    [
+        ("1", "9: parameters.L: a length must be positive in the whole window, but L is"),
+        ("1 - a", "7: mechanism.springs.2: a free length must not be negative in the whole window"),
+    ],
+)
+def test_what_the_geometry_asks_for_is_told_with_its_place(
+    free: str, start: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = PULLED % free
+    if free != "1":
+        text = text.replace("10^-30*(a + b)", "1")
+    (fault,) = faults_of(text, tmp_path, capsys)
+    assert fault.startswith(start)

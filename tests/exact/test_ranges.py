@@ -285,3 +285,16 @@ def test_a_tangent_joins_the_intervals_and_stays_listed() -> None:
     assert change.event is Event.UNCHANGED and change.at.exact == 0 and change.text == "the counts do not change"
     (only,) = found.intervals
     assert only.low == Fraction(-1, 2) and only.high == Fraction(1, 2) and only.stable == 2
+
+
+def test_pairs_are_told_from_solutions_that_come_from_infinity() -> None:
+    """b x^4/4 - (1 + b) x^2/2 - x/7: two minima come from infinity at b = 0; without the last term both are pairs."""
+
+    def on_line(potential: str, *, low: str, high: str) -> list[str]:
+        system = {"unknowns": {"x": "real"}, "potential": potential}
+        slice = ptmcad.slice_from_mapping({"system": system, "axes": {"b": [low, high], "a": [0, 1]}})
+        return [change.text for change in intervals(slice, "b", {"a": "1/2"}).changes]
+
+    assert on_line("b*x^4/4 - x^2/2*(1+b) - x/7", low="-1", high="3") == ["gains several solutions"]
+    two_folds = "(x^2 - 1)^3/6 - (x^2 - 1)*b/2"  # x = 0, and x^2 = 1 +- sqrt(b)
+    assert on_line(two_folds, low="-1/2", high="1/2") == ["gains several pairs"]

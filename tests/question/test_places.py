@@ -90,7 +90,7 @@ MECHANISMS = [
     (KIND, "      kind: stifness\n", 0, "parameters.k.kind", "did you mean 'stiffness'?"),
     (KIND, f"{KIND}      range: [2, 1]\n", 1, "parameters.k.range", "reversed or empty"),
     (KIND, f"{KIND}      range: [2, q]\n", 1, "parameters.k.range.2", "expected a number"),
-    (KIND, f"{KIND}      alias: [k1, [k2]]\n", 1, "parameters.k.alias", "is no name"),
+    (KIND, f"{KIND}      alias: [k1, [k2]]\n", 1, "parameters.k.alias.2", "is no name"),
     (KIND, f"{KIND}      alias: k1\n", 1, "parameters.k.alias", "a list, such as [k1, k2]"),
     ("    W: {kind: force}", "    W: {kind: force}\n    M: {}", 1, "parameters.M", "nothing uses M"),
     ("    W: {kind: force}", "    W: {kind: force}\n    θ: {}", 1, "parameters.θ", "use ASCII letters"),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from importlib.resources import files
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ptmcad.show.render.colours import ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED
+from ptmcad.answer.counts import Counts
+from ptmcad.show.render.colours import ODD_TOTALS, ONE_MAXIMUM, TWO_MAXIMA, UNDETERMINED, fill_of_counts
 
 Floats = NDArray[np.float64]
 
@@ -37,10 +38,23 @@ def apart(one: str, other: str, eye: Floats) -> float:
 
 
 @pytest.mark.parametrize("eye", [NORMAL, DEUTERANOPIA], ids=["normal", "deuteranopia"])
-@pytest.mark.parametrize("row", [ONE_MAXIMUM, TWO_MAXIMA], ids=["one maximum", "two maxima"])
+@pytest.mark.parametrize("row", [ONE_MAXIMUM, TWO_MAXIMA, ODD_TOTALS], ids=["one maximum", "two maxima", "odd"])
 def test_neighbours_and_what_is_undetermined_are_told_apart(row: tuple[str, ...], eye: Floats) -> None:
     assert min(apart(a, b, eye) for a, b in pairwise(row)) >= 16
     assert min(apart(a, UNDETERMINED.face, eye) for a in row) >= 15
+
+
+@pytest.mark.parametrize(("eye", "least"), [(NORMAL, 13.5), (DEUTERANOPIA, 11)], ids=["normal", "deuteranopia"])
+def test_any_two_totals_up_to_twelve_are_told_apart(eye: Floats, least: float) -> None:
+    """Those for none and one to four are as they ever were, and what they leave is the bound."""
+    fills = [fill_of_counts(Counts(total, None, None)) for total in range(13)]
+    assert fills[0].hatch and not any(fill.hatch for fill in fills[1:])
+    faces = [fill.face for fill in fills[1:]]
+    assert faces[:4] == ["#e8eacd", "#f7f6f2", "#bf78a3", "#c7e4f6"]
+    assert min(apart(a, b, eye) for a, b in combinations(faces, 2)) >= least
+    assert min(apart(a, UNDETERMINED.face, eye) for a in faces) >= 15
+    new = faces[4::2]
+    assert min(apart(a, b, eye) for a in new for b in faces if a != b) >= 20
 
 
 def test_the_matrix_makes_red_and_green_alike() -> None:

@@ -24,7 +24,7 @@ from support.maps import shipped
 import ptmcad
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.ask.solving import solve
+from ptmcad.ask.solving import poses_at, solve
 from ptmcad.show.render import printing
 from ptmcad.show.render.clearance import Label, Stroke, crosses, overlap, place, polyline
 from ptmcad.show.render.figure import draw_figure, point_of
@@ -396,3 +396,21 @@ def test_rounded_values_say_so() -> None:
     assert value_text(Fraction(1, 4)).startswith("=")
     assert value_text(1 + Fraction(1, 10**20)).startswith("≈")
     assert Enclosure(Fraction(1, 3), Fraction(1, 3)).text(7) in value_text(Fraction(10**30 + 1, 3 * 10**30))
+
+
+def test_the_legend_tells_loads_apart_and_names_torsion_springs() -> None:
+    """A parameter that acts at several points goes by these, and a number by direction and point."""
+    mechanism = ptmcad.Mechanism(
+        parameters={"W": {"kind": "force"}, "G": {"kind": "force"}},
+        unknowns={"th": "angle", "ph": "angle"},
+        points={"P": ["cos(th)", "sin(th)"], "Q": ["cos(ph)", "sin(ph)"]},
+        springs=[{"between": ["P", "Q"], "k": 1}],
+        torsion=[{"angle": "th", "k": 1}, {"angle": "ph - th", "k": 2}],
+        loads={"P": ["W", -1], "Q": ["W", "G"]},
+    )
+    at = {"W": Fraction(1, 2), "G": Fraction(1, 3)}
+    text = " ".join(t.get_text() for t in draw_poses(poses_at(mechanism, at, 6)).texts).replace(
+        "\N{NO-BREAK SPACE}", " "
+    )
+    assert "torsion springs on θ, ph − θ; not drawn" in text
+    assert "W at P, Q = 0.5,  Fy at P = −1," in text and "G = 1/3" in text and "G at" not in text

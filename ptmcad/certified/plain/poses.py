@@ -67,8 +67,15 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
         if pose is None:
             return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, most, ZERO)
         poses.append(pose)
-    ordered = sorted(poses, key=lambda pose: (not pose.stable, pose.known_energy.center))
+    ordered = sorted(poses, key=_order)
     return Poses(mechanism, parameters, tuple(ordered), Status.CERTIFIED, digits, most)
+
+
+def _order(pose: Pose) -> tuple[Fraction, ...]:
+    """Stable equilibria first, then by energy; without a potential by the unknowns."""
+    if pose.energy is not None:
+        return Fraction(not pose.stable), pose.energy.center
+    return tuple(number.center for number in (*pose.angles, *pose.reals))
 
 
 def point_slice(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> Slice:
@@ -79,7 +86,10 @@ def point_slice(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> Sli
 
 
 def _tape(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[Tape, tuple[str, ...]]:
-    """Everything asked of a pose as a tape, and the names of its outputs; the Hessian's entries come row by row."""
+    """Everything asked of a pose as a tape, and the names of its outputs; the Hessian's entries come row by row.
+
+    Without a potential there is neither an energy nor a Hessian.
+    """
     graph = Graph()
     unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, 2)}
     at = potential(mechanism, {name: graph.constant(value) for name, value in parameters.items()}, unknowns)
@@ -89,6 +99,8 @@ def _tape(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[Tap
     found |= {f"{name} {n}": coordinate for name, pair in at.points.items() for n, coordinate in enumerate(pair)}
     found |= {f"length {n}": length for n, length in enumerate(at.lengths)}
     found |= {f"force {n}": force for n, force in enumerate(at.forces)}
+    if not mechanism.has_potential:
+        return record([list(found.values()), []]), tuple(found)
     found["energy"] = at.energy
     slopes = [graph.derivative(at.energy, v.variable) for v in unknowns.values()]
     hessian = [graph.derivative(slope, v.variable) for slope in slopes for v in unknowns.values()]
@@ -105,6 +117,7 @@ def _pose(
 ) -> tuple[Pose | None, int]:
     """The pose with all numbers settled, and the bits that this took; None when some number is not."""
     tape, names = written
+    last = f"eigenvalue {len(mechanism.unknowns) - 1}"
     bits, found = 64 + 4 * digits, dict[str, Enclosure]()
     turns: dict[str, int] = {}
     for attempt in range(MAX_DOUBLINGS):
@@ -125,7 +138,7 @@ def _pose(
                 if angle in turns:
                     radians = arb.pi() * turns[angle] / 2
                 numbers |= {angle: radians, f"degrees {angle}": radians * 180 / arb.pi()}
-            size = len(mechanism.unknowns)
+            size = len(mechanism.unknowns) if mechanism.has_potential else 0
             entries = arb_mat(size, size, [values[int(place)] for place in tape.outputs[1]])
             numbers |= {f"eigenvalue {n}": value for n, value in enumerate(_eigenvalues(entries))}
             constants = {n: tape.constants.get(int(k)) for n, k in zip(names, tape.outputs[0], strict=True)}
@@ -137,16 +150,17 @@ def _pose(
         if attempt == 1:
             unsettled = [n for n in range(len(mechanism.springs)) if f"force {n}" not in found]
             found |= relaxed_numbers(mechanism, parameters, unsettled, (whole, box), bits)
-        if found.keys() >= numbers.keys() and f"eigenvalue {size - 1}" in found:
-            return assembled(mechanism, parameters, found, solution.signs.count("-")), bits
+        if found.keys() >= numbers.keys() and (last in found or not mechanism.has_potential):
+            index = solution.signs.count("-") if mechanism.has_potential else None
+            return assembled(mechanism, parameters, found, index), bits
         bits *= 2
     return None, bits // 2
 
 
 def _eigenvalues(matrix: arb_mat) -> list[arb]:
     """The eigenvalues of a symmetric matrix, the smallest first; none where they are not separated."""
-    if matrix.nrows() == 1:
-        return [matrix[0, 0]]
+    if matrix.nrows() < 2:
+        return [matrix[k, k] for k in range(matrix.nrows())]
     try:
         found = acb_mat(matrix).eig()
     except ValueError:
@@ -158,10 +172,15 @@ def assembled(
     mechanism: Mechanism,
     parameters: Mapping[str, Fraction],
     at: Mapping[str, Enclosure],
-    index: int,
+    index: int | None,
     flat: bool = False,
 ) -> Pose:
-    """The pose of these numbers by name, whose Hessian was proved to have so many negative eigenvalues."""
+    """The pose of these numbers by name, whose Hessian was proved to have so many negative eigenvalues.
+
+    Parameters
+    ----------
+    index : None where there is no Hessian.
+    """
     springs = tuple(
         Spring(
             spring.name,
@@ -174,8 +193,9 @@ def assembled(
         )
         for n, spring in enumerate(mechanism.springs)
     )
-    eigenvalues = tuple(at[f"eigenvalue {n}"] for n in range(len(mechanism.unknowns)))
-    if sum(value.high < 0 for value in eigenvalues) != index:
+    size = 0 if index is None else len(mechanism.unknowns)
+    eigenvalues = tuple(at[f"eigenvalue {n}"] for n in range(size))
+    if index is not None and sum(value.high < 0 for value in eigenvalues) != index:
         raise ArithmeticError("the Hessian's eigenvalues contradict the index that was proved")
     return Pose(
         angles=tuple(at[angle] for angle in mechanism.angles),
@@ -183,12 +203,12 @@ def assembled(
         cosines_sines=tuple(at[f"{part} {angle}"] for angle in mechanism.angles for part in ("cos", "sin")),
         nodes={name: (at[f"{name} 0"], at[f"{name} 1"]) for name in mechanism.points},
         springs=springs,
-        energy=at["energy"],
+        energy=None if index is None else at["energy"],
         eigenvalues=eigenvalues,
         multiplicity=1,
         index=index,
-        stable=index == 0,
+        stable=None if index is None else index == 0,
         flat=flat,
-        admissible=index == 0 and all(spring.force.low > 0 for spring in springs),
+        admissible=None if index is None else index == 0 and all(spring.force.low > 0 for spring in springs),
         reals=tuple(at[f"real {name}"] for name in mechanism.reals),
     )

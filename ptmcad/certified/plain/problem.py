@@ -22,7 +22,7 @@ from ptmcad.question.domain import fault, unproved
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.numerals import text_of
-from ptmcad.text.tree import Tree, names_of, to_text
+from ptmcad.text.tree import Tree, to_text
 
 MAX_UNKNOWNS = 3
 """Angles and lengths; the time of a search multiplies with every one."""
@@ -61,8 +61,9 @@ class Problem:
     ----------
     unknowns : names in the description's order; variables 2, 3 ... of formulas.
     reals : those that are no angles.
-    equations : of a potential V the derivatives by the unknowns.
-    is_gradient : whether they are; then the Jacobian is a Hessian.
+    equations : the derivatives of a potential V by the unknowns, less the moments; or a system's.
+    is_gradient : whether they are near each configuration the derivatives of one function; then the Jacobian is a
+        Hessian. With a moment that depends on another unknown than its own they are not.
     inequalities : a solution counts where all are positive.
     stability : without a potential, it is stable where all of these are, too.
     multiples : of the equations, which vanish at solutions as well.
@@ -122,19 +123,13 @@ def problem_of(slice: Slice) -> Problem:
     for cone in cones:
         asked = f"stiffness times free length of spring {cone.name}", Kind.FREE_LENGTH, cone.pull, slice.axes
         if problem := fault(*asked) or unproved(*asked):
-            raise GeometryError(problem)
-    gradient = list(_gradient(smooth, ring))
+            number = next(n for n, spring in enumerate(model.springs, 1) if spring.name == cone.name)
+            raise GeometryError(problem, part=f"springs.{number}")
+    equations = list(_gradient(smooth, ring))
     for unknown, tree in split_moments(model).steady:
-        if others := sorted(set(names_of(tree)) & set(model.unknowns) - {unknown}):
-            raise ConfigError(
-                f"the certified engine takes no {'moment' if unknown in model.angles else 'force on a length'} without "
-                f"a potential, and that on {unknown} depends on {others[0]}: "
-                f"{'leave the free lengths out, which the exact engine does not take' if cones else 'choose exact'}",
-                key=f"moments.{unknown}" if cones else "engine",
-            )
         k = ring.unknowns.index(unknown)
-        gradient[k] = gradient[k] - evaluate(tree, ring)
-    return Problem(ring.unknowns, ring.reals, tuple(gradient), cones, True)
+        equations[k] = equations[k] - evaluate(tree, ring)
+    return Problem(ring.unknowns, ring.reals, tuple(equations), cones, model.has_potential)
 
 
 def _of_system(system: System, ring: Harmonics) -> Problem:

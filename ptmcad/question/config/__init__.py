@@ -34,6 +34,7 @@ from ptmcad.question.config.record import (
     number_text,
     portable_file,
     record_of,
+    with_place,
 )
 from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, point_of, slice_of
 from ptmcad.question.examples import FIRST, SECOND
@@ -63,6 +64,7 @@ __all__ = [
     "slice_from",
     "slice_from_mapping",
     "slice_from_options",
+    "with_place",
 ]
 
 

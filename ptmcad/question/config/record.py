@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ptmcad.errors import Faults, shown
+from ptmcad.errors import ConfigError, Faults, GeometryError, shown
 from ptmcad.mechanism import Model, ptm
-from ptmcad.question.config.model import Described, described_in
+from ptmcad.question.config.model import Described, described_in, located
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.examples import AXES
 from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count, unstorable
@@ -139,6 +139,20 @@ def read_record(tree: Tree, faults: Faults) -> Record:
             place = _node_place(tree.entries["members"], "members", tree)
             raise place.error("there are members where a parameter is free: add one, such as free: {F: [-20, 0]}")
     return Record(**read)
+
+
+def with_place(error: GeometryError, tree: Tree) -> ConfigError | GeometryError:
+    """A fault of a slice's geometry with file, line and key, where it is that of a parameter or of a part."""
+    if error.part:
+        return located(ConfigError(str(error), key=error.part), tree)
+    record = read_record(tree, Faults())
+    if not error.parameter:
+        return error
+    name = error.parameter
+    if name not in record.values and name not in record.axes:
+        name = record.model.parameters[name].alias_of or name
+    place = record.axes[name].place if name in record.axes else record.place_of(name)
+    return place.error(str(error))
 
 
 def _node_place(node: Node, key: str, tree: Tree) -> Place:

@@ -80,6 +80,7 @@ SYSTEM = record(
     hessian=listed(listed(TEXT)),
     inequalities=Key(listed(TEXT), default=()),
     stability=Key(listed(TEXT), default=()),
+    moments=Key(listed(TEXT), default=()),
 )
 CRITICAL_VALUE = record(
     CriticalValue,

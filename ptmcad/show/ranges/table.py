@@ -156,8 +156,9 @@ def path_table(found: PosePaths, digits: int = _ANGLE_DIGITS) -> str:
         lines += [f"  {direction}: {_end(e, found, digits)}" for direction, e in ends]
     if found.joined and lines:
         lines.append(
-            "followed in floating point from one proved solution to the next; where several stable ones are left, "
-            "steepest descent says to which the mechanism snaps"
+            "followed in floating point from one proved solution to the next; what meets at an end is told by the "
+            "numbers on both sides of it, and is not proved; where several stable ones are left, steepest descent says "
+            "to which the mechanism snaps"
         )
     stable = "stable " * model.tells_stability
     return "\n".join(lines) if lines else f"no {stable}{what} at {name} = {shortest_text(found.start)}"

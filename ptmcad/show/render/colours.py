@@ -4,7 +4,7 @@ Guarantee: two different counts of a torus of two unknowns (where saddles = mini
 nor have others of one or two unknowns with up to three maxima. Of three unknowns few have: hatches would be too dense.
 Along a row of the palette the lightness falls by at least six units of CIE L* a step; the hues start from those of
 Okabe & Ito. Seen with deuteranopia neighbours of a row are apart by at least 15 units of CIE Lab, and each
-colour is from what is undetermined.
+colour is from what is undetermined. So are any two of the fills for 0 to 12 solutions in all, by at least 11 units.
 
 Not guaranteed: as many for a caller's own colours, which are taken in turn for the counts of one map.
 
@@ -24,6 +24,8 @@ ONE_MAXIMUM = ("#f7f6f2", "#c7e4f6", "#eda43f", "#ca8d7a", "#45917d", "#8a5e8b",
 """Faces for 0, 1, 2, ... stable equilibria; L* = 97, 89, 73, 64, 55, 46, 37."""
 TWO_MAXIMA = ("#e8eacd", "#bf78a3", "#38836d", "#5d5db1", "#874120", "#4b3e62", "#253836")
 """Faces for the same with two maxima; L* = 92, 59, 50, 43, 36, 29, 22."""
+ODD_TOTALS = (*TWO_MAXIMA[:2], "#0b85be", "#6f720e", "#1252aa", "#22490b", "#4b0f2b")
+"""Faces for 1, 3, 5, ... solutions in all, told from those for 2, 4, 6, ...; from 5 on L* = 52, 46, 36, 27, 16."""
 HATCHES = ("////", "....", "xxxx", "oooo", "++++", "****", "\\\\\\\\", "----", "||||")
 """Beyond the palette's end and for no or many maxima; repeated more densely where these do not suffice."""
 
@@ -96,7 +98,7 @@ def fill_of_counts(counts: Counts) -> Fill:
 
 def _of_total(total: int) -> Fill:
     half, odd = divmod(total, 2)
-    return NONE if total == 0 else _of(TWO_MAXIMA if odd else ONE_MAXIMUM, half if odd else half - 1, 0)
+    return NONE if total == 0 else _of(ODD_TOTALS if odd else ONE_MAXIMUM, half if odd else half - 1, 0)
 
 
 def fill_of_index(index: MorseIndex) -> Fill:

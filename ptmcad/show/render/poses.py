@@ -8,6 +8,7 @@ Not guaranteed: anything that only the picture shows. It is drawn in floating po
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -29,6 +30,7 @@ from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Frame, Scene, arrow_lengths, frame_of, load_values
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import magnitude, shortest_text
+from ptmcad.text.tree import Tree, to_text
 
 MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
 """In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of the title."""
@@ -258,8 +260,7 @@ def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
     yield Entry(("Parts",), strong=True)
     yield from parts_legend(poses.model)
     if arrows:
-        known = load_values(poses)
-        loads = [_load_text(name, known[name]) for name in arrows]
+        loads = list(_load_texts(poses.model, load_values(poses)))
         shortened = any(abs(length) == SHORTEST_ARROW < LONGEST_ARROW for length in arrows.values())
         lines = ["loads; arrows in proportion to them" if len(loads) > 1 else "load"]
         lines += ["except that short ones are lengthened"] if shortened else []
@@ -280,7 +281,16 @@ def parts_legend(mechanism: Mechanism) -> Iterator[Entry]:
     if springs:
         names = textwrap.wrap(f"spring{'s' * (len(springs) > 1)} {', '.join(springs)};", _KEY_COLUMNS)
         yield Entry((*names, "drawn aside where one lies on", "a bar or is very short"), spring_mark())
+    if mechanism.torsion:
+        angles = ", ".join(_angle_text(torsion.angle) for torsion in mechanism.torsion)
+        words = f"torsion spring{'s' * (len(mechanism.torsion) > 1)} on {angles}; not drawn"
+        yield Entry(tuple(textwrap.wrap(words, _KEY_COLUMNS)))
     yield from support_legend(mechanism)
+
+
+def _angle_text(angle: Tree) -> str:
+    """A sum of angles with their symbols."""
+    return re.sub(r"[A-Za-z]\w*", lambda match: symbol(match[0]), to_text(angle)).replace("-", "−")
 
 
 def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
@@ -295,9 +305,22 @@ def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
         yield Entry((f"vertical slider{'s' * (len(rising) > 1)}, at {', '.join(rising)}",), symbol_mark("slider"))
 
 
-def _load_text(name: str, value: Fraction) -> str:
-    """A load's component: by its name, or as a force of so much where a number is how it was given."""
-    return assigned(name if name[0].isalpha() else "force", value)
+def _load_texts(mechanism: Mechanism, known: Mapping[str, Fraction]) -> Iterator[str]:
+    """The components of loads that are not zero: a parameter by its name, with the points where it acts at several.
+
+    What was given as a number or an expression is a force across, Fx, or up, Fy, at its point.
+    """
+    places: dict[str, list[str]] = {}
+    for load in mechanism.loads:
+        for axis, name in zip("xy", load.names, strict=True):
+            what = symbol(name) if name in mechanism.parameters else f"F{axis} at {symbol(load.point)}"
+            if known[name]:
+                places.setdefault(f"{what}\n{name}", []).append(symbol(load.point))
+    for key, points in places.items():
+        what, _, name = key.partition("\n")
+        several = name in mechanism.parameters and len(set(points)) > 1
+        at = f" at {', '.join(dict.fromkeys(points))}" if several else ""
+        yield f"{what}{at} {value_text(known[name])}".replace(" ", "\N{NO-BREAK SPACE}")
 
 
 _KEY_COLUMNS = 33

@@ -48,11 +48,16 @@ def check_potential(claims: Claims) -> str:
     unknowns = tuple(model.unknowns)
     if system.unknowns != unknowns:
         raise Violation(f"the unknowns are {system.unknowns}, not {unknowns}")
-    if system.relations or system.hessian or (model.has_potential and system.gradient):
+    of_mechanism = isinstance(model, Mechanism)
+    if system.relations or system.hessian or ((model.has_potential or of_mechanism) and system.gradient):
         raise Violation("a certified map has no relations, and its gradient and Hessian follow from the potential")
+    if system.moments and (model.has_potential or not of_mechanism):
+        raise Violation("moments are stated beside the potential where one depends on another unknown only")
     text = _Text(model)
     if model.has_potential:
         pairs = [("potential", system.potential, _energy(model))]
+    elif isinstance(model, Mechanism):
+        pairs = _with_moments(text, system)
     else:
         equations = formulas(text.configuration, model).equations
         if system.potential or len(system.gradient) != len(equations):
@@ -63,7 +68,30 @@ def check_potential(claims: Claims) -> str:
     if unchecked:
         return Unchecked(unchecked[0])
     what = "the potential" if model.has_potential else "the equations"
+    what = "the potential and the moments" if system.moments else what
     return f"{what} in {len(unknowns)} unknowns and {len(model.variables)} parameters"
+
+
+def _with_moments(text: _Text, system: System) -> list[tuple[str, str, fmpq_mpoly]]:
+    """The stored energy and what is taken off its slopes, where a moment has no potential; each with what it has to be.
+
+    Raises
+    ------
+    Violation
+        When there is not one moment for each unknown.
+    """
+    model = text.model
+    assert isinstance(model, Mechanism)
+    if len(system.moments) != len(model.unknowns):
+        raise Violation(f"there are moments on {len(model.unknowns)} unknowns, not {len(system.moments)}")
+    true = dict.fromkeys(model.unknowns, text.ring.constant(0))
+    for unknown, tree in model.moments:
+        true[unknown] = true[unknown] + text.configuration.value(tree)
+    named = zip(system.moments, true.items(), strict=True)
+    return [
+        ("potential", system.potential, _energy(model)),
+        *((f"moment on {unknown}", stored, value) for stored, (unknown, value) in named),
+    ]
 
 
 def _conditions(text: _Text, system: System) -> list[tuple[str, str, fmpq_mpoly]]:
@@ -116,7 +144,8 @@ class _Text:
     ----------
     outside : the names that may stand outside of cosines and sines.
     squares : the squares of the springs' lengths, each once, in normal form.
-    varying : the moments that depend on their own unknown, by unknown.
+    varying : the moments that depend on their own unknown, by unknown; none where one depends on another, as
+        moments are stated then.
     """
 
     def __init__(self, model: Model):
@@ -134,7 +163,7 @@ class _Text:
         known = {n: self._gen[f"parameter {n}"] for n in model.variables}
         self.names = known | {n: self._gen[f"unknown {n}"] for n in model.unknowns}
         self.configuration = Configuration(known | {n: self.names[n] for n in model.reals}, circles)
-        moments = dict(model.moments) if isinstance(model, Mechanism) else {}
+        moments = dict(model.moments) if isinstance(model, Mechanism) and model.has_potential else {}
         self.varying = {u: self.configuration.value(tree) for u, tree in moments.items() if u in names_of(tree)}
         moved = set(moments)
         self.outside = {*known, *model.reals, *moved}
@@ -299,7 +328,7 @@ class _Text:
 
 @lru_cache(maxsize=8)
 def _energy(model: Model) -> fmpq_mpoly:
-    """The potential of a system, or of a mechanism whose springs have free lengths."""
+    """The potential of a system, or of a mechanism whose springs have free lengths, with the moments that have one."""
     text = _Text(model)
     if not isinstance(model, Mechanism):
         given: Any = formulas(text.configuration, model).energy
@@ -317,7 +346,7 @@ def _energy(model: Model) -> fmpq_mpoly:
         cosine, sine = here.circle(torsion.angle)
         at_rest = [fmpq(value.numerator, value.denominator) for value in torsion.rest]
         energy = energy + here.value(torsion.stiffness) * (1 - cosine * at_rest[0] - sine * at_rest[1])
-    for unknown, tree in model.moments:
+    for unknown, tree in model.moments if model.has_potential else ():
         if unknown in text.varying:
             continue
         energy = energy - here.value(tree) * text.names[unknown]
