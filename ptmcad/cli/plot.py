@@ -24,6 +24,7 @@ from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import portable_file
+from ptmcad.show.style import Style
 
 
 class Added(NamedTuple):
@@ -45,6 +46,12 @@ def _with_points(stored: RegionMap, drawing: Drawing, added: Added) -> Drawing:
         for line in disagreements(stored, found):
             click.echo(line)
     return drawing._replace(poses=tuple((place, poses_at(stored, place)) for place in chosen))
+
+
+def _say_width(style: Style, added: Added) -> None:
+    """What needs more room than a journal's column has gets both."""
+    if style.wide is not None and (added.at or added.compare is not None):
+        click.echo(f"over two columns, {style.wide:.3g} inches wide, which --size changes", err=True)
 
 
 def _check_compared(added: Added, formats: tuple[str, ...]) -> None:
@@ -151,6 +158,7 @@ def command(
         _check_compared(added, formats)
         check_writable(folder, names_of(stem, formats))
         drawing = _with_points(stored, drawing, added)
+        _say_width(drawing.style, added)
         if added.compare is not None:
             written = write_files(folder, _compared(stored, result, added.compare, stem, formats, drawing))
         else:

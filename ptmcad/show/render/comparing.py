@@ -123,7 +123,7 @@ def comparison_figure(comparison: Comparison, dpi: int, style: Style) -> Figure:
     )
     first = shapes(comparison.first)
     parts = Parts(comparison.first.slice, "", ((), ()), (first.view,))
-    width = style.size[0] if style.size is not None else 3 * (SIDE * font / 9 + 6 * em)
+    width = style.widest if style.widest is not None else 3 * (SIDE * font / 9 + 6 * em)
     how = Dress(max(MIN_FONT, 0.95 * font), 1.05 * font, (4, 5), scale=font / 9)
     left, below, right, _ = overhang(parts, first.view, (SIDE, SIDE), how)
     each = width / 3
@@ -132,7 +132,7 @@ def comparison_figure(comparison: Comparison, dpi: int, style: Style) -> Figure:
     head = 1.35 * em * max(len(panel.head) for panel in panels) + 0.5 * em
     legend = max(type.height(panel.legend) for panel in panels)
     rest = head + below + 0.8 * em + legend + 0.6 * em
-    tall = style.size[1] - rest if style.size is not None else side
+    tall = style.size[1] - rest if style.size is not None and style.wide is None else side
     if min(side, tall) < LEAST * em:
         missing = LEAST * em - side, LEAST * em - tall
         least = (width + 3 * max(0.0, missing[0]), rest + tall + max(0.0, missing[1]))
