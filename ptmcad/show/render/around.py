@@ -331,10 +331,11 @@ def _texts(figure: Figure) -> list[Box]:
 def _legend_boxes(layout: Layout) -> Iterator[Box]:
     """What the entries of a legend cover, with their marks, and the insets, in inches."""
     for (left, top), part in layout.legend:
+        under = top
         for entry in part:
-            bottom = top - layout.type.entry_height(entry)
-            yield left, bottom, left + layout.type.entry_width(entry), top
-            top = bottom
+            bottom = under - layout.type.entry_height(entry)
+            yield left, bottom, left + layout.type.entry_width(entry), under
+            under = bottom
     for left, bottom, wide, high in layout.insets:
         yield left, bottom, left + wide, bottom + high
 

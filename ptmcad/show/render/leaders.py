@@ -41,7 +41,9 @@ Order = tuple[int, ...]
 
 
 def routed(
-    targets: Sequence[Position], berths_of: Callable[[Order], Sequence[Berth]], boxes: Sequence[Box],
+    targets: Sequence[Position],
+    berths_of: Callable[[Order], Sequence[Berth]],
+    boxes: Sequence[Box],
     heights: tuple[float, float],
 ) -> tuple[Order, list[Course]]:
     """The order of the targets along one side, and their lines in that order.
@@ -86,9 +88,9 @@ def _best(
             chosen[k] = min(courses, key=lambda each: (each[0] + _CROSSING * _crossed(each[1], others), each))
         if chosen == before:
             break
-    courses = [course for _, course in chosen]
-    crossed = sum(meet(one, other) for one, other in combinations(courses, 2))
-    return sum(cost for cost, _ in chosen) + _CROSSING * crossed, courses
+    found = [course for _, course in chosen]
+    crossed = sum(meet(one, other) for one, other in combinations(found, 2))
+    return sum(cost for cost, _ in chosen) + _CROSSING * crossed, found
 
 
 def _courses(berth: Berth, target: Position, heights: tuple[float, float]) -> Iterator[Course]:
