@@ -52,5 +52,5 @@ def command(
             if opened:
                 click.launch(address)
 
-        send(Topic.RESUMABLE, "the page is no longer served")  # what it has saved is there: Ctrl-C is its usual end
+        send(Topic.RESUMABLE, "")  # a signal is its usual end
         asyncio.run(serve(panel, out, port, announce))

@@ -71,7 +71,7 @@ def save_last(reports: Reports, why: str) -> int:
     why : it was stopped, as the start of a sentence.
     """
     if Topic.TARGET not in reports:
-        report("; ".join((why, *reports.get(Topic.RESUMABLE, ()))) + "\n")
+        report("; ".join(filter(None, (why, *reports.get(Topic.RESUMABLE, ())))) + "\n")
         return 3
     if Topic.RESULT not in reports:
         reason = f": {reports[Topic.RESUMABLE][0]}" if Topic.RESUMABLE in reports else ""

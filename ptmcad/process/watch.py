@@ -169,6 +169,8 @@ class Watch:
             clean_up(self.reports, self.temporaries, GRACE_SECONDS)
         if self.caught:
             how = _HOW_ENDED.get(self.caught[0], f"stopped by signal {self.caught[0]}")
+            if self.reports.get(Topic.RESUMABLE) == [""]:
+                return 128 + self.caught[0]
             if Topic.RESUMABLE in self.reports or self.reports.get(Topic.RESULT, [""])[0] == "complete":
                 save_last(self.reports, how)
             elif Topic.DONE not in self.reports:
