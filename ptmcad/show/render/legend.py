@@ -137,12 +137,21 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
     elif len(result.regions) > 1:
         yield Entry(("the count changes",), STRONG)
     if thin:
-        # also where complex solutions alone meet, or leave every bounded set
-        yield Entry(("another curve of the variety,", "the count does not change"), THIN)
+        yield thin_entry()
     if samples:
         yield Entry(("sample point of a cell",), "dot")
     if hidden:
-        yield Entry((f"{hidden} more region{'s are' if hidden > 1 else ' is'} too thin for a label",))
+        yield Entry((hidden_words(hidden),))
+
+
+def hidden_words(hidden: int) -> str:
+    """What is said of regions that are not seen and have no label."""
+    return f"{hidden} more region{'s are' if hidden > 1 else ' is'} too thin for a label"
+
+
+def thin_entry() -> Entry:
+    """Of curves where unstable solutions alone differ, or complex ones meet, or some leave every bounded set."""
+    return Entry(("another curve of the variety,", "the count does not change"), THIN)
 
 
 def _with_total(text: str, regions: list[Region], result: RegionMap) -> str:
