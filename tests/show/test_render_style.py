@@ -19,9 +19,10 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.text import Annotation, Text
-from support.maps import shipped
+from support.maps import CONFIGS, shipped
 from test_render import bands
 
+import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
@@ -29,8 +30,9 @@ from ptmcad.question.slice import Count
 from ptmcad.show.render import draw
 from ptmcad.show.render.clearance import overlap
 from ptmcad.show.render.colours import GREYS, Fill, filler
+from ptmcad.show.render.fitting import rewrapped
 from ptmcad.show.render.layout import BOTTOM, INSET_ABOVE, INSET_BELOW, INSET_LEFT, LEFT, WIDEST, flowing
-from ptmcad.show.render.legend import Entry, Type
+from ptmcad.show.render.legend import Entry, Type, entries
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import figure_of
 from ptmcad.show.render.slivers import told_apart
@@ -389,3 +391,12 @@ def test_however_much_is_zoomed_a_picture_is_at_most_so_wide(number: int) -> Non
     inner = [(a + 1e-6, b + 1e-6, c - 1e-6, d - 1e-6) for a, b, c, d in boxes]
     assert not any(overlap(a, b) for a, b in combinations(inner, 2))
     assert all(a + 1e-9 >= 0 and b + 1e-9 >= 0 and c <= made.size[0] and d <= made.size[1] for a, b, c, d in boxes)
+
+
+def test_a_heading_of_two_lines_is_in_one_size() -> None:
+    chain = ptmcad.load(CONFIGS / "mechanisms" / "three-bar-chain.yaml")
+    result = replace(shipped("fig2"), slice=replace(chain, count=Count.INDEX))
+    with settings():
+        told = entries(result, False, False, 0)[0]
+        assert len(told.lines) == told.heads == 2
+        assert rewrapped(told, 3.0, Type()).heads == len(rewrapped(told, 3.0, Type()).lines)

@@ -126,7 +126,8 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
     for region in sorted(result.regions, key=lambda r: (counted_by(r, count), -r.area[0])):
         groups.setdefault(count_text(region, count), []).append(region)
     known = areas_are_known(result)
-    yield Entry(head_of(result.slice), strong=True)
+    head = head_of(result.slice)
+    yield Entry(head, strong=True, heads=len(head))
     for text, regions in groups.items():
         areas = _areas(result, text, regions) if wording.areas and known else []
         yield Entry((_with_total(text, regions, result), *areas), wording.fill(regions[0]))

@@ -84,7 +84,8 @@ def family_entries(family: FamilyMap, paint: Paint, thin: bool = False, hidden: 
     found: dict[tuple[str, Fill], None] = {}
     for region in sorted(every, key=lambda r: counted_by(r, count)):
         found[count_text(region, count), paint.fill(region)] = None
-    told = [Entry(head_of(family.members[0].slice), strong=True)]
+    head = head_of(family.members[0].slice)
+    told = [Entry(head, strong=True, heads=len(head))]
     told += [Entry((text,), fill) for text, fill in found]
     if any(result.cover is not None for result in family.members):
         told.append(Entry(("undetermined",), paint.undetermined))
