@@ -354,9 +354,15 @@ def _family_plot(
 
 
 def _family_repr_html(self: FamilyMap) -> str:
-    from ptmcad.show.notebook import text_html
+    from ptmcad.show.notebook import family_html
 
-    return text_html(self.table())
+    return family_html(self)
+
+
+def _family_repr_png(self: FamilyMap) -> bytes:
+    from ptmcad.show.notebook import family_png
+
+    return family_png(self)
 
 
 def _changes_table(self: Changes) -> str:
@@ -487,6 +493,36 @@ def _widths_repr_html(self: OperationWidths) -> str:
     return text_html(width_table(self))
 
 
+def _sweep_repr_html(self: Sweep) -> str:
+    from ptmcad.show.notebook import text_html
+
+    return text_html(repr(self))
+
+
+def _grid_repr_html(self: Grid) -> str:
+    from ptmcad.show.notebook import grid_png, image_html
+
+    return image_html(grid_png(self), repr(self), "Counts at the pixels' centres, exactly.")
+
+
+def _grid_repr_png(self: Grid) -> bytes:
+    from ptmcad.show.notebook import grid_png
+
+    return grid_png(self)
+
+
+def _field_repr_html(self: Field) -> str:
+    from ptmcad.show.notebook import field_png, field_words, image_html
+
+    return image_html(field_png(self), repr(self), field_words(self))
+
+
+def _field_repr_png(self: Field) -> bytes:
+    from ptmcad.show.notebook import field_png
+
+    return field_png(self)
+
+
 def _comparison_repr_html(self: Comparison) -> str:
     from ptmcad.show.notebook import comparison_html
 
@@ -510,7 +546,8 @@ METHODS["RegionMap"] = {
     "animate": _map_animate,
     "explore": _map_explore,
 }
-METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "_repr_html_": _family_repr_html}
+METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "_repr_html_": _family_repr_html,
+                        "_repr_png_": _family_repr_png}  # fmt: skip
 METHODS["Changes"] = {"table": _changes_table, "_repr_html_": _changes_repr_html}
 METHODS["SliceVariety"] = {"text": _variety_text, "_repr_html_": _variety_repr_html}
 METHODS["Poses"] = {
@@ -526,9 +563,12 @@ METHODS["Sweep"] = {
     "result": _sweep_result,
     "to_csv": _sweep_to_csv,
     "to_dataframe": _sweep_to_dataframe,
+    "_repr_html_": _sweep_repr_html,
 }
 METHODS["CountIntervals"] = {"_repr_html_": _intervals_repr_html}
 METHODS["PosePaths"] = {"_repr_html_": _paths_repr_html}
 METHODS["OperationWidths"] = {"_repr_html_": _widths_repr_html}
+METHODS["Grid"] = {"_repr_html_": _grid_repr_html, "_repr_png_": _grid_repr_png}
+METHODS["Field"] = {"_repr_html_": _field_repr_html, "_repr_png_": _field_repr_png}
 METHODS["Comparison"] = {"_repr_html_": _comparison_repr_html}
 METHODS["Motion"] = {"save": _motion_save, "_repr_html_": _motion_repr_html}

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ptmcad.answer import with_methods
 from ptmcad.answer.regionmap import Kind
 
 if TYPE_CHECKING:
@@ -52,6 +53,17 @@ class Boundary:
         return f"<Boundary of regions {self.left} and {self.right}, {len(self.points)} points>"
 
 
+def extent_of(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float, float, float]:
+    """Left, right, bottom and top of pixels with these centres."""
+    (a, b), (c, d) = (
+        (float(v[0] - half), float(v[-1] + half))
+        for v in (x, y)
+        for half in ((v[-1] - v[0]) / (2 * (len(v) - 1)) if len(v) > 1 else 0.5,)
+    )
+    return a, b, c, d
+
+
+@with_methods
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
     """What a map says at the centres of pixels that fill the window; `NONE` where it says nothing.
@@ -75,12 +87,7 @@ class Grid:
     @property
     def extent(self) -> tuple[float, float, float, float]:
         """The window as left, right, bottom, top: what `imshow` calls so, together with ``origin="lower"``."""
-        (a, b), (c, d) = (
-            (float(v[0] - half), float(v[-1] + half))
-            for v in (self.x, self.y)
-            for half in ((v[-1] - v[0]) / (2 * (len(v) - 1)) if len(v) > 1 else 0.5,)
-        )
-        return a, b, c, d
+        return extent_of(self.x, self.y)
 
     def arrays(self) -> dict[str, Any]:
         """All arrays by name, as `numpy.savez` takes them."""
@@ -89,3 +96,9 @@ class Grid:
     def __repr__(self) -> str:
         rows, columns = self.region.shape
         return f"<Grid of {columns} x {rows} pixels over {self.names[0]}, {self.names[1]}>"
+
+    if TYPE_CHECKING:  # `ptmcad.methods` has them
+
+        def _repr_html_(self) -> str: ...
+
+        def _repr_png_(self) -> bytes: ...

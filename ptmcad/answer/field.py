@@ -9,11 +9,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ptmcad.answer import with_methods
+from ptmcad.answer.boundaries import extent_of
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
 
+@with_methods
 @dataclass(frozen=True, slots=True, eq=False)
 class Field:
     """The values of a quantity at the centres of pixels; nan where there is no such solution, or none was found.
@@ -46,8 +50,19 @@ class Field:
     difference: float
     beyond: int = 0
 
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """The window as left, right, bottom, top: what `imshow` calls so, together with ``origin="lower"``."""
+        return extent_of(self.x, self.y)
+
     def __repr__(self) -> str:
         rows, columns = self.values.shape
         return (
             f"<Field {self.quantity} of {self.pose}, {columns} x {rows} pixels over {self.names[0]}, {self.names[1]}>"
         )
+
+    if TYPE_CHECKING:  # `ptmcad.methods` has them
+
+        def _repr_html_(self) -> str: ...
+
+        def _repr_png_(self) -> bytes: ...

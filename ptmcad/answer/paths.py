@@ -90,6 +90,10 @@ class PosePath:
     upright: bool
     reverse: bool
 
+    def __repr__(self) -> str:
+        ends = f"{self.low.fate.name.lower()} below, {self.high.fate.name.lower()} above"
+        return f"<PosePath of pose {self.number} from {float(self.start):.6g}: {len(self.points)} points, {ends}>"
+
 
 @with_methods
 @dataclass(frozen=True, slots=True)

@@ -111,6 +111,11 @@ class Member:
     seconds: float | None = field(default=None, compare=False)
     attempts: int = field(default=0, compare=False)
 
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} = {value}" for name, value in self.parameters.items())
+        found = "" if self.summary is None else f", {self.summary.regions} regions"
+        return f"<Member {self.number}: {values[:100]}; {self.state.value}{found}>"
+
 
 @with_methods
 @dataclass(frozen=True, slots=True, repr=False)
@@ -156,3 +161,5 @@ class Sweep:
         def to_csv(self) -> str: ...
 
         def to_dataframe(self) -> DataFrame: ...
+
+        def _repr_html_(self) -> str: ...

@@ -18,6 +18,7 @@ from ptmcad.cli.formats import formats_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.values import formats as formats_known
+from ptmcad.cli.values import palettes
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.process.output import Writer, text_writer
 from ptmcad.show.style import DEFAULT, LINES, PALETTES, STYLES, USER, Place, Style, styled
@@ -177,7 +178,7 @@ def style_options(command: F) -> F:
                      help="Where the legend stands.  [default: where it fits]"),
         click.option("--title", metavar="TEXT",
                      help="Title, '' for none.  [default: the slice's heading; none in journals' styles]"),
-        click.option("--palette", metavar="NAME|COLOUR,..",
+        click.option("--palette", metavar="NAME|COLOUR,..", shell_complete=palettes,
                      help=f"{', '.join(PALETTES)}, or colours for the counts in increasing order.  [default: default]"),
         click.option("--font-family", metavar="NAME,..", help="Fonts that are installed; the first that has a letter."),
         click.option("--font-size", metavar="PT", help="Of the legend, at the printed size; none below 6 points."),

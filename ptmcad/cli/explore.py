@@ -11,6 +11,7 @@ from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.paths import out_option
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.process.extras import require_aiohttp
+from ptmcad.process.handover import Topic, send
 
 
 @click.command("explore")
@@ -51,4 +52,5 @@ def command(
             if opened:
                 click.launch(address)
 
+        send(Topic.RESUMABLE, "")  # a signal is its usual end
         asyncio.run(serve(panel, out, port, announce))

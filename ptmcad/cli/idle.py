@@ -12,6 +12,11 @@ from typing import NamedTuple
 import click
 from click.core import ParameterSource
 
+STYLE = (
+    "style", "size", "font_size", "font_family", "palette", "title", "legend", "line_width", "thin_lines", "mpl_style",
+)  # fmt: skip
+"""The options that make a picture's style, by their parameters' names."""
+
 
 class Idle(NamedTuple):
     """An option by its parameter's name, whether it is without effect, and why it would be."""
@@ -35,6 +40,7 @@ def idle_drawing(formats: Iterable[str]) -> tuple[Idle, ...]:
     chosen = set(formats)
     picture = bool(chosen - {"json", "csv", "npz", "table"})
     return (
+        *(Idle(name, not picture, "no picture is written") for name in STYLE),
         Idle("dpi", not picture, "no picture is written"),
         Idle("samples", not picture, "no picture is written"),
         Idle("pixels", "npz" not in chosen, "only NPZ has a grid, see --format"),

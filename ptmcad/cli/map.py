@@ -13,6 +13,7 @@ import click
 from ptmcad.answer.field import Field
 from ptmcad.cli.drawing import pixels_of, share_of
 from ptmcad.cli.formats import formats_of
+from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map
 from ptmcad.cli.paths import out_option
@@ -20,7 +21,7 @@ from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.cli.stored import stored_in
-from ptmcad.cli.values import quantity_names
+from ptmcad.cli.values import poses, quantity_names
 from ptmcad.errors import PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
@@ -40,7 +41,7 @@ class DifferenceError(PtmcadError):
 @click.option("--value", default="energy", show_default=True, metavar="QUANTITY", shell_complete=quantity_names,
               help="energy, stiffness, barrier, force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT, y:POINT, or an "
                    "expression in unknowns, parameters and axes.")  # fmt: skip
-@click.option("--pose", default="stable:1", show_default=True, metavar="KIND:N",
+@click.option("--pose", default="stable:1", show_default=True, metavar="KIND:N", shell_complete=poses,
               help="The N-th stable, unstable, saddle, maximum or pose (any), in the order of `ptmcad solve`: stable "
                    "ones first, then by energy.")  # fmt: skip
 @click.option("--pixels", callback=pixels_of, default="400x400", show_default=True, metavar="NxM",
@@ -85,6 +86,7 @@ def command(
     slice = stored.slice if stored else asked.slice()
     if not stored and slice.has_free_lengths and (value.strip() == "barrier" or not pose.strip().startswith("stable")):
         slice = asked.slice("index")  # the certified engine finds the others when they are counted
+    report_idle([Idle("contours", set(formats) <= {"csv", "npz"}, "no picture is written")])
     stem = f"{slice.name}-{_slug(value)}-{_slug(pose)}"
     names = tuple(f"{stem}.{kind}" for kind in formats)
     check_writable(out, names)

@@ -14,7 +14,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of
 from ptmcad.cli.families import is_family, picture_writers, read_family_file
 from ptmcad.cli.gathering import gathered
-from ptmcad.cli.idle import idle_drawing, report_idle
+from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.paths import file_option
 from ptmcad.cli.pictures import picture
@@ -24,6 +24,7 @@ from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import portable_file
+from ptmcad.show.style import Place, Style
 
 
 class Added(NamedTuple):
@@ -45,6 +46,22 @@ def _with_points(stored: RegionMap, drawing: Drawing, added: Added) -> Drawing:
         for line in disagreements(stored, found):
             click.echo(line)
     return drawing._replace(poses=tuple((place, poses_at(stored, place)) for place in chosen))
+
+
+def _idle(result: Path, drawing: Drawing, added: Added) -> tuple[Idle, ...]:
+    """Options that a picture of more than a map does not heed."""
+    several = added.compare is not None or is_family(result)
+    below = several and drawing.style.legend is Place.RIGHT
+    return (
+        Idle("samples", several or bool(added.at), "sample points are drawn on a map alone"),
+        Idle("legend", below, "a legend of several maps is below them"),
+    )
+
+
+def _say_width(style: Style, added: Added) -> None:
+    """What needs more room than a journal's column has gets both."""
+    if style.wide is not None and (added.at or added.compare is not None):
+        click.echo(f"over two columns, {style.wide:.3g} inches wide, which --size changes", err=True)
 
 
 def _check_compared(added: Added, formats: tuple[str, ...]) -> None:
@@ -139,7 +156,7 @@ def command(
         ptmcad plot slice-L2-rho.json --overlay measured.csv
         ptmcad plot slice-L2-rho.json --compare heavier.json
     """
-    report_idle(idle_drawing(formats))
+    report_idle((*idle_drawing(formats), *_idle(result, drawing, added)))
     with held(limits):
         if is_family(result):
             _plot_family(result, result.parent if out is None else out, formats, drawing, added)
@@ -151,6 +168,7 @@ def command(
         _check_compared(added, formats)
         check_writable(folder, names_of(stem, formats))
         drawing = _with_points(stored, drawing, added)
+        _say_width(drawing.style, added)
         if added.compare is not None:
             written = write_files(folder, _compared(stored, result, added.compare, stem, formats, drawing))
         else:

@@ -21,6 +21,8 @@ from ptmcad.errors import PtmcadError
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
+    from ptmcad.mechanism import Model
+
 Complete = Callable[[click.Context, click.Parameter, str], "list[CompletionItem]"]
 MAX_BYTES = 20_000_000
 """Of a result whose axes are looked up: of a larger one nothing is proposed."""
@@ -40,6 +42,20 @@ def formats(known: Iterable[str]) -> Complete:
         return _next_of_list(typed, known)
 
     return propose
+
+
+def palettes(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
+    """A palette, or colours by name."""
+    from ptmcad.show.style import NAMED, PALETTES
+
+    whole = [_item(name) for name in PALETTES if name.startswith(typed)]
+    return [*whole, *(_next_of_list(typed, NAMED) if typed else [])]
+
+
+def poses(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
+    """KIND:, of which the number is for the user to say."""
+    kinds = ("stable:", "unstable:", "saddle:", "maximum:", "pose:")
+    return [_item(kind) for kind in kinds if kind.startswith(typed)]
 
 
 def mechanisms(_context: click.Context, _parameter: click.Parameter, typed: str) -> list[CompletionItem]:
@@ -104,8 +120,8 @@ def quantity_names(context: click.Context, parameter: click.Parameter, typed: st
 
     try:
         config = _typed_file(context, ".yaml", ".yml")
-        model = ptm() if config is None else load(config).model
-    except PtmcadError:  # the command itself will say what is wrong with the file
+        model = _model_of_result(context) or ptm() if config is None else load(config).model
+    except (PtmcadError, OSError, ValueError):  # the command itself will say what is wrong with the file
         return []
     further = ("barrier",) if "--value" in parameter.opts and model.has_potential else ()
     return [_item(name) for name in (*quantities(model), *further) if name.startswith(typed)]
@@ -134,6 +150,16 @@ def _typed_file(context: click.Context, *suffixes: str) -> Path | None:
     Click's own parser gives no arguments where the last word is an option that waits for its value.
     """
     return next((Path(word) for word in context.obj or () if word.endswith(suffixes) and word[0] != "-"), None)
+
+
+def _model_of_result(context: click.Context) -> Model | None:
+    """Of the stored result that was typed, if one was."""
+    from ptmcad.answer.regionmap import RegionMap
+
+    path = _typed_file(context, ".json")
+    if path is None or path.stat().st_size > MAX_BYTES:
+        return None
+    return RegionMap.from_json(path.read_text(encoding="utf-8")).slice.model
 
 
 def _axes_of_result(path: Path) -> tuple[str, ...]:

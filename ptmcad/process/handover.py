@@ -26,7 +26,7 @@ class Topic(Enum):
     TARGET = b"F"  # path of the result file, names of the other files that are to be written
     RESULT = b"P"  # "partial" or "complete", the result's text as it is by now, and a remark on how far it is, or ""
     RESUMABLE = b"S"  # the results handed over can be gone on from: they are worth saving when a signal ends the work;
-    # with the reason why there is none as long as none has been handed over
+    # with the reason why there is none as long as none has been handed over; empty where a signal is the usual end
     WAITING = b"W"  # the folder on whose lock, which another process holds, this one has waited for some time
     PROGRESS = b"B"  # the progress bar stands in the terminal's line
     EXHAUSTED = b"X"  # memory has run out

@@ -42,6 +42,27 @@ def clean_up(reports: Reports, temporaries: Sequence[str], seconds: float) -> No
         report(f"error: {error}\n")
 
 
+def what_is_there(placed: Sequence[tuple[str, str]]) -> str:
+    """Which files a stopped command has written, in words.
+
+    Parameters
+    ----------
+    placed : for each set of files that was put into place, or was to be, its last file and that file's identity.
+    """
+    if not placed:
+        return "nothing was saved"
+    from pathlib import Path  # not before it is needed: every start would pay for it
+
+    from ptmcad.process.commit import identity
+
+    found = [path for path, mark in placed if identity(Path(path)) == mark]
+    if not found:
+        return "nothing was saved"
+    if len(found) == 1:
+        return f"{found[0]} had been written before and is whole"
+    return f"{len(found)} results had been written before and are whole, the last of them {found[-1]}"
+
+
 def save_last(reports: Reports, why: str) -> int:
     """Save the result that was handed over last, unless the child had come to that itself; return the exit status.
 
@@ -50,7 +71,7 @@ def save_last(reports: Reports, why: str) -> int:
     why : it was stopped, as the start of a sentence.
     """
     if Topic.TARGET not in reports:
-        report("; ".join((why, *reports.get(Topic.RESUMABLE, ()))) + "\n")
+        report("; ".join(filter(None, (why, *reports.get(Topic.RESUMABLE, ())))) + "\n")
         return 3
     if Topic.RESULT not in reports:
         reason = f": {reports[Topic.RESUMABLE][0]}" if Topic.RESUMABLE in reports else ""

@@ -9,7 +9,8 @@ is ended in seconds. What the caller has made of signals, masks and standard str
 that the child has reported stays. When a limit ends it (time; the caller's on processor time; memory, also where a
 library aborts on a failed allocation or the system kills the child), the last result that it handed over is saved and
 the status is 3. When a signal ends it, such a result is saved if one can go on from it, and where there is none yet the
-message says why. A parent that is killed takes the child with it.
+message says why; where there is nothing to go on from it says which files had been written before, or that nothing was
+saved. A parent that is killed takes the child with it.
 
 Not guaranteed: the last sentence on a system whose pipes send no signal (it is tested on Linux).
 """

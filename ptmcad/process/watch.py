@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ptmcad.process.handover import Receiver, Topic
-from ptmcad.process.salvage import clean_up, save_last
+from ptmcad.process.salvage import clean_up, save_last, what_is_there
 from ptmcad.process.streams import report
 
 if sys.platform != "win32":
@@ -56,6 +56,7 @@ class Watch:
         self.text = bytearray()
         self.reports: dict[Topic, list[str]] = {}
         self.temporaries: list[str] = []
+        self.placed: list[tuple[str, str]] = []
         self.out_of_time = False
         self.waiting: Waiting | None = None
         self.waits_for_memory = False
@@ -153,6 +154,8 @@ class Watch:
                     self.reports[topic] = texts
                     if topic is Topic.TEMPORARY:
                         self.temporaries += texts
+                    if topic is Topic.RENAMES:
+                        self.placed.append((texts[1], texts[2]))
                     if topic is Topic.WAITING:
                         report(f"waiting   another process is writing in {texts[0]}\n")
             elif end == self.printed:
@@ -165,8 +168,13 @@ class Watch:
         if ended < 0 or deserted or self.caught or self.out_of_time or Topic.EXHAUSTED in self.reports:
             clean_up(self.reports, self.temporaries, GRACE_SECONDS)
         if self.caught:
+            how = _HOW_ENDED.get(self.caught[0], f"stopped by signal {self.caught[0]}")
+            if self.reports.get(Topic.RESUMABLE) == [""]:
+                return 128 + self.caught[0]
             if Topic.RESUMABLE in self.reports or self.reports.get(Topic.RESULT, [""])[0] == "complete":
-                save_last(self.reports, _HOW_ENDED.get(self.caught[0], f"stopped by signal {self.caught[0]}"))
+                save_last(self.reports, how)
+            elif Topic.DONE not in self.reports:
+                report(f"{how}; {what_is_there(self.placed)}\n")
             return 128 + self.caught[0]
         text = self.text.decode(errors="replace")
         why = self._why_stopped(ended, deserted, text)

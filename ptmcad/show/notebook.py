@@ -22,7 +22,10 @@ from ptmcad.text.bounds import certified_digits
 from ptmcad.text.enclosure import Enclosure
 
 if TYPE_CHECKING:
+    from ptmcad.answer.boundaries import Grid
     from ptmcad.answer.comparison import Comparison
+    from ptmcad.answer.family import FamilyMap
+    from ptmcad.answer.field import Field
     from ptmcad.answer.regionmap import Region
 
 DIGITS = 6
@@ -94,6 +97,60 @@ def comparison_html(comparison: Comparison) -> str:
         data = b64encode(path.read_bytes()).decode()
     words = "".join(f"<div>{escape(line)}</div>" for line in in_words(comparison))
     return f'<img alt="{escape(repr(comparison))}" style="max-width:100%" src="data:image/png;base64,{data}">{words}'
+
+
+def image_html(data: bytes, what: str, words: str) -> str:
+    """A picture in place, with what it is for those who do not see it, and words below."""
+    shown = f'<img alt="{escape(what)}" style="max-width:100%" src="data:image/png;base64,{b64encode(data).decode()}">'
+    return f"{shown}<div>{escape(words)}</div>"
+
+
+def grid_png(grid: Grid) -> bytes:
+    """The grid's pixels as the content of a PNG."""
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render import pixelmap
+
+    return pixelmap.grid_png(grid, PAGE_DPI)
+
+
+def field_png(field: Field) -> bytes:
+    """The field's pixels as the content of a PNG."""
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render import pixelmap
+
+    return pixelmap.field_png(field, PAGE_DPI)
+
+
+def field_words(field: Field) -> str:
+    """What of the field is known."""
+    from ptmcad.show.render.field import description
+
+    missed = f" {field.missed} pixels have such a solution that was not found." if field.missed else ""
+    return f"{description(field)} {field.checked} pixels agree with exact poses to {field.difference:.1g}.{missed}"
+
+
+def family_png(family: FamilyMap) -> bytes:
+    """The members' maps side by side as the content of a PNG."""
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render.multiples import draw_multiples
+
+    with TemporaryDirectory(prefix="ptmcad-") as folder:
+        path = Path(folder) / "family.png"
+        draw_multiples(family, path, PAGE_DPI, DEFAULT)
+        return path.read_bytes()
+
+
+def family_html(family: FamilyMap) -> str:
+    """The maps side by side, and the table."""
+    data = b64encode(family_png(family)).decode()
+    image = f'<img alt="{escape(repr(family))}" style="max-width:100%" src="data:image/png;base64,{data}">'
+    return image + text_html(family.table())
 
 
 def motion_html(motion: Motion) -> str:

@@ -16,6 +16,8 @@ MIN_FONT, MAX_FONT = 6.0, 96.0
 """In points, at the printed size: smaller text is not read on paper."""
 MIN_SIDE, MAX_SIDE = 1.0, 60.0
 """Of a picture, in inches."""
+PAGE_HEIGHT = 9.0
+"""Inches that a picture over both columns of a journal may be tall: what its page has, less a caption."""
 MAX_LINE = 10.0
 MAX_TITLE = 200
 _TO_INCHES = {"in": 1.0, "mm": 1 / 25.4, "cm": 1 / 2.54, "pt": 1 / 72}
@@ -66,6 +68,8 @@ class Style(NamedTuple):
     line_width : in points, of curves where the count changes; other lines are in proportion.
     thin_lines : one of `LINES`, for curves where it does not.
     mpl : further settings of matplotlib, a user's own, by their names.
+    wide : width in inches of a picture over both columns of a journal, which is what needs more room than one column
+        has (poses around a map, two maps and their difference); None where the size is given.
     """
 
     size: Size | None = None
@@ -77,6 +81,12 @@ class Style(NamedTuple):
     line_width: float | None = None
     thin_lines: str = "solid"
     mpl: tuple[tuple[str, Any], ...] = ()
+    wide: float | None = None
+
+    @property
+    def widest(self) -> float | None:
+        """The width of a picture that needs much room; None for as much as it needs."""
+        return self.wide if self.wide is not None or self.size is None else self.size[0]
 
     @property
     def flows(self) -> bool:
@@ -110,9 +120,9 @@ def _mm(width: float, height: float) -> Size:
 
 PRESETS: Mapping[str, Style] = {
     "default": DEFAULT,
-    "ieee": Style(size=(3.5, 2.6), font_size=8.0, title="", line_width=1.0),
-    "elsevier": Style(size=_mm(90, 68), font_size=7.5, title="", line_width=1.0),
-    "springer": Style(size=_mm(84, 64), font_size=8.0, title="", line_width=1.0),
+    "ieee": Style(size=(3.5, 2.6), font_size=8.0, title="", line_width=1.0, wide=7.16),
+    "elsevier": Style(size=_mm(90, 68), font_size=7.5, title="", line_width=1.0, wide=190 / 25.4),
+    "springer": Style(size=_mm(84, 64), font_size=8.0, title="", line_width=1.0, wide=174 / 25.4),
     "beamer": Style(size=_mm(120, 70), font_size=9.0, title=""),
     "poster": Style(size=_mm(600, 420), font_size=28.0),
 }
@@ -154,6 +164,8 @@ def styled(name: str | Style = "default", settings: Mapping[str, Any] | None = N
         base = _with_settings(base, settings)
     given = {key: _READERS[key](value) for key, value in options.items() if value is not None}
     made = base._replace(**given)
+    if "size" in given:
+        made = made._replace(wide=None)
     if "size" in given and "font_size" not in given and made.font_size is not None:
         # a preset's font is for its size: on a narrower one it stays, on a much wider one it would be lost
         return made._replace(font_size=max(made.font_size, round(1.06 * given["size"][0], 1)))
@@ -167,7 +179,7 @@ def _with_settings(base: Style, settings: Mapping[str, Any]) -> Style:
         made = base._replace(**{key: _READERS[key](value) for key, value in options.items()})
     except ConfigError as error:
         raise ConfigError(f"{_SETTINGS[error.key or 'size']}: {error.message}", key="mpl_style") from error
-    return made._replace(mpl=tuple(settings.items()))
+    return made._replace(mpl=tuple(settings.items()), wide=None if "size" in options else base.wide)
 
 
 def _size(value: Any) -> Size:

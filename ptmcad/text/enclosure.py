@@ -33,6 +33,14 @@ class Enclosure:
     low: Fraction
     high: Fraction
 
+    def __repr__(self) -> str:
+        if self.exact is not None:
+            return f"<Enclosure of {exact_text(self.low):.60}, exact>"
+        if self.settles():
+            return f"<Enclosure of {self.text()}>"
+        ends = [Enclosure(end, end).text(DIGITS) for end in (self.low, self.high)]
+        return f"<Enclosure from {ends[0]} to {ends[1]}>"
+
     @property
     def exact(self) -> Fraction | None:
         """The number itself when it is known exactly."""
@@ -153,6 +161,9 @@ class AlgebraicNumber:
     polynomial: tuple[int, ...]
     low: Fraction
     high: Fraction
+
+    def __repr__(self) -> str:
+        return f"<AlgebraicNumber {self.text()}, of degree {self.degree}>"
 
     @property
     def degree(self) -> int:

@@ -94,7 +94,16 @@ def test_the_picture_has_both_maps_and_the_difference() -> None:
     (rim,) = [a for a in made.axes[2].get_children() if str(a.get_gid()).startswith("change-")]
     assert rim.get_edgecolor()[0][:3] == pytest.approx([int(CHANGES[0][k : k + 2], 16) / 255 for k in (1, 3, 5)])
     with pytest.raises(ConfigError, match="at least"), settings():
-        comparison_figure(found, 100, styled("ieee"))
+        comparison_figure(found, 100, styled("ieee", size="3.5x2.6in"))
+
+
+def test_a_change_on_a_strip_that_is_not_seen_has_a_mark() -> None:
+    with settings():
+        wide = comparison_figure(parabola("1/2").compare(parabola("1/3")), 100, styled())
+        narrow = comparison_figure(parabola("1/2").compare(parabola("499/1000")), 100, styled())
+    marks = [[t.get_text() for t in made.axes[2].texts if str(t.get_gid()).startswith("arrow-")]
+             for made in (wide, narrow)]  # fmt: skip
+    assert marks == [[], ["0 → 2"]]
 
 
 def test_the_command_line_compares(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -30,10 +30,11 @@ from support.warm import Started, start
 import ptmcad
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
-from ptmcad.process.commit import recover
+from ptmcad.process.commit import identity, recover
 from ptmcad.process.handover import Receiver, Topic, connect, disconnect, send
 from ptmcad.process.memory import bound_of, default_bound
 from ptmcad.process.output import check_writable, save_stopped, text_writer, write_files
+from ptmcad.process.salvage import what_is_there
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG2 = ROOT / "configs" / "fig2.yaml"
@@ -177,7 +178,7 @@ def test_a_signal_stops_c_code(tmp_path: Path, number: signal.Signals, status: i
     computing = running.arrive()
     for _ in range(1 if to == "the process" else 2):
         (os.kill if to == "the process" else os.killpg)(running.process.pid, number)
-    assert running.end() == (status, "")
+    assert running.end() == (status, f"{HOW_ENDED[number]}; nothing was saved\n")
     assert not lives(computing)
     assert running.files() == old
 
@@ -230,8 +231,42 @@ def test_the_map_saved_by_a_signal_replaces_the_one_it_went_on_from(tmp_path: Pa
     again = Running(tmp_path, work, "--engine", "certified", formats="png")
     again.arrive()
     again.process.send_signal(signal.SIGINT)
-    assert again.end() == (130, "")
+    assert again.end() == (130, "interrupted; nothing was saved\n")
     assert again.files() == {"fig2.json": PARTIAL}
+
+
+LONG = {
+    "map": ("configs/fig4.yaml", "--value", "barrier", "--pose", "stable:2", "--pixels", "4000"),
+    "range": ("configs/fig4.yaml", "--along", "rho", "--over", "L2", "--rows", "1000"),
+    "animate": ("configs/fig4.yaml", "--path", "rho=3/4:6/5,L2=3/2", "--pose", "stable:2", "--frames", "600"),
+    "classify": ("configs/mechanisms/two-bar-chain.yaml", "--set", "L1=1237/1000", "--set", "L2=1013/1000"),
+}
+"""Commands that take long, and nothing of which is worth saving."""
+
+
+@linux
+@pytest.mark.parametrize(
+    "command", [name if name == "map" else pytest.param(name, marks=pytest.mark.slow) for name in LONG]
+)
+def test_an_interrupted_command_says_so(command: str, tmp_path: Path) -> None:
+    arguments = [sys.executable, "-m", "ptmcad", command, *LONG[command], "--out", str(tmp_path)]
+    process = subprocess.Popen(arguments, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    time.sleep(1)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=60)[1]
+    assert (process.returncode, said) == (130, "interrupted; nothing was saved\n")
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_had_been_written_before_is_told(tmp_path: Path) -> None:
+    first, second = tmp_path / "a.json", tmp_path / "b.json"
+    first.write_text("a")
+    placed = [(str(first), identity(first))]
+    assert what_is_there([*placed, (str(second), "0:1:2:3")]) == f"{first} had been written before and is whole"
+    second.write_text("b")
+    assert what_is_there([*placed, (str(second), identity(second))]).startswith("2 results had been written before")
+    first.unlink()
+    assert what_is_there(placed) == what_is_there([]) == "nothing was saved"
 
 
 @linux
@@ -336,7 +371,7 @@ def test_the_progress_bar_leaves_no_half_line(tmp_path: Path) -> None:
             shown += part
     os.close(terminal)
     assert b"counts 1 of 2" in shown
-    assert shown.endswith(b"\r\x1b[K")
+    assert shown.endswith(b"\r\x1b[Kinterrupted; nothing was saved\r\n")
 
 
 # Waiting for the folder

@@ -414,7 +414,7 @@ def test_what_the_caller_made_of_signals(tmp_path: Path, caller: Callable[[], No
     running = Running(tmp_path, IN_C, preexec_fn=caller)
     running.arrive()
     running.process.send_signal(signal.SIGTERM)
-    assert running.end() == (143, "")
+    assert running.end() == (143, "terminated (SIGTERM); nothing was saved\n")
 
 
 def test_few_descriptors(tmp_path: Path) -> None:

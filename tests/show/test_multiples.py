@@ -87,3 +87,23 @@ def test_the_table_has_a_line_for_each_member(family: FamilyMap) -> None:
     with pytest.raises(KeyError):
         family.at(Fraction(1, 3))
     assert "<pre" in replace(family, title="T")._repr_html_()
+
+
+def test_the_legend_tells_of_thin_curves_and_labels_of_regions_that_are_not_seen() -> None:
+    record = {
+        "name": "narrow",
+        "system": {"unknowns": {"x": "real"}, "equations": ["x^2 - a*(a - e)"], "parameters": {"e": {}}},
+        "axes": {"a": [-1, 1], "b": [-1, 1]},
+        "parameters": {"e": "c"},
+        "free": {"c": ["1/1000", 1]},
+    }
+    drawn = ptmcad.family(record, values=["1/1000", 1], areas=False).plot()
+    arrows = [[a.get_gid() for a in axes.texts if str(a.get_gid()).startswith("arrow-")] for axes in drawn.axes]
+    assert [len(found) for found in arrows] == [1, 0]  # the strip of no solution, which is seen in the other map
+    assert "another curve" not in " ".join(text.get_text() for text in drawn.texts)
+    loads: dict[str, Any] = {
+        "mechanism": "ptm", "parameters": {"F3": "F", "F4": "F"}, "axes": {"rho": [0, 2], "L2": [0, 2]},
+        "free": {"F": [-40, 0]},
+    }  # fmt: skip
+    thin = ptmcad.family(loads, values=[-40], areas=False).plot()
+    assert "another curve of the variety, the count does not change" in [text.get_text() for text in thin.texts]

@@ -2,27 +2,43 @@
 
 from __future__ import annotations
 
+import dataclasses
+import functools
+import inspect
+import re
 import subprocess
 import sys
 from html.parser import HTMLParser
+from typing import Any
 
 import pytest
 from support.certified_map import certified_map
 from support.maps import CONFIGS, shipped
 
 import ptmcad
+from ptmcad.answer import METHODS
+from ptmcad.answer.boundaries import Grid
+from ptmcad.answer.family import FamilyMap
+from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap, Status
 
 SCREEN = 200
+CUBIC: dict[str, Any] = {
+    "name": "cubic",
+    "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b + c*x^2"]},
+    "axes": {"a": [-2, 2], "b": [-2, 2]},
+    "free": {"c": [0, 3]},
+}
 
 
+@functools.cache
 def results() -> list[object]:
     slice = ptmcad.load(CONFIGS / "fig4.yaml")
     poses = ptmcad.solve(rho="1", L2="3/2")
     line = {"L2": "3/2"}
     return [
         slice, slice.model, shipped("fig4"), certified_map(), poses, poses.equilibria[0],
-        ptmcad.verify(shipped("fig2")), ptmcad.slice_variety(slice), shipped("fig4").components[0].polynomial,
+        ptmcad.verify(shipped("fig2")), ptmcad.slice_variety(slice),
         shipped("fig4").boundaries("1/10")[0], shipped("fig4").grid(5),
         shipped("fig4").field("energy", columns=5),
         ptmcad.intervals(slice, "rho", line), ptmcad.pose_paths(slice, "rho", line, "1"),
@@ -30,11 +46,93 @@ def results() -> list[object]:
 
 
 def test_every_result_is_a_line_at_the_prompt() -> None:
-    for result in results():
+    for result in [*results(), shipped("fig4").components[0].polynomial]:
         text = repr(result)
         assert text.startswith(f"<{type(result).__name__} ") or text.startswith(f"<{type(result).__name__}:"), text
         assert len(text) < SCREEN, text
         assert "\n" not in text
+
+
+ONE_LINE = {
+    "AlgebraicNumber", "Boundary", "Change", "Count", "Counts", "Enclosure", "Location", "Mechanism", "Member", "Pose",
+    "Slice", "System",
+}  # fmt: skip
+"""What is answered in a line at the prompt, which is what a notebook shows of it too."""
+NO_RESULTS = {"Any", "DataFrame", "Explorer", "Iterator", "None", "Point"}
+"""Not of ptmcad's, or a widget, or a tuple of numbers."""
+
+
+def returned() -> set[str]:
+    """The names of all classes that are public, or that a public function or method says it returns."""
+    functions = [method for methods in METHODS.values() for method in methods.values()]
+    public = [getattr(ptmcad, name) for name in ptmcad.__all__]
+    names = {found.__name__ for found in public if isinstance(found, type)} | set(METHODS)
+    for found in (*functions, *(f for f in public if inspect.isfunction(f))):
+        annotation = inspect.signature(getattr(found, "__func__", found)).return_annotation
+        names |= set(re.findall(r"[A-Z]\w+", str(annotation)))
+    return names - NO_RESULTS
+
+
+@pytest.fixture(scope="module", name="everything")
+def every_kind(tmp_path_factory: pytest.TempPathFactory) -> list[object]:
+    slice = ptmcad.load(CONFIGS / "fig4.yaml")
+    changed = ptmcad.family(CUBIC, values=[0, 1], areas=False, changes=True)
+    swept = ptmcad.sweep(
+        {"mechanism": "ptm", "parameters": {"L1": "a"}, "axes": {"L2": [1, 2], "rho": [1, 2]}, "sweep": {"a": [1]}},
+        tmp_path_factory.mktemp("sweep"),
+        jobs=1,
+        wanted={"areas": False},
+    )
+    made = results()
+    poses = ptmcad.solve(rho="1", L2="3/2")
+    return [
+        *made, ptmcad.operation_widths(slice, "rho", 2), changed, changed.changes, changed.changes.changes[0],
+        shipped("fig4").compare(shipped("fig4")), shipped("fig4").animate("rho=1/10:1/5,L2=1", "stable:1", 2), swept,
+        swept[0], poses.equilibria[0].energy, ptmcad.counts_at(slice.model, rho="1", L2="3/2"), slice.count,
+        shipped("fig4").locate(rho=1, L2=1), ptmcad.load(CONFIGS / "systems" / "duffing.yaml").model,
+        ptmcad.intervals(slice, "rho", {"L2": "3/2"}).changes[0].at,
+    ]  # fmt: skip
+
+
+def test_every_result_has_a_view_for_notebooks_and_fits_one_screen(everything: list[object]) -> None:
+    seen: set[str] = set()
+    for result in everything:
+        name = type(result).__name__
+        seen.add(name)
+        assert len(repr(result)) < 24 * 80 and repr(result).count("\n") < 24, name
+        if name in ONE_LINE:
+            assert "\n" not in repr(result) and len(repr(result)) < SCREEN, repr(result)
+        else:
+            html = result._repr_html_()  # type: ignore[attr-defined]
+            assert html.startswith("<"), name
+            read(html)
+    assert returned() <= seen, returned() - seen
+
+
+def test_what_results_are_made_of_fits_one_screen_too(everything: list[object]) -> None:
+    waiting, done = list(everything), set()
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, tuple):
+            waiting += part[:1]
+        if type(part) in done or not dataclasses.is_dataclass(part):
+            continue
+        done.add(type(part))
+        assert len(repr(part)) < 24 * 80, (type(part), len(repr(part)))
+        waiting += [getattr(part, field.name) for field in dataclasses.fields(part)]
+    assert {"Region", "Cell"} <= {kind.__name__ for kind in done}
+
+
+def test_pixels_and_families_are_pictures(everything: list[object]) -> None:
+    by_name = {type(result).__name__: result for result in everything}
+    for name in ("Grid", "Field", "FamilyMap"):
+        result: Any = by_name[name]
+        assert result._repr_png_().startswith(b"\x89PNG")
+    grid, field, family = (by_name[name] for name in ("Grid", "Field", "FamilyMap"))
+    assert isinstance(grid, Grid) and isinstance(field, Field) and isinstance(family, FamilyMap)
+    assert "agree with exact poses" in field._repr_html_()
+    assert grid.extent == field.extent == (0.0, 2.0, 0.0, 2.0)
+    assert family.members[0].grid(4)._repr_png_().startswith(b"\x89PNG")  # of all: stability is not told
 
 
 class Reader(HTMLParser):
@@ -126,16 +224,10 @@ def test_public_names_exist(name: str) -> None:
     assert getattr(ptmcad, name) is not None
 
 
-def test_answers_about_lines_and_comparisons_are_shown() -> None:
-    slice, line = ptmcad.load(CONFIGS / "fig4.yaml"), {"L2": "3/2"}
-    shown = [
-        ptmcad.intervals(slice, "rho", line),
-        ptmcad.pose_paths(slice, "rho", line, "1"),
-        ptmcad.operation_widths(slice, "rho", 2),
-        ptmcad.verify(shipped("fig2")),
-    ]
-    for answer in shown:
-        assert getattr(answer, "_repr_html_")().startswith("<pre>")  # noqa: B009
-    html = getattr(shipped("fig4").compare(shipped("fig4")), "_repr_html_")()  # noqa: B009
+def test_answers_about_lines_and_comparisons_are_shown(everything: list[object]) -> None:
+    by_name: dict[str, Any] = {type(result).__name__: result for result in everything}
+    for name in ("CountIntervals", "PosePaths", "OperationWidths", "VerifyReport"):
+        assert by_name[name]._repr_html_().startswith("<pre>")
+    html = by_name["Comparison"]._repr_html_()
     assert "data:image/png" in html
     assert "the same counts everywhere" in html

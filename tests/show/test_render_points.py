@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 
 import pytest
@@ -11,16 +11,19 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.lines import Line2D
+from matplotlib.text import Text
 from support.maps import shipped
 
 from ptmcad.cli import run
 from ptmcad.cli.points import measured, places, poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.around import draw_around
+from ptmcad.show.render.clearance import Stroke, crosses
+from ptmcad.show.render.leaders import Berth, meet, routed
 from ptmcad.show.render.overlay import Agreement
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import figure_of
-from ptmcad.show.style import MIN_FONT, Style, styled
+from ptmcad.show.style import MIN_FONT, PAGE_HEIGHT, Style, styled
 
 AT = ("rho=1,L2=3/2", "rho=3/2,L2=1/2", "rho=0.1,L2=1.8", "rho=1/4,L2=1/4")
 
@@ -55,7 +58,7 @@ def test_poses_stand_beside_the_map_each_led_to_its_point(texts: tuple[str, ...]
     for number, text in enumerate(texts, 1):
         (mark,) = [a for a in made.findobj(Line2D) if a.get_gid() == f"point-{number}"]
         (leader,) = [a for a in made.findobj(Line2D) if a.get_gid() == f"leader-{number}"]
-        end = (leader.get_xdata()[1], leader.get_ydata()[1])
+        end = (leader.get_xdata()[-1], leader.get_ydata()[-1])
         assert end == (mark.get_xdata()[0], mark.get_ydata()[0])
         at = chart.transData.inverted().transform(made.dpi_scale_trans.transform(end))
         assert tuple(at) == pytest.approx([float(v) for v in places(shipped("fig4"), [text])[0]], abs=1e-9)
@@ -69,11 +72,52 @@ def test_poses_stand_beside_the_map_each_led_to_its_point(texts: tuple[str, ...]
 def test_poses_without_room_are_refused_with_the_least_width(
     stored: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(["plot", stored, "--at", AT[0], "--style", "ieee"]) == 2
+    assert run(["plot", stored, "--at", AT[0], "--size", "3x4in"]) == 2
     said = capsys.readouterr().err
-    assert "need a width of 5.5" in said
+    assert "need a width of 3.05" in said
     assert run(["plot", stored, "--at", AT[0], "--size", "5.6x4in"]) == 0
     assert imread(tmp_path / "fig4.png").shape[:2] == (600, 840)
+
+
+def test_in_a_journals_style_poses_are_as_wide_as_two_columns(
+    stored: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    points = [word for text in ("rho=1,L2=3/2", "rho=1/2,L2=1/2", "rho=3/2,L2=1/2", "rho=1/2,L2=7/4")
+              for word in ("--at", text)]  # fmt: skip
+    assert run(["plot", stored, *points, "--style", "ieee", "--dpi", "100"]) == 0
+    assert "over two columns, 7.16 inches wide" in capsys.readouterr().err
+    high, wide = imread(tmp_path / "fig4.png").shape[:2]
+    assert wide == 716 and 400 < high <= 100 * PAGE_HEIGHT
+
+
+def test_lines_to_points_cross_neither_each_other_nor_text() -> None:
+    # for points in a row from above, straight lines from blocks beside them cross; and some lie beside the legend
+    texts = ("rho=1,L2=3/2", "rho=3/2,L2=1/2", "rho=1/2,L2=1/2", "rho=1/2,L2=7/4", "rho=7/4,L2=7/4", "rho=4/5,L2=1")
+    made = around(texts, styled())
+    leaders = {a.get_gid(): a for a in made.findobj(Line2D) if str(a.get_gid()).startswith("leader-")}
+    courses = [tuple(zip(*leader.get_data(), strict=True)) for leader in leaders.values()]
+    assert len(courses) == len(texts) and any(len(course) == 3 for course in courses)
+    assert not any(meet(a, b) for a, b in combinations(courses, 2))
+    renderer = made.canvas.get_renderer()  # type: ignore[attr-defined]
+    said = [text for text in made.findobj(Text) if text.get_text().strip() and text.get_visible()]
+    boxes = [text.get_window_extent(renderer) for text in said if text.axes is None or text.axes.get_gid() == "map"]
+    strokes = [Stroke(*pair, 0.0) for course in courses for pair in pairwise(course)]
+    assert not [s for b in boxes for s in strokes if crosses(s, tuple(v / made.dpi for v in (b.x0, b.y0, b.x1, b.y1)))]
+
+
+def test_lines_are_untangled_by_the_order_beside_the_map() -> None:
+    targets = [(1.0, 3.0), (3.0, 2.9), (2.0, 1.0)]
+
+    def berths(order: tuple[int, ...]) -> list[Berth]:
+        return [Berth(0.0, 2.4 - k, 2.6 - k, 0.1) for k in range(len(order))]
+
+    order, courses = routed(targets, berths, [(0.2, 0.4, 0.4, 2.2)], (0.0, 3.0))
+    assert order == (0, 1, 2)
+    assert not any(meet(a, b) for a, b in combinations(courses, 2))
+    swapped, _ = routed([targets[1], targets[0]], berths, [], (0.0, 3.0))
+    assert swapped == (1, 0)
+    # the box before the lower two is passed above, which takes a bend
+    assert len(courses[2]) == 3
 
 
 @pytest.mark.parametrize(("text", "words"), [("rho=1", "rho and L2"), ("rho=1,L2=9", "outside"), ("rho=x,L2=1", "x")])

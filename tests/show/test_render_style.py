@@ -19,15 +19,20 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.text import Annotation, Text
-from support.maps import shipped
+from support.maps import CONFIGS, shipped
 from test_render import bands
 
+import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Count
 from ptmcad.show.render import draw
-from ptmcad.show.render.colours import GREYS, filler
+from ptmcad.show.render.clearance import overlap
+from ptmcad.show.render.colours import GREYS, Fill, filler
+from ptmcad.show.render.fitting import rewrapped
+from ptmcad.show.render.layout import BOTTOM, INSET_ABOVE, INSET_BELOW, INSET_LEFT, LEFT, WIDEST, flowing
+from ptmcad.show.render.legend import Entry, Type, entries
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.regionmap import figure_of
 from ptmcad.show.render.slivers import told_apart
@@ -373,3 +378,25 @@ def test_a_dark_style_leaves_text_that_is_read_on_white() -> None:
 def test_a_palette_with_one_colour_twice_is_refused(palette: str) -> None:
     with pytest.raises(ConfigError, match="is there twice"):
         styled("default", None, palette=palette)
+
+
+@pytest.mark.parametrize("number", range(13))
+def test_however_much_is_zoomed_a_picture_is_at_most_so_wide(number: int) -> None:
+    legend = [Entry(("count", "area"), Fill("#ffffff"))] * 8
+    made = flowing(["title"], legend, Type(), number, 0.0, 0.0)
+    assert len(made.insets) == number and made.size[0] <= WIDEST < 11.1
+    boxes = [(x - INSET_LEFT, y - INSET_BELOW, x + w, y + h + INSET_ABOVE) for x, y, w, h in made.insets] + [
+        (made.chart[0] - LEFT, made.chart[1] - BOTTOM, made.chart[0] + made.chart[2], made.chart[1] + made.chart[3])
+    ]
+    inner = [(a + 1e-6, b + 1e-6, c - 1e-6, d - 1e-6) for a, b, c, d in boxes]
+    assert not any(overlap(a, b) for a, b in combinations(inner, 2))
+    assert all(a + 1e-9 >= 0 and b + 1e-9 >= 0 and c <= made.size[0] and d <= made.size[1] for a, b, c, d in boxes)
+
+
+def test_a_heading_of_two_lines_is_in_one_size() -> None:
+    chain = ptmcad.load(CONFIGS / "mechanisms" / "three-bar-chain.yaml")
+    result = replace(shipped("fig2"), slice=replace(chain, count=Count.INDEX))
+    with settings():
+        told = entries(result, False, False, 0)[0]
+        assert len(told.lines) == told.heads == 2
+        assert rewrapped(told, 3.0, Type()).heads == len(rewrapped(told, 3.0, Type()).lines)

@@ -418,6 +418,8 @@ def test_reduced_motion_and_print(view: Callable[..., Browser], tmp_path: Path) 
     assert b.run("getComputedStyle(document.body).color") == "rgb(0, 0, 0)"
     assert b.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     assert b.run("getComputedStyle(document.querySelector('#close')).display") == "none"
+    for part in (".pose", ".grid-of-poses", "#live", "#readout"):  # are not split over two pages
+        assert b.run(f"getComputedStyle(document.querySelector('{part}')).breakInside") == "avoid"
     b.printed(tmp_path / "fig4-print.pdf")
     assert (tmp_path / "fig4-print.pdf").read_bytes().startswith(b"%PDF")
     quiet(b, "fig4")

@@ -15,7 +15,7 @@ from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism import Model
 from ptmcad.question.config.binding import bound, member_name
 from ptmcad.question.config.record import Record, Window, read_record
-from ptmcad.question.config.resolution import axis_of, number_of, slice_of, written_in
+from ptmcad.question.config.resolution import axis_of, names_in_scalar, number_of, slice_of, written_in
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.numerals import text_of
@@ -185,6 +185,11 @@ def _values(free: Axis, members: Node | None, faults: Faults) -> tuple[Fraction,
     if isinstance(members, Tree):
         raise members.place.error("expected a list of values such as [-20, -10, 0], or how many, such as 9")
     if isinstance(members, Scalar):
+        if names := names_in_scalar(members):
+            raise members.place.error(
+                f"{names[0][:40]} is neither how many members there are, 2 to {MAX_MEMBERS}, nor a list of values "
+                "such as -20,-10,0, nor 'between', which --changes finds"
+            )
         number = number_of(members, "the number of members")
         if number.denominator != 1 or not 2 <= number <= MAX_MEMBERS:
             raise members.place.error(f"write how many members there are, 2 to {MAX_MEMBERS}, or a list of values")

@@ -21,12 +21,14 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
 from ptmcad.show.render.fitting import LEAST, Parts, overhang, rewrapped
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries
+from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries, hidden_words
 from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.regionmap import whole_title
 from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import wrapped
+from ptmcad.show.render.thinmarks import Marks, draw_marks, marks_of
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, Place, Style
 from ptmcad.show.table import area_text, count_text
@@ -38,6 +40,7 @@ CHANGES = ("#d55e00", "#0072b2", "#cc79a7", "#009e73", "#f0e442")
 """Of Okabe & Ito, none of which a count has."""
 _EQUAL = Fill("#ffffff")
 _MAX_HEAD = 3
+NO_MARKS = Marks()
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +52,7 @@ class _Panel:
     head: Sequence[str]
     legend: Sequence[Entry]
     outlined: Mapping[int, Fill]
+    marks: Marks = NO_MARKS
 
 
 def draw_comparison(comparison: Comparison, path: Path, dpi: int, style: Style) -> None:
@@ -118,21 +122,20 @@ def comparison_figure(comparison: Comparison, dpi: int, style: Style) -> Figure:
     """The picture; within `ptmcad.show.render.printing.settings`."""
     font = style.base_font
     em = font / 72
-    type = Type(
-        font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, style.strong * THIN / STRONG, style.thin_lines
-    )
+    type = _type(style)
     first = shapes(comparison.first)
     parts = Parts(comparison.first.slice, "", ((), ()), (first.view,))
-    width = style.size[0] if style.size is not None else 3 * (SIDE * font / 9 + 6 * em)
+    width = style.widest if style.widest is not None else 3 * (SIDE * font / 9 + 6 * em)
     how = Dress(max(MIN_FONT, 0.95 * font), 1.05 * font, (4, 5), scale=font / 9)
     left, below, right, _ = overhang(parts, first.view, (SIDE, SIDE), how)
     each = width / 3
     side = each - left - right - 1.2 * em
-    panels = _panels(comparison, first, style, side, type)
+    seen_sides = (side, side if style.size is None or style.wide is not None else style.size[1] / 2)
+    panels = _panels(comparison, first, style, seen_sides, dpi)
     head = 1.35 * em * max(len(panel.head) for panel in panels) + 0.5 * em
     legend = max(type.height(panel.legend) for panel in panels)
     rest = head + below + 0.8 * em + legend + 0.6 * em
-    tall = style.size[1] - rest if style.size is not None else side
+    tall = style.size[1] - rest if style.size is not None and style.wide is None else side
     if min(side, tall) < LEAST * em:
         missing = LEAST * em - side, LEAST * em - tall
         least = (width + 3 * max(0.0, missing[0]), rest + tall + max(0.0, missing[1]))
@@ -147,25 +150,42 @@ def comparison_figure(comparison: Comparison, dpi: int, style: Style) -> Figure:
     return figure
 
 
-def _panels(comparison: Comparison, first: Shapes, style: Style, side: float, type: Type) -> list[_Panel]:
+def _type(style: Style) -> Type:
+    font = style.base_font
+    return Type(
+        font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, style.strong * THIN / STRONG, style.thin_lines
+    )
+
+
+def _panels(comparison: Comparison, first: Shapes, style: Style, sides: tuple[float, float], dpi: int) -> list[_Panel]:
     """The two maps and the difference, with text as wide as they are."""
-    found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill]]] = []
+    type, side = _type(style), sides[0]
+    small = max(MIN_FONT, 0.89 * style.base_font)
+    found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], Marks]] = []
     for result, seen in ((comparison.first, first), (comparison.second, shapes(comparison.second))):
         paint = paint_of(result, style)
-        told = entries(result, False, False, 0, Wording(paint.fill, paint.undetermined))
-        found.append((seen, paint, whole_title(result), told, {}))
+        marks = marks_of(seen, sides, dpi, small)
+        thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
+        told = entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined))
+        found.append((seen, paint, whole_title(result), told, {}, marks))
     fills = _fills(comparison, style)
     decomposition = comparison.decomposition
     of_cells = {region.cells: fills.get(n, _EQUAL) for n, region in enumerate(decomposition.regions)}
     strong = style.strong / 4
     bare = Paint(lambda region: of_cells[region.cells], undetermined_fill(style.palette), strong, strong)
-    found.append((shapes(decomposition), bare, "Difference", _told(comparison, style), fills))
+    whole = shapes(decomposition)
+    names = [""] * len(decomposition.regions)
+    for change in comparison.changes:
+        names[change.region] = change_text(comparison, change)
+    marks = marks_of(whole, sides, dpi, small, names)
+    changes = [*_told(comparison, style), *([Entry((hidden_words(marks.hidden),))] if marks.hidden else [])]
+    found.append((whole, bare, "Difference", changes, fills, marks))
     return [
         _Panel(
             seen, paint, _head(title, side, type) if style.title is None else [],
-            [] if style.legend is Place.NONE else [rewrapped(entry, side, type) for entry in told], outlined,
+            [] if style.legend is Place.NONE else [rewrapped(entry, side, type) for entry in told], outlined, marks,
         )
-        for seen, paint, title, told, outlined in found
+        for seen, paint, title, told, outlined, marks in found
     ]  # fmt: skip
 
 
@@ -214,6 +234,7 @@ def _draw(figure: Figure, panel: _Panel, box: tuple[float, float, float, float],
                 gid=f"change-{number}",
             )
         )  # fmt: skip
+    draw_marks(axes, panel.marks, font / 9)
     dress(axes, result.slice, panel.seen.view.x, panel.seen.view.y, how)
     for k, line in enumerate(reversed(panel.head)):
         figure.text(

@@ -98,7 +98,7 @@ def field_figure(result: RegionMap, field: Field, boundaries: Sequence[Boundary]
             bar.set_ticks(levels)
             bar.ax.hlines(levels, 0, 1, transform=bar.ax.get_yaxis_transform(), gid="levels", **_LINES)
         bar.ax.tick_params(labelsize=9)
-        bar.set_label(_label(field), fontsize=10)
+        bar.set_label(bar_text(field), fontsize=10)
     else:
         axes.text(0.5, 0.5, _absent(field), transform=axes.transAxes, ha="center", color=INK)
     for boundary in boundaries:
@@ -109,7 +109,8 @@ def field_figure(result: RegionMap, field: Field, boundaries: Sequence[Boundary]
     return figure
 
 
-def _label(field: Field) -> str:
+def bar_text(field: Field) -> str:
+    """The quantity with its unit, beside the scale."""
     return with_unit(_name(field), field.unit)
 
 

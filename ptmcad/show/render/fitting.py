@@ -358,8 +358,8 @@ def rewrapped(entry: Entry, width: float, type: Type) -> Entry:
     if not entry.lines:
         return entry
     entry = replace(entry, lines=tuple(line.replace(" %", "\N{NO-BREAK SPACE}%") for line in entry.lines))
-    head = wrapped(entry.lines[0], room, type.head, entry.strong)
-    rest = wrapped(" ".join(entry.lines[1:]), room, type.detail) if entry.lines[1:] else []
+    head = wrapped(" ".join(entry.lines[: entry.heads]), room, type.head, entry.strong)
+    rest = wrapped(" ".join(entry.lines[entry.heads :]), room, type.detail) if entry.lines[entry.heads :] else []
     return replace(entry, lines=(*head, *rest), heads=len(head))
 
 

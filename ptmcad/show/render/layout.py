@@ -17,6 +17,8 @@ SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15
 INSET_WIDTH, INSET_HEIGHT, INSET_LEFT, INSET_BELOW, INSET_ABOVE = 1.75, 1.2, 0.62, 0.48, 0.42
 BLOCK = INSET_ABOVE + INSET_HEIGHT + INSET_BELOW
 TITLE_LINE = 0.22
+WIDEST = LEFT + SIDE + GAP + 2 * COLUMN + MARGIN
+"""Of a picture that grows with what it shows, whatever there is to zoom: what has no room beside the map goes below."""
 
 Box = tuple[float, float, float, float]
 """Left, bottom, width, height."""
@@ -70,29 +72,34 @@ def flowing(
     beside, tallest : so many inches are left free at the right, and it is at least so tall there.
     """
     below = type.height(legend) + 0.1
-    top = max(SIDE + BOTTOM, below + 0.1, BLOCK, tallest)
-    places = _places(insets, below, top)
-    columns = 1 + max((column for column, _ in places), default=0)
+    high = max(SIDE + BOTTOM, below + 0.1, BLOCK, tallest)
+    right, under = _places(insets, below, high)
+    columns = 1 + max((column for column, _ in right), default=0)
     left = LEFT + SIDE + GAP
+    rows = 1 + max((row for row, _ in under), default=-1)
+    top = high + rows * BLOCK
     size = (left + columns * COLUMN + MARGIN + beside, top + TITLE_LINE * len(title) + 2 * MARGIN)
+    corners = [(left + column * COLUMN, top - down) for column, down in right]
+    corners += [(MARGIN + column * COLUMN, (rows - row) * BLOCK) for row, column in under]
     return Layout(
         size=size,
         chart=(LEFT, top - SIDE, SIDE, SIDE),
         title=title,
         title_at=(LEFT, size[1] - MARGIN - TITLE_LINE * 0.5),
         legend=(((left, top), legend),),
-        insets=tuple(
-            (left + column * COLUMN + INSET_LEFT, top - down - INSET_ABOVE - INSET_HEIGHT, INSET_WIDTH, INSET_HEIGHT)
-            for column, down in places
-        ),
+        insets=tuple((x + INSET_LEFT, y - INSET_ABOVE - INSET_HEIGHT, INSET_WIDTH, INSET_HEIGHT) for x, y in corners),
         type=type,
     )
 
 
-def _places(number: int, below: float, tall: float) -> list[tuple[int, float]]:
-    """Columns and distances from the top for insets: the first ones go below the legend, others to further columns."""
+def _places(number: int, below: float, tall: float) -> tuple[list[tuple[int, float]], list[tuple[int, int]]]:
+    """Places for insets: the first ones below the legend, then in a column at its right, others in rows below the map.
+
+    Of the former the column and the distance from the top, of the latter the row and its column.
+    """
     first = int((tall - below) // BLOCK)
-    places = [(0, below + k * BLOCK) for k in range(first)]
-    per_column = int(tall // BLOCK)
-    places += [(1 + k // per_column, k % per_column * BLOCK) for k in range(max(0, number - first))]
-    return places[:number]
+    right = [(0, below + k * BLOCK) for k in range(first)]
+    right += [(1, k * BLOCK) for k in range(int(tall // BLOCK))]
+    across = int((WIDEST - 2 * MARGIN) // COLUMN)
+    under = [divmod(k, across) for k in range(max(0, number - len(right)))]
+    return right[:number], under

@@ -126,7 +126,8 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
     for region in sorted(result.regions, key=lambda r: (counted_by(r, count), -r.area[0])):
         groups.setdefault(count_text(region, count), []).append(region)
     known = areas_are_known(result)
-    yield Entry(head_of(result.slice), strong=True)
+    head = head_of(result.slice)
+    yield Entry(head, strong=True, heads=len(head))
     for text, regions in groups.items():
         areas = _areas(result, text, regions) if wording.areas and known else []
         yield Entry((_with_total(text, regions, result), *areas), wording.fill(regions[0]))
@@ -137,12 +138,21 @@ def _entries(result: RegionMap, thin: bool, samples: bool, hidden: int, wording:
     elif len(result.regions) > 1:
         yield Entry(("the count changes",), STRONG)
     if thin:
-        # also where complex solutions alone meet, or leave every bounded set
-        yield Entry(("another curve of the variety,", "the count does not change"), THIN)
+        yield thin_entry()
     if samples:
         yield Entry(("sample point of a cell",), "dot")
     if hidden:
-        yield Entry((f"{hidden} more region{'s are' if hidden > 1 else ' is'} too thin for a label",))
+        yield Entry((hidden_words(hidden),))
+
+
+def hidden_words(hidden: int) -> str:
+    """What is said of regions that are not seen and have no label."""
+    return f"{hidden} more region{'s are' if hidden > 1 else ' is'} too thin for a label"
+
+
+def thin_entry() -> Entry:
+    """Of curves where unstable solutions alone differ, or complex ones meet, or some leave every bounded set."""
+    return Entry(("another curve of the variety,", "the count does not change"), THIN)
 
 
 def _with_total(text: str, regions: list[Region], result: RegionMap) -> str:

@@ -20,11 +20,13 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import Fill, filler, undetermined_fill
 from ptmcad.show.render.fitting import LEAST, Parts, overhang
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, draw_legend, head_of
+from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, draw_legend, head_of, hidden_words, thin_entry
 from ptmcad.show.render.painting import Paint, paint_map
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.slivers import seen_thin_walls
 from ptmcad.show.render.textwidth import wrapped
+from ptmcad.show.render.thinmarks import draw_marks, marks_of
 from ptmcad.show.style import MIN_FONT, Place, Style
 from ptmcad.show.table import count_text
 from ptmcad.text.numerals import shortest_text
@@ -69,17 +71,28 @@ def paint_of_family(family: FamilyMap, style: Style) -> Paint:
     )  # fmt: skip
 
 
-def family_entries(family: FamilyMap, paint: Paint) -> list[Entry]:
-    """The legend: a fill for each count that some member has."""
+def family_entries(family: FamilyMap, paint: Paint, thin: bool = False, hidden: int = 0) -> list[Entry]:
+    """The legend: a fill for each count that some member has.
+
+    Parameters
+    ----------
+    thin : whether curves at which the count does not change are seen.
+    hidden : number of regions that are not seen and have no label.
+    """
     count = family.members[0].slice.count
     every: list[Region] = [region for result in family.members for region in result.regions]
     found: dict[tuple[str, Fill], None] = {}
     for region in sorted(every, key=lambda r: counted_by(r, count)):
         found[count_text(region, count), paint.fill(region)] = None
-    told = [Entry(head_of(family.members[0].slice), strong=True)]
+    head = head_of(family.members[0].slice)
+    told = [Entry(head, strong=True, heads=len(head))]
     told += [Entry((text,), fill) for text, fill in found]
     if any(result.cover is not None for result in family.members):
         told.append(Entry(("undetermined",), paint.undetermined))
+    if thin:
+        told.append(Entry((" ".join(thin_entry().lines),), THIN))
+    if hidden:
+        told.append(Entry((hidden_words(hidden),)))
     return told
 
 
@@ -118,7 +131,10 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     title = title_of(family) if style.title is None else style.title
     titles = wrapped(title, wide - 1.2 * em, font, True) if title else []
     paint = paint_of_family(family, style)
-    lines = [] if style.legend is Place.NONE else _flowed(family_entries(family, paint), wide - 1.2 * em, type)
+    marks = [marks_of(shape, (side, side), dpi, max(MIN_FONT, 0.85 * font)) for shape in seen]
+    thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
+    told = family_entries(family, paint, thin, sum(mark.hidden for mark in marks))
+    lines = [] if style.legend is Place.NONE else _flowed(told, wide - 1.2 * em, type)
     rest = 1.5 * em * len(titles) + 0.4 * em + rows * head + below + (type.line * 1.35) * len(lines) + 0.7 * em
     between = 0.5 * em * (rows - 1)
     tall = (style.size[1] - rest - between) / rows if style.size is not None else side
@@ -138,6 +154,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
         axes = _axes(figure, box)
         paint_map(axes, shape, f"{k}-", paint)
         dress(axes, shape.result.slice, shape.view.x, shape.view.y, how)
+        draw_marks(axes, marks[k], font / 9)
         _strip_inner(axes, column > 0, k + columns < len(seen))
         figure.text(
             box[0], box[1] + tall + 0.75 * em, value_text(family, value), fontsize=font, va="center",

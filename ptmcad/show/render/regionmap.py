@@ -23,7 +23,7 @@ from ptmcad.answer.words import noun
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import dress
 from ptmcad.show.render.fitting import Parts, fitted
-from ptmcad.show.render.labels import Placement, place
+from ptmcad.show.render.labels import place
 from ptmcad.show.render.layout import SIDE, Layout, flowing
 from ptmcad.show.render.legend import (
     INK,
@@ -40,12 +40,11 @@ from ptmcad.show.render.painting import Paint, paint_map, paint_of
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import MAX_ZOOMS, Sliver, Zoom, seen_thin_walls, thin_regions, unstable_zooms, zooms
+from ptmcad.show.render.thinmarks import RESOLVED, Marks, draw_marks, ranked
 from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import DEFAULT, Place, Style
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
 
-RESOLVED = 42
-"""What is thinner than three pixels of this many to the inch (5 points) is taken for hidden by the walls around it."""
 TITLE_COLUMNS, TITLE_LINES = 80, 3
 
 
@@ -120,16 +119,7 @@ class _Seen:
     @property
     def ranked(self) -> list[Sliver]:
         """What is marked: first the largest region of each count that is seen nowhere else, then by size."""
-        regions, count = self.whole.result.regions, self.whole.result.slice.count
-        told = {count_text(region, count) for n, region in enumerate(regions) if n not in self.thin}
-        first: list[Sliver] = []
-        by_size = sorted(self.marked, key=lambda sliver: -regions[sliver.region].area[0])
-        for sliver in by_size:
-            text = count_text(regions[sliver.region], count)
-            if text not in told:
-                told.add(text)
-                first.append(sliver)
-        return [*first, *(sliver for sliver in by_size if sliver not in first)]
+        return ranked(self.whole, self.marked, self.thin)
 
     @property
     def hidden(self) -> int:
@@ -335,18 +325,8 @@ def _mark(
     tips = [seen.whole.view.approximate_position(sliver.at) for sliver in slivers]
     sides = (layout.chart[2] * 72, layout.chart[3] * 72)
     skip = not layout.insets
-    marks: list[Placement] = place(tips, names, seen.whole, sides, layout.texts.arrow, skip=skip)
-    for sliver, mark, name in zip(slivers, marks, names, strict=True):
-        axes.annotate(
-            name, xy=mark.tip, xytext=mark.label, xycoords="axes fraction", textcoords="axes fraction",
-            ha="center", va="center", fontsize=mark.size, color=INK, zorder=6, gid=f"arrow-{sliver.region}",
-            annotation_clip=False,
-            bbox={"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": INK, "linewidth": 0.5},
-            arrowprops={
-                "arrowstyle": "-|>", "color": INK, "linewidth": 0.9 * paint.scale, "mutation_scale": 8 * paint.scale,
-                "shrinkA": 0, "shrinkB": 0,
-            },
-        )  # fmt: skip
+    placed = place(tips, names, seen.whole, sides, layout.texts.arrow, skip=skip)
+    draw_marks(axes, Marks(slivers, placed, names), paint.scale)
 
 
 def description(result: RegionMap) -> str:

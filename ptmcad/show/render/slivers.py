@@ -208,7 +208,7 @@ def _thick(seen: Shapes, region: int) -> tuple[int, tuple[Fraction, Fraction]]:
         depth, last = depth + 1, mask
         mask = _eroded(mask)
     if depth < 0:
-        return depth, _inside(seen, region)
+        return depth, inside(seen, region)
     rows, columns = np.nonzero(last)
     middle = int(np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2))
     x, y = (Fraction(2 * int(k[middle]) + 1, 2 * _PIXELS) for k in (columns, rows))
@@ -216,8 +216,8 @@ def _thick(seen: Shapes, region: int) -> tuple[int, tuple[Fraction, Fraction]]:
     return depth, (view.x[0] + (view.x[1] - view.x[0]) * x, view.y[0] + (view.y[1] - view.y[0]) * y)
 
 
-def _inside(seen: Shapes, region: int) -> tuple[Fraction, Fraction]:
-    """A sample point of the region, one in the view if there is any."""
+def inside(seen: Shapes, region: int) -> tuple[Fraction, Fraction]:
+    """A sample point of the region, one in the view if there is any, in the axes' order."""
     (left, right), (bottom, top) = seen.view.x, seen.view.y
     result: RegionMap = seen.result
     samples = [result.cells[n].sample for n in result.regions[region].cells]

@@ -1,0 +1,87 @@
+"""Pixels as a picture of their own: the counts of a grid, or the values of a field, without the map they are of.
+
+Guarantee: every pixel has the colour of its own value. Lines are between pixels of different regions; the map itself
+(`ptmcad.show.render.regionmap`, `ptmcad.show.render.field`) has the exact curves.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ptmcad.answer.boundaries import NONE, Grid
+from ptmcad.answer.counts import Counts
+from ptmcad.answer.field import Field
+from ptmcad.show.render.axes import symbol
+from ptmcad.show.render.colours import UNDETERMINED, fill_of_counts
+from ptmcad.show.render.field import COLOURS, bar_text, description
+from ptmcad.show.render.legend import INK
+from ptmcad.show.render.printing import printed, settings
+
+SIZE = 5.2, 4.2
+"""Inches."""
+_LINE = 0.8
+
+
+def grid_png(grid: Grid, dpi: int) -> bytes:
+    """The numbers of stable equilibria, or of all where stability is not told, as the content of a PNG."""
+    told = bool((grid.stable != NONE).any())
+    counts = grid.stable if told else grid.total
+    known = sorted({int(count) for count in np.unique(counts)} - {NONE})
+    colours = [UNDETERMINED.face, *(_face(count, told) for count in known)]
+    codes = np.searchsorted(np.array([NONE, *known]), counts)
+    with settings():
+        figure, axes = _chart(grid, dpi)
+        image = axes.imshow(
+            codes, origin="lower", extent=grid.extent, aspect="auto", interpolation="nearest",
+            cmap=ListedColormap(colours), norm=BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours)),
+        )  # fmt: skip
+        _walls(axes, grid, grid.region)
+        shown = [k for k in range(len(colours)) if k or (counts == NONE).any()]
+        bar = figure.colorbar(image, ax=axes, boundaries=[shown[0] - 0.5, *(k + 0.5 for k in shown)], ticks=shown)
+        bar.ax.set_yticklabels([str(known[k - 1]) if k else "none" for k in shown])
+        bar.set_label("stable" if told else "in all")
+        return printed(figure, "png", dpi, repr(grid), "")
+
+
+def field_png(field: Field, dpi: int) -> bytes:
+    """The values as the content of a PNG."""
+    with settings():
+        figure, axes = _chart(field, dpi)
+        if np.isfinite(field.values).any():
+            image = axes.imshow(
+                field.values, origin="lower", extent=field.extent, aspect="auto", interpolation="nearest", cmap=COLOURS
+            )  # fmt: skip
+            figure.colorbar(image, ax=axes).set_label(bar_text(field))
+        _walls(axes, field, field.region)
+        return printed(figure, "png", dpi, repr(field), description(field))
+
+
+def _face(count: int, stable: bool) -> str:
+    """As on maps; hatches beyond the palette's end are not seen on pixels."""
+    return fill_of_counts(Counts(0, count, None) if stable else Counts(count, None, None)).face
+
+
+def _chart(pixels: Grid | Field, dpi: int) -> tuple[Figure, Any]:
+    figure = Figure(figsize=SIZE, dpi=dpi, facecolor="white", layout="constrained")
+    axes: Any = figure.add_subplot()
+    left, right, bottom, top = pixels.extent
+    axes.set(xlim=(left, right), ylim=(bottom, top))
+    axes.set_xlabel(symbol(pixels.names[0]))
+    axes.set_ylabel(symbol(pixels.names[1]))
+    return figure, axes
+
+
+def _walls(axes: Any, pixels: Grid | Field, region: NDArray[np.int64]) -> None:
+    """Lines between neighbouring pixels of different regions."""
+    left, right, bottom, top = pixels.extent
+    rows, columns = region.shape
+    x, y = np.linspace(left, right, columns + 1), np.linspace(bottom, top, rows + 1)
+    upright = [((x[c + 1], y[r]), (x[c + 1], y[r + 1])) for r, c in np.argwhere(region[:, 1:] != region[:, :-1])]
+    level = [((x[c], y[r + 1]), (x[c + 1], y[r + 1])) for r, c in np.argwhere(region[1:] != region[:-1])]
+    axes.add_collection(LineCollection([*upright, *level], colors=INK, linewidths=_LINE), autolim=False)

@@ -1,0 +1,93 @@
+"""Arrows with counts to regions that a drawing's resolution hides.
+
+Guarantee: labels are apart from each other and within the drawing; regions whose label has no room are counted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ptmcad.show.render.labels import Placement, place
+from ptmcad.show.render.legend import INK
+from ptmcad.show.render.slivers import Sliver, inside, thin_regions
+from ptmcad.show.render.view import Shapes
+from ptmcad.show.table import count_text
+
+RESOLVED = 42
+"""What is thinner than three pixels of this many to the inch (5 points) is taken for hidden by the walls around it."""
+RIMMED = 126
+"""The same where it has a rim of its own colour instead of walls (1.7 points)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Marks:
+    """Thin regions with the places of their labels, and how many there are without one."""
+
+    slivers: Sequence[Sliver] = ()
+    placed: Sequence[Placement] = ()
+    names: Sequence[str] = ()
+    hidden: int = 0
+
+
+def ranked(whole: Shapes, slivers: Sequence[Sliver], thin: Sequence[int]) -> list[Sliver]:
+    """First the largest region of each count that is seen nowhere else, then by size.
+
+    Parameters
+    ----------
+    thin : the numbers of all regions that are not seen.
+    """
+    regions, count = whole.result.regions, whole.result.slice.count
+    told = {count_text(region, count) for n, region in enumerate(regions) if n not in thin}
+    first: list[Sliver] = []
+    by_size = sorted(slivers, key=lambda sliver: -regions[sliver.region].area[0])
+    for sliver in by_size:
+        text = count_text(regions[sliver.region], count)
+        if text not in told:
+            told.add(text)
+            first.append(sliver)
+    return [*first, *(sliver for sliver in by_size if sliver not in first)]
+
+
+def marks_of(
+    whole: Shapes, sides: tuple[float, float], dpi: int, size: float, names: Sequence[str] | None = None
+) -> Marks:
+    """The marks of a map in a drawing of its own, without insets.
+
+    Parameters
+    ----------
+    sides : of the drawing, in inches.
+    size : of the labels, in points.
+    names : of the regions, in their order, empty for those that need no mark; else their counts. Regions with names
+        are drawn with rims of their own colour, so that thinner ones are seen.
+    """
+    result = whole.result
+    resolved = RESOLVED if names is None else RIMMED
+    told = names if names is not None else [count_text(region, result.slice.count) for region in result.regions]
+    thin = [n for n in thin_regions(whole, round(min(sides) * min(dpi, resolved))) if told[n]]
+    if not thin:
+        return Marks()
+    slivers = ranked(whole, [Sliver(n, inside(whole, n)) for n in thin], thin)
+    tips = [whole.view.approximate_position(sliver.at) for sliver in slivers]
+    labels = [told[sliver.region] for sliver in slivers]
+    found = place(tips, labels, whole, (72 * sides[0], 72 * sides[1]), size, skip=True)
+    clear = [k for k, placement in enumerate(found) if placement.clear]
+    return Marks(
+        [slivers[k] for k in clear], [found[k] for k in clear], [labels[k] for k in clear], len(thin) - len(clear)
+    )
+
+
+def draw_marks(axes: Any, marks: Marks, scale: float) -> None:
+    """The arrows and their labels."""
+    for sliver, mark, name in zip(marks.slivers, marks.placed, marks.names, strict=True):
+        axes.annotate(
+            name, xy=mark.tip, xytext=mark.label, xycoords="axes fraction", textcoords="axes fraction",
+            ha="center", va="center", fontsize=mark.size, color=INK, zorder=6, gid=f"arrow-{sliver.region}",
+            annotation_clip=False,
+            bbox={"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": INK, "linewidth": 0.5},
+            arrowprops={
+                "arrowstyle": "-|>", "color": INK, "linewidth": 0.9 * scale, "mutation_scale": 8 * scale,
+                "shrinkA": 0, "shrinkB": 0,
+            },
+        )  # fmt: skip
