@@ -19,7 +19,15 @@ from typing import Any
 
 from ptmcad.errors import A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
-from ptmcad.question.config.family import Family, bound, checked_family, family_of, fault_of_member, member_name
+from ptmcad.question.config.family import (
+    Family,
+    bound,
+    checked_family,
+    family_of,
+    fault_of_member,
+    member_like,
+    member_name,
+)
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
 from ptmcad.question.config.options import ranges_of, settings_of, with_axes
@@ -57,6 +65,7 @@ __all__ = [
     "load_sweep",
     "make_mechanism",
     "make_system",
+    "member_like",
     "names_in_record",
     "point_from_mapping",
     "point_from_options",
