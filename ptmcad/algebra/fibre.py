@@ -78,8 +78,8 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: Work | N
     context = fmpz_mpoly_ctx.get(tuple(f"u{k}" for k in range(unknowns)), Ordering.degrevlex)
     integral = []
     for equation in equations:
-        scale = math.lcm(*(int(c.q) for c in equation.values()))
-        integral.append(context.from_dict({m: int(c.p) * (scale // int(c.q)) for m, c in equation.items()}))
+        common = math.lcm(*(int(c.q) for c in equation.values()))
+        integral.append(context.from_dict({m: int((c * common).p) for m, c in equation.items()}))
     if most is None:
         found = fmpz_mpoly_vec(integral, context).buchberger_naive()
     else:
@@ -88,24 +88,43 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: Work | N
         if not done:
             raise LimitReached("the basis of the equations grows beyond what is counted at once")
     reduced = found.autoreduction()
-    rules: dict[Monomial, tuple[fmpq, dict[Monomial, fmpq]]] = {}
+    rules: dict[Monomial, dict[Monomial, fmpq]] = {}
     for p in reduced:
-        terms = [(tuple(int(e) for e in m), fmpq(c)) for m, c in p.terms()]
-        lead, c0 = terms[0]
-        rules[lead] = (c0, {m: -c / c0 for m, c in terms[1:]})
+        lead, *others = (tuple(map(int, m)) for m in p.monoms())
+        first, *coefficients = p.coeffs()
+        scale = fmpq(-1, first)
+        rules[lead] = {m: scale * c for m, c in zip(others, coefficients, strict=True)}
     basis = standard_monomials(tuple(rules), unknowns)
     if basis is None:
         return None
     if most is not None and len(basis) > most.dimension:
         raise LimitReached(f"there are {len(basis)} solutions with multiplicity, more than are counted at once")
-    position = {m: i for i, m in enumerate(basis)}
+    normal_forms = _normal_forms(basis, rules, unknowns)
     size = len(basis)
-    table: dict[Monomial, list[fmpq]] = {m: [fmpq(int(i == k)) for i in range(size)] for m, k in position.items()}
+    matrices = []
+    for k in range(unknowns):
+        columns = [normal_forms[shifted(m, k)] for m in basis]
+        matrices.append(fmpq_mat(size, size, [c for column in columns for c in column]).transpose())
+    return Fibre(basis, tuple(matrices))
+
+
+def _normal_forms(
+    basis: Sequence[Monomial], rules: Mapping[Monomial, Mapping[Monomial, fmpq]], unknowns: int
+) -> dict[Monomial, list[fmpq]]:
+    """The coordinates of the basis monomials and of their multiples by one unknown.
+
+    Parameters
+    ----------
+    rules : a leading monomial to what it is equal to.
+    """
+    position = {m: i for i, m in enumerate(basis)}
+    size, zero, one = len(basis), fmpq(0), fmpq(1)
+    table: dict[Monomial, list[fmpq]] = {m: [one if i == k else zero for i in range(size)] for m, k in position.items()}
     border = {shifted(m, k) for m in basis for k in range(unknowns)} - position.keys()
     for m in sorted(border, key=lambda m: (sum(m), *(-e for e in reversed(m)))):
-        row = [fmpq(0)] * size
+        row = [zero] * size
         if m in rules:
-            for n, c in rules[m][1].items():
+            for n, c in rules[m].items():
                 row[position[n]] = c
         else:
             k, below = next(
@@ -115,14 +134,13 @@ def fibre(equations: Sequence[RationalPolynomial], unknowns: int, most: Work | N
             )
             for n, c in zip(basis, table[below], strict=True):
                 if c:
-                    image = table[shifted(n, k)]
-                    row = [a + c * b for a, b in zip(row, image, strict=True)]
+                    image = shifted(n, k)
+                    if image in position:
+                        row[position[image]] += c
+                    else:
+                        row = [a + c * b if b else a for a, b in zip(row, table[image], strict=True)]
         table[m] = row
-    matrices = []
-    for k in range(unknowns):
-        columns = [table[shifted(m, k)] for m in basis]
-        matrices.append(fmpq_mat(size, size, [columns[j][i] for i in range(size) for j in range(size)]))
-    return Fibre(basis, tuple(matrices))
+    return table
 
 
 def combined_angles(algebra: Fibre, matrix: Sequence[Sequence[int]], reals: int) -> Fibre:
@@ -197,31 +215,37 @@ def univariate_representation(algebra: Fibre) -> UnivariateRepresentation | None
         weights = tuple(trial**k for k in range(count))  # points on a moment curve
         form = fmpq_mat(size, size)
         for matrix, weight in zip(algebra.multiplication, weights, strict=True):
-            form = form + matrix * fmpq(weight)
+            form = form + (matrix if weight == 1 else matrix * fmpq(weight))
         # in integers over common denominators: reducing every fraction on the way would take most of the time
         step, denominator = form.numer_denom()
         characteristic = step.charpoly()
-        stretched = fmpz_poly([c * denominator**i for i, c in enumerate(characteristic.coeffs())])
+        coefficients = characteristic.coeffs()
+        powers = [denominator**i for i in range(size + 1)]
+        stretched = fmpz_poly([c * b for c, b in zip(coefficients, powers, strict=True)])
         minimal = stretched // stretched.content()
         if minimal.gcd(minimal.derivative()).degree() > 0:
             continue
         row, row_denominator = _basis_traces(algebra)
-        rows = [row]
+        traces_of_powers = row.entries()
         for _ in range(size - 1):
-            rows.append(rows[-1] * step)
+            row = row * step
+            traces_of_powers += row.entries()
         columns, column_denominator = fmpq_mat(
             size, count, [m[i, 0] for i in range(size) for m in algebra.multiplication]
         ).numer_denom()
-        traces = fmpz_mat(size, size, [x for r in rows for x in r.entries()]) * columns
+        traces = fmpz_mat(size, size, traces_of_powers) * columns
         # rows of coefficients: the quotients of the characteristic polynomial by T, T^2, and so on
-        hankel = fmpz_mat(size, size, [characteristic[i + j + 1] for i in range(size) for j in range(size)])
-        totals = hankel * traces
+        padded = [*coefficients, *[fmpz(0)] * size]
+        hankel = fmpz_mat(size, size, [c for i in range(1, size + 1) for c in padded[i : i + size]])
+        totals = (hankel * traces).entries()
         scale = fmpq(1, row_denominator * column_denominator)
-        powers = [denominator**i for i in range(size)]
         coordinates = tuple(
-            fmpq_poly(fmpz_poly([totals[i, k] * powers[i] for i in range(size)])) * scale for k in range(count)
+            fmpq_poly(fmpz_poly([c * b for c, b in zip(totals[k::count], powers, strict=False)])) * scale
+            for k in range(count)
         )
-        slope = fmpq_poly(fmpz_poly([c * b for c, b in zip(characteristic.derivative().coeffs(), powers, strict=True)]))
+        slope = fmpq_poly(
+            fmpz_poly([c * b for c, b in zip(characteristic.derivative().coeffs(), powers, strict=False)])
+        )
         return UnivariateRepresentation(minimal, coordinates, slope, weights)
     return None
 
@@ -229,23 +253,34 @@ def univariate_representation(algebra: Fibre) -> UnivariateRepresentation | None
 def _basis_traces(algebra: Fibre) -> tuple[fmpz_mat, fmpz]:
     """The traces of the multiplications by the basis monomials: a row of integers, and their common denominator."""
     size = algebra.dimension
-    products = {algebra.basis[0]: fmpq_mat(size, size, [fmpq(int(i == j)) for i in range(size) for j in range(size)])}
+    products: dict[Monomial, fmpq_mat] = {}
+    traces = [fmpq(size)]
     for monomial in algebra.basis[1:]:  # a divisor of a basis monomial is one too, and comes before it
         k = next(k for k, e in enumerate(monomial) if e)
         rest = shifted(monomial, k, -1)
         step = algebra.multiplication[k]
         products[monomial] = products[rest] * step if any(rest) else step
-    traces = [sum((m[i, i] for i in range(size)), fmpq(0)) for m in (products[b] for b in algebra.basis)]
+        entries = products[monomial].entries()
+        traces.append(sum(entries[:: size + 1], fmpq(0)))
     row, denominator = fmpq_mat(1, size, traces).numer_denom()
     return row, denominator
 
 
-def coordinates_at(representation: UnivariateRepresentation, value: arb) -> list[arb] | None:
-    """Enclosures of the unknowns at the roots of ``minimal`` that a ball contains; None when the ball is too wide."""
-    slope = arb_poly(representation.slope)(value)
-    if slope.contains(0):
-        return None
-    return [arb_poly(p)(value) / slope for p in representation.coordinates]
+class CoordinatesInBalls(NamedTuple):
+    """The coordinates' numerators and their denominator in balls of the precision at which this was made."""
+
+    numerators: tuple[arb_poly, ...]
+    slope: arb_poly
+
+    @classmethod
+    def of(cls, representation: UnivariateRepresentation) -> CoordinatesInBalls:
+        """Of a representation, at the working precision."""
+        return cls(tuple(map(arb_poly, representation.coordinates)), arb_poly(representation.slope))
+
+    def at(self, value: arb) -> list[arb] | None:
+        """The unknowns at the roots of ``minimal`` that a ball contains; None when the ball is too wide."""
+        slope = self.slope(value)
+        return None if slope.contains(0) else [p(value) / slope for p in self.numerators]
 
 
 def hermite_matrix(algebra: Fibre, weight: fmpq_mat) -> fmpq_mat:

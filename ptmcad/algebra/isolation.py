@@ -13,6 +13,10 @@ Mehlhorn, Computing real roots of real polynomials, J. Symb. Comp. 73 (2016).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import accumulate
+from math import comb, lcm
+from operator import add
 from typing import NamedTuple
 
 from flint import fmpq, fmpz, fmpz_poly
@@ -26,19 +30,10 @@ _CLUSTER_MARGIN = 4
 """How much longer than the estimate an interval around a cluster is: Descartes' rule sees complex roots in a lens."""
 _MAX_CLUSTER_RADIUS = fmpq(1, 16)
 """Half the length up to which such an interval is better than bisection."""
+_MAX_SHORT_DEGREE = 24
+"""Up to this degree halves are computed in Python's integers, which costs less than a call for each polynomial."""
 _MIN_SPEED = 2
 """The first step towards an end is to the part 2^-4 of the interval; each further one is twice as many bits long."""
-
-
-def _variations(p: fmpz_poly) -> int:
-    """The number of sign changes in the sequence of coefficients."""
-    count, last = 0, 0
-    for c in p.coeffs():
-        if c:
-            s = 1 if c > 0 else -1
-            count += s == -last
-            last = s
-    return count
 
 
 def on_unit_interval(p: fmpz_poly, low: fmpq, high: fmpq) -> fmpz_poly:
@@ -58,7 +53,7 @@ def descartes_bound(q: fmpz_poly, degree: int) -> int:
     """Sign changes of (1 + t)^n q(1/(1 + t)): a bound for the number of roots of q in (0, 1), exact when 0 or 1."""
     coefficients = q.coeffs()
     coefficients += [fmpz(0)] * (degree + 1 - len(coefficients))
-    return _variations(fmpz_poly(coefficients[::-1])(_SHIFT))
+    return _sign_changes(fmpz_poly(coefficients[::-1])(_SHIFT).coeffs())
 
 
 def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq, fmpq]]:
@@ -80,9 +75,10 @@ def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq,
         if low >= high:
             return []
     width = high - low
-    found: list[tuple[fmpq, fmpq]] = []
+    whole = on_unit_interval(p, low, high)
+    found, stack = _by_halving(whole) if p.degree() <= _MAX_SHORT_DEGREE else ([], [_Part(whole, fmpq(0), fmpq(1))])
+    found = [(low + width * left, low + width * right) for left, right in found]
     squarefree = False
-    stack = [_Part(on_unit_interval(p, low, high), fmpq(0), fmpq(1))]
     while stack:
         part = stack.pop()
         q = part.polynomial
@@ -109,6 +105,65 @@ def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq,
             found.append((at, at))
         stack += halves
     return sorted(found)
+
+
+def _by_halving(whole: fmpz_poly) -> tuple[list[tuple[fmpq, fmpq]], list[_Part]]:
+    """The roots in (0, 1) that halving parts, and the parts that hold what may be a cluster.
+
+    Descartes' bound is the number of sign changes of the Bernstein coefficients, and those of the halves come by de
+    Casteljau's additions: where there are few coefficients that is much less work than a shift of each half. The halves
+    and the bounds are those of the general way.
+    """
+    n = whole.degree()
+    found: list[tuple[fmpq, fmpq]] = []
+    clusters: list[_Part] = []
+    stack = [(0, 0, _bernstein_coefficients(whole), -1, 0, 0)]
+    while stack:
+        start, level, b, before, unchanged, run = stack.pop()
+        bound = _sign_changes(b)
+        if bound < 2:
+            if bound:
+                found.append((fmpq(start, 1 << level), fmpq(start + 1, 1 << level)))
+            continue
+        unchanged, run = (unchanged + 1, run) if bound == before else (0, 0)
+        if unchanged >= _CLUSTER_CUTS:
+            left, width = fmpq(start, 1 << level), fmpq(1, 1 << level)
+            on_part = on_unit_interval(whole, left, left + width)
+            clusters.append(_Part(on_part, left, width, bound, unchanged - 1, run))
+            continue
+        low, high = [], []
+        for shift in range(n, -1, -1):
+            low.append(b[0] << shift)
+            high.append(b[-1] << shift)
+            b = list(map(add, b, b[1:]))
+        if not low[-1]:
+            middle = fmpq(2 * start + 1, 2 << level)
+            found.append((middle, middle))
+        stack.append((2 * start, level + 1, low, bound, unchanged, min(run, 0) - 1))
+        stack.append((2 * start + 1, level + 1, high[::-1], bound, unchanged, max(run, 0) + 1))
+    return found, clusters
+
+
+def _bernstein_coefficients(p: fmpz_poly) -> list[int]:
+    """The coefficients of p in the Bernstein basis of (0, 1), times a positive integer that makes them integers."""
+    n = p.degree()
+    binomials = [comb(n, i) for i in range(n + 1)]
+    scale = lcm(*binomials)
+    differences = [int(c) * (scale // binomial) for c, binomial in zip(p.coeffs(), binomials, strict=True)]
+    found = [differences[n]]
+    for difference in reversed(differences[:n]):  # from a sequence's differences at its start to the sequence
+        found = list(accumulate(found, initial=difference))
+    return found
+
+
+def _sign_changes(numbers: Sequence[int | fmpz]) -> int:
+    count, last = 0, 0
+    for c in numbers:
+        if c:
+            s = 1 if c > 0 else -1
+            count += s == -last
+            last = s
+    return count
 
 
 class _Part(NamedTuple):

@@ -164,6 +164,8 @@ def from_fraction(value: Fraction) -> fmpq:
 
 def evaluate(p: fmpz_mpoly, x: fmpq, y: fmpq) -> fmpq:
     """The exact value at a rational point."""
+    if p.is_constant():  # as most parameters of a slice are
+        return fmpq(p.coeffs()[0]) if p else fmpq(0)
     return sum((fmpq(c) * x**i * y**j for (i, j), c in p.terms()), fmpq(0))
 
 

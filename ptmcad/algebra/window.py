@@ -6,6 +6,7 @@ zero.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import comb
 
 from flint import fmpq, fmpq_mat
@@ -35,6 +36,7 @@ def nowhere_zero(p: Coefficient, x: Interval, y: Interval, depth: int = 4) -> bo
     return _decides(rows * coefficients * columns.transpose(), n, m, depth, top=True)
 
 
+@lru_cache(maxsize=64)  # a slice has few degrees, and a family's members have one window
 def _bernstein(n: int, low: fmpq, high: fmpq) -> fmpq_mat:
     """The matrix from monomial to Bernstein coefficients of degree n on [low, high]."""
     # (low (1-t) + high t)^i in degree n: the blossom of x^i at k times high and n-k times low
@@ -64,6 +66,7 @@ def _decides(b: fmpq_mat, n: int, m: int, depth: int, top: bool) -> bool:
     )
 
 
+@lru_cache(maxsize=64)
 def _halves(n: int) -> tuple[fmpq_mat, fmpq_mat]:
     """De Casteljau's subdivision at the middle, as matrices."""
     left, right = fmpq_mat(n + 1, n + 1), fmpq_mat(n + 1, n + 1)

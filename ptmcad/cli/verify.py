@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
+from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.families import each_member, is_family, read_family_file
 from ptmcad.cli.idle import Idle, report_idle
@@ -13,6 +16,11 @@ from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import read_result
 from ptmcad.cli.values import files
+from ptmcad.options import Options
+from ptmcad.question.config import member_like
+
+if TYPE_CHECKING:
+    from ptmcad.verification.report import VerifyReport
 
 
 @click.command("verify")
@@ -25,9 +33,10 @@ from ptmcad.cli.values import files
 def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
 
-    Of a family each member is checked, but not where it changes between them. Prints what was checked, and how. The
-    exit status is 0 when every check passed, 1 when one failed (the first violated claim is printed with a witness),
-    2 when the file cannot be read, 3 when a limit was reached before that.
+    Of a family each member is checked, and the changes between them by further members, each classified alone and over
+    either axis. Prints what was checked, and how. The exit status is 0 when every check passed, 1 when one failed (the
+    first violated claim is printed with a witness), 2 when the file cannot be read, 3 when a limit was reached before
+    that.
 
     \b
     Example:
@@ -38,10 +47,29 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
         if is_family(result):
             family = read_family_file(result, whole=False)
             status = int(max(each_member(family, lambda member: _verified(member, seed, boxes))))
-            if family.changes is not None:
-                click.echo("not checked  changes                 where between the members the arrangement changes")
-            return status
+            return max(status, _verified_changes(family, seed))
         return _verified(read_result(result, whole=False), seed, boxes)
+
+
+def _verified_changes(family: FamilyMap, seed: int | None) -> int:
+    """The exit status for where a family changes; 0 where nothing is said of that."""
+    if family.changes is None:
+        return 0
+    from ptmcad.ask.classification import region_map
+    from ptmcad.verification.changes import Maps, verify_changes
+    from ptmcad.verification.report import VerifyReport
+
+    over_the_first = Options(engine="exact", areas=False, without=frozenset(("axis-order",)))
+
+    def maps_at(value: Fraction) -> Maps:
+        slices = (member_like(family.members[0].slice, family.text, family.free.name, value, turned)
+                  for turned in (False, True))  # fmt: skip
+        first, second = (region_map(slice, over_the_first) for slice in slices)
+        return first, second
+
+    report = VerifyReport(verify_changes(family.changes, maps_at, seed))
+    click.echo(f"where {family.free.name} changes the arrangement")
+    return _told(report)
 
 
 def _verified(stored: RegionMap, seed: int | None, boxes: int | None) -> int:
@@ -51,6 +79,11 @@ def _verified(stored: RegionMap, seed: int | None, boxes: int | None) -> int:
 
     with ProgressBar() as progress:
         report = verify(stored, seed=seed, boxes=boxes, progress=progress)
+    return _told(report)
+
+
+def _told(report: VerifyReport) -> int:
+    """The exit status, after the table of a report has been printed."""
     click.echo(report.table())
     if report.ok:
         return 0

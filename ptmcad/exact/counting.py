@@ -18,17 +18,18 @@ from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.fibre import (
-    UnivariateRepresentation,
-    coordinates_at,
-)
+from ptmcad.algebra.fibre import CoordinatesInBalls, UnivariateRepresentation
 from ptmcad.algebra.inertia import negative_eigenvalues
 from ptmcad.algebra.isolation import root_bound
-from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate, refine
+from ptmcad.algebra.newton import Newton
+from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate
 from ptmcad.algebra.vanishing import Divisor, vanishing_divisor
 from ptmcad.answer.counts import Counts
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial
 from ptmcad.exact.point_system import PointSystem, simple_solutions, text_of_point
+
+_FIRST_BITS = 128
+"""Two machine words: nearly always enough, and in balls hardly more work than one."""
 
 
 class Equilibrium(NamedTuple):
@@ -79,7 +80,7 @@ def equilibria(system: ParametricSystem, values: Mapping[str, fmpq]) -> Equilibr
         When some solution, real or not, is singular, or there are infinitely many.
     """
     point, representation = simple_solutions(system, values)
-    bits = 40
+    bits = _FIRST_BITS
     if representation is None:
         return Equilibria(_counts(system, ()), (), bits)
     # where coordinates are at most 1, real values of the form come from real solutions only, and so they do elsewhere
@@ -116,23 +117,27 @@ def _enclosed(
     """The solutions at these roots that count, in disjoint boxes; None when the precision does not decide all signs."""
     found: list[Equilibrium] = []
     with ctx.workprec(bits):
+        newton = Newton.of(representation.minimal)
+        coordinates = CoordinatesInBalls.of(representation)
+        conditions = tuple(map(_in_balls, point.conditions))
+        size = len(point.jacobian) if system.has_index else 0
+        hessian = [(i, j, _in_balls(point.jacobian[i][j])) for i in range(size) for j in range(i, size)]
         for root in roots:
-            short = refine(root, fmpq(1, 2 ** (bits - 8)) * (abs(root.middle) + 1))
-            at = coordinates_at(representation, arb(short.low).union(arb(short.high)))
+            at = coordinates.at(newton.ball(root))
             if at is None:
                 return None
             unknowns = at[: system.ring.width]
-            conditions = _condition_signs(point, root, unknowns, zeros)
-            if conditions is None:
+            signs = _condition_signs(conditions, root, unknowns, zeros)
+            if signs is None:
                 return None
-            if conditions[: len(point.inequalities)].strip("+"):
+            if signs[: len(point.inequalities)].strip("+"):
                 continue
-            signs = conditions[len(point.inequalities) :]
+            signs = signs[len(point.inequalities) :]
             if system.has_index:
-                negative = _negative_eigenvalues(point, unknowns)
+                negative = _negative_eigenvalues(hessian, size, unknowns)
                 if negative is None:
                     return None
-                signs = "+" * (system.dimension - negative) + "-" * negative
+                signs = "+" * (size - negative) + "-" * negative
             box = _decimal_box(unknowns)
             if box is None:
                 return None
@@ -144,12 +149,31 @@ def _enclosed(
     return tuple(found) if disjoint else None
 
 
+_Balls = list[tuple[arb, tuple[int, ...]]]
+"""A polynomial in the unknowns: coefficients, each with the numbers of the unknowns that it is multiplied by."""
+
+
+def _in_balls(p: RationalPolynomial) -> _Balls:
+    # repeated factors: python-flint's ball ** int is not a number when the ball's middle is zero
+    return [(arb(c), tuple(k for k, e in enumerate(monomial) for _ in range(e))) for monomial, c in p.items()]
+
+
+def _value(p: _Balls, unknowns: Sequence[arb]) -> arb:
+    total = arb(0)
+    for c, factors in p:
+        term = c
+        for k in factors:
+            term = term * unknowns[k]
+        total = total + term
+    return total
+
+
 def _condition_signs(
-    point: PointSystem, root: RealRoot, unknowns: list[arb], zeros: Sequence[Divisor | None]
+    conditions: Sequence[_Balls], root: RealRoot, unknowns: Sequence[arb], zeros: Sequence[Divisor | None]
 ) -> str | None:
     """The signs of inequalities and stability conditions at a solution; None when one is not certain."""
     signs = ""
-    for p, divisor in zip(point.conditions, zeros, strict=True):
+    for p, divisor in zip(conditions, zeros, strict=True):
         if divisor is not None and is_root_of(divisor, root):
             signs += "0"
             continue
@@ -160,11 +184,18 @@ def _condition_signs(
     return signs
 
 
-def _negative_eigenvalues(point: PointSystem, unknowns: list[arb]) -> int | None:
-    """The number of negative eigenvalues of the Hessian in a box; None when its signs are not certain."""
-    size = len(point.jacobian)
-    upper = {(i, j): _value(point.jacobian[i][j], unknowns) for i in range(size) for j in range(i, size)}
-    return negative_eigenvalues([[upper[min(i, j), max(i, j)] for j in range(size)] for i in range(size)])
+def _negative_eigenvalues(upper: Sequence[tuple[int, int, _Balls]], size: int, unknowns: Sequence[arb]) -> int | None:
+    """The number of negative eigenvalues of the Hessian in a box; None when its signs are not certain.
+
+    Parameters
+    ----------
+    upper : the Hessian's entries on and above the diagonal, with their places.
+    size : its number of rows.
+    """
+    rows = [[arb(0)] * size for _ in range(size)]
+    for i, j, entry in upper:
+        rows[i][j] = rows[j][i] = _value(entry, unknowns)
+    return negative_eigenvalues(rows)
 
 
 def _decimal_box(unknowns: Sequence[arb]) -> tuple[tuple[fmpq, ...], fmpq] | None:
@@ -172,11 +203,11 @@ def _decimal_box(unknowns: Sequence[arb]) -> tuple[tuple[fmpq, ...], fmpq] | Non
 
     The finest box has 12 digits after the point, and more as the precision grows, so that all boxes come apart.
     """
-    for digits in range(max(12, ctx.prec // 5), 5, -1):
-        unit = fmpq(1, 10**digits)
-        center = tuple(fmpq(_nearest(x, 10**digits), 10**digits) for x in unknowns)
-        if all(abs(x - c) < arb(unit) for x, c in zip(unknowns, center, strict=True)):
-            return center, unit
+    widest = max((x.rad() for x in unknowns), default=arb(0))
+    for digits in range(max(12, ctx.prec // 10), 5, -1):
+        scale = 10**digits
+        if widest * (2 * scale) < 1:  # and the nearest decimal is at most half a unit from the middle
+            return tuple(fmpq(_nearest(x, scale), scale) for x in unknowns), fmpq(1, scale)
     return None
 
 
@@ -185,14 +216,3 @@ def _nearest(ball: arb, scale: int) -> int:
     mantissa, exponent = (int(n) for n in ball.mid().man_exp())
     scaled = mantissa * scale
     return scaled << exponent if exponent >= 0 else (scaled + (1 << (-exponent - 1))) >> -exponent
-
-
-def _value(p: RationalPolynomial, unknowns: list[arb]) -> arb:
-    total = arb(0)
-    for monomial, c in p.items():
-        term = arb(c)
-        for value, e in zip(unknowns, monomial, strict=True):
-            for _ in range(e):  # python-flint's ball ** int is not a number when the ball's middle is zero
-                term = term * value
-        total = total + term
-    return total

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -162,9 +165,9 @@ def test_damaged_changes_are_refused(disc: Path, change: object, message: str) -
 
 
 def test_changes_are_told_with_their_kind(
-    disc: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    disc: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    common = ["--out", str(disc), "--format", "json", "--no-areas"]
+    common = ["--out", str(tmp_path), "--format", "json", "--no-areas"]
     asked = ["classify", str(disc / "disc.yaml"), *common, "--members=1/2,2/3"]
     assert run([*asked, "--changes", "--set", "c=c"]) == 2
     capsys.readouterr()
@@ -178,13 +181,85 @@ def test_changes_are_told_with_their_kind(
     out = capsys.readouterr().out
     assert "enclosed  a region of 2 solutions appears" in out
     assert "not proved complete: for a reason" in out
+    assert run(["verify", str(tmp_path / "disc.json")]) == 0
+    assert "changes, compared with members" in capsys.readouterr().out
     assert run(["classify", "--slice", "L2,rho", "--changes", *common]) == 0
     assert "--changes has no effect here" in capsys.readouterr().err
 
 
-def test_it_is_said_that_changes_are_not_verified(disc: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_changes_are_verified_and_what_is_not_is_said(disc: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["verify", str(disc / "disc.json")]) == 0
-    assert "not checked  changes" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "3 changes, compared with members 1/1000000 of the range away on both sides; 8 random members" in out
+    assert "not checked  changes complete" in out
+
+
+def _without(found: dict[str, Any], number: int) -> dict[str, Any]:
+    """A change dropped, and what was listed above it."""
+    return found | {
+        "found": found["found"][:number] + found["found"][number + 1 :],
+        "between": found["between"][: number + 1] + found["between"][number + 2 :],
+    }
+
+
+def _moved(found: dict[str, Any], number: int, by: Fraction) -> dict[str, Any]:
+    """A rational change elsewhere."""
+    value = Fraction(found["found"][number]["value"]["low"]) + by
+    polynomial = [str(-value.numerator), str(value.denominator)]
+    moved = found["found"][number] | {"value": {"polynomial": polynomial, "low": str(value), "high": str(value)}}
+    return found | {"found": [*found["found"][:number], moved, *found["found"][number + 1 :]]}
+
+
+def _added(found: dict[str, Any], value: str) -> dict[str, Any]:
+    """A change between the first two, where nothing changes."""
+    one = {"value": {"polynomial": [f"-{value[0]}", value[2]], "low": value, "high": value}, "words": ["it changes"]}
+    other = found["between"][1] | {"value": "3/4"}
+    return found | {
+        "found": [found["found"][0], one, *found["found"][1:]],
+        "between": [*found["between"][:2], other, *found["between"][2:]],
+    }
+
+
+def _another_arrangement(found: dict[str, Any]) -> dict[str, Any]:
+    """The disc is said to have three solutions more."""
+    inner = found["between"][1]
+    counts = [[5] if key == [2] else key for key in inner["arrangement"]["counts"]]
+    forged = inner | {"arrangement": inner["arrangement"] | {"counts": counts}}
+    return found | {"between": [found["between"][0], forged, *found["between"][2:]]}
+
+
+def _side_forgotten(found: dict[str, Any], side: str) -> dict[str, Any]:
+    """What touches a side is said to be what lies beside it."""
+    inner = found["between"][2]
+    sides = inner["arrangement"]["sides"]
+    forged = inner | {"arrangement": inner["arrangement"] | {"sides": sides | {side: sides[side][:1]}}}
+    return found | {"between": [*found["between"][:2], forged, *found["between"][3:]]}
+
+
+FORGED: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
+    "dropped": lambda found: _without(found, 1),
+    "first dropped": lambda found: _without(found, 0),
+    "moved": lambda found: _moved(found, 0, Fraction(1, 10**5)),
+    "moved down": lambda found: _moved(found, 2, Fraction(-1, 10**5)),
+    "added": lambda found: _added(found, "2/3"),
+    "another count": _another_arrangement,
+    "a side": lambda found: _side_forgotten(found, "high x"),
+    "another side": lambda found: _side_forgotten(found, "low y"),
+    "two roots": lambda found: found
+    | {"found": [found["found"][0] | {"value": {"polynomial": ["0", "-1", "100000000"], "low": "-1/2", "high": "1/2"}},
+                 *found["found"][1:]]},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("forgery", FORGED)
+def test_forged_changes_are_refused(disc: Path, forgery: str, capsys: pytest.CaptureFixture[str]) -> None:
+    data = json.loads((disc / "disc.json").read_text())
+    # of the members one is enough here: they are verified elsewhere
+    data |= {"changes": FORGED[forgery](data["changes"]), "members": data["members"][:1]}
+    path = disc / f"forged-{forgery.replace(' ', '-')}.json"
+    path.write_text(json.dumps(data))
+    assert run(["verify", str(path)]) == 1
+    assert "violated: changes: " in capsys.readouterr().err
 
 
 def test_other_commands_ask_for_a_member(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import ptmcad
 from ptmcad.algebra import isolation
 from ptmcad.algebra.arcs import arc_integral
-from ptmcad.algebra.fibre import Fibre, coordinates_at, univariate_representation
+from ptmcad.algebra.fibre import CoordinatesInBalls, Fibre, univariate_representation
 from ptmcad.algebra.real_roots import RealRoot, isolate, refine, simplest_between
 from ptmcad.algebra.resultants import balanced, discriminant, resultant
 from ptmcad.exact.cad import area
@@ -191,7 +191,7 @@ def test_quotients_and_polynomials_give_the_same_points(digits: int) -> None:
     for quotient, solved in zip(found.coordinates, by_solving(algebra, found.form), strict=True):
         assert (quotient - solved * found.slope) % modulus == 0
     with ctx.workprec(60):
-        assert coordinates_at(found, arb(0, 100)) is None
+        assert CoordinatesInBalls.of(found).at(arb(0, 100)) is None
 
 
 def test_walls_share_their_fibres_and_hopeless_strips_are_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:

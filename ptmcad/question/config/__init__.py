@@ -20,7 +20,7 @@ from typing import Any
 from ptmcad.errors import A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
 from ptmcad.question.config.binding import bound, member_name, settled, swept_names
-from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member
+from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member, member_like
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
 from ptmcad.question.config.options import Typed, ranges_of, settings_of, with_axes
@@ -55,6 +55,7 @@ __all__ = [
     "load",
     "make_mechanism",
     "make_system",
+    "member_like",
     "names_in_record",
     "point_from_mapping",
     "point_from_options",

@@ -130,25 +130,50 @@ def fault_of_member(slice: Slice, text: Mapping[str, str], free: str, value: Fra
     ----------
     text : of the family's parameters, as `Family.text`.
     """
-    known = {name: axis(k) for k, name in enumerate(slice.axis_names)} | {free: constant(value)}
-
-    def resolved(name: str, chain: tuple[str, ...] = ()) -> Expression:
-        if name not in known:
-            if name not in text or name in chain:
-                raise ExpressionError(f"the family says nothing of {name}")
-            named = {other: resolved(other, (*chain, name)) for other in names_in(text[name])}
-            known[name] = parse(text[name], named)
-        return known[name]
-
     for name, found in slice.parameters.items():
         try:
-            wanted = resolved(name)
+            wanted = _resolved(name, text, _coordinates(slice.axis_names, free, value))
         except ExpressionError as error:
             return error.message
         if wanted != found:
             shown = (expression.to_text(slice.axis_names) for expression in (found, wanted))
             return "{} is {}, not {}".format(name, *shown)
     return ""
+
+
+def member_like(slice: Slice, text: Mapping[str, str], free: str, value: Fraction, turned: bool = False) -> Slice:
+    """Another member of the family of which a slice is one.
+
+    Parameters
+    ----------
+    text : of the family's parameters, as `Family.text`.
+    turned : whether the axes are exchanged.
+
+    Raises
+    ------
+    ExpressionError
+        When the texts say nothing of a parameter, or divide by zero at this value.
+    """
+    axes = (slice.axes[1], slice.axes[0]) if turned else slice.axes
+    known = _coordinates((axes[0].name, axes[1].name), free, value)
+    parameters = {name: _resolved(name, text, known) for name in slice.parameters}
+    return replace(slice, axes=axes, parameters=parameters, reference={}, text={})
+
+
+def _coordinates(axes: tuple[str, str], free: str, value: Fraction) -> dict[str, Expression]:
+    return {name: axis(k) for k, name in enumerate(axes)} | {free: constant(value)}
+
+
+def _resolved(
+    name: str, text: Mapping[str, str], known: Mapping[str, Expression], chain: tuple[str, ...] = ()
+) -> Expression:
+    """A parameter in the axes, from the texts of those that it depends on."""
+    if name in known:
+        return known[name]
+    if name not in text or name in chain:
+        raise ExpressionError(f"the family says nothing of {name}")
+    named = {other: _resolved(other, text, known, (*chain, name)) for other in names_in(text[name])}
+    return parse(text[name], named)
 
 
 def _member(record: Record, name: str, value: Fraction) -> Slice:

@@ -1,0 +1,202 @@
+"""Checks of where a family changes: members are classified once more, each alone and over either axis, and compared.
+
+Guarantee: a change that is listed is one, within a stated distance of its value; between changes the members that were
+looked at, at random values, have the arrangement that is listed. That none is missing between those is not checked.
+
+A member's arrangement is read off two maps, one over each axis: regions, counts and neighbours off both, and the order
+along two sides off each, where the map's stacks begin and end. The program that finds changes counts once for all cells
+that are joined, with the basis that the members have in common, and finds the order along the other sides in another
+way.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from hashlib import sha256
+
+from flint import fmpq, fmpz_poly
+
+from ptmcad.answer.arrangement import Arrangement, correspondence
+from ptmcad.answer.changes import Changes
+from ptmcad.answer.counts import counted_by
+from ptmcad.answer.regionmap import Merge, RegionMap
+from ptmcad.errors import HypothesisError, shown
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.numerals import text_of
+from ptmcad.verification.report import Check, Unchecked, Violation
+from ptmcad.verification.sturm import roots_between
+
+NEAR = Fraction(1, 10**6)
+"""Of the range: how far from a change, on both sides, members are classified."""
+RANDOM = 2
+"""Members at random values between two changes."""
+_DIGITS = 10**6
+"""Random values are such shares of an interval."""
+
+Maps = tuple[RegionMap, RegionMap]
+MapsAt = Callable[[Fraction], Maps]
+"""The maps of a member, over the first axis and over the second one, without areas; raises `HypothesisError` where it
+has none."""
+
+
+def verify_changes(found: Changes, maps_at: MapsAt, seed: int | None = None) -> tuple[Check, ...]:
+    """Check where a family changes.
+
+    Parameters
+    ----------
+    maps_at : classifies a member, without what the members have in common.
+    seed : of the random values; drawn from a hash of the claims when None.
+    """
+    method = "members alone, over either axis"
+    source = random.Random(_fingerprint(found) if seed is None else str(seed))
+    try:
+        detail: str = _checked(found, _Members(found, maps_at), source)
+        passed = None if isinstance(detail, Unchecked) else True
+    except Violation as violation:
+        return (Check("changes", method, False, shown(str(violation))),)
+    missing = "that no further change lies between the members that were looked at"
+    return (Check("changes", method, passed, detail), Check("changes complete", "", None, missing))
+
+
+class _Members:
+    """Members compared with what is listed."""
+
+    def __init__(self, found: Changes, maps_at: MapsAt) -> None:
+        self.found, self.maps_at = found, maps_at
+
+    def fits(self, value: Fraction, part: int) -> bool:
+        """Whether the member at a value has the arrangement of a part between changes."""
+        listed = self.found.arrangements[part]
+        return all(_is_seen(listed, result, side) for side, result in enumerate(self.maps_at(value)))
+
+    def expect(self, value: Fraction, part: int, where: str) -> None:
+        """The member at a value has the arrangement of a part between changes.
+
+        Raises
+        ------
+        Violation
+        """
+        if not self.fits(value, part):
+            at = f"{self.found.free.name} = {text_of(value)}"
+            raise Violation(f"the member at {at}, {where}, has another arrangement than is listed")
+
+
+def _checked(found: Changes, members: _Members, source: random.Random) -> str:
+    values = [change.value for change in found.changes]
+    _check_numbers([*values, *found.others])
+    gaps = _gaps(found)
+    for part, listed in enumerate(found.between):
+        members.expect(listed, part, "listed between changes")
+    for k, value in enumerate(values):
+        low, high = _beside(value, gaps[k])
+        name = f"the change at {value.text(8) if isinstance(value, AlgebraicNumber) else text_of(value.low)}"
+        members.expect(low, k, f"below {name}")
+        members.expect(high, k + 1, f"above {name}")
+        if correspondence(found.arrangements[k], found.arrangements[k + 1]) is not None:
+            _check_instant(members, value, k, name)
+    skipped = 0
+    for part, ends in enumerate(_parts(found)):
+        for _ in range(RANDOM):
+            drawn = ends[0] + (ends[1] - ends[0]) * Fraction(source.randrange(1, _DIGITS), _DIGITS)
+            try:
+                members.expect(drawn, part, "between changes")
+            except HypothesisError:  # none of the kinds of members of which anything is said
+                skipped += 1
+    number = RANDOM * len(found.between) - skipped
+    what = f"{number} random members between changes"
+    if values:
+        what = f"{len(values)} changes, compared with members {text_of(NEAR)} of the range away on both sides; {what}"
+    return Unchecked(f"no random member has a map; {what}") if not number else what
+
+
+def _check_numbers(numbers: Sequence[AlgebraicNumber | Enclosure]) -> None:
+    """Each exact number is the only root of its polynomial between its bounds."""
+    for number in numbers:
+        if isinstance(number, AlgebraicNumber):
+            p = fmpz_poly(list(number.polynomial))
+            low, high = (fmpq(end.numerator, end.denominator) for end in (number.low, number.high))
+            roots = int(p(low) == 0) if low == high else roots_between(p, low, high) + (p(low) == 0) + (p(high) == 0)
+            if roots != 1:
+                raise Violation(f"{roots} roots of a value's polynomial lie between its bounds {text_of(number.low)} "
+                                f"and {text_of(number.high)}, not one")  # fmt: skip
+
+
+def _gaps(found: Changes) -> list[Fraction]:
+    """How far from each change members are looked at: less where another change or an end of the range is near."""
+    free = found.free
+    ends = [free.low, *(end for change in found.changes for end in (change.value.low, change.value.high)), free.high]
+    rooms = [high - low for low, high in zip(ends[::2], ends[1::2], strict=True)]
+    sides = [(rooms[k], rooms[k + 1]) for k in range(len(found.changes))]
+    # enclosures have members at their ends, and neighbouring ones may have one in common
+    if min(rooms) < 0 or any(change.is_exact and min(s) == 0 for change, s in zip(found.changes, sides, strict=True)):
+        raise Violation("the changes are not in increasing order within the range")
+    return [min(NEAR * (free.high - free.low), below / 3, above / 3) for below, above in sides]
+
+
+def _beside(value: AlgebraicNumber | Enclosure, gap: Fraction) -> tuple[Fraction, Fraction]:
+    """Values below and above a change; the ends of an enclosure, which are members."""
+    if isinstance(value, AlgebraicNumber):
+        near = value.refined(gap / 2)
+        return near.low - gap / 2, near.high + gap / 2
+    return value.low, value.high
+
+
+def _check_instant(members: _Members, value: AlgebraicNumber | Enclosure, part: int, name: str) -> None:
+    """On both sides of a value the arrangement is the same: then that at the value itself is another one."""
+    exact = value.exact if isinstance(value, AlgebraicNumber) else None
+    if exact is None:
+        raise Violation(f"{name} is none: on both sides of it the arrangement is the same")
+    try:
+        same = members.fits(exact, part)
+    except HypothesisError:
+        return
+    if same:
+        raise Violation(f"{name} is none: there and on both sides of it the arrangement is the same")
+
+
+def _parts(found: Changes) -> list[tuple[Fraction, Fraction]]:
+    """The intervals between changes."""
+    lows = (found.free.low, *(change.value.high for change in found.changes))
+    highs = (*(change.value.low for change in found.changes), found.free.high)
+    return list(zip(lows, highs, strict=True))
+
+
+def _is_seen(listed: Arrangement, result: RegionMap, base: int) -> bool:
+    """Whether a map over one of the axes has an arrangement, as far as it shows.
+
+    Parameters
+    ----------
+    base : 0 when the map's first axis is the family's, 1 when its axes are exchanged.
+    """
+    return correspondence(_shown(listed, base), _arrangement(result, base)) is not None
+
+
+def _shown(listed: Arrangement, base: int) -> Arrangement:
+    """What a map over one axis shows: the order along the sides above and below."""
+    low_x, high_x, low_y, high_y = listed.sides
+    return replace(listed, sides=((), (), low_y, high_y) if base == 0 else (low_x, high_x, (), ()))
+
+
+def _arrangement(result: RegionMap, base: int) -> Arrangement:
+    region_of = [cell.region for cell in result.cells]
+    pairs = {
+        (min(ends), max(ends))
+        for a in result.adjacencies
+        if a.merge is Merge.SEPARATED and len(ends := {region_of[a.first], region_of[a.second]}) == 2
+    }
+    below, above = (_runs([region_of[stack.cells[k]] for stack in result.stacks]) for k in (0, -1))
+    sides = ((), (), below, above) if base == 0 else (below, above, (), ())
+    keys = tuple(counted_by(region, result.slice.count) for region in result.regions)
+    return Arrangement(keys, frozenset(pairs), sides)
+
+
+def _runs(regions: Sequence[int]) -> tuple[int, ...]:
+    """The regions without immediate repetitions."""
+    return tuple(n for k, n in enumerate(regions) if k == 0 or regions[k - 1] != n)
+
+
+def _fingerprint(found: Changes) -> str:
+    return sha256(repr((found.free, found.changes, found.between, found.arrangements)).encode()).hexdigest()
