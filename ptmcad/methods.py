@@ -511,6 +511,7 @@ METHODS["RegionMap"] = {
     "explore": _map_explore,
 }
 METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "_repr_html_": _family_repr_html}
+METHODS["BestDesign"] = {}
 METHODS["Changes"] = {"table": _changes_table, "_repr_html_": _changes_repr_html}
 METHODS["SliceVariety"] = {"text": _variety_text, "_repr_html_": _variety_repr_html}
 METHODS["Poses"] = {
