@@ -1,8 +1,8 @@
 """The best design within bounds as data: where it is, what it attains, and what no other exceeds.
 
 Guarantee: ``value`` is the exact evaluation at ``best``, enclosed. ``bound`` is exceeded by no design within the bounds
-that satisfies the conditions, but for designs on a set without interior at which nothing is computed either; where
-there is no such bound it is None, and ``proved`` is False.
+that satisfies the conditions, but for designs on a set without interior (docs/method.md says which); where there is no
+such bound it is None, and ``proved`` is False.
 """
 
 from __future__ import annotations

@@ -28,9 +28,7 @@ AIOHTTP_MISSING = (
     "the explorer's page is served by the package aiohttp, which is not installed: pip install 'ptmcad[explore]'"
 )
 
-SCIPY_MISSING = (
-    "the best design is searched by the package scipy, which is not installed: pip install 'ptmcad[design]'"
-)
+SCIPY_MISSING = "the best design is searched by the package scipy, which is not installed: pip install 'ptmcad[design]'"
 
 
 def require_numba() -> None:

@@ -23,6 +23,7 @@ from ptmcad.text.enclosure import Enclosure
 
 if TYPE_CHECKING:
     from ptmcad.answer.comparison import Comparison
+    from ptmcad.answer.design import BestDesign
     from ptmcad.answer.regionmap import Region
 
 DIGITS = 6
@@ -94,6 +95,21 @@ def comparison_html(comparison: Comparison) -> str:
         data = b64encode(path.read_bytes()).decode()
     words = "".join(f"<div>{escape(line)}</div>" for line in in_words(comparison))
     return f'<img alt="{escape(repr(comparison))}" style="max-width:100%" src="data:image/png;base64,{data}">{words}'
+
+
+def design_html(found: BestDesign) -> str:
+    """The picture of the values and bounds, and the answer in words."""
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render.design import draw_design
+
+    with TemporaryDirectory(prefix="ptmcad-") as folder:
+        path = Path(folder) / "design.png"
+        draw_design(found, path, PAGE_DPI)
+        data = b64encode(path.read_bytes()).decode()
+    image = f'<img alt="{escape(repr(found))}" style="max-width:100%" src="data:image/png;base64,{data}">'
+    return f"{image}{text_html(found.table())}"
 
 
 def motion_html(motion: Motion) -> str:

@@ -20,7 +20,7 @@ GRID = 2**12
 FINEST = 2**20
 _CORNERS = 4
 """Parameters up to which all corners of the bounds are looked at."""
-_CLIMBING = Fraction(1, 3)
+_CLIMBING = Fraction(1, 2)
 """Share of the evaluations for the climb."""
 
 

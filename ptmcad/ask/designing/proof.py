@@ -77,47 +77,45 @@ def place_of(maximum: Maximum) -> Fraction:
     return to_fraction(simplest_between(from_fraction(maximum.at.low), from_fraction(maximum.at.high)))
 
 
-def bounded(design: Design, look: Look, limits: Limits) -> Proof:
-    """A bound by branch and bound, where there is one for the question."""
+def bounder_of(design: Design, tolerance: Fraction) -> Bounder | str:
+    """What bounds the objective over boxes of designs, or why there is nothing that does."""
     count = len(design.over)
     if design.aim not in (Aim.RANGE, Aim.AREA):
-        return Proof(None, f"no bound is offered of {design.maximise}: nothing is proved of what is better elsewhere")
+        return f"no bound is offered of {design.maximise}: nothing is proved of what is better elsewhere"
     most = 2 if design.aim is Aim.RANGE else 1
     if count > most:
-        return Proof(
-            None,
-            f"with {count} design parameters no bound is offered (of {design.aim.value} with {most} at most): nothing "
-            "is proved of what is better elsewhere",
+        return (
+            f"with {count} design parameters no bound is offered (for {design.aim.value} with {most} at most): nothing "
+            "is proved of what is better elsewhere"
         )
     try:
-        bounder = _bounder(design, limits.tolerance)
+        found = _bounder(design, from_fraction(tolerance))
     except (ExpressionError, DegenerateSliceError, InfiniteSolutionsError) as error:
-        return Proof(None, f"there is no discriminant variety of all designs at once: {error}")
-    if bounder is None:
-        return Proof(None, "there is no discriminant variety of all designs at once: solutions have to be left out")
-    return _searched(design, bounder, look, limits)
+        return f"there is no discriminant variety of all designs at once: {error}"
+    return found or "there is no discriminant variety of all designs at once: solutions have to be left out"
 
 
-def _bounder(design: Design, tolerance: Fraction) -> Bounder | None:
+def _bounder(design: Design, tolerance: fmpq) -> Bounder | None:
     family = design.family
     if family is None:  # a range over one parameter: a slice
         slice = design.slice({})
         space = space_of_slice(problem_of(slice), slice.axis_names.index(design.along), design.working)
-        return Lengths(space, from_fraction(tolerance))
+        return Lengths(space, tolerance)
     axes = (*family.axes, family.free)
     ranges = tuple(_interval(axis) for axis in axes)
     along = 1 if design.aim is Aim.AREA else 0
     found = space_of_family(*in_space(family), Axes(tuple(a.name for a in axes), ranges, along), design.working)
     if found is None:
         return None
-    return Areas(found, ranges[0]) if design.aim is Aim.AREA else Lengths(found, from_fraction(tolerance))
+    return Areas(found, ranges[0]) if design.aim is Aim.AREA else Lengths(found, tolerance)
 
 
 def _interval(axis: Axis) -> tuple[fmpq, fmpq]:
     return from_fraction(axis.low), from_fraction(axis.high)
 
 
-def _searched(design: Design, bounder: Bounder, look: Look, limits: Limits) -> Proof:
+def bounded(design: Design, bounder: Bounder, look: Look, limits: Limits) -> Proof:
+    """A bound by branch and bound."""
     names = [axis.name for axis in design.over]
 
     def feasible(place: Place) -> bool:

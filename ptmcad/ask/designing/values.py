@@ -13,11 +13,13 @@ from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
+from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.members import Common, member_map
 from ptmcad.ask.quantities import Quantity, named, of_pose, unknown
 from ptmcad.errors import ConfigError, ExpressionError, HypothesisError
+from ptmcad.exact.design.cover import Space
 from ptmcad.options import Options
 from ptmcad.question.config.designs import Aim, Design
 from ptmcad.text.balls import exact
@@ -42,24 +44,29 @@ class Value(NamedTuple):
 Evaluate = Callable[[Mapping[str, Fraction]], Value | None]
 
 
-def evaluator(design: Design, common: Common | None = None) -> Evaluate:
+def evaluator(design: Design, common: Common | None = None, space: Space | None = None) -> Evaluate:
     """What evaluates designs.
 
     Parameters
     ----------
     common : what the members of the family have in common, where all designs are of one.
+    space : the variety over all designs, where it is known: then a range's ends are found from it. Without, from the
+        variety of each design's line alone.
 
     Raises
     ------
     ConfigError
         When a quantity or an expression has no meaning for the model.
     """
-    found = {
-        Aim.RANGE: _range_of,
-        Aim.AREA: _area_of,
-        Aim.BARRIER: _barrier_of,
-        Aim.EXPRESSION: _expression_of,
-    }[design.aim](design, common)
+    match design.aim:
+        case Aim.RANGE:
+            found = _range_of(design) if space is None else _range_in(design, space)
+        case Aim.AREA:
+            found = _area_of(design, common)
+        case Aim.BARRIER:
+            found = _barrier_of(design)
+        case Aim.EXPRESSION:
+            found = _expression_of(design)
 
     with suppress(HypothesisError):
         found({axis.name: (axis.low + axis.high) / 2 for axis in design.over})  # raises what no design can be asked
@@ -75,7 +82,7 @@ def evaluator(design: Design, common: Common | None = None) -> Evaluate:
     return evaluate
 
 
-def _range_of(design: Design, _common: Common | None) -> Evaluate:
+def _range_of(design: Design) -> Evaluate:
     from ptmcad.exact.ranges.line import intervals
 
     first = design.over[0].name
@@ -91,6 +98,21 @@ def _range_of(design: Design, _common: Common | None) -> Evaluate:
             for end in (widest.low, widest.high)
         )
         return Value(widest.width, (ends[0], ends[1]))
+
+    return evaluate
+
+
+def _range_in(design: Design, space: Space) -> Evaluate:
+    from ptmcad.exact.design.lines import longest_on_line
+
+    names = [axis.name for axis in design.over]
+
+    def evaluate(values: Mapping[str, Fraction]) -> Value | None:
+        found = longest_on_line(space, tuple(from_fraction(values[name]) for name in names))
+        if found is None:
+            return None
+        low, high = (Enclosure(to_fraction(a), to_fraction(b)) for a, b in found)
+        return Value(Enclosure(max(high.low - low.high, Fraction(0)), high.high - low.low), (low, high))
 
     return evaluate
 
@@ -146,7 +168,7 @@ def chosen(design: Design, poses: Poses) -> int | None:
     return numbers[choice.rank - 1] if choice.rank <= len(numbers) else None
 
 
-def _barrier_of(design: Design, _common: Common | None) -> Evaluate:
+def _barrier_of(design: Design) -> Evaluate:
     from ptmcad.ask.fields.equations import eigenvalues, state_at
     from ptmcad.ask.fields.field import choice_of
 
@@ -182,7 +204,7 @@ def _barrier_of(design: Design, _common: Common | None) -> Evaluate:
     return evaluate
 
 
-def _expression_of(design: Design, _common: Common | None) -> Evaluate:
+def _expression_of(design: Design) -> Evaluate:
     model, text = design.model, design.maximise
     quantity = named(model, text, KEY) or unknown(model, text)
     if quantity is not None and quantity.name in model.angles:

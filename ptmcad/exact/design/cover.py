@@ -38,14 +38,14 @@ class Space(NamedTuple):
     tables : the irreducible polynomials of the discriminant variety in the line's parameter to a power, and the design.
     power : that power: of lines from 0 on the largest of whose multiples alone occur.
     window : of the line's parameter, not of its power.
-    count : of what there is at a value of the line's parameter and a design; None where a solution is singular.
+    count_at : of what there is at a value of the line's parameter and a design; None where a solution is singular.
     working : the wanted count.
     """
 
     tables: tuple[Table, ...]
     power: int
     window: Interval
-    count: Callable[[fmpq, tuple[fmpq, fmpq]], int | None]
+    count_at: Callable[[fmpq, tuple[fmpq, fmpq]], int | None]
     working: int
 
     def whole(self) -> tuple[Run, ...]:
@@ -55,11 +55,11 @@ class Space(NamedTuple):
 
     def length(self, low: fmpq, high: fmpq) -> fmpq:
         """An upper bound for the length of a part, given by the powers of its ends; exact where the power is 1."""
-        return _root(high, self.power, up=True) - _root(low, self.power, up=False)
+        return root_bound(high, self.power, up=True) - root_bound(low, self.power, up=False)
 
     def least(self, low: fmpq, high: fmpq) -> fmpq:
         """A lower bound of the same."""
-        return _root(high, self.power, up=False) - _root(low, self.power, up=True)
+        return root_bound(high, self.power, up=False) - root_bound(low, self.power, up=True)
 
 
 class Part(NamedTuple):
@@ -188,19 +188,19 @@ def _joined(parts: Sequence[Part]) -> list[Part]:
 
 def _counted(space: Space, box: Box, part: Part) -> Part:
     """The part with what a sample says of its count."""
-    low, high = (_root(part.low, space.power, up=True), _root(part.high, space.power, up=False))
+    low, high = (root_bound(part.low, space.power, up=True), root_bound(part.high, space.power, up=False))
     if low >= high:
         return part
     for share in _SHARES:
         first, second = (a + (b - a) * share for a, b in box)
         third = (high - low) / 3
-        found = space.count(simplest_between(low + third, high - third), (first, second))
+        found = space.count_at(simplest_between(low + third, high - third), (first, second))
         if found is not None:
             return part._replace(here=found == space.working)
     return part
 
 
-def _root(value: fmpq, power: int, up: bool) -> fmpq:
+def root_bound(value: fmpq, power: int, up: bool) -> fmpq:
     """A rational bound of a root of a number that is not negative; the number itself where the power is 1."""
     if power == 1:
         return value

@@ -77,9 +77,7 @@ def _space(
     system: ParametricSystem, parameters: Mapping[str, Ratio], found: Sequence[Coefficient], axes: Axes, working: int
 ) -> Space:
     window = axes.ranges[axes.along]
-    ordered = [
-        [(_padded([int(powers[k]) for k in axes.order]), int(c)) for powers, c in p.terms()] for p in found
-    ]
+    ordered = [[(_padded([int(powers[k]) for k in axes.order]), int(c)) for powers, c in p.terms()] for p in found]
     power = max(1, gcd(*(powers[0] for terms in ordered for powers, _ in terms))) if window[0] >= 0 else 1
 
     def count(value: fmpq, design: tuple[fmpq, fmpq]) -> int | None:

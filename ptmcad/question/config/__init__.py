@@ -19,6 +19,7 @@ from typing import Any
 
 from ptmcad.errors import A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
+from ptmcad.question.config.designs import Design, asks_for_design, design_from, design_from_options, load_design
 from ptmcad.question.config.family import Family, bound, checked_family, family_of, fault_of_member, member_name
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
@@ -45,15 +46,20 @@ from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_pytho
 __all__ = [
     "MAX_DEGREE",
     "RECORD_KEYS",
+    "Design",
     "Family",
     "Kind",
     "Parameter",
     "Sweeping",
+    "asks_for_design",
     "asks_for_sweep",
+    "design_from",
+    "design_from_options",
     "family_from",
     "fault_of_member",
     "file_name",
     "load",
+    "load_design",
     "load_sweep",
     "make_mechanism",
     "make_system",

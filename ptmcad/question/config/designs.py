@@ -221,9 +221,9 @@ def design_from(question: str | Path | Mapping[str, Any] | Design, **changes: An
         assert isinstance(tree, Tree)  # of a mapping
     else:
         tree = read_file(question)
-    given = {name: from_python(plain(value), Place(f"design.{name}")) for name, value in changes.items()
-             if value is not None}  # fmt: skip
-    return checked_design(tree, given)
+    return checked_design(
+        tree, {n: from_python(plain(v), Place(f"design.{n}")) for n, v in changes.items() if v is not None}
+    )
 
 
 def design_from_options(
@@ -275,7 +275,9 @@ def checked_design(tree: Tree, given: Mapping[str, Node] | None = None) -> Desig
     """
     faults = Faults()
     record = read_record(tree, faults)
-    if record.model is None or any((f.key or "").split(".")[0] in ("mechanism", "system", "axes") for f in faults.found):
+    if record.model is None or any(
+        (f.key or "").split(".")[0] in ("mechanism", "system", "axes") for f in faults.found
+    ):
         faults.check()  # without these nothing can be said of the rest
     node = record.design
     if node is not None and not isinstance(node, Tree):
