@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 from flint import fmpq, fmpz_mat, fmpz_poly
 
+from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.window import Interval
 
 Terms = Iterable[tuple[tuple[int, int, int], int]]
@@ -91,6 +92,26 @@ def sign(table: Table) -> int:
                 elif (value > 0) != (found > 0):
                     return 0
     return found
+
+
+def on_lines(tables: Iterable[Table], at: tuple[fmpq, fmpq]) -> UnivariatePolynomial:
+    """The product of polynomials at values of the second and third variable, up to a positive factor.
+
+    Parameters
+    ----------
+    tables : in powers of the variables.
+    """
+    product = fmpz_poly([1])
+    for table in tables:
+        columns = [at[0] ** j for j in range(table.degrees[1] + 1)]
+        rows = [fmpq(0)] * (table.degrees[0] + 1)
+        for k, layer in enumerate(table.layers):
+            height = at[1] ** k
+            for i in range(len(rows)):
+                rows[i] += sum((layer[i, j] * c * height for j, c in enumerate(columns) if layer[i, j]), fmpq(0))
+        scale = lcm(*(int(c.q) for c in rows))
+        product *= fmpz_poly([_times(c, scale) for c in rows])
+    return product
 
 
 def _combined(matrix: fmpz_mat, layers: Sequence[fmpz_mat]) -> Iterable[fmpz_mat]:

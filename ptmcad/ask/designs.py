@@ -23,7 +23,8 @@ from ptmcad.errors import ConfigError
 from ptmcad.exact.design.search import Lengths
 from ptmcad.options import Options, Progress
 from ptmcad.process.extras import require_scipy
-from ptmcad.question.config.designs import Aim, Design, design_from
+from ptmcad.question.config import design_from
+from ptmcad.question.config.designed import Aim, Design
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import number_for
 

@@ -23,7 +23,7 @@ from ptmcad.exact.design.search import Bounder, Lengths, Outcome, Place, Point, 
 from ptmcad.exact.ranges.strips import strips
 from ptmcad.exact.ranges.width import largest
 from ptmcad.exact.stages import problem_of
-from ptmcad.question.config.designs import Aim, Design
+from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.slice import Axis
 
 Look = Callable[[Mapping[str, Fraction]], Fraction]

@@ -21,7 +21,7 @@ from ptmcad.ask.quantities import Quantity, named, of_pose, unknown
 from ptmcad.errors import ConfigError, ExpressionError, HypothesisError
 from ptmcad.exact.design.cover import Space
 from ptmcad.options import Options
-from ptmcad.question.config.designs import Aim, Design
+from ptmcad.question.config.designed import Aim, Design
 from ptmcad.text.balls import exact
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.syntax import did_you_mean, parse

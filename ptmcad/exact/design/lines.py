@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import groupby, pairwise
 
-from flint import fmpq, fmpq_poly, fmpz_poly
+from flint import fmpq
 
-from ptmcad.algebra.bernstein import Table
+from ptmcad.algebra.bernstein import on_lines
 from ptmcad.algebra.real_roots import disjoint, inside, isolate, refine, simplest_between, squarefree_part
 from ptmcad.algebra.window import Interval
 from ptmcad.exact.design.cover import Space, root_bound
@@ -27,9 +27,7 @@ def longest_on_line(space: Space, design: tuple[fmpq, ...]) -> tuple[Interval, I
     """
     at = (*design, fmpq(0))[:2]
     low, high = (end**space.power for end in space.window)
-    product = fmpz_poly([1])
-    for table in space.tables:
-        product *= _at(table, (at[0], at[1]))
+    product = on_lines(space.tables, (at[0], at[1]))
     if not product:
         return None
     found = disjoint(isolate(squarefree_part(product), low, high))
@@ -57,17 +55,3 @@ def _spans(space: Space, ends: list[Interval], counts: list[int | None]) -> Iter
 
 def _enclosed(space: Space, end: Interval) -> Interval:
     return root_bound(end[0], space.power, up=False), root_bound(end[1], space.power, up=True)
-
-
-def _at(table: Table, design: tuple[fmpq, fmpq]) -> fmpz_poly:
-    """The polynomial at a design, up to a positive factor."""
-    columns = [design[0] ** j for j in range(table.degrees[1] + 1)]
-    total = fmpq_poly([0])
-    for k, layer in enumerate(table.layers):
-        height = design[1] ** k
-        rows = [
-            sum((layer[i, j] * c * height for j, c in enumerate(columns) if layer[i, j]), fmpq(0))
-            for i in range(table.degrees[0] + 1)
-        ]
-        total += fmpq_poly(rows)
-    return total.numer()

@@ -19,7 +19,8 @@ from typing import Any
 
 from ptmcad.errors import A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
-from ptmcad.question.config.designs import Design, asks_for_design, design_from, design_from_options, load_design
+from ptmcad.question.config.designed import Design
+from ptmcad.question.config.designs import asks_for_design, design_from, design_from_options, load_design
 from ptmcad.question.config.family import Family, bound, checked_family, family_of, fault_of_member, member_name
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
