@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -11,8 +12,11 @@ from ptmcad.cli.families import each_member, is_family, read_family_file
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.stored import read_result
+from ptmcad.cli.stored import is_design, read_design_file, read_result
 from ptmcad.cli.values import files
+
+if TYPE_CHECKING:
+    from ptmcad.verification import VerifyReport
 
 
 @click.command("verify")
@@ -23,9 +27,10 @@ from ptmcad.cli.values import files
               help="Random boxes of the free area of a certified map.  [default: 40]")  # fmt: skip
 @limit_options
 def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits) -> int:
-    """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
+    """Check RESULT, a JSON file of `ptmcad classify` or `design`, without the code that made it.
 
-    Of a family each member is checked, but not where it changes between them. Prints what was checked, and how. The
+    Of a family each member is checked, but not where it changes between them; of a design (`ptmcad design`) the cover
+    by boxes, and samples of its value and bound. Prints what was checked, and how. The
     exit status is 0 when every check passed, 1 when one failed (the first violated claim is printed with a witness),
     2 when the file cannot be read, 3 when a limit was reached before that.
 
@@ -35,6 +40,13 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
         ptmcad verify slice-L2-rho.json
     """
     with held(limits):
+        if is_design(result):
+            report_idle([Idle("boxes", True, "the boxes of a design are all checked")] if boxes is not None else [])
+            from ptmcad.verification import verify_design
+
+            with ProgressBar() as progress:
+                report = verify_design(read_design_file(result), seed, progress)
+            return _shown(report)
         if is_family(result):
             family = read_family_file(result, whole=False)
             status = int(max(each_member(family, lambda member: _verified(member, seed, boxes))))
@@ -51,6 +63,10 @@ def _verified(stored: RegionMap, seed: int | None, boxes: int | None) -> int:
 
     with ProgressBar() as progress:
         report = verify(stored, seed=seed, boxes=boxes, progress=progress)
+    return _shown(report)
+
+
+def _shown(report: VerifyReport) -> int:
     click.echo(report.table())
     if report.ok:
         return 0
