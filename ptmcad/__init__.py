@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from ptmcad.answer.changes import Change, Changes
+    from ptmcad.answer.design import BestDesign
     from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.poses import Pose, Poses
     from ptmcad.answer.regionmap import RegionMap
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from ptmcad.answer.sweep import Sweep
     from ptmcad.ask.changes import changes
     from ptmcad.ask.classification import classify
+    from ptmcad.ask.designs import design
     from ptmcad.ask.families import family
     from ptmcad.ask.ranges import intervals, operation_widths, pose_paths
     from ptmcad.ask.solving import solve
@@ -51,6 +53,8 @@ _HOMES = {
     "Change": "answer.changes",
     "Changes": "answer.changes",
     "classify": "ask.classification",
+    "BestDesign": "answer.design",
+    "design": "ask.designs",
     "family": "ask.families",
     "FamilyMap": "answer.family",
     "slice_variety": "exact.slicevariety",
@@ -73,6 +77,7 @@ _HOMES = {
 
 __all__ = [
     "AlgebraicNumber",
+    "BestDesign",
     "Change",
     "Changes",
     "Count",
@@ -92,6 +97,7 @@ __all__ = [
     "changes",
     "classify",
     "counts_at",
+    "design",
     "discriminant_variety",
     "family",
     "intervals",

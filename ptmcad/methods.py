@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ptmcad.answer.boundaries import Boundary, Grid
     from ptmcad.answer.changes import Changes
     from ptmcad.answer.comparison import Comparison
+    from ptmcad.answer.design import BestDesign
     from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.field import Field
     from ptmcad.answer.intervals import CountIntervals
@@ -378,6 +379,51 @@ def _changes_repr_html(self: Changes) -> str:
     return text_html(self.table())
 
 
+def _design_table(self: BestDesign) -> str:
+    """What was asked, the best design with its value, and what is proved, for the terminal."""
+    from ptmcad.show.designtable import design_table
+
+    return design_table(self)
+
+
+def _design_to_json(self: BestDesign) -> str:
+    """The answer as JSON text, docs/design.schema.json; the same text for the same answer."""
+    from ptmcad.show.document.design import write_design
+
+    return write_design(self)
+
+
+def _design_from_json(_cls: type[BestDesign], text: str) -> BestDesign:
+    """The answer that `to_json` wrote.
+
+    Raises
+    ------
+    ValueError
+        When the text is not such an answer.
+    """
+    from ptmcad.show.document.design import read_design
+
+    return read_design(text)
+
+
+def _design_save(self: BestDesign, path: Any) -> None:
+    """Draw the values and bounds over one or two parameters, as PNG, SVG or PDF."""
+    from pathlib import Path
+
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render.design import draw_design
+
+    draw_design(self, Path(path))
+
+
+def _design_repr_html(self: BestDesign) -> str:
+    from ptmcad.show.notebook import design_html
+
+    return design_html(self)
+
+
 def _variety_text(self: SliceVariety, format: str = "text") -> str:
     """The variety in one of the formats of `ptmcad.show.export.FORMATS`.
 
@@ -548,6 +594,13 @@ METHODS["RegionMap"] = {
 }
 METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "_repr_html_": _family_repr_html,
                         "_repr_png_": _family_repr_png}  # fmt: skip
+METHODS["BestDesign"] = {
+    "table": _design_table,
+    "to_json": _design_to_json,
+    "from_json": classmethod(_design_from_json),
+    "save": _design_save,
+    "_repr_html_": _design_repr_html,
+}
 METHODS["Changes"] = {"table": _changes_table, "_repr_html_": _changes_repr_html}
 METHODS["SliceVariety"] = {"text": _variety_text, "_repr_html_": _variety_repr_html}
 METHODS["Poses"] = {

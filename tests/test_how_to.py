@@ -20,7 +20,9 @@ from ptmcad.cli import run
 
 DOCS = Path(__file__).parent.parent / "docs"
 HOW_TO, DATA = ((DOCS / f"{name}.md").read_text(encoding="utf-8") for name in ("how-to", "data"))
-CHANGING = re.compile(r"^time .*|\d+ random pixels agree .*|\d+ points of \d+ bits, seed \w+", re.MULTILINE)
+CHANGING = re.compile(
+    r"^time .*|^searched .*|\d+ random pixels agree .*|\d+ points of \d+ bits, seed \w+", re.MULTILINE
+)
 """What is another time in each run, or rounding of another machine."""
 
 
@@ -30,6 +32,7 @@ def without_what_changes(text: str) -> str:
 
 
 HEAVY = (
+    "… find the best of two design parameters?",
     "… see a quantity over the whole map?",
     "… show how the mechanism moves, and how it snaps?",
     "… compare several loads?",

@@ -31,6 +31,7 @@ COMMANDS = {
     "bench": "ptmcad.cli.bench",
     "check": "ptmcad.cli.check",
     "classify": "ptmcad.cli.classify",
+    "design": "ptmcad.cli.design",
     "explore": "ptmcad.cli.explore",
     "init": "ptmcad.cli.init",
     "mechanisms": "ptmcad.cli.mechanisms",

@@ -8,16 +8,13 @@ import click
 
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.values import files
-<<<<<<< HEAD
-from ptmcad.errors import MAX_FAULTS, ConfigError
-from ptmcad.question.config import Family, question_from_options
-=======
 from ptmcad.errors import MAX_FAULTS, ConfigError, GeometryError
-from ptmcad.question.config import Family, asks_for_sweep, load_sweep, question_from_options, with_place
->>>>>>> h16
+from ptmcad.question.config import Family, question_from_options, with_place
+from ptmcad.question.config.designs import asks_for_design, load_design
 from ptmcad.question.config.model import located
 from ptmcad.question.config.options import Typed
 from ptmcad.question.config.sweeps import asks_for_sweep, load_sweep
+from ptmcad.text.numerals import shortest_text
 from ptmcad.text.yamltree import read_file
 
 
@@ -29,7 +26,8 @@ def command(*, record: Path, limits: Limits) -> int:
 
     Prints each fault on a line of its own, with file, line and key, and ends with exit status 2. Of a record without
     one, it prints what is asked, how many complex solutions there are, and roughly what the map will cost. Of a
-    sweep it prints that of the first member, how many there are, and how long they take, by one of them.
+    sweep it prints that of the first member, how many there are, and how long they take, by one of them; of a design
+    what is asked, too.
 
     \b
     Example:
@@ -37,6 +35,7 @@ def command(*, record: Path, limits: Limits) -> int:
     """
     try:
         sweeping = load_sweep(record) if asks_for_sweep(record) else None
+        designed = load_design(record) if asks_for_design(record) else None
         asked = question_from_options(Typed(record)) if sweeping is None else sweeping.slice(0)
     except ConfigError as error:
         for fault in error.faults:
@@ -61,6 +60,10 @@ def command(*, record: Path, limits: Limits) -> int:
         if isinstance(asked, Family):
             click.echo(f"{'family':<12}of {len(asked.values)} such slices, {asked.free.name} from {asked.free.low} to "
                        f"{asked.free.high}; above is the one in the middle")  # fmt: skip
+        if designed is not None:
+            over = ", ".join(f"{a.name} in [{shortest_text(a.low)}, {shortest_text(a.high)}]" for a in designed.over)
+            of = f" of {designed.along}" if designed.along else ""
+            click.echo(f"{'design':<12}{designed.maximise}{of} over {over}; above is the record without it")
         if sweeping is not None:
             from ptmcad.sweeping.estimate import sweep_text
 

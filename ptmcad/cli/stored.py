@@ -14,10 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.answer.consistency import check_numbers
+from ptmcad.answer.design import BestDesign
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown
 from ptmcad.process.commit import recover
 from ptmcad.show.document import FORMAT
+from ptmcad.show.document.design import FORMAT as DESIGN
 from ptmcad.text.textfile import read_text
 
 MAX_BYTES = 60_000_000
@@ -52,6 +54,29 @@ def read_result(path: Path, *, whole: bool = True) -> RegionMap:
         except ConfigError as error:
             raise ConfigError(error.message, file=str(path)) from error
     return result
+
+
+def is_design(path: Path) -> bool:
+    """Whether a file is the document of a design."""
+    if path.suffix.lower() != ".json":
+        return False
+    return f'"format": "{DESIGN.partition("/")[0]}/' in read_text(path, MAX_BYTES, "a result's JSON file")[:200]
+
+
+def read_design_file(path: Path) -> BestDesign:
+    """The best design in a JSON file.
+
+    Raises
+    ------
+    ConfigError
+        When it is not a whole document of one.
+    """
+    text = read_text(path, MAX_BYTES, f"a {DESIGN} file")
+    try:
+        return BestDesign.from_json(text)
+    except (ValueError, PtmcadError, ZeroDivisionError, RecursionError) as error:
+        reason = shown(" ".join(str(error).split()), 300)
+        raise ConfigError(f"is damaged or not a {DESIGN} file: {reason}", file=str(path)) from error
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from ptmcad.cli.families import each_member, is_family, read_family_file
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.stored import read_result
+from ptmcad.cli.stored import is_design, read_design_file, read_result
 from ptmcad.cli.values import files
 from ptmcad.options import Options
 from ptmcad.question.config import member_like
@@ -31,12 +31,12 @@ if TYPE_CHECKING:
               help="Random boxes of the free area of a certified map.  [default: 40]")  # fmt: skip
 @limit_options
 def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits) -> int:
-    """Check RESULT, a JSON file of `ptmcad classify`, without the code that made it.
+    """Check RESULT, a JSON file of `ptmcad classify` or `design`, without the code that made it.
 
     Of a family each member is checked, and the changes between them by further members, each classified alone and over
-    either axis. Prints what was checked, and how. The exit status is 0 when every check passed, 1 when one failed (the
-    first violated claim is printed with a witness), 2 when the file cannot be read, 3 when a limit was reached before
-    that.
+    either axis; of a design (`ptmcad design`) the cover by boxes, and samples of its value and bound. Prints what was
+    checked, and how. The exit status is 0 when every check passed, 1 when one failed (the first violated claim is
+    printed with a witness), 2 when the file cannot be read, 3 when a limit was reached before that.
 
     \b
     Example:
@@ -44,6 +44,13 @@ def command(*, result: Path, seed: int | None, boxes: int | None, limits: Limits
         ptmcad verify slice-L2-rho.json
     """
     with held(limits):
+        if is_design(result):
+            report_idle([Idle("boxes", True, "the boxes of a design are all checked")] if boxes is not None else [])
+            from ptmcad.verification import verify_design
+
+            with ProgressBar() as progress:
+                report = verify_design(read_design_file(result), seed, progress)
+            return _told(report)
         if is_family(result):
             family = read_family_file(result, whole=False)
             status = int(max(each_member(family, lambda member: _verified(member, seed, boxes))))

@@ -28,6 +28,8 @@ AIOHTTP_MISSING = (
     "the explorer's page is served by the package aiohttp, which is not installed: pip install 'ptmcad[explore]'"
 )
 
+SCIPY_MISSING = "the best design is searched by the package scipy, which is not installed: pip install 'ptmcad[design]'"
+
 
 def require_numba() -> None:
     """Refuse at once what the certified engine would refuse later.
@@ -75,6 +77,18 @@ def require_aiohttp() -> None:
     """
     if find_spec("aiohttp") is None:
         raise ConfigError(AIOHTTP_MISSING)
+
+
+def require_scipy() -> None:
+    """Refuse what a global search needs.
+
+    Raises
+    ------
+    ConfigError
+        When scipy is not installed.
+    """
+    if find_spec("scipy") is None:
+        raise ConfigError(SCIPY_MISSING)
 
 
 def require_ffmpeg() -> str:

@@ -24,6 +24,7 @@ from ptmcad.text.enclosure import Enclosure
 if TYPE_CHECKING:
     from ptmcad.answer.boundaries import Grid
     from ptmcad.answer.comparison import Comparison
+    from ptmcad.answer.design import BestDesign
     from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.field import Field
     from ptmcad.answer.regionmap import Region
@@ -151,6 +152,21 @@ def family_html(family: FamilyMap) -> str:
     data = b64encode(family_png(family)).decode()
     image = f'<img alt="{escape(repr(family))}" style="max-width:100%" src="data:image/png;base64,{data}">'
     return image + text_html(family.table())
+
+
+def design_html(found: BestDesign) -> str:
+    """The picture of the values and bounds, and the answer in words."""
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render.design import draw_design
+
+    with TemporaryDirectory(prefix="ptmcad-") as folder:
+        path = Path(folder) / "design.png"
+        draw_design(found, path, PAGE_DPI)
+        data = b64encode(path.read_bytes()).decode()
+    image = f'<img alt="{escape(repr(found))}" style="max-width:100%" src="data:image/png;base64,{data}">'
+    return f"{image}{text_html(found.table())}"
 
 
 def motion_html(motion: Motion) -> str:

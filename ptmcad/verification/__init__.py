@@ -7,6 +7,7 @@ that. Common to both are FLINT, and the result's own data classes.
 from __future__ import annotations
 
 from ptmcad.verification.checks import verify
+from ptmcad.verification.designs import verify_design
 from ptmcad.verification.report import Check, VerifyReport
 
-__all__ = ["Check", "VerifyReport", "verify"]
+__all__ = ["Check", "VerifyReport", "verify", "verify_design"]

@@ -168,7 +168,7 @@ class Campaign:
         worth_saving = self.engine == "certified" or computed  # an exact map on the way is made anew in less time
         left_to_save = end == "kill -9 of the computation" or (end.startswith("SIG") and worth_saving)
         if handed_over and left_to_save and process.returncode != 0:
-            assert re.search(" result(, .* undetermined,)? is in ", text), (end, moment, text)
+            assert re.search(r" map( \(.* undetermined\))? saved to ", text), (end, moment, text)
             assert saved or after == count
         while [name for name in os.listdir(self.out) if name.startswith(".")]:
             # a process that ends closes standard error a little before it drops its locks

@@ -144,14 +144,10 @@ def _smooth(border: Border, at_middle: RealRoot, over: Interval, effort: Effort,
         series = by_series()
     except PrecisionTooLow:
         obstacle = True
-    if series is not None and series.rad() < arb(2 * radius * wanted):
+    if series is not None:
         return series
     between = arc_integral(in_v, branch, middle, radius, effort.fibre, wanted)
-    if between is None and obstacle:
-        return _more_precisely(by_series)
-    if series is None or between is None:
-        return series if between is None else between
-    return series if series.rad() < between.rad() else between
+    return _more_precisely(by_series) if between is None and obstacle else between
 
 
 def _more_precisely(enclose: Callable[[], arb | None]) -> arb | None:

@@ -46,6 +46,7 @@ from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_pytho
 __all__ = [
     "MAX_DEGREE",
     "RECORD_KEYS",
+    "Design",
     "Family",
     "Kind",
     "Parameter",

@@ -21,7 +21,7 @@ from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
 RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "free", "members", "sweep",
-               "count", "units", "reference")  # fmt: skip
+               "design", "count", "units", "reference")  # fmt: skip
 _MAX_NAME = 100
 _MAX_TITLE = 300
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -45,6 +45,7 @@ class Record:
     ----------
     values_place : where the values are given, or would be; None of what is no record.
     sweep : what is swept, as it is written; `ptmcad.question.config.sweeps` reads it.
+    design : what is designed, as it is written; `ptmcad.question.config.designs` reads it, and no other command asks.
     """
 
     name: str = ""
@@ -59,6 +60,7 @@ class Record:
     reference: Mapping[str, Any] = field(default_factory=dict)
     place: Place = field(default_factory=Place)
     sweep: Node | None = None
+    design: Node | None = None
     count_place: Place = field(default_factory=lambda: Place("count"))
     values_place: Place | None = None
     described: Described | None = None
@@ -124,6 +126,7 @@ def read_record(tree: Tree, faults: Faults) -> Record:
         "free": _free,
         "members": lambda node: node,
         "sweep": lambda node: node,
+        "design": lambda node: node,
         "count": count_of,
         "units": lambda node: _units(node, faults),
         "reference": _reference,

@@ -1,0 +1,153 @@
+"""Polynomials in up to three variables over boxes: exact coefficients whose signs prove that there is no zero inside.
+
+Guarantee: exact. With x = (low + high s) / (1 + s) for a variable between low and high, a polynomial times a positive
+function is one in the s of its variables, its coefficients being those of Bernstein up to binomials. If none is
+negative and one is positive, it is positive in the interior of the box.
+
+Reference: Farouki, Comput. Aided Geom. Design 29 (2012).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import cache
+from math import lcm
+from typing import NamedTuple
+
+from flint import fmpq, fmpz_mat, fmpz_poly
+
+from ptmcad.algebra.polynomials import UnivariatePolynomial
+from ptmcad.algebra.window import Interval
+
+Terms = Iterable[tuple[tuple[int, int, int], int]]
+"""Exponents of three variables, with coefficients."""
+
+
+class Table(NamedTuple):
+    """A polynomial, not zero, in powers of its variables: for each power of the third a matrix of the other two's.
+
+    Attributes
+    ----------
+    degrees : in the three variables.
+    layers : the matrix of number k has the first variable's powers as its rows, the second one's as its columns.
+    """
+
+    degrees: tuple[int, int, int]
+    layers: tuple[fmpz_mat, ...]
+
+
+def table_of(terms: Terms) -> Table:
+    """The table of a polynomial that is not zero."""
+    known = [(tuple(map(int, powers)), int(c)) for powers, c in terms]
+    n, m, top = (max(powers[k] for powers, _ in known) for k in range(3))
+    layers = tuple(fmpz_mat(n + 1, m + 1) for _ in range(top + 1))
+    for (i, j, k), c in known:
+        layers[k][i, j] = c
+    return Table((n, m, top), layers)
+
+
+def over(table: Table, box: Sequence[Interval]) -> Table:
+    """The coefficients over a box, up to a positive factor.
+
+    Parameters
+    ----------
+    box : the ranges of the three variables; of one that does not occur any will do.
+    """
+    matrices = [_substitution(degree, interval) for degree, interval in zip(table.degrees, box, strict=True)]
+    right = matrices[1].transpose()
+    sides = [matrices[0] * layer * right for layer in table.layers]
+    return Table(table.degrees, tuple(_combined(matrices[2], sides)))
+
+
+def halves(table: Table) -> tuple[Table, Table]:
+    """The coefficients over the lower and the upper half of the first variable's range, up to positive factors."""
+    lower, upper = _halving(table.degrees[0])
+    return (
+        table._replace(layers=tuple(lower * layer for layer in table.layers)),
+        table._replace(layers=tuple(upper * layer for layer in table.layers)),
+    )
+
+
+def sign(table: Table) -> int:
+    """1 or -1 when the polynomial is proved to have this sign in the interior of the box; 0 when that is not decided.
+
+    Parameters
+    ----------
+    table : of coefficients over the box.
+    """
+    n, m, _ = table.degrees
+    found = 0
+    for layer in (table.layers[0], table.layers[-1]):  # values at the corners, most often of different signs
+        for i in (0, n):
+            for j in (0, m):
+                value = layer[i, j]
+                if value and found * value < 0:
+                    return 0
+                found = found or (int(value > 0) - int(value < 0))
+    for layer in table.layers:
+        for value in layer.entries():
+            if value:
+                if not found:
+                    found = 1 if value > 0 else -1
+                elif (value > 0) != (found > 0):
+                    return 0
+    return found
+
+
+def on_lines(tables: Iterable[Table], at: tuple[fmpq, fmpq]) -> UnivariatePolynomial:
+    """The product of polynomials at values of the second and third variable, up to a positive factor.
+
+    Parameters
+    ----------
+    tables : in powers of the variables.
+    """
+    product = fmpz_poly([1])
+    for table in tables:
+        columns = [at[0] ** j for j in range(table.degrees[1] + 1)]
+        rows = [fmpq(0)] * (table.degrees[0] + 1)
+        for k, layer in enumerate(table.layers):
+            height = at[1] ** k
+            for i in range(len(rows)):
+                rows[i] += sum((layer[i, j] * c * height for j, c in enumerate(columns) if layer[i, j]), fmpq(0))
+        scale = lcm(*(int(c.q) for c in rows))
+        product *= fmpz_poly([_times(c, scale) for c in rows])
+    return product
+
+
+def _combined(matrix: fmpz_mat, layers: Sequence[fmpz_mat]) -> Iterable[fmpz_mat]:
+    for k in range(len(layers)):
+        yield sum(
+            (layer * matrix[k, i] for i, layer in enumerate(layers) if matrix[k, i]),
+            fmpz_mat(layers[0].nrows(), layers[0].ncols()),
+        )
+
+
+def _substitution(degree: int, interval: Interval) -> fmpz_mat:
+    """From coefficients of powers to those over an interval: column i has (low + high s)^i (1 + s)^(degree - i)."""
+    low, high = interval
+    scale = lcm(int(low.q), int(high.q))
+    line, unit = fmpz_poly([_times(low, scale), _times(high, scale)]), fmpz_poly([scale, scale])
+    return _columns([line**i * unit ** (degree - i) for i in range(degree + 1)])
+
+
+@cache
+def _halving(degree: int) -> tuple[fmpz_mat, fmpz_mat]:
+    """For the lower half s becomes s / (2 + s), for the upper one 1 + 2 s."""
+    s, two = fmpz_poly([0, 1]), fmpz_poly([2, 1])
+    one_two, unit = fmpz_poly([1, 2]), fmpz_poly([1])
+    lower = [s**i * two ** (degree - i) for i in range(degree + 1)]
+    upper = [one_two**i * unit for i in range(degree + 1)]
+    return _columns(lower), _columns(upper)
+
+
+def _columns(polynomials: Sequence[fmpz_poly]) -> fmpz_mat:
+    size = len(polynomials)
+    found = fmpz_mat(size, size)
+    for column, p in enumerate(polynomials):
+        for row, c in enumerate(p.coeffs()):
+            found[row, column] = c
+    return found
+
+
+def _times(value: fmpq, scale: int) -> int:
+    return int(value.p) * (scale // int(value.q))

@@ -1,0 +1,159 @@
+"""What no design exceeds: by exact critical values over one parameter, or by branch and bound over one or two.
+
+Guarantee: that of `exact.ranges.width` and `exact.design.search`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import NamedTuple
+
+from flint import fmpq
+
+from ptmcad.algebra.polynomials import from_fraction, to_fraction
+from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.answer.design import BoundedBox
+from ptmcad.answer.widths import Maximum
+from ptmcad.ask.members import in_space
+from ptmcad.errors import DegenerateSliceError, ExpressionError, HypothesisError, InfiniteSolutionsError
+from ptmcad.exact.design.areas import Areas
+from ptmcad.exact.design.problem import Axes, space_of_family, space_of_slice
+from ptmcad.exact.design.search import Bounder, Lengths, Outcome, Place, Point, Wanted, search
+from ptmcad.exact.ranges.strips import strips
+from ptmcad.exact.ranges.width import largest
+from ptmcad.exact.stages import problem_of
+from ptmcad.question.config.designed import Aim, Design
+from ptmcad.question.slice import Axis
+
+Look = Callable[[Mapping[str, Fraction]], Fraction]
+"""From a design to a lower bound of the best value that is known after it was evaluated."""
+
+
+class Limits(NamedTuple):
+    """How far a proof may go.
+
+    Attributes
+    ----------
+    go_on : called with the number of boxes, the bound and the best value.
+    """
+
+    tolerance: Fraction
+    boxes: int
+    go_on: Callable[[int, float, float], bool]
+
+
+class Proof(NamedTuple):
+    """What no design exceeds.
+
+    Attributes
+    ----------
+    bound : None where there is none, for the reason given.
+    """
+
+    bound: Fraction | None
+    reason: str
+    boxes: tuple[BoundedBox, ...] = ()
+
+
+def exact_maximum(design: Design) -> tuple[Maximum, ...] | None:
+    """The widest ranges over one parameter; None for another question, or where others than these are asked for.
+
+    Raises
+    ------
+    HypothesisError
+        When the slice is degenerate or leaves the domain of the geometry.
+    """
+    if design.aim is not Aim.RANGE or len(design.over) != 1 or design.conditions:
+        return None
+    found, working = strips(design.slice({}), design.along)
+    return largest(found) if working == design.working else None
+
+
+def place_of(maximum: Maximum) -> Fraction:
+    """A simple rational number where the widest range is, or next to it."""
+    if maximum.at.exact is not None:
+        return maximum.at.exact
+    return to_fraction(simplest_between(from_fraction(maximum.at.low), from_fraction(maximum.at.high)))
+
+
+def bounder_of(design: Design, tolerance: Fraction) -> Bounder | str:
+    """What bounds the objective over boxes of designs, or why there is nothing that does."""
+    count = len(design.over)
+    if design.aim not in (Aim.RANGE, Aim.AREA):
+        return f"no bound is offered of {design.maximise}: nothing is proved of what is better elsewhere"
+    most = 2 if design.aim is Aim.RANGE else 1
+    if count > most:
+        return (
+            f"with {count} design parameters no bound is offered (for {design.aim.value} with {most} at most): nothing "
+            "is proved of what is better elsewhere"
+        )
+    try:
+        found = _bounder(design, from_fraction(tolerance))
+    except (ExpressionError, DegenerateSliceError, InfiniteSolutionsError) as error:
+        return f"there is no discriminant variety of all designs at once: {error}"
+    return found or "there is no discriminant variety of all designs at once: solutions have to be left out"
+
+
+def _bounder(design: Design, tolerance: fmpq) -> Bounder | None:
+    family = design.family
+    if family is None:  # a range over one parameter: a slice
+        slice = design.slice({})
+        space = space_of_slice(problem_of(slice), slice.axis_names.index(design.along), design.working)
+        return Lengths(space, tolerance)
+    axes = (*family.axes, family.free)
+    ranges = tuple(_interval(axis) for axis in axes)
+    along = 1 if design.aim is Aim.AREA else 0
+    found = space_of_family(*in_space(family), Axes(tuple(a.name for a in axes), ranges, along), design.working)
+    if found is None:
+        return None
+    return Areas(found, ranges[0]) if design.aim is Aim.AREA else Lengths(found, tolerance)
+
+
+def _interval(axis: Axis) -> tuple[fmpq, fmpq]:
+    return from_fraction(axis.low), from_fraction(axis.high)
+
+
+def bounded(design: Design, bounder: Bounder, look: Look, limits: Limits) -> Proof:
+    """A bound by branch and bound."""
+    names = [axis.name for axis in design.over]
+
+    def feasible(place: Place) -> bool:
+        box = {n: (to_fraction(low), to_fraction(high)) for n, (low, high) in zip(names, place, strict=True)}
+        return design.may_hold(box)
+
+    def improved(point: Point | None) -> fmpq:
+        values = {} if point is None else {n: to_fraction(v) for n, v in zip(names, point, strict=True)}
+        return from_fraction(look(values))
+
+    def check(boxes: int, bound: fmpq, best: fmpq) -> bool:
+        return limits.go_on(boxes, float(to_fraction(bound)), float(to_fraction(best)))
+
+    size = _size(design)
+    wanted = Wanted(from_fraction(limits.tolerance), from_fraction(limits.tolerance * size), limits.boxes)
+    whole = tuple(_interval(axis) for axis in design.over)
+    try:
+        outcome = search(bounder, whole, feasible, improved, wanted, check)
+    except HypothesisError as error:
+        return Proof(None, f"a bound fails: {error}")
+    return _proof(outcome)
+
+
+def _proof(outcome: Outcome) -> Proof:
+    boxes = tuple(
+        BoundedBox(tuple((to_fraction(a), to_fraction(b)) for a, b in place), to_fraction(bound))
+        for place, bound in outcome.boxes
+    )
+    number = f"{len(boxes)} boxes of designs" if len(boxes) != 1 else "one box of designs"
+    if outcome.complete:
+        return Proof(to_fraction(outcome.bound), f"by branch and bound, over {number}", boxes)
+    return Proof(to_fraction(outcome.bound), f"by branch and bound, which was stopped at {number}", boxes)
+
+
+def _size(design: Design) -> Fraction:
+    """The largest value that there can be: the window's length, or its area."""
+    axes = design.axes
+    size = Fraction(1)
+    for axis in axes:
+        size *= axis.high - axis.low
+    return size

@@ -1,0 +1,176 @@
+"""``ptmcad design``: the best design within bounds, with a proof of what no design exceeds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+
+import click
+
+from ptmcad.answer.design import BestDesign
+from ptmcad.cli.drawing import share_of
+from ptmcad.cli.formats import formats_of
+from ptmcad.cli.gathering import gathered
+from ptmcad.cli.idle import Idle, report_idle
+from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
+from ptmcad.cli.paths import out_option
+from ptmcad.cli.pictures import picture, report_written, write_result
+from ptmcad.cli.progress import ProgressBar
+from ptmcad.cli.values import files, names, settings
+from ptmcad.cli.values import formats as formats_known
+from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.question.config import file_name
+from ptmcad.question.config.designed import Design
+from ptmcad.question.config.designs import design_from_options
+
+FORMATS = ("json", "png", "svg", "pdf")
+SEED, BOXES = 1, 100_000
+_RESERVE = 0.9
+"""Of the time limit for search and proof; the rest is for what is written."""
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """The record and what changes its design, as it was typed."""
+
+    config: Path
+    maximise: str | None
+    along: str | None
+    over: tuple[str, ...]
+    stable: int | None
+    tension: bool
+    conditions: tuple[str, ...]
+    pose: str | None
+
+    def design(self) -> Design:
+        """The question.
+
+        Raises
+        ------
+        ConfigError
+            For anything wrong with the record or the options.
+        """
+        where = {"stable": self.stable, "tension": self.tension, "conditions": self.conditions}
+        return design_from_options(self.config, self.maximise, self.along, self.over, where, self.pose)
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How far the search and the proof go."""
+
+    tolerance: Fraction | None
+    seed: int
+    evaluations: int | None
+    boxes: int
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """The files to write, and where."""
+
+    out: Path
+    name: str | None
+    formats: tuple[str, ...]
+
+    def stem(self, asked: Design) -> str:
+        """The start of the files' names."""
+        return asked.name if self.name is None else file_name(self.name, "--name")
+
+
+def _formats(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[str, ...]:
+    return () if value is None else formats_of(context, parameter, value, known=FORMATS)
+
+
+@click.command("design")
+@click.argument("config", type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
+@click.option("--maximise", metavar="WHAT",
+              help="range, area, barrier, a quantity such as force:k1, or an expression.  "
+                   "[default: range]")  # fmt: skip
+@click.option("--along", metavar="NAME", shell_complete=names,
+              help="The axis along which a range lies.  [default: the first]")  # fmt: skip
+@click.option("--over", multiple=True, metavar="NAME=LO:HI", shell_complete=settings,
+              help="A design parameter with its bounds, in place of all that the record has. Repeatable.")  # fmt: skip
+@click.option("--stable", type=click.IntRange(0, 1000), metavar="N",
+              help="How many stable poses there are to be.  [default: 2]")  # fmt: skip
+@click.option("--tension", is_flag=True, help="All springs are to be in tension.")
+@click.option("--condition", "conditions", multiple=True, metavar="TEXT",
+              help="An inequality between design parameters, such as 'L1 + L2 <= 3'. Repeatable.")  # fmt: skip
+@click.option("--pose", metavar="POSE", help="Of which pose a barrier or a quantity is.  [default: stable:1]")
+@click.option("--tolerance", callback=share_of, metavar="EPS",
+              help="How far the proved bound may lie above the value, as a share of it.  [default: 1/100]")  # fmt: skip
+@click.option("--seed", type=click.IntRange(min=0), default=SEED, show_default=True, help="Of the global search.")
+@click.option("--evaluations", type=click.IntRange(min=1), metavar="N",
+              help="Designs that are evaluated before the proof, at most.  [default: by the number of "
+                   "parameters]")  # fmt: skip
+@click.option("--boxes", type=click.IntRange(min=1), default=BOXES, show_default=True, metavar="N",
+              help="Boxes of designs that the proof may take.")  # fmt: skip
+@out_option
+@click.option("--name", metavar="NAME", help="Start of the files' names.  [default: NAME-design]")
+@click.option("--format", "formats", callback=_formats, shell_complete=formats_known(FORMATS), metavar="LIST",
+              help=f"Files to write, of {', '.join(FORMATS)}.  [default: none]")  # fmt: skip
+@limit_options
+@gathered(asked=Asked, search=Search, output=Output)
+def command(*, asked: Asked, search: Search, output: Output, limits: Limits) -> int:
+    """Find the design that makes a range, an area, a barrier or an expression as large as possible.
+
+    CONFIG is a record, of whose key `design` the options override parts. A global search (differential evolution) looks
+    at designs by exact evaluations; then the value at the best one is proved, and, of a range over one or two
+    parameters and of an area over one, a bound that no design exceeds. With a limit that ends the proof early
+    (--timeout, --boxes) the bound is what is proved so far, and the exit status is 3.
+
+    \b
+    Examples:
+        ptmcad design configs/fig4.yaml --maximise range --along rho --over L2=1/3:5/3
+        ptmcad design configs/fig4.yaml --over L1=1/2:2 --over L2=1/2:2 --condition 'L1+L2<=2' --format json,png
+        ptmcad design configs/fig4.yaml --maximise area --over L1=1/2:1 --tolerance 1/10
+        ptmcad design configs/fig4.yaml --maximise barrier --pose stable:2 --over rho=1/4:2 --over L2=1/4:2
+    """
+    question = asked.design()
+    stem = output.stem(question)
+    wanted = tuple(f"{stem}.{kind}" for kind in sorted(output.formats, key=lambda kind: kind == "json"))
+    why = "no file is written, see --format"
+    report_idle((Idle("out", not wanted, why), Idle("name", not wanted, why)))
+    with held(limits):
+        if wanted:
+            check_writable(output.out, wanted)
+        with clock_stopped(limits.timeout):  # the time that the import takes is not the computation's
+            from ptmcad.ask.designs import TOLERANCE, design
+        with ProgressBar() as progress:
+            found = design(
+                question,
+                tolerance=search.tolerance or TOLERANCE,
+                seed=search.seed,
+                evaluations=search.evaluations,
+                boxes=search.boxes,
+                timeout=None if limits.timeout is None else limits.timeout * _RESERVE,
+                progress=progress,
+            )
+        click.echo(found.table())
+        if wanted:
+            _save(found, wanted, output.out)
+            report_written(output.out, wanted)
+    return 3 if found.bound is not None and found.best is not None and not found.proved else 0
+
+
+def _save(found: BestDesign, wanted: tuple[str, ...], folder: Path) -> None:
+    """Write the pictures and, last, the JSON."""
+    writers: dict[str, Writer] = {
+        name: picture(name, partial(_draw, found)) for name in wanted if not name.endswith(".json")
+    }
+    if wanted[-1].endswith(".json"):
+        text = found.to_json()
+        writers[wanted[-1]] = text_writer(text)
+        write_result(folder, writers, wanted[-1], text)
+    else:
+        write_files(folder, writers)
+
+
+def _draw(found: BestDesign, path: Path) -> None:
+    from ptmcad.show.render.backend import load_matplotlib
+
+    load_matplotlib()
+    from ptmcad.show.render.design import draw_design
+
+    draw_design(found, path)

@@ -1,0 +1,210 @@
+"""Where along a line the wanted count can occur, for all designs of a box at once.
+
+Guarantee: `Run`s hold every point of the line at which, for some design of the box off a set without interior, the
+count is the wanted one; see `refined` for the proof.
+
+Why. The line's window is cut into parts. A part on which no polynomial of the discriminant variety has a zero, for any
+design in the interior of the box, is a connected piece of the parameter space without the variety, so that all counts
+are constant there, and one exact sample tells them. Two such parts side by side are in one piece if every polynomial
+has the same sign on both: an irreducible one that vanished on all of the common face would be the face's own equation,
+and of different signs. Parts that meet a known piece, for a box inside of the one it was known for, belong to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+from flint import fmpq, fmpz
+
+from ptmcad.algebra.bernstein import Table, halves, over, sign
+from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.algebra.window import Interval
+
+Box = tuple[Interval, Interval]
+"""Ranges of the two design parameters; that of one which there is not is never looked at."""
+Signs = tuple[int, ...]
+_BITS = 64
+"""Of roots, after the binary point."""
+_SHARES = (fmpq(1, 2), fmpq(7, 16), fmpq(9, 17), fmpq(10, 19))
+"""Where samples are tried in a box, one after another."""
+
+
+class Space(NamedTuple):
+    """What is known of the mechanism over all designs.
+
+    Attributes
+    ----------
+    tables : the irreducible polynomials of the discriminant variety in the line's parameter to a power, and the design.
+    power : that power: of lines from 0 on the largest of whose multiples alone occur.
+    window : of the line's parameter, not of its power.
+    count_at : of what there is at a value of the line's parameter and a design; None where a solution is singular.
+    working : the wanted count.
+    """
+
+    tables: tuple[Table, ...]
+    power: int
+    window: Interval
+    count_at: Callable[[fmpq, tuple[fmpq, fmpq]], int | None]
+    working: int
+
+    def whole(self) -> tuple[Run, ...]:
+        """The line as one run of which nothing is known."""
+        low, high = (value**self.power for value in self.window)
+        return (Run((Part(low, high, None, None),), None, None),)
+
+    def length(self, low: fmpq, high: fmpq) -> fmpq:
+        """An upper bound for the length of a part, given by the powers of its ends; exact where the power is 1."""
+        return root_bound(high, self.power, up=True) - root_bound(low, self.power, up=False)
+
+    def least(self, low: fmpq, high: fmpq) -> fmpq:
+        """A lower bound of the same."""
+        return root_bound(high, self.power, up=False) - root_bound(low, self.power, up=True)
+
+
+class Part(NamedTuple):
+    """A part of the line, by the powers of its ends.
+
+    Attributes
+    ----------
+    signs : of the polynomials for all designs inside of the box; None where they may have zeros.
+    here : whether the count is the wanted one; None where it is not known.
+    """
+
+    low: fmpq
+    high: fmpq
+    signs: Signs | None
+    here: bool | None
+
+
+class Run(NamedTuple):
+    """A largest part of the line without a part where the count is proved to be another one.
+
+    Attributes
+    ----------
+    parts : side by side, from its lower end to its upper one.
+    left, right : the signs of the polynomials beyond its ends; None at the window's edge.
+    """
+
+    parts: tuple[Part, ...]
+    left: Signs | None
+    right: Signs | None
+
+    @property
+    def ends(self) -> tuple[fmpq, fmpq]:
+        """The powers of its ends."""
+        return self.parts[0].low, self.parts[-1].high
+
+
+def refined(space: Space, box: Box, runs: Sequence[Run], resolution: fmpq) -> tuple[Run, ...]:
+    """The runs over a box.
+
+    Parameters
+    ----------
+    runs : of a box that this one is in.
+    resolution : parts that are shorter are not cut any more.
+    """
+    return tuple(found for run in runs for found in _refined(space, box, run, resolution))
+
+
+def longest(space: Space, runs: Sequence[Run]) -> fmpq:
+    """An upper bound of the length of any interval with the wanted count, for every design."""
+    return max((space.length(*run.ends) for run in runs), default=fmpq(0))
+
+
+def measure(space: Space, runs: Sequence[Run]) -> fmpq:
+    """An upper bound of the length of all intervals with the wanted count together, for every design."""
+    return sum((space.length(*run.ends) for run in runs), fmpq(0))
+
+
+def certain(space: Space, runs: Sequence[Run]) -> fmpq:
+    """A lower bound of the length of the longest interval with the wanted count, for every design."""
+    return max((space.least(p.low, p.high) for run in runs for p in run.parts if p.here), default=fmpq(0))
+
+
+def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run]:
+    parts: list[Part] = []
+    for part in run.parts:
+        if part.here is None and (part.signs is None or len(part.signs) < len(space.tables)):
+            parts += _cut(space, box, part, resolution)
+        else:
+            parts.append(part)
+    parts = _joined(parts)
+    if run.left is not None and parts[0].signs == run.left:
+        parts[0] = parts[0]._replace(here=False)
+    if run.right is not None and parts[-1].signs == run.right:
+        parts[-1] = parts[-1]._replace(here=False)
+    parts = [_counted(space, box, part) if part.signs is not None and part.here is None else part for part in parts]
+    left, kept = run.left, list[Part]()
+    for part in parts:
+        if part.here is not False:
+            kept.append(part)
+            continue
+        if kept:
+            yield Run(tuple(kept), left, part.signs)
+        left, kept = part.signs, []
+    if kept:
+        yield Run(tuple(kept), left, run.right)
+
+
+def _cut(space: Space, box: Box, part: Part, resolution: fmpq) -> Iterator[Part]:
+    """The part in pieces that are free of the variety, or too short to be cut."""
+    place = ((part.low, part.high), *box)
+    tables = {number: over(table, place) for number, table in enumerate(space.tables)}
+    yield from _pieces(space, tables, {}, (part.low, part.high), resolution)
+
+
+def _pieces(
+    space: Space, tables: dict[int, Table], known: dict[int, int], place: Interval, resolution: fmpq
+) -> Iterator[Part]:
+    """The same, of polynomials that are not ``known`` to have a sign there."""
+    signs = {number: sign(table) for number, table in tables.items()}
+    known = known | {number: found for number, found in signs.items() if found}
+    tables = {number: table for number, table in tables.items() if number not in known}
+    low, high = place
+    if not tables:
+        yield Part(low, high, tuple(known[number] for number in range(len(known))), None)
+        return
+    if space.length(low, high) <= resolution:
+        yield Part(low, high, None, None)
+        return
+    middle = (low + high) / 2
+    cut = {number: halves(table) for number, table in tables.items()}
+    yield from _pieces(space, {n: pair[0] for n, pair in cut.items()}, known, (low, middle), resolution)
+    yield from _pieces(space, {n: pair[1] for n, pair in cut.items()}, known, (middle, high), resolution)
+
+
+def _joined(parts: Sequence[Part]) -> list[Part]:
+    """Neighbours of equal signs as one."""
+    found: list[Part] = []
+    for part in parts:
+        if found and found[-1].signs == part.signs:
+            here = part.here if found[-1].here is None else found[-1].here
+            found[-1] = Part(found[-1].low, part.high, part.signs, here)
+        else:
+            found.append(part)
+    return found
+
+
+def _counted(space: Space, box: Box, part: Part) -> Part:
+    """The part with what a sample says of its count."""
+    low, high = (root_bound(part.low, space.power, up=True), root_bound(part.high, space.power, up=False))
+    if low >= high:
+        return part
+    for share in _SHARES:
+        first, second = (a + (b - a) * share for a, b in box)
+        third = (high - low) / 3
+        found = space.count_at(simplest_between(low + third, high - third), (first, second))
+        if found is not None:
+            return part._replace(here=found == space.working)
+    return part
+
+
+def root_bound(value: fmpq, power: int, up: bool) -> fmpq:
+    """A rational bound of a root of a number that is not negative; the number itself where the power is 1."""
+    if power == 1:
+        return value
+    scaled = (value.p << (_BITS * power)) // value.q
+    found = fmpz(scaled).root(power)
+    exact = found**power * value.q == value.p << (_BITS * power)
+    return fmpq(found if exact or not up else found + 1, 1 << _BITS)

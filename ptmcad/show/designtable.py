@@ -1,0 +1,80 @@
+"""The best design as text for the terminal.
+
+Guarantee: every digit of a value is right; bounds are rounded upwards.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from ptmcad.answer.design import BestDesign
+from ptmcad.answer.words import noun
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.numerals import decimal, shortest_text
+
+DIGITS = 10
+_BOUND_DIGITS = 7
+_NOTHING = Fraction(1, 10**12)
+"""What a bound exceeds a value by, as a share of it, that is not worth a word."""
+
+
+def design_table(found: BestDesign) -> str:
+    """What was asked, the best design with its value, and what is proved, a line each."""
+    rows = [("maximise", _asked(found)), ("over", ", ".join(map(_window, found.over)))]
+    if found.conditions:
+        rows.append(("where", " and ".join(found.conditions)))
+    if found.best is None or found.value is None:
+        rows.append(("best", "none: no design that was looked at has such a value"))
+    else:
+        rows.append(("best", ", ".join(f"{name} = {shortest_text(value)}" for name, value in found.best.items())))
+        rows.append(("value", value_text(found.value) + _span(found)))
+    rows.append(("proof", _proof(found)))
+    rows.append(("searched", f"{found.evaluations} designs, seed {found.seed}"))
+    return "\n".join(f"{head:<10}{text}" for head, text in rows)
+
+
+def _asked(found: BestDesign) -> str:
+    number = f"{found.working} {'stable ' if found.model.tells_stability else ''}{noun(found.model, found.working)}"
+    if found.along is not None:
+        return f"the range of {_window(found.along)} with {number}"
+    if found.fixed:
+        return f"the area with {number} in {' x '.join(map(_window, found.fixed))}"
+    return f"{found.maximise}, where there are {number}"
+
+
+def _window(axis: object) -> str:
+    name, low, high = (getattr(axis, part) for part in ("name", "low", "high"))
+    return f"{name} in [{shortest_text(low)}, {shortest_text(high)}]"
+
+
+def _span(found: BestDesign) -> str:
+    if found.span is None or found.along is None:
+        return ""
+    low, high = map(value_text, found.span)
+    return f", {found.along.name} from {low} to {high}"
+
+
+def value_text(value: Enclosure) -> str:
+    """All digits that are known, at most ten."""
+    for digits in range(DIGITS, 1, -1):
+        if value.settles(digits):
+            return value.text(digits)
+    return f"{_signed(value.low, up=False)} to {_signed(value.high, up=True)}"
+
+
+def _proof(found: BestDesign) -> str:
+    if found.bound is None:
+        return f"of the value at this design alone; {found.reason}"
+    bound = _signed(found.bound, up=True)
+    if found.value is None or found.value.low <= 0:
+        return f"no design has more than {bound}, {found.reason}"
+    excess = found.bound / found.value.low - 1
+    if excess < _NOTHING:
+        return f"no design has more than {bound}, {found.reason}"
+    share = f"{_signed(excess * 100, up=True, digits=2)} % more"
+    words = f"no design has more than {bound}, {share}, {found.reason}"
+    return words if found.proved else f"{words}; not within {shortest_text(found.tolerance * 100)} %"
+
+
+def _signed(value: Fraction, up: bool, digits: int = _BOUND_DIGITS) -> str:
+    return f"-{decimal(-value, not up, digits)}" if value < 0 else decimal(value, up, digits)

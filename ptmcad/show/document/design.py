@@ -1,0 +1,192 @@
+"""The best design as a JSON document, docs/design.schema.json, and back.
+
+Guarantee: numbers are exact; reading what was written gives an equal `BestDesign`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+from ptmcad.answer.design import BestDesign, BoundedBox, Evaluation
+from ptmcad.errors import ConfigError
+from ptmcad.mechanism import Model, System, built_in, described, described_system, known_of, recognised
+from ptmcad.question.slice import Axis
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.numerals import fraction_of, text_of
+from ptmcad.version import __version__
+
+FORMAT = "ptmcad-design/1"
+MAX_TEXT = 10_000
+_KEYS = frozenset((
+    "format", "name", "model", "maximise", "along", "window", "over", "stable", "conditions", "parameters", "best",
+    "value", "span", "bound", "tolerance", "proved", "reason", "seed", "points", "boxes", "versions",
+))  # fmt: skip
+
+
+def write_design(found: BestDesign) -> str:
+    """The document as JSON text: an entry a line, and of designs and boxes one each."""
+    data = {
+        "format": FORMAT,
+        "name": found.name,
+        "model": _model(found.model),
+        "maximise": found.maximise,
+        "along": None if found.along is None else _axis(found.along),
+        "window": [_axis(axis) for axis in found.fixed],
+        "over": [_axis(axis) for axis in found.over],
+        "stable": found.working,
+        "conditions": list(found.conditions),
+        "parameters": dict(found.parameters),
+        "best": None if found.best is None else {name: text_of(value) for name, value in found.best.items()},
+        "value": None if found.value is None else _ends(found.value),
+        "span": None if found.span is None else [_ends(end) for end in found.span],
+        "bound": None if found.bound is None else text_of(found.bound),
+        "tolerance": text_of(found.tolerance),
+        "proved": found.proved,
+        "reason": found.reason,
+        "seed": found.seed,
+        "points": [
+            {"at": [text_of(x) for x in point.at], "value": None if point.value is None else _ends(point.value)}
+            for point in found.points
+        ],
+        "boxes": [
+            {"ranges": [[text_of(a), text_of(b)] for a, b in box.ranges], "bound": text_of(box.bound)}
+            for box in found.boxes
+        ],
+        "versions": {"ptmcad": __version__},
+    }
+    return "{\n" + ",\n".join(f"  {json.dumps(key)}: {_text(value)}" for key, value in data.items()) + "\n}\n"
+
+
+def _text(value: Any) -> str:
+    """JSON on one line, but for a list of objects."""
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        return "[\n" + ",\n".join(f"    {json.dumps(item, ensure_ascii=False)}" for item in value) + "\n  ]"
+    return json.dumps(value, ensure_ascii=False)
+
+
+def read_design(text: str) -> BestDesign:
+    """What `write_design` wrote.
+
+    Raises
+    ------
+    ValueError
+        When the text is not such a document, or contradicts itself.
+    """
+    data = json.loads(text)
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise ValueError(f"it is not of the format {FORMAT}")
+    if set(data) != _KEYS:
+        raise ValueError("it has other keys than a design")
+    try:
+        found = _design(data)
+    except (KeyError, TypeError, AttributeError, IndexError, ConfigError) as error:
+        raise ValueError(f"a part of it is missing or of another kind: {error}") from error
+    _check(found)
+    return found
+
+
+def _design(data: Mapping[str, Any]) -> BestDesign:
+    best, value, span, bound = (data[key] for key in ("best", "value", "span", "bound"))
+    return BestDesign(
+        name=_line(data["name"]),
+        model=_model_from(data["model"]),
+        maximise=_line(data["maximise"]),
+        along=None if data["along"] is None else _axis_from(data["along"]),
+        fixed=tuple(map(_axis_from, data["window"])),
+        over=tuple(map(_axis_from, data["over"])),
+        working=_whole(data["stable"]),
+        conditions=tuple(map(_line, data["conditions"])),
+        best=None if best is None else {_line(name): fraction_of(x) for name, x in best.items()},
+        value=None if value is None else _enclosure(value),
+        span=None if span is None else (_enclosure(span[0]), _enclosure(span[1])),
+        bound=None if bound is None else fraction_of(bound),
+        tolerance=fraction_of(data["tolerance"]),
+        proved=_truth(data["proved"]),
+        reason=_line(data["reason"]),
+        seed=_whole(data["seed"]),
+        points=tuple(
+            Evaluation(
+                tuple(map(fraction_of, point["at"])), None if point["value"] is None else _enclosure(point["value"])
+            )
+            for point in data["points"]
+        ),
+        boxes=tuple(
+            BoundedBox(tuple((fraction_of(a), fraction_of(b)) for a, b in box["ranges"]), fraction_of(box["bound"]))
+            for box in data["boxes"]
+        ),
+        parameters={_line(name): _line(written) for name, written in data["parameters"].items()},
+    )
+
+
+def _check(found: BestDesign) -> None:
+    """Refuse what contradicts itself."""
+    names = [axis.name for axis in found.over]
+    if (found.best is None) != (found.value is None) or (found.best is not None and list(found.best) != names):
+        raise ValueError("the best design is not one of the parameters that it is over")
+    if found.best is not None:
+        if not all(axis.low <= found.best[axis.name] <= axis.high for axis in found.over):
+            raise ValueError("the best design is not within the bounds")
+        if tuple(found.best.values()) not in {point.at for point in found.points}:
+            raise ValueError("the best design is not among those that were evaluated")
+    low = Fraction(0) if found.value is None else found.value.low
+    claimed = found.bound is not None and found.value is not None and found.bound <= (1 + found.tolerance) * low
+    if found.proved != claimed:
+        raise ValueError("what is said to be proved does not follow from the bound")
+    if found.boxes and found.bound is not None and max(box.bound for box in found.boxes) > found.bound:
+        raise ValueError("a box has a larger bound than all of them")
+    if any(len(box.ranges) != len(names) for box in found.boxes):
+        raise ValueError("a box has not as many ranges as there are parameters")
+
+
+def _model(model: Model) -> Any:
+    """The name where that says all, else the description."""
+    if not model.source or model.name in built_in():
+        return model.name
+    return {"system" if isinstance(model, System) else "mechanism": {"name": model.name, **model.source}}
+
+
+def _model_from(data: Any) -> Model:
+    if isinstance(data, str):
+        return known_of(data)
+    ((kind, description),) = data.items()
+    return described_system(description) if kind == "system" else recognised(described(description))
+
+
+def _axis(axis: Axis) -> dict[str, str]:
+    return {"name": axis.name, "low": text_of(axis.low), "high": text_of(axis.high)}
+
+
+def _axis_from(data: Any) -> Axis:
+    return Axis(_line(data["name"]), fraction_of(data["low"]), fraction_of(data["high"]))
+
+
+def _ends(value: Enclosure) -> list[str]:
+    return [text_of(value.low), text_of(value.high)]
+
+
+def _enclosure(data: Any) -> Enclosure:
+    low, high = map(fraction_of, data)
+    if low > high:
+        raise ValueError("the ends of an interval are exchanged")
+    return Enclosure(low, high)
+
+
+def _line(value: Any) -> str:
+    if not isinstance(value, str) or not value.isprintable() or len(value) > MAX_TEXT:
+        raise TypeError("expected a line of text")
+    return value
+
+
+def _whole(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or value < 0:
+        raise TypeError("expected a whole number")
+    return value
+
+
+def _truth(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise TypeError("expected true or false")
+    return value

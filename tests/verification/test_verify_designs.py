@@ -1,0 +1,78 @@
+"""Stored designs are checked by other methods, and what is wrong in one is found."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import ptmcad
+from ptmcad.answer.design import BestDesign
+from ptmcad.cli import run
+from ptmcad.text.enclosure import Enclosure
+from ptmcad.verification import verify_design
+
+BALL: dict[str, Any] = {
+    "name": "ball",
+    "system": {"unknowns": {"u": "real"}, "equations": ["u^2 - 1 + (x - b)^2 + (a - 1)^2 + (b - 1/2)^2"]},
+    "parameters": {"b": 0},
+    "axes": {"x": [-2, 4], "a": [0, 2]},
+}
+OVER = {"a": [0, 2], "b": [0, 1]}
+
+
+@pytest.fixture(scope="module")
+def found() -> BestDesign:
+    return ptmcad.design(BALL, "range", OVER, tolerance="1/5", evaluations=30)
+
+
+def test_a_true_design_passes(found: BestDesign) -> None:
+    report = verify_design(found, seed=3)
+    assert report.ok
+    assert [check.passed for check in report.checks] == [True, True, True, None]
+    assert "boxes cover the bounds" in report.checks[0].detail
+
+
+def test_a_true_design_with_conditions_passes() -> None:
+    where = {"conditions": ["a + b <= 1"]}
+    report = verify_design(ptmcad.design(BALL, "range", OVER, where=where, tolerance="1/5", evaluations=60), seed=3)
+    assert report.ok and "random designs that satisfy the conditions" in report.checks[0].detail
+
+
+def test_forgeries_are_found(found: BestDesign) -> None:
+    assert found.span is not None and found.bound is not None
+    low, high = found.span
+    step = Fraction(1, 10)
+    later = (Enclosure(low.low + step, low.high + step), Enclosure(high.low + step, high.high + step))
+    smaller = tuple(replace(box, bound=box.bound / 4) for box in found.boxes)
+    outside = replace(found.boxes[0], ranges=((Fraction(-1), Fraction(1)), (Fraction(0), Fraction(1))))
+    forged = {
+        "a box is missing": (replace(found, boxes=found.boxes[1:]), "boxes: the boxes have"),
+        "a box twice": (replace(found, boxes=(*found.boxes, found.boxes[0])), "overlap"),
+        "a box outside": (replace(found, boxes=(outside, *found.boxes[1:])), "is not within the bounds"),
+        "moved ends": (replace(found, span=later), "value: at x ="),
+        "another count": (replace(found, working=0), "value: at x ="),
+        "bounds too small": (replace(found, boxes=smaller), "bound: the design"),
+        "a bound below the value": (replace(found, bound=Fraction(1)), "bound: the best design has more"),
+    }
+    for name, (wrong, words) in forged.items():
+        violation = verify_design(wrong, seed=3).violation
+        assert violation is not None and words in violation, name
+
+
+def test_the_command_takes_designs(
+    found: BestDesign, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("design.json").write_text(found.to_json(), encoding="utf-8")
+    assert run(["verify", "design.json"]) == 0
+    assert "boxes cover the bounds" in capsys.readouterr().out
+    Path("forged.json").write_text(replace(found, boxes=found.boxes[1:]).to_json(), encoding="utf-8")
+    assert run(["verify", "forged.json"]) == 1
+    assert "violated: boxes: the boxes have" in capsys.readouterr().err
+    Path("damaged.json").write_text(found.to_json().replace('"seed"', '"sead"'), encoding="utf-8")
+    assert run(["verify", "damaged.json"]) == 2
+    assert "is damaged or not a ptmcad-design/1 file" in capsys.readouterr().err
