@@ -65,12 +65,13 @@ def draw(result, path, **how):
 sys.modules["ptmcad.show.render"] = render = types.ModuleType("ptmcad.show.render")
 render.draw = draw
 if engine != "real":
+    from fractions import Fraction
     from types import SimpleNamespace as Some
     class Result:
         plan = ()
         def __init__(self, slice, status):
             self.slice, self.status = slice, Some(value=status)
-            self.cover, self.undetermined = "a cover" if engine == "certified" else None, 0.25
+            self.cover, self.undetermined = "a cover" if engine == "certified" else None, Fraction(1, 4)
         def to_json(self, timings=True):
             return '{"status": "%s", "slice": {"count": "%s"}}' % (self.status.value, self.slice.count.value)
         def table(self):
@@ -106,7 +107,7 @@ class Campaign:
             started = time.monotonic()
             process = self.start(count, -1)
             _, errors = process.communicate(timeout=600)
-            assert (process.returncode, errors) == (0, b"")
+            assert (process.returncode, errors) == (0, b""), errors.decode()
             self.span = time.monotonic() - started
         self.check("stable")
 
