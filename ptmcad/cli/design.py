@@ -24,6 +24,7 @@ from ptmcad.process.output import Writer, check_writable, text_writer, write_fil
 from ptmcad.question.config import file_name
 from ptmcad.question.config.designed import Design
 from ptmcad.question.config.designs import design_from_options
+from ptmcad.question.examples import FIRST, SECOND
 
 FORMATS = ("json", "png", "svg", "pdf")
 SEED, BOXES = 1, 100_000
@@ -86,7 +87,7 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str | No
 @click.command("design")
 @click.argument("config", type=click.Path(path_type=Path), shell_complete=files(".yaml", ".yml"))
 @click.option("--maximise", metavar="WHAT",
-              help="range, area, barrier, a quantity such as force:k1, or an expression.  "
+              help="range, area, barrier, a quantity such as force:SPRING, or an expression.  "
                    "[default: range]")  # fmt: skip
 @click.option("--along", metavar="NAME", shell_complete=names,
               help="The axis along which a range lies.  [default: the first]")  # fmt: skip
@@ -96,7 +97,7 @@ def _formats(context: click.Context, parameter: click.Parameter, value: str | No
               help="How many stable poses there are to be.  [default: 2]")  # fmt: skip
 @click.option("--tension", is_flag=True, help="All springs are to be in tension.")
 @click.option("--condition", "conditions", multiple=True, metavar="TEXT",
-              help="An inequality between design parameters, such as 'L1 + L2 <= 3'. Repeatable.")  # fmt: skip
+              help=f"An inequality of design parameters, such as '{FIRST} + {SECOND} <= 3'. Repeatable.")  # fmt: skip
 @click.option("--pose", metavar="POSE", help="Of which pose a barrier or a quantity is.  [default: stable:1]")
 @click.option("--tolerance", callback=share_of, metavar="EPS",
               help="How far the proved bound may lie above the value, as a share of it.  [default: 1/100]")  # fmt: skip

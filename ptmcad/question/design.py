@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError
+from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.text.syntax import parse, unknown_name
 from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret, names_of
 
@@ -49,7 +50,7 @@ class Condition:
 
 
 def condition_of(text: str) -> Condition:
-    """The condition of a text such as ``L1 + L2 <= 3``.
+    """The condition of a text such as ``a + b <= 3``.
 
     Raises
     ------
@@ -58,7 +59,7 @@ def condition_of(text: str) -> Condition:
     """
     found = re.fullmatch(r"([^<>=]+)(<=|>=)([^<>=]+)", text)
     if found is None:
-        raise ExpressionError(f"{text[:60]!r} is no inequality such as L1 + L2 <= 3")
+        raise ExpressionError(f"{text[:60]!r} is no inequality such as {FIRST} + {SECOND} <= 3")
     left, right = parse(found[1].strip()), parse(found[3].strip())
     return Condition(" ".join(text.split()), (right, left) if found[2] == "<=" else (left, right))
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import ptm
 
-FIRST, SECOND, *_ = ptm().parameters
+FIRST, SECOND, THIRD, *_ = ptm().parameters
 POINT = f"{FIRST}=1,{SECOND}=3/2"
 AXES = f"{{{FIRST}: [0, 2], {SECOND}: [0, 2]}}"
 

@@ -149,6 +149,10 @@ def _decimal(mantissa: int, exponent: int, digits: int, shorten: bool) -> str:
     return whole + (f".{decimals}" if decimals else "") + suffix
 
 
+_SHOWN_BITS = 64
+"""To which a number is enclosed for its `repr`."""
+
+
 @dataclass(frozen=True, slots=True)
 class AlgebraicNumber:
     """The only real root of ``polynomial`` in [low, high].
@@ -163,7 +167,11 @@ class AlgebraicNumber:
     high: Fraction
 
     def __repr__(self) -> str:
-        return f"<AlgebraicNumber {self.text()}, of degree {self.degree}>"
+        # by so many bisections and no more: of a number that is read from a damaged file nothing has been proved yet
+        number = self.refined(max(abs(self.low), abs(self.high)) / 2**_SHOWN_BITS)
+        found = Enclosure(number.low, number.high)
+        shown = found.text(DIGITS) if found.settles(DIGITS) else "not settled by its interval"
+        return f"<AlgebraicNumber {shown}, of degree {self.degree}>"
 
     @property
     def degree(self) -> int:

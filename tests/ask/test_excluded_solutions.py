@@ -80,16 +80,15 @@ def test_an_inequality_that_is_zero_at_every_solution_leaves_nothing_to_count() 
 
 def test_check_refuses_what_the_certified_engine_refuses() -> None:
     mechanism = {
-        "parameters": {"M": {}, "F": {"kind": "force"}},
-        "unknowns": {"th": "angle", "s": "angle"},
+        "parameters": {"c": {"kind": "stiffness"}, "F": {"kind": "force"}},
+        "unknowns": dict.fromkeys(("th", "s", "t", "u"), "angle"),
         "points": {"A": [2, 0], "P": ["cos(th)", "sin(th)"]},
-        "springs": [{"between": ["A", "P"], "k": 1, "free": "1/2"}],
-        "torsion": [{"angle": "s", "k": 1}],
-        "moments": {"th": "M*cos(s)"},
+        "springs": [{"between": ["A", "P"], "k": "c", "free": "1/2"}],
+        "torsion": [{"angle": angle, "k": 1} for angle in ("s", "t", "u")],
         "loads": {"P": [0, "F"]},
     }
-    slice = slice_from({"mechanism": mechanism, "axes": {"M": [-3, 3], "F": [-3, 3]}})
-    with pytest.raises(ConfigError, match="no moment without a potential") as checked:
+    slice = slice_from({"mechanism": mechanism, "axes": {"c": [1, 3], "F": [-3, 3]}})
+    with pytest.raises(ConfigError, match="takes up to 3 unknowns") as checked:
         check(slice)
     with pytest.raises(ConfigError) as classified:
         ptmcad.classify(slice)

@@ -8,6 +8,7 @@ import inspect
 import re
 import subprocess
 import sys
+from fractions import Fraction
 from html.parser import HTMLParser
 from typing import Any
 
@@ -21,6 +22,7 @@ from ptmcad.answer.boundaries import Grid
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.text.enclosure import AlgebraicNumber
 
 SCREEN = 200
 CUBIC: dict[str, Any] = {
@@ -83,6 +85,8 @@ def every_kind(tmp_path_factory: pytest.TempPathFactory) -> list[object]:
         jobs=1,
         wanted={"areas": False},
     )
+    circle = {"unknowns": {"u": "real"}, "equations": ["u^2 - 1 + (x - a)^2 + (a - 1)^2"]}
+    designed = ptmcad.design({"system": circle, "axes": {"x": [-2, 4], "a": [0, 2]}}, "range", where={"stable": 2})
     made = results()
     poses = ptmcad.solve(rho="1", L2="3/2")
     return [
@@ -90,7 +94,7 @@ def every_kind(tmp_path_factory: pytest.TempPathFactory) -> list[object]:
         shipped("fig4").compare(shipped("fig4")), shipped("fig4").animate("rho=1/10:1/5,L2=1", "stable:1", 2), swept,
         swept[0], poses.equilibria[0].energy, ptmcad.counts_at(slice.model, rho="1", L2="3/2"), slice.count,
         shipped("fig4").locate(rho=1, L2=1), ptmcad.load(CONFIGS / "systems" / "duffing.yaml").model,
-        ptmcad.intervals(slice, "rho", {"L2": "3/2"}).changes[0].at,
+        ptmcad.intervals(slice, "rho", {"L2": "3/2"}).changes[0].at, designed,
     ]  # fmt: skip
 
 
@@ -231,3 +235,10 @@ def test_answers_about_lines_and_comparisons_are_shown(everything: list[object])
     html = by_name["Comparison"]._repr_html_()
     assert "data:image/png" in html
     assert "the same counts everywhere" in html
+
+
+def test_a_number_without_a_root_in_its_interval_is_shown_all_the_same() -> None:
+    # a damaged file may say so, and bisection would go on for ever
+    assert repr(AlgebraicNumber((-2, 0, 1), Fraction(3), Fraction(4))).startswith("<AlgebraicNumber ")
+    assert repr(AlgebraicNumber((0, 0, -1, 1), Fraction(-1, 2), Fraction(1, 2))).startswith("<AlgebraicNumber ")
+    assert "1.414213562" in repr(AlgebraicNumber((-2, 0, 1), Fraction(1), Fraction(2)))

@@ -19,6 +19,7 @@ from ptmcad.question.config.options import ranges_of
 from ptmcad.question.config.record import Record, Window, check_axis_name, number_text, read_record
 from ptmcad.question.config.resolution import axis_of, names_in_scalar, number_of
 from ptmcad.question.design import Condition, condition_of, named
+from ptmcad.question.examples import FIRST, SECOND, THIRD
 from ptmcad.question.slice import Axis
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python, read_file
@@ -26,7 +27,7 @@ from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_pytho
 KEYS = ("maximise", "along", "over", "where", "pose")
 WHERE_KEYS = ("stable", "tension", "conditions")
 MAX_PARAMETERS = 8
-EXAMPLE = "{maximise: range, along: rho, over: {L1: [1/2, 2], L2: [1/2, 2]}}"
+EXAMPLE = f"{{maximise: range, along: {THIRD}, over: {{{FIRST}: [1/2, 2], {SECOND}: [1/2, 2]}}}}"
 
 
 def load_design(path: str | Path) -> Design:
@@ -229,7 +230,7 @@ class _Reader:
         windows: dict[str, Window] = {}
         if not isinstance(node, Tree) or not 1 <= len(node.entries) <= MAX_PARAMETERS:
             with self.faults:
-                raise node.place.error("expected design parameters with their bounds, such as {L1: [1/2, 2]}")
+                raise node.place.error(f"expected design parameters with their bounds, such as {{{FIRST}: [1/2, 2]}}")
             return ()
         for name, entry in node.entries.items():
             with self.faults:
@@ -290,7 +291,7 @@ class _Reader:
         for item in node.items if isinstance(node, Sequence) else (node,):
             with self.faults:
                 if not isinstance(item, Scalar):
-                    raise item.place.error("expected an inequality such as L1 + L2 <= 3")
+                    raise item.place.error(f"expected an inequality such as {FIRST} + {SECOND} <= 3")
                 try:
                     condition = condition_of(item.text)
                     for name in condition.names:
