@@ -1,4 +1,4 @@
-"""The convenience methods of answers, entered for their classes (see `ptmcad.answer`).
+"""The methods of a region map and of what is made of one: pixels, fields, comparisons, motions.
 
 Each imports what it needs when it is called: reading a result must not load the algebra that locating a point takes.
 """
@@ -9,25 +9,15 @@ from ptmcad.answer import METHODS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from typing import Any
 
     from pandas import DataFrame
 
     from ptmcad.answer.boundaries import Boundary, Grid
-    from ptmcad.answer.changes import Changes
     from ptmcad.answer.comparison import Comparison
-    from ptmcad.answer.design import BestDesign
-    from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.field import Field
-    from ptmcad.answer.intervals import CountIntervals
     from ptmcad.answer.motion import Motion
-    from ptmcad.answer.paths import PosePaths
-    from ptmcad.answer.poses import Poses
     from ptmcad.answer.regionmap import Location, RegionMap
-    from ptmcad.answer.slicevariety import SliceVariety
-    from ptmcad.answer.sweep import Member, Sweep
-    from ptmcad.answer.widths import OperationWidths
     from ptmcad.show.widget import Explorer
 
 
@@ -259,18 +249,6 @@ def _map_repr_png(self: RegionMap) -> bytes | None:
     return picture(self, "png")
 
 
-def _poses_repr_html(self: Poses) -> str:
-    from ptmcad.show.notebook import poses_html
-
-    return poses_html(self)
-
-
-def _variety_repr_html(self: SliceVariety) -> str:
-    from ptmcad.show.notebook import text_html
-
-    return text_html(self.text())
-
-
 def _map_plot(
     self: RegionMap, ax: Any = None, style: Any = "default", *, samples: bool = False, dpi: int = 150, **options: Any
 ) -> Any:
@@ -320,231 +298,6 @@ def _map_compare(self: RegionMap, other: RegionMap) -> Comparison:
     return compare(self, other)
 
 
-def _family_table(self: FamilyMap) -> str:
-    """A line for each member, for the terminal: its value, regions, counts and areas."""
-    from ptmcad.show.familytable import family_table
-
-    return family_table(self)
-
-
-def _family_plot(
-    self: FamilyMap, style: Any = "default", *, solid: bool = False, dpi: int = 150, **options: Any
-) -> Any:
-    """The members' maps side by side, all alike, as a `Figure` of matplotlib's.
-
-    Parameters
-    ----------
-    solid : draw the maps one above the other in three dimensions, between them the surfaces at which they change.
-    style, dpi, options : as of `RegionMap.plot`.
-
-    Raises
-    ------
-    ConfigError
-        For an unknown style or option, or what does not fit into the size.
-    """
-    from ptmcad.show.render.usersettings import user_styled
-
-    made = user_styled(style, **options)
-    if solid:
-        from ptmcad.show.render.solid import solid_figure
-
-        return solid_figure(self, dpi, made)
-    from ptmcad.show.render.multiples import multiples_figure
-
-    return multiples_figure(self, dpi, made)
-
-
-def _family_repr_html(self: FamilyMap) -> str:
-    from ptmcad.show.notebook import family_html
-
-    return family_html(self)
-
-
-def _family_repr_png(self: FamilyMap) -> bytes:
-    from ptmcad.show.notebook import family_png
-
-    return family_png(self)
-
-
-def _changes_table(self: Changes) -> str:
-    """A line for each change, for the terminal: its value, how it is known, and what changes."""
-    from ptmcad.show.changestable import changes_table
-
-    return changes_table(self)
-
-
-def _changes_repr_html(self: Changes) -> str:
-    from ptmcad.show.notebook import text_html
-
-    return text_html(self.table())
-
-
-def _design_table(self: BestDesign) -> str:
-    """What was asked, the best design with its value, and what is proved, for the terminal."""
-    from ptmcad.show.designtable import design_table
-
-    return design_table(self)
-
-
-def _design_to_json(self: BestDesign) -> str:
-    """The answer as JSON text, docs/design.schema.json; the same text for the same answer."""
-    from ptmcad.show.document.design import write_design
-
-    return write_design(self)
-
-
-def _design_from_json(_cls: type[BestDesign], text: str) -> BestDesign:
-    """The answer that `to_json` wrote.
-
-    Raises
-    ------
-    ValueError
-        When the text is not such an answer.
-    """
-    from ptmcad.show.document.design import read_design
-
-    return read_design(text)
-
-
-def _design_save(self: BestDesign, path: Any) -> None:
-    """Draw the values and bounds over one or two parameters, as PNG, SVG or PDF."""
-    from pathlib import Path
-
-    from ptmcad.show.render.backend import load_matplotlib
-
-    load_matplotlib()
-    from ptmcad.show.render.design import draw_design
-
-    draw_design(self, Path(path))
-
-
-def _design_repr_html(self: BestDesign) -> str:
-    from ptmcad.show.notebook import design_html
-
-    return design_html(self)
-
-
-def _variety_text(self: SliceVariety, format: str = "text") -> str:
-    """The variety in one of the formats of `ptmcad.show.export.FORMATS`.
-
-    Raises
-    ------
-    ConfigError
-        For an unknown format.
-    """
-    from ptmcad.show.export import variety_text
-
-    return variety_text(self, format)
-
-
-def _poses_table(self: Poses, digits: int | None = None) -> str:
-    """Everything about each equilibrium as text for a terminal, with fewer digits when asked for."""
-    from ptmcad.show.posetable import table
-
-    return table(self, digits)
-
-
-def _poses_to_json(self: Poses) -> str:
-    """The poses as JSON text (docs/poses.schema.json)."""
-    from ptmcad.show.document.poses import write_poses
-
-    return write_poses(self)
-
-
-def _poses_from_json(_cls: type[Poses], text: str) -> Poses:
-    """The poses that `to_json` wrote.
-
-    Raises
-    ------
-    ValueError
-        When the text is not such a document; the message names the place.
-    """
-    from ptmcad.show.document.poses import read_poses
-
-    return read_poses(text)
-
-
-def _sweep_iter(self: Sweep) -> Iterator[Member]:
-    from ptmcad.sweeping.index import members
-
-    return members(self)
-
-
-def _sweep_getitem(self: Sweep, number: int) -> Member:
-    from ptmcad.sweeping.index import members
-
-    return next(members(self, [number]))
-
-
-def _sweep_table(self: Sweep) -> str:
-    """One screen: what has become of the members, and some of them."""
-    from ptmcad.show.sweeps.table import table
-
-    return table(self, self.__iter__)
-
-
-def _sweep_result(self: Sweep, number: int) -> RegionMap:
-    """The region map of a member.
-
-    Raises
-    ------
-    ConfigError
-        When there is none.
-    """
-    from ptmcad.sweeping.index import member_map
-
-    return member_map(self, self[number])
-
-
-def _sweep_to_csv(self: Sweep) -> str:
-    """All members as CSV, in their order: the same text however the sweep was computed."""
-    from ptmcad.show.sweeps.table import csv_text
-
-    return csv_text(self, self.__iter__)
-
-
-def _sweep_to_dataframe(self: Sweep) -> DataFrame:
-    """A row for each member as a pandas data frame, with the extra ``data``.
-
-    Raises
-    ------
-    ConfigError
-        When pandas is not installed.
-    """
-    from ptmcad.show.data import pandas_frame
-    from ptmcad.show.sweeps.table import columns, counts_in, frame_rows
-
-    names = [*columns(self, counts_in(self)), "seconds", "attempts"]
-    return pandas_frame(frame_rows(self, self.__iter__), names, ("same_as", "cells", "regions", "attempts"))
-
-
-def _intervals_repr_html(self: CountIntervals) -> str:
-    from ptmcad.show.notebook import text_html
-    from ptmcad.show.ranges.table import table
-
-    return text_html(table(self))
-
-
-def _paths_repr_html(self: PosePaths) -> str:
-    from ptmcad.show.notebook import text_html
-    from ptmcad.show.ranges.table import path_table
-
-    return text_html(path_table(self))
-
-
-def _widths_repr_html(self: OperationWidths) -> str:
-    from ptmcad.show.notebook import text_html
-    from ptmcad.show.ranges.table import width_table
-
-    return text_html(width_table(self))
-
-
-def _sweep_repr_html(self: Sweep) -> str:
-    from ptmcad.show.notebook import text_html
-
-    return text_html(repr(self))
-
-
 def _grid_repr_html(self: Grid) -> str:
     from ptmcad.show.notebook import grid_png, image_html
 
@@ -592,35 +345,6 @@ METHODS["RegionMap"] = {
     "animate": _map_animate,
     "explore": _map_explore,
 }
-METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "_repr_html_": _family_repr_html,
-                        "_repr_png_": _family_repr_png}  # fmt: skip
-METHODS["BestDesign"] = {
-    "table": _design_table,
-    "to_json": _design_to_json,
-    "from_json": classmethod(_design_from_json),
-    "save": _design_save,
-    "_repr_html_": _design_repr_html,
-}
-METHODS["Changes"] = {"table": _changes_table, "_repr_html_": _changes_repr_html}
-METHODS["SliceVariety"] = {"text": _variety_text, "_repr_html_": _variety_repr_html}
-METHODS["Poses"] = {
-    "table": _poses_table,
-    "to_json": _poses_to_json,
-    "from_json": classmethod(_poses_from_json),
-    "_repr_html_": _poses_repr_html,
-}
-METHODS["Sweep"] = {
-    "__iter__": _sweep_iter,
-    "__getitem__": _sweep_getitem,
-    "table": _sweep_table,
-    "result": _sweep_result,
-    "to_csv": _sweep_to_csv,
-    "to_dataframe": _sweep_to_dataframe,
-    "_repr_html_": _sweep_repr_html,
-}
-METHODS["CountIntervals"] = {"_repr_html_": _intervals_repr_html}
-METHODS["PosePaths"] = {"_repr_html_": _paths_repr_html}
-METHODS["OperationWidths"] = {"_repr_html_": _widths_repr_html}
 METHODS["Grid"] = {"_repr_html_": _grid_repr_html, "_repr_png_": _grid_repr_png}
 METHODS["Field"] = {"_repr_html_": _field_repr_html, "_repr_png_": _field_repr_png}
 METHODS["Comparison"] = {"_repr_html_": _comparison_repr_html}
