@@ -21,9 +21,9 @@ def settled(first: int, last: int) -> bool:
     """Whether two ends settle the digits of what lies between, by the first and the last multiple of half a unit there.
 
     The unit is that of the last digit. A multiple of half of it may be there if it is no number halfway between two
-    texts, of these digits or fewer: one with a 5 as its last digit.
+    texts: an even one.
     """
-    return first > last or (first == last and not integer_text(first * 5).rstrip("0").endswith("5"))
+    return first > last or (first == last and first % 2 == 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,15 +61,15 @@ class Enclosure:
         return float(self.center)
 
     def settles(self, digits: int = DIGITS) -> bool:
-        """Whether the enclosure determines its number rounded to ``digits`` significant digits, and to any fewer.
+        """Whether the enclosure determines its number rounded to ``digits`` significant digits.
 
-        It does when it is exact, or when it contains neither zero nor a number that lies halfway between two texts, one
-        with a 5 as its last digit. A number that is not exactly known must therefore not be one, as no irrational
-        number is.
+        It does when it is exact, or when it contains neither zero nor a number that lies halfway between two texts of
+        so many digits. A number that is not exactly known must therefore not be one, as no irrational number is.
 
         >>> near = Fraction(1, 10**30)
-        >>> Enclosure(3 - near, 3 + near).settles(), Enclosure(Fraction(5, 2) - near, Fraction(5, 2) + near).settles()
-        (True, False)
+        >>> around = Enclosure(Fraction(5, 2) - near, Fraction(5, 2) + near)
+        >>> around.settles(), around.settles(2), around.settles(1)
+        (True, True, False)
         """
         if self.low == self.high:
             return True
@@ -82,12 +82,16 @@ class Enclosure:
     def text(self, digits: int = DIGITS) -> str:
         """The number rounded to nearest, with ``digits`` significant digits.
 
-        Zeros at the end are left out only where the text is the number exactly; an exact number halfway between two
-        texts goes to the even one. Exact zero is ``0``; very small and very large numbers are written as ``1.5e-7``.
+        Of an enclosure that does not determine so few, with the fewest more that it does: of what may be 2.5 and is not
+        known exactly, no single digit is nearest. Zeros at the end are left out only where the text is the number
+        exactly; an exact number halfway between two texts goes to the even one. Exact zero is ``0``; very small and
+        very large numbers are written as ``1.5e-7``.
 
         >>> Enclosure(Fraction(1, 3), Fraction(1, 3)).text(4), Enclosure(Fraction(1, 4), Fraction(1, 4)).text()
         ('0.3333', '0.25')
-        >>> Enclosure(Fraction(1499, 1000), Fraction(1501, 1000)).text(2)
+        >>> Enclosure(Fraction(2499999, 10**6), Fraction(2500001, 10**6)).text(1)
+        '2.5'
+        >>> Enclosure(Fraction(1), Fraction(2)).text(2)
         Traceback (most recent call last):
         ...
         ValueError: the enclosure does not determine 2 digits
@@ -97,8 +101,10 @@ class Enclosure:
         ValueError
             When the enclosure is too wide; `settles` says so before.
         """
-        if not self.settles(digits):
+        settled = next((n for n in range(digits, digits + DIGITS) if self.settles(n)), None)
+        if settled is None:
             raise ValueError(f"the enclosure does not determine {digits} digits")
+        digits = settled
         if self.low == self.high == 0:
             return "0"
         value = self.center

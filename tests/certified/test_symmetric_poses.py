@@ -57,6 +57,15 @@ def test_a_pose_that_no_symmetry_explains_is_proved_by_its_gradient() -> None:
     assert (up.angles[0].exact, up.springs[0].force.exact) == (0, Fraction(9, 2))
 
 
+def test_a_cosine_that_is_a_short_decimal_by_accident_has_digits() -> None:
+    """A = (0, 2): E = (r - 1)^2/2 + (2/3) cos th with r^2 = 5 - 4 cos th is flat at r = 3/2, cos th = 11/16."""
+    short = {**PENDULUM, "points": {**PENDULUM["points"], "A": [0, 2]}}
+    poses = ptmcad.solve(model=ptmcad.Mechanism(short), digits=8, l0=1, W="2/3")
+    bent = [pose for pose in poses.equilibria if pose.stable]
+    assert [pose.nodes["P"][1].text(8) for pose in bent] == ["0.68750000"] * 2
+    assert [pose.springs[0].length.text(8) for pose in bent] == ["1.5000000"] * 2
+
+
 def test_a_jaw_with_torsion_springs_and_free_lengths() -> None:
     """Two mirrored stable poses, and four with both angles 0 or pi; checked by the gradient in doubles elsewhere."""
     poses = ptmcad.solve(model=ptmcad.Mechanism(JAW), l0="1/2", F=2)

@@ -36,8 +36,8 @@ NOT_TOLD = (
     "nearly no length there"
 )
 ZERO = (
-    "a number of an equilibrium could not be distinguished from zero, or from a short decimal that ends in 5, so that "
-    "not all of its digits are known: change a value a little, such as 3/2 to 1.5000001"
+    "a number of an equilibrium could not be distinguished from zero, or from one halfway between two texts of "
+    "the digits asked for: ask for more digits, or change a value a little, such as 3/2 to 1.5000001"
 )
 
 
