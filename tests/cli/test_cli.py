@@ -309,7 +309,14 @@ system: {unknowns: {x: real}, potential: "x^4/4 + (a + c)*x^2/2 + b*x"}
 axes: {a: [-1, 1], b: [-1, 1]}
 sweep: {c: [0, 1]}
 """
-LONG = ("bench configs", "bench --method", "stress all", "stress --random", "stress stiffness")
+LONG = (
+    "bench configs",
+    "bench --method",
+    "stress all",
+    "stress --random",
+    "stress stiffness",
+    "design configs/fig4.yaml --maximise area",
+)
 DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value length:k1", "--path", "--quantity th1")
 """In commands that the tests of README.md, of `ptmcad range`, its branches, fields and films run too."""
 
