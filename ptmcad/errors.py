@@ -127,6 +127,7 @@ def expect(value: object, kinds: type | tuple[type, ...], key: str, expected: st
 
 
 A_SLICE = "a slice, as ptmcad.load(FILE) or ptmcad.slice_from_mapping({...}) returns"
+A_RECORD = "the file of a record, or a mapping like a record"
 A_MAP = "a map, as ptmcad.classify(...) returns"
 A_MODEL = "a mechanism or a system, as ptmcad.Mechanism(...), ptmcad.System(...) or the model of a slice"
 

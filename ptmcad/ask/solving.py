@@ -4,28 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from pathlib import Path
+from typing import Any
 
 from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
 from ptmcad.errors import A_MODEL, ConfigError, expect, shown
 from ptmcad.mechanism import Mechanism, Model, ptm
 from ptmcad.process.memory import check_room, loading
-from ptmcad.question.config import point_from_mapping
-from ptmcad.question.examples import FIRST, SECOND
-from ptmcad.question.slice import have_free_lengths
+from ptmcad.question.config import point_from, point_from_mapping
+from ptmcad.question.slice import Slice, have_free_lengths
 from ptmcad.text.expressions import constant
 
 
-def solve(digits: int = DIGITS, model: Model | None = None, **parameters: object) -> Poses:
+def solve(
+    question: str | Path | Mapping[str, Any] | Slice | None = None,
+    /,
+    digits: int = DIGITS,
+    model: Model | None = None,
+    **parameters: object,
+) -> Poses:
     """All equilibria of the paper's mechanism, or solutions of another model, at a rational point.
 
     >>> poses = solve(rho="1", L2="3/2")
     >>> [pose.angles[0].text(6) for pose in poses.equilibria if pose.stable]
     ['0.812756', '-0.812756']
+    >>> record = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": "-10", "F4": "-10"}}
+    >>> len(solve(record, rho="7/10", L2="3/2").equilibria)
+    6
 
     Parameters
     ----------
+    question : a slice, the file of a record, or a mapping like one: the point is given by values of its axes.
     digits : significant digits that every number settles, 1 to `MAX_DIGITS`; more digits cost more time.
-    model : the mechanism or system; the paper's mechanism when None.
+    model : the mechanism or system where no question is given; the paper's mechanism when None.
     parameters : by the names of a problem record (of the paper's mechanism L1, L2, rho, k or k1, k2, k3, F3, F4, F3x,
         F4x, l0 or l0_1, l0_2, l0_3), with its defaults: lengths 1, stiffness 100, no load, free lengths 0. Text, int,
         Fraction, Decimal, float (its exact binary value) or one of numpy's numbers.
@@ -35,13 +46,12 @@ def solve(digits: int = DIGITS, model: Model | None = None, **parameters: object
     ConfigError
         For a name or a value that is wrong, with the name.
     """
-    if not isinstance(digits, int | float | str):
-        raise ConfigError(
-            f"expected the parameters' values by name, as in solve({FIRST}=1, {SECOND}='3/2'), and what they are of as "
-            f"model=slice.model, not an object of type {type(digits).__name__}"
-        )
     if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MAX_DIGITS:
         raise ConfigError(f"{shown(repr(digits), 60)} is not a number of digits from 1 to {MAX_DIGITS}", key="digits")
+    if question is not None:
+        if model is not None:
+            raise ConfigError("a slice or record has a model of its own: leave one out", key="model")
+        return poses_at(*point_from(question, parameters), digits)
     if model is None:
         model = ptm()
     expect(model, Model, "model", A_MODEL)

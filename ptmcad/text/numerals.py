@@ -60,24 +60,27 @@ def exactly(number: object) -> Fraction:
     """
     # numpy's truth values are indices before numpy 2
     truth = isinstance(number, bool) or getattr(getattr(number, "dtype", None), "kind", "") == "b"
-    refusal = f"{number!r} of type {type(number).__name__} is not an exact number"
     if truth or isinstance(number, type):  # a class has its numbers' methods
-        raise TypeError(refusal)
+        raise TypeError(_no_number(number))
     if isinstance(number, SupportsIndex):
         try:
             return Fraction(index(number))
         except TypeError as error:  # an array
-            raise TypeError(refusal) from error
+            raise TypeError(_no_number(number)) from error
     if isinstance(number, Rational):
         return Fraction(int(number.numerator), int(number.denominator))
     ratio = getattr(number, "as_integer_ratio", None)
     if ratio is None:
-        raise TypeError(refusal)
+        raise TypeError(_no_number(number))
     try:
         # numerator and denominator of a Fraction made from numpy's integers are such
         return Fraction(*map(int, ratio()))
     except (ValueError, OverflowError) as error:
         raise ValueError(f"{number!r} is not a number that can be computed with") from error
+
+
+def _no_number(value: object) -> str:
+    return f"{value!r} of type {type(value).__name__} is not an exact number"
 
 
 def text_of(value: Fraction | int) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -20,12 +21,30 @@ def slice_and_map() -> tuple[ptmcad.Slice, ptmcad.RegionMap]:
     return result.slice, result
 
 
+def in_itself() -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    found["axes"] = found
+    return found
+
+
+FIG4 = Path(__file__).resolve().parents[2] / "configs" / "fig4.yaml"
 CALLS: dict[str, tuple[Callable[..., Any], str]] = {
-    "solve a slice": (lambda s, r: ptmcad.solve(s), r"^expected the parameters' values by name, as in solve\(L1=1"),
-    "solve a mapping": (lambda s, r: ptmcad.solve({"rho": 1}), "not an object of type dict"),
+    "solve a slice": (lambda s, r: ptmcad.solve(s, rho=1), "^L2: is an axis of the slice and has no value"),
+    "solve a slice with other loads": (lambda s, r: ptmcad.solve(s, rho=1, L2=1, F3=1), "^F3: is no axis of the slice"),
+    "solve a mapping": (lambda s, r: ptmcad.solve({"rho": 1}), "^rho: unknown key; the keys are"),
+    "solve a record": (lambda s, r: ptmcad.solve(FIG4, rho=1), "^L2 is an axis of .*fig4.yaml and has no value"),
+    "solve a file": (lambda s, r: ptmcad.solve("none.yaml", rho=1), "^none.yaml: there is no such file"),
+    "solve a map": (lambda s, r: ptmcad.solve(r, rho=1), "^question: expected a slice.* RegionMap$"),
+    "solve two models": (lambda s, r: ptmcad.solve(s, model=SYSTEM, rho=1), "^model: a slice or record has a model"),
+    "solve a number": (lambda s, r: ptmcad.solve(30, rho=1), "^question: expected a slice.* not 30"),
     "solve for a slice": (lambda s, r: ptmcad.solve(model=s, L1=1), "^model: expected a mechanism or a system.*Slice$"),
     "solve for nothing": (lambda s, r: ptmcad.solve(model={}, L1=1), "^model: expected a mechanism"),
-    "digits": (lambda s, r: ptmcad.solve("many"), "^digits: 'many' is not a number of digits"),
+    "digits": (lambda s, r: ptmcad.solve(digits="many"), "^digits: 'many' is not a number of digits"),
+    "a number of 5000 digits": (lambda s, r: ptmcad.solve(rho=10**5000), "^rho: a number has more than 2000 digits"),
+    "data in itself": (lambda s, r: ptmcad.classify(in_itself()), "data that contains itself$"),
+    "a family of a number": (lambda s, r: ptmcad.family(3), "^question: expected the file of a record.* not 3"),
+    "a sweep of a number": (lambda s, r: ptmcad.sweep(3), "^question: expected the file of a record.* not 3"),
+    "a quantity in a sum": (lambda s, r: r.field("energy + 1"), "'energy' is a quantity of its own, and no part"),
     "locate a number": (lambda s, r: r.locate(1), "^point: expected the values of rho and L2 by name.* not 1$"),
     "locate a slice": (lambda s, r: r.locate(s), "^point: expected the values of rho and L2 by name"),
     "locate elsewhere": (lambda s, r: r.locate({"k": 1}), "needs rho and L2, not k"),

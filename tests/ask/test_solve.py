@@ -16,7 +16,7 @@ from mpmath import mpf
 from support.newton import DIGITS, Found, equilibria, improved
 from support.oracle import count
 
-from ptmcad import Enclosure, Pose, Poses, solve
+from ptmcad import Enclosure, Pose, Poses, slice_from_mapping, solve
 from ptmcad.algebra.fibre import fibre
 from ptmcad.algebra.points import points
 from ptmcad.answer.regionmap import Status
@@ -453,3 +453,15 @@ def test_exact_values_of_every_kind_are_one_point() -> None:
     first = solve(rho="0.7", L2="3/2", F3="-2*5")
     assert first == solve(rho=Fraction(7, 10), L2=Decimal("1.5"), F3=-10, k1="k", k=100, l0=0)
     assert first.parameters["rho"] == Fraction(7, 10)
+
+
+def test_a_record_a_mapping_and_its_slice_give_the_point_s_other_parameters() -> None:
+    loads = {"F3": "-10", "F4": "-10"}
+    record = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": loads}
+    wanted = solve(rho="7/10", L2="3/2", **loads)
+    for question in (record, slice_from_mapping(record)):
+        assert solve(question, rho="7/10", L2="3/2") == wanted
+    heavier = solve(record, rho="7/10", L2="3/2", F3=-20)
+    assert heavier == solve(rho="7/10", L2="3/2", F3=-20, F4=-10)
+    family = {**record, "parameters": {"F3": "F", "F4": "F"}, "free": {"F": [-40, 0]}}
+    assert solve(family, rho="7/10", L2="3/2", F=-10) == wanted

@@ -91,6 +91,8 @@ def _expression(text: str, slice: Slice) -> Valued:
         tree = parse(text)
         for name in names_of(tree):
             if name not in known:
+                if name in quantities(model):
+                    raise ConfigError(f"{name!r} is a quantity of its own, and no part of an expression", key=OPTION)
                 hint = did_you_mean(name, (*known, *quantities(model)))
                 raise ConfigError(f"{name!r} is neither an unknown nor a parameter{hint}", key=OPTION)
         with np.errstate(all="ignore"):

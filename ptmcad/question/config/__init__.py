@@ -13,33 +13,30 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import A_SLICE, ConfigError, expect
-from ptmcad.mechanism import Kind, Model, Parameter, ptm
-from ptmcad.question.config.binding import bound, member_name, settled, swept_names
+from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, expect
+from ptmcad.mechanism import Kind, Parameter
+from ptmcad.question.config.binding import bound, member_name, released_names, settled, swept_names
 from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member, member_like
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
 from ptmcad.question.config.options import Typed, ranges_of, settings_of, with_axes
-from ptmcad.question.config.parameters import unknown_parameter
+from ptmcad.question.config.points import point_from, point_from_mapping, point_from_options
 from ptmcad.question.config.record import (
     RECORD_KEYS,
     Record,
     check_axis_name,
     count_of,
     file_name,
-    number_text,
     portable_file,
     record_of,
     with_place,
 )
-from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, point_of, slice_of
+from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, slice_of
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count, Slice
-from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python, read_file
 
@@ -58,6 +55,7 @@ __all__ = [
     "make_system",
     "member_like",
     "names_in_record",
+    "point_from",
     "point_from_mapping",
     "point_from_options",
     "portable_file",
@@ -106,7 +104,7 @@ def slice_from(question: str | Path | Mapping[str, Any] | Slice) -> Slice:
     """The slice that is meant by a record's file, by a mapping like a record, or by itself."""
     if isinstance(question, Slice):
         return question
-    expect(question, (str, Path, Mapping), "slice", f"{A_SLICE}, the file of a record, or a mapping like a record")
+    expect(question, (str, Path, Mapping), "slice", f"{A_SLICE}, {A_RECORD}")
     return slice_from_mapping(question) if isinstance(question, Mapping) else load(question)
 
 
@@ -120,12 +118,8 @@ def family_from(question: str | Path | Mapping[str, Any] | Family) -> Family:
     """
     if isinstance(question, Family):
         return question
+    expect(question, (str, Path, Mapping), "question", A_RECORD)
     return checked_family(_tree_of(question) if isinstance(question, Mapping) else read_file(question))
-
-
-def _released(record: Record, free: str | None) -> set[str]:
-    """What has no value in a record and may be given one: what is free, and what is swept."""
-    return {*swept_names(record), *(() if free is None else (free,))}
 
 
 def slice_from_options(
@@ -207,7 +201,7 @@ def record_from_options(typed: Typed) -> Record:
         values = {n: value for n, value in record.values.items() if n != name}
         record = replace(record, free=(name, window), members=None, values=values, title="", reference={})
     released = None if record.free is None else record.free[0]
-    given_sets, given_ranges = settings_of(sets, record.model, _released(record, released)), ranges_of(ranges)
+    given_sets, given_ranges = settings_of(sets, record.model, released_names(record, released)), ranges_of(ranges)
     if released is not None and released in given_sets:
         number = number_of(given_sets.pop(released), f"the value of {released}")
         record = replace(bound(record, released, number), name=member_name(record, released, number))
@@ -249,80 +243,3 @@ def names_in_record(config: str | Path) -> tuple[tuple[str, ...], frozenset[str]
     record = record_of(read_file(config))
     others = [record.free[0]] if record.free is not None else []
     return tuple(record.axes), frozenset((*record.model.parameters, *others, *swept_names(record)))
-
-
-def point_from_mapping(values: Mapping[str, object], model: Model | None = None) -> dict[str, Fraction]:
-    """Every parameter of a model, by default the paper's mechanism, at a point: the given ones, and the defaults.
-
-    >>> point = point_from_mapping({"rho": "0.7", "L2": "3/2", "F3": -10})
-    >>> point["rho"], point["k3"], point["F4"]
-    (Fraction(7, 10), Fraction(100, 1), Fraction(0, 1))
-
-    Parameters
-    ----------
-    values : text (a number, or arithmetic with other parameters), int, Fraction, Decimal, float (its exact binary
-        value) or one of numpy's numbers.
-
-    Raises
-    ------
-    ConfigError
-        For anything wrong, with the parameter's name.
-    """
-    model = model or ptm()
-    given = {}
-    for name, value in values.items():
-        place = Place(name)
-        if name not in model.parameters:
-            raise ConfigError(unknown_parameter(name, model))
-        given[name] = number_text(from_python(plain(value), place))
-    return point_of(Record(model=model, values=given), {})
-
-
-def point_from_options(
-    config: str | Path | None = None, at: Mapping[str, str] | None = None, sets: Iterable[str] = ()
-) -> tuple[Model, dict[str, Fraction]]:
-    """The model and its parameters at the point of the command line's options, with or without a record under them.
-
-    Parameters
-    ----------
-    config : a YAML file, whose axes all need a value in ``at`` or ``sets``.
-    at : names of parameters, or of the record's axes, to numbers or expressions.
-    sets : texts ``NAME=VALUE``.
-
-    Raises
-    ------
-    ConfigError
-        For anything wrong, with file, line and key, or the option.
-    """
-    record = record_of(read_file(config)) if config is not None else Record()
-    released = None if record.free is None else record.free[0]
-    given = settings_of(sets, record.model, _released(record, released))
-    if released in given:
-        record = bound(record, released, number_of(given.pop(released), f"the value of {released}"))
-        released = None
-    axes: dict[str, Expression] = {}
-    if released is not None and (at is None or released not in at):
-        raise ConfigError(
-            f"{released} is free in {record.place.file} and has no value: add {released}=VALUE", key="--at"
-        )
-    for name, text in (at or {}).items():
-        scalar = Scalar(text, Place(f"--at {name[:40]}"))
-        if name in given:
-            raise scalar.place.error("is given with --set too: leave one out")
-        if name == released:
-            record = bound(record, name, number_of(scalar, f"the value of {name}"))
-            continue
-        if name in record.model.parameters or name in swept_names(record):
-            given[name] = scalar
-        elif name in record.axes:
-            axes[name] = constant(number_of(scalar, "the value of this axis"))
-        else:
-            raise scalar.place.error(unknown_parameter(name, record.model))
-    if record.sweep is not None:
-        record, given = settled(record, given)
-    for name in record.axes:
-        if name not in given and name not in axes:
-            raise ConfigError(
-                f"{name} is an axis of {record.place.file} and has no value: add {name}=VALUE", key="--at"
-            )
-    return record.model, point_of(replace(record, values={**record.values, **given}), axes)

@@ -38,6 +38,11 @@ def with_numbers(record: Record, numbers: Mapping[str, Fraction], places: Mappin
     return replace(record, values={**record.values, **values, **fixed})
 
 
+def released_names(record: Record, free: str | None) -> set[str]:
+    """What has no value in a record and may be given one: what is free, and what is swept."""
+    return {*swept_names(record), *(() if free is None else (free,))}
+
+
 def bound(record: Record, name: str, value: Fraction) -> Record:
     """The record with a number in place of its free parameter, and without answers, which are of another slice."""
     assert record.free is not None

@@ -11,7 +11,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults, expect
+from ptmcad.errors import A_RECORD, ConfigError, ExpressionError, Faults, expect
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain
@@ -69,7 +69,7 @@ def design_from(question: str | Path | Mapping[str, Any] | Design, **changes: An
         if given:
             raise ConfigError("a design that was read is complete: give the record instead", key=given[0])
         return question
-    expect(question, (str, Path, Mapping), "question", "the file of a record, or a mapping like a record")
+    expect(question, (str, Path, Mapping), "question", A_RECORD)
     if isinstance(question, Mapping):
         tree = from_python(plain(question), Place())
         assert isinstance(tree, Tree)  # of a mapping

@@ -12,7 +12,7 @@ from typing import Any
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model, System, built_in
 from ptmcad.question.config.model import model_of
-from ptmcad.text.yamltree import Place, Tree, from_python
+from ptmcad.text.yamltree import MAX_DEPTH, Place, Tree, from_python
 
 
 def make_mechanism(description: Mapping[Any, Any] | None = None, /, **entries: Any) -> Mechanism:
@@ -62,18 +62,25 @@ def plain(value: object) -> object:
     Raises
     ------
     ConfigError
-        For what depends on an undefined function of SymPy's, such as ``q(t)``.
+        For what depends on an undefined function of SymPy's, such as ``q(t)``, and for data that is nested deeper than
+        a file may be, as what contains itself is.
     """
+    return _plain(value, 0)
+
+
+def _plain(value: object, depth: int) -> object:
+    if depth > MAX_DEPTH:
+        raise ConfigError(f"more than {MAX_DEPTH} levels of nesting, or data that contains itself")
     if isinstance(value, Model):
         return value.name if value.name in built_in() else {"name": value.name, **value.source}
     if isinstance(value, Mapping):
-        return {_text(key) if _is_symbolic(key) else key: plain(entry) for key, entry in value.items()}
+        return {_text(key) if _is_symbolic(key) else key: _plain(entry, depth + 1) for key, entry in value.items()}
     if isinstance(value, list | tuple):
-        return [plain(entry) for entry in value]
+        return [_plain(entry, depth + 1) for entry in value]
     shape: Any = getattr(value, "shape", None)
     if isinstance(shape, tuple) and shape:  # an array of numpy's; SymPy's matrices give their entries row by row
         entries: Any = value
-        return [plain(entry) for entry in entries]
+        return [_plain(entry, depth + 1) for entry in entries]
     return _text(value) if _is_symbolic(value) else value
 
 

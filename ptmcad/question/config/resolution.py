@@ -188,8 +188,13 @@ def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fracti
         check_number(name, mechanism.kind(name), value, place)
         values[name] = value
     _check_shorthands_are_used(record, mechanism, set(record.values))
+    return without_shorthands(values, mechanism)
+
+
+def without_shorthands(values: Mapping[str, Fraction], mechanism: Model) -> dict[str, Fraction]:
+    """The values of what a point is told by: no shorthand, nothing idle, and free lengths only if some is not zero."""
     left_out = {*mechanism.shorthands, *mechanism.idle}  # the parameters that they stand for are there
-    if not any(values[name] for name in mechanism.free_lengths):
+    if not any(values.get(name) for name in mechanism.free_lengths):
         left_out.update(mechanism.free_lengths)
     return {name: value for name, value in values.items() if name not in left_out}
 

@@ -12,7 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ptmcad.errors import Faults
+from ptmcad.errors import A_RECORD, Faults, expect
 from ptmcad.mechanism import Model
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import plain
@@ -93,6 +93,7 @@ def sweep_from(question: str | Path | Mapping[str, Any] | Sweeping) -> Sweeping:
     """
     if isinstance(question, Sweeping):
         return question
+    expect(question, (str, Path, Mapping), "question", A_RECORD)
     if not isinstance(question, Mapping):
         return load_sweep(question)
     node = from_python(plain(question), Place())

@@ -99,7 +99,7 @@ def answer(question: Question, name: str = "case") -> Any:
     import ptmcad
 
     if isinstance(question, PointQuestion):
-        return ptmcad.solve(DIGITS, None, **question.parameters)
+        return ptmcad.solve(None, DIGITS, None, **question.parameters)
     slice = ptm_slice(name, question.axes, **question.parameters)
     if question.along:
         return ptmcad.intervals(slice, question.along, question.at)

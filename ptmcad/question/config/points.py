@@ -1,0 +1,135 @@
+"""From a problem record or slice and values, or from values alone, to a point: a model and all its parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, expect
+from ptmcad.mechanism import Model, ptm
+from ptmcad.question.config.binding import bound, released_names, settled, swept_names
+from ptmcad.question.config.objects import plain
+from ptmcad.question.config.options import settings_of
+from ptmcad.question.config.parameters import unknown_parameter
+from ptmcad.question.config.record import Record, number_text, record_of
+from ptmcad.question.config.resolution import number_of, point_of, without_shorthands
+from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.yamltree import Place, Scalar, Tree, from_python, read_file
+
+
+def point_from_mapping(values: Mapping[str, object], model: Model | None = None) -> dict[str, Fraction]:
+    """Every parameter of a model, by default the paper's mechanism, at a point: the given ones, and the defaults.
+
+    >>> point = point_from_mapping({"rho": "0.7", "L2": "3/2", "F3": -10})
+    >>> point["rho"], point["k3"], point["F4"]
+    (Fraction(7, 10), Fraction(100, 1), Fraction(0, 1))
+
+    Parameters
+    ----------
+    values : text (a number, or arithmetic with other parameters), int, Fraction, Decimal, float (its exact binary
+        value) or one of numpy's numbers.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong, with the parameter's name.
+    """
+    model = model or ptm()
+    given = {}
+    for name, value in values.items():
+        place = Place(name)
+        if name not in model.parameters:
+            raise ConfigError(unknown_parameter(name, model))
+        given[name] = number_text(from_python(plain(value), place))
+    return point_of(Record(model=model, values=given), {})
+
+
+def point_from_options(
+    config: str | Path | None = None, at: Mapping[str, str] | None = None, sets: Iterable[str] = ()
+) -> tuple[Model, dict[str, Fraction]]:
+    """The model and its parameters at the point of the command line's options, with or without a record under them.
+
+    Parameters
+    ----------
+    config : a YAML file, whose axes all need a value in ``at`` or ``sets``.
+    at : names of parameters, or of the record's axes, to numbers or expressions.
+    sets : texts ``NAME=VALUE``.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong, with file, line and key, or the option.
+    """
+    record = record_of(read_file(config)) if config is not None else Record()
+    given = {name: Scalar(text, Place(f"--at {name[:40]}")) for name, text in (at or {}).items()}
+    return _at_point(record, given, sets)
+
+
+def point_from(
+    question: str | Path | Mapping[str, Any] | Slice, values: Mapping[str, object]
+) -> tuple[Model, dict[str, Fraction]]:
+    """The model of a record or slice, and its parameters at a point.
+
+    >>> record = {"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": -10}}
+    >>> point_from(record, {"rho": "0.7", "L2": "3/2"})[1]["F3"]
+    Fraction(-10, 1)
+
+    Parameters
+    ----------
+    values : for all axes; of a record also for what else it leaves open, and for parameters in place of its own.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong, with the name.
+    """
+    given = {name: number_text(from_python(plain(value), Place(name))) for name, value in values.items()}
+    if not isinstance(question, Slice):
+        expect(question, (str, Path, Mapping), "question", f"{A_SLICE}, {A_RECORD}")
+        tree = from_python(plain(question), Place()) if isinstance(question, Mapping) else read_file(question)
+        assert isinstance(tree, Tree)  # of a mapping, or checked where it was read
+        return _at_point(record_of(tree), given, (), None)
+    names = question.axis_names
+    if further := [name for name in given if name not in names]:
+        raise ConfigError("is no axis of the slice, which has values for all else: give its record", key=further[0])
+    if missing := [name for name in names if name not in given]:
+        raise ConfigError("is an axis of the slice and has no value", key=missing[0])
+    x, y = (number_of(given[name], "the value of this axis") for name in names)
+    values_there = {name: expression.evaluate(x, y) for name, expression in question.parameters.items()}
+    return question.model, without_shorthands(values_there, question.model)
+
+
+def _at_point(
+    record: Record, at: Mapping[str, Scalar], sets: Iterable[str], option: str | None = "--at"
+) -> tuple[Model, dict[str, Fraction]]:
+    released = None if record.free is None else record.free[0]
+    given = settings_of(sets, record.model, released_names(record, released))
+    if released in given:
+        record = bound(record, released, number_of(given.pop(released), f"the value of {released}"))
+        released = None
+    axes: dict[str, Expression] = {}
+    where = record.place.file or "the record"
+    if released is not None and released not in at:
+        raise ConfigError(f"{released} is free in {where} and has no value: add {released}=VALUE", key=option)
+    for name, scalar in at.items():
+        if name in given:
+            raise scalar.place.error("is given with --set too: leave one out")
+        if name == released:
+            record = bound(record, name, number_of(scalar, f"the value of {name}"))
+            continue
+        if name in record.model.parameters or name in swept_names(record):
+            given[name] = scalar
+        elif name in record.axes:
+            axes[name] = constant(number_of(scalar, "the value of this axis"))
+        else:
+            raise scalar.place.error(unknown_parameter(name, record.model))
+    if record.sweep is not None:
+        record, given = settled(record, given)
+    for name in record.axes:
+        if name not in given and name not in axes:
+            raise ConfigError(f"{name} is an axis of {where} and has no value: add {name}=VALUE", key=option)
+    return record.model, point_of(replace(record, values={**record.values, **given}), axes)
