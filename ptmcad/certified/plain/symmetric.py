@@ -100,9 +100,25 @@ def rational_numbers(
         if length is not None:
             stretch = length - value_at(spring.free, parameters)
             found |= {f"length {n}": length, f"force {n}": value_at(spring.stiffness, parameters) * stretch}
+    for n, torsion in enumerate(mechanism.torsion):
+        cosine, sine = (_value(image.value(tree), at) for tree in torsion.deflection)
+        if cosine is not None and sine is not None:
+            found |= _of_torsion(n, cosine, sine, value_at(torsion.stiffness, parameters))
     if turns.keys() == mechanism.unknowns.keys():
         found |= _of_energy(mechanism, parameters, at)
     return {name: Enclosure(value, value) for name, value in found.items()}
+
+
+def _of_torsion(number: int, cosine: Fraction, sine: Fraction, stiffness: Fraction) -> dict[str, Fraction]:
+    """What is rational of a torsion spring, by cosine and sine of its deflection."""
+    part = f"torsion %s {number}"
+    found = {part % "cos": cosine, part % "sin": sine, part % "moment": stiffness * sine}
+    if cosine.denominator == sine.denominator == 1:
+        quarters = (_QUARTERS.index((cosine.numerator, sine.numerator)) + 1) % 4 - 1
+        found[part % "degrees"] = Fraction(90 * quarters)
+        if not quarters:
+            found[part % "deflection"] = Fraction(0)
+    return found
 
 
 def _of_energy(mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Point) -> dict[str, Fraction]:
