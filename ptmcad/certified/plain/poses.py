@@ -18,7 +18,8 @@ from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.points import PlainCounter, plain_counter
 from ptmcad.certified.plain.relaxed import Relaxed, relaxed_numbers
-from ptmcad.certified.plain.symmetric import fixed_turns, rational_numbers
+from ptmcad.certified.plain.resting import rational_point
+from ptmcad.certified.plain.symmetric import quarter_turns, rational_numbers
 from ptmcad.certified.potential import potential
 from ptmcad.certified.tape import Tape, record
 from ptmcad.mechanism import Mechanism
@@ -131,8 +132,9 @@ def _pose(
         if attempt == 1:  # some number is not settled: it may be a short one
             with ctx.workprec(bits):
                 held, boxes = (dict(zip(mechanism.unknowns, some[2:], strict=True)) for some in (box, whole))
-                turns = fixed_turns(mechanism, parameters, held, boxes)
-            found |= rational_numbers(mechanism, parameters, turns) if turns else {}
+                at = rational_point(mechanism, parameters, held, boxes)
+            turns = quarter_turns(mechanism, at)
+            found |= rational_numbers(mechanism, parameters, at) if at else {}
         with ctx.workprec(bits):
             values = run_arb(tape, box, bits)
             numbers = {name: values[int(place)] for name, place in zip(names, tape.outputs[0], strict=True)}
