@@ -219,6 +219,22 @@ def test_a_mechanism_at_rest_as_it_was_assembled_is_proved_to_be(
         assert turned(poses.equilibria[1]) == [("3.1415927", "180", "0")], "and half a turn from it"
 
 
+def test_a_mechanism_that_is_nearly_at_rest_is_not_taken_for_one_that_is() -> None:
+    """A load of 1e-90 turns the bar by as much as a stiffness of 2 + 2 2/3 lets it, which balls of 224 bits miss."""
+    record = {
+        **PENDULUM,
+        "parameters": {"l0": {"kind": "free length"}, "W": {"kind": "force"}},
+        "points": {**PENDULUM["points"], "A": ["6/5", "8/5"]},
+        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
+        "loads": {"P": ["W", 0]},
+    }
+    poses = solve(model=with_torsion(record, {"angle": "th", "k": 2, "rest": REST}), l0="1/3", W="1e-90")
+    (spring,) = next(pose for pose in poses.equilibria if pose.stable).torsion
+    # by the law of cosines |AP|^2 = 5 - 4 cos(deflection), so that |AP|'' = 2 where the spring pulls with 2/3
+    assert float(spring.deflection.center * 10**90) == pytest.approx(-0.8 / (2 + 4 / 3))
+    assert spring.moment.exact is None
+
+
 def test_documents_tell_what_torsion_springs_do_and_are_read_back() -> None:
     poses = solve(model=described(CHAIN), l0=0, W="1/7")
     text = poses.to_json()
