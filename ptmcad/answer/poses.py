@@ -33,6 +33,21 @@ class Spring:
 
 
 @dataclass(frozen=True, slots=True)
+class TorsionSpring:
+    """A torsion spring in a pose, by the ``name`` of its angle; its energy is stiffness * (1 - cos(deflection)).
+
+    ``deflection`` = angle - rest in radians, in (-pi, pi], and the same in ``degrees``, exact when rational;
+    ``moment`` = stiffness * sin(deflection), the energy's derivative: positive where it turns back what exceeds rest.
+    """
+
+    name: str
+    stiffness: Fraction
+    deflection: Enclosure
+    degrees: Enclosure
+    moment: Enclosure
+
+
+@dataclass(frozen=True, slots=True)
 class Pose:
     """One equilibrium.
 
@@ -53,6 +68,7 @@ class Pose:
     flat : whether all points of a mechanism lie on the x axis, exactly.
     admissible : whether it is stable with every spring longer than its free length, as cables demand; None when the
         springs have no free lengths.
+    torsion : the torsion springs, in the description's order.
     """
 
     angles: tuple[Enclosure, ...]
@@ -68,6 +84,7 @@ class Pose:
     flat: bool
     admissible: bool | None = None
     reals: tuple[Enclosure, ...] = ()
+    torsion: tuple[TorsionSpring, ...] = ()
 
     def __repr__(self) -> str:
         kind = {True: "stable", False: "unstable", None: "degenerate, or not told"}[self.stable]

@@ -24,6 +24,7 @@ class Potential:
     ----------
     points : coordinates, by name.
     lengths, forces : of the springs, in the description's order; a force is positive where the spring pulls.
+    deflections : cosine and sine of each torsion spring's angle less the one at rest.
     energy : of the springs, torsion springs too, minus the loads' work, and that of moments as far as it has one value.
     """
 
@@ -31,6 +32,7 @@ class Potential:
     lengths: tuple[Formula, ...]
     forces: tuple[Formula, ...]
     energy: Formula
+    deflections: tuple[tuple[Formula, Formula], ...] = ()
 
 
 def potential(mechanism: Mechanism, values: Mapping[str, Formula], unknowns: Mapping[str, Formula]) -> Potential:
@@ -52,7 +54,9 @@ def potential(mechanism: Mechanism, values: Mapping[str, Formula], unknowns: Map
     for load in mechanism.loads:
         for force, coordinate in zip((load.x, load.y), points[load.point], strict=True):
             energy = energy - evaluate(force, ring) * coordinate
-    return Potential(points, tuple(lengths), tuple(forces), energy)
+    turned = (torsion.deflection for torsion in mechanism.torsion)
+    deflections = tuple((evaluate(cosine, ring), evaluate(sine, ring)) for cosine, sine in turned)
+    return Potential(points, tuple(lengths), tuple(forces), energy, deflections)
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,10 +44,12 @@ def description(model: Model) -> str:
         window = f", usually from {parameter.window[0]} to {parameter.window[1]}" if parameter.window else ""
         lines.append(f"  {'' if n else 'parameters':<12}{name}{default}, {parameter.kind.noun}{window}")
     if isinstance(model, Mechanism):
+        from ptmcad.mechanism.joints import joints_of
         from ptmcad.show.linedrawing import approximate_text
 
         lines += ["", *(f"      {line}" for line in approximate_text(model).splitlines())]
-        lines += ["", "      # bars, . springs, o points; the pose is not an equilibrium"]
+        wound = ", @ those with torsion springs" if any(joints_of(model)) else ""
+        lines += ["", f"      # bars, . springs, o points{wound}; the pose is not an equilibrium"]
     return "\n".join(lines)
 
 

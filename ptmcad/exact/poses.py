@@ -21,7 +21,7 @@ from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.algebra.real_roots import RealRoot
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
-from ptmcad.exact.models.potential import geometry_of, system_from
+from ptmcad.exact.models.potential import deflections_of, geometry_of, system_from
 from ptmcad.exact.models.system import ParametricSystem, RationalPolynomial, polynomial_at
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.statics import PointModel, State, is_positive, pose_of, state_at
@@ -123,18 +123,35 @@ def _at_point(
     values: Mapping[str, fmpq],
     parameters: Mapping[str, Fraction],
 ) -> PointModel:
-    """The model at a point, with its places and springs where it is a mechanism."""
+    """The model at a point, with its places and springs, torsion springs too, where it is a mechanism."""
     springs: tuple[tuple[str, str, str, Fraction], ...] = ()
     nodes: dict[str, tuple[RationalPolynomial, RationalPolynomial]] = {}
+    torsion: tuple[tuple[str, Fraction], ...] = ()
+    deflections: tuple[tuple[RationalPolynomial, RationalPolynomial], ...] = ()
     if isinstance(given, Mechanism):
         springs = tuple((s.name, s.start, s.end, value_at(s.stiffness, parameters)) for s in given.springs)
         nodes = {
             name: (polynomial_at(system, x, values), polynomial_at(system, y, values))
             for name, (x, y) in geometry_of(given).nodes.items()
         }
+        torsion = tuple((t.name, value_at(t.stiffness, parameters)) for t in given.torsion)
+        deflections = tuple(
+            (polynomial_at(system, cosine, values), polynomial_at(system, sine, values))
+            for cosine, sine in deflections_of(given)
+        )
     potential = None if system.potential is None else polynomial_at(system, system.potential, values)
     angles = len(system.ring.angles)
-    return PointModel(angles, springs, nodes, potential, point.jacobian, point.inequalities, point.stability)
+    return PointModel(
+        angles,
+        springs,
+        nodes,
+        potential,
+        point.jacobian,
+        point.inequalities,
+        point.stability,
+        torsion,
+        deflections,
+    )
 
 
 def _counts(model: PointModel, state: State) -> bool:

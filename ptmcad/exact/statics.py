@@ -18,7 +18,8 @@ from flint import arb, ctx, fmpq
 
 from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.points import RealPoint, value_at
-from ptmcad.answer.poses import Pose, Spring, Vector
+from ptmcad.algebra.polynomials import from_fraction
+from ptmcad.answer.poses import Pose, Spring, TorsionSpring, Vector
 from ptmcad.exact.models.system import RationalPolynomial
 from ptmcad.exact.stiffness import Number, Stiffness, eigenvalues, square_root, stiffness_of
 from ptmcad.text.balls import ball_of
@@ -41,6 +42,8 @@ class PointModel:
     potential : None where there is none.
     jacobian : of a potential its Hessian.
     inequalities, stability : the system's.
+    torsion : name and stiffness of each torsion spring.
+    deflections : cosine and sine of their angles, each less the one at rest.
     """
 
     angles: int
@@ -50,6 +53,8 @@ class PointModel:
     jacobian: tuple[tuple[RationalPolynomial, ...], ...]
     inequalities: tuple[RationalPolynomial, ...] = ()
     stability: tuple[RationalPolynomial, ...] = ()
+    torsion: tuple[tuple[str, Fraction], ...] = ()
+    deflections: tuple[tuple[RationalPolynomial, RationalPolynomial], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +68,7 @@ class State:
     squares : the springs' lengths squared.
     energy : the potential; None where there is none.
     conditions : the values of inequalities and stability conditions.
+    deflections : cosine and sine of each torsion spring's.
     """
 
     point: RealPoint
@@ -72,6 +78,7 @@ class State:
     energy: Element | None
     stiffness: Stiffness
     conditions: tuple[Element, ...]
+    deflections: tuple[tuple[Element, Element], ...] = ()
 
     def conjugate(self, point: RealPoint) -> State:
         """The solution at another root of the same polynomial: the same residues."""
@@ -96,6 +103,7 @@ class State:
                 spread=moved_or_none(stiffness.spread),
             ),
             tuple(map(moved, self.conditions)),
+            tuple((moved(cosine), moved(sine)) for cosine, sine in self.deflections),
         )
 
 
@@ -118,7 +126,8 @@ def state_at(model: PointModel, point: RealPoint) -> State:
         raise ArithmeticError(f"a point of multiplicity {point.multiplicity} contradicts its Jacobian")
     energy = None if model.potential is None else value_at(point, model.potential)
     conditions = tuple(value_at(point, p) for p in (*model.inequalities, *model.stability))
-    return State(point, point.unknowns, nodes, tuple(squares), energy, stiffness, conditions)
+    deflections = tuple((value_at(point, cosine), value_at(point, sine)) for cosine, sine in model.deflections)
+    return State(point, point.unknowns, nodes, tuple(squares), energy, stiffness, conditions, deflections)
 
 
 def is_positive(element: Element) -> bool:
@@ -183,6 +192,11 @@ def _numbers(model: PointModel, state: State) -> Iterator[Number]:
         length = square_root(number(square))
         yield length
         yield Number(None if length.exact is None else stiffness * length.exact, length.ball * ball_of(stiffness))
+    for (_, stiffness), (cosine, sine) in zip(model.torsion, state.deflections, strict=True):
+        angle = _angle(number(cosine), number(sine))
+        yield angle
+        yield _degrees(angle, cosine)
+        yield number(sine.times(from_fraction(stiffness)))
     if state.energy is not None:
         yield number(state.energy)
         yield from eigenvalues(state.stiffness, number)
@@ -231,6 +245,9 @@ def _assembled(model: PointModel, state: State, numbers: Iterator[Enclosure]) ->
         Spring(name, start, end, stiffness, next(numbers), next(numbers))
         for name, start, end, stiffness in model.springs
     )
+    torsion = tuple(
+        TorsionSpring(name, stiffness, next(numbers), next(numbers), next(numbers)) for name, stiffness in model.torsion
+    )
     energy = None if state.energy is None else next(numbers)
     values = tuple(numbers)
     multiplicity = state.point.multiplicity
@@ -253,4 +270,5 @@ def _assembled(model: PointModel, state: State, numbers: Iterator[Enclosure]) ->
         stable=stable,
         flat=bool(state.nodes) and all(y.is_zero for _, y in state.nodes.values()),
         reals=unknowns[2 * model.angles :],
+        torsion=torsion,
     )

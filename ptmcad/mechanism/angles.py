@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError
-from ptmcad.mechanism.evaluate import FIXED_ANGLE, multiples_with_positions
+from ptmcad.mechanism.evaluate import FIXED_ANGLE, multiples, multiples_with_positions
 from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Step, Tree, names_of
 
 PI = "pi"
@@ -34,6 +34,16 @@ def split_angle(tree: Tree) -> tuple[Tree, int]:
     if parts.get("") or turns.denominator != 1:
         raise ExpressionError(FIXED_ANGLE)
     return (_without_pi(parts, positions) if PI in parts else tree), int(turns) % 4
+
+
+def angle_name(tree: Tree) -> str:
+    """A sum of multiples of angles in the shortest way, such as ``phi-2*th``; empty for the angle zero."""
+    name = ""
+    for angle, multiple in multiples(tree).items():
+        if angle and multiple:
+            sign = "-" if multiple < 0 else "+" if name else ""
+            name += sign + ("" if abs(multiple) == 1 else f"{abs(multiple)}*") + angle
+    return name
 
 
 def cosine_and_sine(angle: Tree, turns: int) -> tuple[Tree, Tree]:

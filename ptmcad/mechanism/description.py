@@ -115,15 +115,22 @@ class Moment(NamedTuple):
 class TorsionSpring(NamedTuple):
     """A spring between directions: its energy is stiffness * (1 - cos(angle - rest)).
 
+    Its moment is the energy's derivative by the angle, stiffness * sin(angle - rest): positive where it turns back an
+    angle beyond rest, as a spring's force is positive where it pulls back ends that are too far apart.
+
     Attributes
     ----------
     angle : a sum of whole multiples of unknown angles.
     rest : cosine and sine of the angle at which it is relaxed.
+    name : its angle's, and a number where another one has that.
+    at : the point at which the description draws it; empty where it does not say.
     """
 
     angle: Tree
     stiffness: Tree
     rest: tuple[Fraction, Fraction]
+    name: str = ""
+    at: str = ""
 
     @property
     def energy(self) -> Tree:
@@ -133,6 +140,16 @@ class TorsionSpring(NamedTuple):
             for value, function in zip(self.rest, ("cos", "sin"), strict=True)
         ]
         return Chain(self.stiffness, (Step("*", Chain(Number(Fraction(1)), tuple(Step("-", t) for t in turned))),))
+
+    @property
+    def deflection(self) -> tuple[Tree, Tree]:
+        """Cosine and sine of angle - rest, expanded in the same way."""
+        c, s = (Number(value) for value in self.rest)
+        cosine, sine = (Call(function, self.angle) for function in ("cos", "sin"))
+        return (
+            Chain(Chain(c, (Step("*", cosine),)), (Step("+", Chain(s, (Step("*", sine),))),)),
+            Chain(Chain(c, (Step("*", sine),)), (Step("-", Chain(s, (Step("*", cosine),))),)),
+        )
 
 
 @dataclass(frozen=True)
@@ -258,6 +275,7 @@ class Mechanism(Model):
     symmetries : substitutions of parameters and unknowns under which the energy changes by what no unknown is in.
     bodies : to the points fixed to them, for drawings.
     moments : generalised forces that need not come from a potential.
+    torsion : springs between directions, in the record's order.
     """
 
     points: Mapping[str, tuple[Tree, Tree]]

@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.mechanism.angles import angle_name
 from ptmcad.mechanism.bodies import add_bodies
 from ptmcad.mechanism.description import Load, Mechanism, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
@@ -41,7 +42,7 @@ KEYS = (
     "symmetries",
 )  # fmt: skip
 SPRING_KEYS = ("between", "k", "free")
-TORSION_KEYS = ("angle", "k", "rest")
+TORSION_KEYS = ("angle", "k", "rest", "at")
 DEFAULT_NAME = "mechanism"
 NAMED_RESTS = {
     "0": (1, 0), "pi/2": (0, 1), "pi": (-1, 0), "-pi": (-1, 0), "-pi/2": (0, -1), "3*pi/2": (0, -1),
@@ -104,7 +105,7 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
     with faults:
         bodies = add_bodies(mapping(record.get("bodies", {}), "bodies", MAX_BODIES), parts.reader, points, faults)
     bars, supports, loads = parts.bars(points), parts.supports(points), parts.loads(points)
-    moments, torsion = parts.moments(unknowns), parts.torsion()
+    moments, torsion = parts.moments(unknowns), parts.torsion(points)
     found = Mechanism(
         name,
         parameters,
@@ -225,30 +226,38 @@ class _Parts:
                 raise ConfigError(f"a free length is not negative, but this is {fields['free']}", key=f"{key}.free")
         return Spring("", start, end, stiffness, free)
 
-    def torsion(self) -> tuple[TorsionSpring, ...]:
-        found = []
+    def torsion(self, points: Mapping[str, object]) -> tuple[TorsionSpring, ...]:
+        found: dict[str, TorsionSpring] = {}
         for n, entry in enumerate(self._list("torsion"), 1):
-            key = f"torsion.{n}"
             with self.faults:
-                fields = mapping(entry, key)
-                check_keys(fields, TORSION_KEYS, key, self.faults)
-                for needed in ("angle", "k"):
-                    with self.faults:
-                        if needed not in fields:
-                            raise ConfigError("is missing", key=f"{key}.{needed}")
-                angle, turns, stiffness, rest = _ZERO, 0, _ZERO, (Fraction(1), Fraction(0))
-                with self.faults:
-                    if "angle" in fields:
-                        angle, turns = self.reader.angle(fields["angle"], f"{key}.angle")
-                with self.faults:
-                    if "k" in fields:
-                        stiffness = self.reader.tree(fields["k"], f"{key}.k")
-                with self.faults:
-                    rest = _rest(fields.get("rest", 0), f"{key}.rest")
-                for _ in range(turns):  # what is added to the angle is taken from the rest
-                    rest = (rest[1], -rest[0])
-                found.append(TorsionSpring(angle, stiffness, rest))
-        return tuple(found)
+                spring = self._torsion_spring(entry, f"torsion.{n}", points)
+                of_angle = angle_name(spring.angle)
+                name = of_angle if of_angle and of_angle not in found else f"{of_angle}#{n}"
+                found[name] = spring._replace(name=name)
+        return tuple(found.values())
+
+    def _torsion_spring(self, entry: object, key: str, points: Mapping[str, object]) -> TorsionSpring:
+        fields = mapping(entry, key)
+        check_keys(fields, TORSION_KEYS, key, self.faults)
+        for needed in ("angle", "k"):
+            with self.faults:
+                if needed not in fields:
+                    raise ConfigError("is missing", key=f"{key}.{needed}")
+        angle, turns, stiffness, rest, at = _ZERO, 0, _ZERO, (Fraction(1), Fraction(0)), ""
+        with self.faults:
+            if "angle" in fields:
+                angle, turns = self.reader.angle(fields["angle"], f"{key}.angle")
+        with self.faults:
+            if "k" in fields:
+                stiffness = self.reader.tree(fields["k"], f"{key}.k")
+        with self.faults:
+            rest = _rest(fields.get("rest", 0), f"{key}.rest")
+        with self.faults:
+            if "at" in fields:
+                at = point_name(fields["at"], f"{key}.at", points)
+        for _ in range(turns):  # what is added to the angle is taken from the rest
+            rest = (rest[1], -rest[0])
+        return TorsionSpring(angle, stiffness, rest, at=at)
 
     def loads(self, points: Mapping[str, object]) -> tuple[Load, ...]:
         found = []

@@ -1,5 +1,7 @@
 """A mechanism as a line drawing, in characters or as SVG: bars, springs, supports and the points' names.
 
+Torsion springs are drawn where their joints are known (`ptmcad.mechanism.joints`).
+
 Floating point throughout: a drawing decides nothing. The pose is any, not an equilibrium.
 """
 
@@ -13,11 +15,15 @@ from math import cos, sin
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.mechanism import Mechanism, Support
 from ptmcad.mechanism.evaluate import evaluate
+from ptmcad.mechanism.joints import joints_of
+from ptmcad.show.spiral import spirals
 from ptmcad.text.parsing import rational
 
 WIDTH, HEIGHT = 48, 15
 """Characters of a drawing in text; one is about twice as high as wide."""
 SIDE, MARGIN, TURNS = 360.0, 40.0, 8
+SPIRAL = (4.5, 13.0, 3.0)
+"""Inner and outer radius of a torsion spring, and the gap between two at one joint."""
 _ANGLES = (0.9, 2.1, 0.3, 1.6)
 """Of the pose that is drawn, in turn: no two are alike, so that bars do not hide each other."""
 _SUPPORTS = {Support.PIN: "fixed", Support.SLIDER_X: "slides along x", Support.SLIDER_Y: "slides along y"}
@@ -70,7 +76,7 @@ def approximate_places(mechanism: Mechanism) -> dict[str, Place]:
 
 
 def approximate_text(mechanism: Mechanism) -> str:
-    """The drawing in characters: bars ``#``, springs ``.``, points ``o`` with their names."""
+    """The drawing in characters: bars ``#``, springs ``.``, points ``o`` or, with torsion springs, ``@``, and names."""
     canvas = [[" "] * WIDTH for _ in range(HEIGHT)]
     at = {
         name: (round(x * (WIDTH - 6)), round((1 - y) * (HEIGHT - 1)))
@@ -80,8 +86,9 @@ def approximate_text(mechanism: Mechanism) -> str:
     for start, end, character in lines:
         for column, row in _line(at[start], at[end]):
             canvas[row][column] = character
+    wound = {joint.point for joint in joints_of(mechanism) if joint is not None}
     for name, (column, row) in at.items():
-        for k, character in enumerate(f"o{name}"[:6]):
+        for k, character in enumerate(f"{'@' if name in wound else 'o'}{name}"[:6]):
             if k == 0 or canvas[row][column + k] in " .":
                 canvas[row][column + k] = character
     return "\n".join("".join(row).rstrip() for row in canvas).strip("\n")
@@ -114,6 +121,10 @@ def approximate_svg(mechanism: Mechanism) -> str:
         parts.append(_path([at[start], at[end]], "#17365d", 5))
     for spring in mechanism.springs:
         parts.append(_path(list(_zigzag(at[spring.start], at[spring.end])), "#1f1f1f", 1))
+    joints = joints_of(mechanism)
+    for spiral in filter(None, spirals(joints, at, *SPIRAL)):
+        parts.append(_path(list(spiral), "#1f1f1f", 1))
+    wound = {joint.point for joint in joints if joint is not None}
     for name, kind in mechanism.supports.items():
         x, y = at[name]
         parts.append(
@@ -122,8 +133,10 @@ def approximate_svg(mechanism: Mechanism) -> str:
         )
     for name, (x, y) in at.items():
         parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="white" stroke="#3a3a3a"/>')
+        aside = SPIRAL[1] if name in wound else 6
         parts.append(
-            f'<text x="{x + 6:.1f}" y="{y - 6:.1f}" font-size="13" font-family="sans-serif">{escape(name)}</text>'
+            f'<text x="{x + aside:.1f}" y="{y - aside:.1f}" font-size="13" font-family="sans-serif">'
+            f"{escape(name)}</text>"
         )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{SIDE:g}" height="{SIDE:g}" viewBox="0 0 {SIDE:g} {SIDE:g}">\n'

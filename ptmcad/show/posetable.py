@@ -50,6 +50,7 @@ def table(poses: Poses, digits: int | None = None) -> str:
             "",
             *(_wrapped("units", units) if (units := _units(poses.model)) else []),
             *(_wrapped("energy", [note]) if (note := _energy_note(poses)) else []),
+            *(_wrapped("torsion", [_TORSION]) if poses.equilibria[0].torsion else []),
             *(_wrapped("tense", [_TENSE]) if poses.equilibria[0].admissible is not None else []),
         ]
     return "\n".join(lines)
@@ -64,10 +65,18 @@ def _units(mechanism: Model) -> list[str]:
     return [
         *([f"lengths and coordinates in that of {length}"] if length else []),
         *([f"forces in that of {force}"] if force else []),
-        *(["energies and the Hessian's eigenvalues in their product"] if mechanism.has_potential else []),
+        *_in_products(mechanism),
         # only of what is built in it is known where an angle is measured from
         *([f"angles between rod and base, {pivots}"] if pivots and mechanism.name in built_in() else []),
     ]
+
+
+def _in_products(mechanism: Mechanism) -> list[str]:
+    """What is measured in force times length."""
+    moments = "moments" if mechanism.torsion else ""
+    if not mechanism.has_potential:
+        return [f"{moments} in their product"] if moments else []
+    return [f"energies{moments and f', {moments}'} and the Hessian's eigenvalues in their product"]
 
 
 def _energy_note(poses: Poses) -> str:
@@ -78,6 +87,7 @@ def _energy_note(poses: Poses) -> str:
     return f"none, and {untold(model)}" if isinstance(model, Mechanism) else ""
 
 
+_TORSION = "deflection: angle - rest; moment: k sin(deflection), positive where it turns back an angle beyond rest"
 _TENSE = "stable, and every spring longer than its free length; a negative force pushes"
 
 
@@ -161,8 +171,18 @@ def _blocks(poses: Poses, digits: int) -> list[list[Column]]:
         for what in ("length", "force")
         for k, s in enumerate(found[0].springs)
     ]
+    torsion = [
+        column(f"{what} {t.name}", unit, [getattr(p.torsion[k], field) for p in found])
+        for field, what, unit in (
+            ("deflection", "deflection", "rad"), ("degrees", "deflection", "deg"), ("moment", "moment", ""),
+        )
+        for k, t in enumerate(first.torsion)
+    ]  # fmt: skip
     return [
-        block for group in (states, angles, nodes, springs) if group for block in _fitting(group, len(str(len(found))))
+        block
+        for group in (states, angles, nodes, springs, torsion)
+        if group
+        for block in _fitting(group, len(str(len(found))))
     ]
 
 

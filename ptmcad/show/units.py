@@ -5,13 +5,37 @@ Guarantee: an axis has the unit of the parameters which are a number times it, o
 
 from __future__ import annotations
 
-from ptmcad.mechanism import Kind
+from ptmcad.errors import ExpressionError
+from ptmcad.mechanism import Kind, Mechanism, Model, Parameter
 from ptmcad.mechanism.description import UnknownKind
+from ptmcad.mechanism.evaluate import multiples
 from ptmcad.question.slice import Slice
+from ptmcad.text.tree import Tree, names_of
 
-_LENGTH, _FORCE, _STIFFNESS = ("length",), ("force",), ("force", "length")
+_LENGTH, _FORCE, _STIFFNESS, _MOMENT = ("length",), ("force",), ("force", "/", "length"), ("force", "·", "length")
 _QUANTITIES = {Kind.LENGTH: _LENGTH, Kind.BASE: _LENGTH, Kind.STIFFNESS: _STIFFNESS, Kind.FORCE: _FORCE}
-"""The quantities, of which a second one divides."""
+"""The quantities, and what joins two."""
+_SIGNS = frozenset("/·")
+
+
+def _quantities_of(model: Model, parameter: Parameter) -> tuple[str, ...]:
+    """Of a parameter of one of these kinds; a stiffness that is a number times those of torsion springs is a moment."""
+    if parameter.kind is Kind.STIFFNESS and isinstance(model, Mechanism):
+        names = {parameter.name, *model.shorthands.get(parameter.name, ())}
+        turning = [t.stiffness for t in model.torsion if names & set(names_of(t.stiffness))]
+        pulling = any(names & set(names_of(spring.stiffness)) for spring in model.springs)
+        if turning and not pulling and all(map(_is_multiple, turning)):
+            return _MOMENT
+    return _QUANTITIES[parameter.kind]
+
+
+def _is_multiple(tree: Tree) -> bool:
+    """Whether an expression is a number times a name."""
+    try:
+        found = multiples(tree)
+    except ExpressionError:
+        return False
+    return len(found) == 1
 
 
 def _quantities(slice: Slice, axis: int) -> tuple[str, ...]:
@@ -21,13 +45,13 @@ def _quantities(slice: Slice, axis: int) -> tuple[str, ...]:
     for name, expression in slice.parameters.items():
         if expression.is_polynomial and [term[:2] for term in expression.numerator] == [exponents]:
             known = slice.model.parameters.get(name)
-            found |= {_QUANTITIES[known.kind]} if known is not None and known.kind in _QUANTITIES else set()
+            found |= {_quantities_of(slice.model, known)} if known is not None and known.kind in _QUANTITIES else set()
     return found.pop() if len(found) == 1 else ()
 
 
 def unit(slice: Slice, axis: int) -> str:
     """The unit of an axis, such as ``mm``, or ``length`` where the record declares none; empty when not known."""
-    return "/".join(slice.units.get(quantity, quantity) for quantity in _quantities(slice, axis))
+    return "".join(slice.units.get(part, part) for part in _quantities(slice, axis))
 
 
 def unit_of_unknown(slice: Slice, name: str) -> str:
@@ -44,9 +68,9 @@ def with_unit(name: str, unit: str) -> str:
 def area_unit(slice: Slice) -> str:
     """The unit of areas, such as ``mm²``; empty unless units are declared for both axes."""
     both = [_quantities(slice, axis) for axis in (0, 1)]
-    if not all(quantities and all(q in slice.units for q in quantities) for quantities in both):
+    if not all(quantities and all(q in slice.units for q in quantities if q not in _SIGNS) for quantities in both):
         return ""
     first, second = (unit(slice, axis) for axis in (0, 1))
     if first != second:
         return f"{first}·{second}"
-    return f"({first})²" if "/" in first else f"{first}²"
+    return f"({first})²" if _SIGNS & set(first) else f"{first}²"

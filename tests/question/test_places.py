@@ -117,6 +117,7 @@ MECHANISMS = [
     ("    - angle: phi - th", "    - angle: phi - L", 0, "torsion.1.angle", "L is not an unknown angle"),
     ("      rest: pi/2", "      rest:", 0, "torsion.1.rest", "has no value"),
     ("      rest: pi/2", "      rest: pi/3", 0, "torsion.1.rest", "none of 0, pi/2"),
+    ("      rest: pi/2", "      at: Z", 0, "torsion.1.at", "there is no point 'Z'"),
     ("    P: {weight: W}", "    P: W", 0, "loads.P", "such as [0, -W], or {weight: W}"),
     ("    P: {weight: W}", "    P: [W]", 0, "loads.P", "expected two components"),
     ("    P: {weight: W}", "    P: {wait: W}", 0, "loads.P.wait", "did you mean 'weight'?"),

@@ -87,7 +87,10 @@ MECHANISM = yaml.safe_load(starter_text("platform"))
 def test_whatever_a_description_may_say_validates_and_is_read() -> None:
     record = deepcopy(MECHANISM)
     record["mechanism"] |= {
-        "torsion": [{"angle": "phi - th", "k": 1, "rest": {"cos": "3/5", "sin": "4/5"}}, {"angle": "th", "k": "k"}],
+        "torsion": [
+            {"angle": "phi - th", "k": 1, "rest": {"cos": "3/5", "sin": "4/5"}},
+            {"angle": "th", "k": "k", "at": "P"},
+        ],
         "moments": {"th": "W/2"},
         "symmetries": [{"W": "W", "th": "th"}],
     }
@@ -104,6 +107,7 @@ def test_whatever_a_description_may_say_validates_and_is_read() -> None:
         (("mechanism", "springs", 0, "between"), ["A"]),
         (("mechanism", "bodies", "plate", "turn"), "th"),
         (("mechanism", "torsion"), [{"angle": "th", "k": 1, "rest": "pi/3"}]),
+        (("mechanism", "torsion"), [{"angle": "th", "k": 1, "at": ["P"]}]),
         (("mechanism", "loads", "Q"), {"mass": 1}),
         (("mechanism", "supports", "A"), "glue"),
         (("mechanism", "unknowns", "th"), "turn"),

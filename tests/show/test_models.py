@@ -48,6 +48,20 @@ PENDULUM: dict[str, Any] = {
     "axes": {"a": [0, 3], "W": [-4, 4]},
 }
 
+TURNED: dict[str, Any] = {
+    "name": "turned",
+    "mechanism": {
+        "parameters": {"c": {"kind": "stiffness"}, "W": {"kind": "force"}},
+        "unknowns": {"th": "angle"},
+        "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
+        "bars": [["O", "P"]],
+        "supports": {"O": "pin"},
+        "torsion": [{"angle": "th", "k": "c", "rest": "pi/2"}, {"angle": "2*th", "k": "1/9"}],
+        "loads": {"P": {"weight": "W"}},
+    },
+    "axes": {"c": ["1/10", 1], "W": [0, 2]},
+}
+
 
 def system(count: str = "total", **asked: Any) -> dict[str, Any]:
     return {"name": "s", "system": asked, "axes": {"a": [-2, 2], "b": [-2, 2]}, "count": count}
@@ -130,3 +144,26 @@ def test_the_page_draws_any_mechanism() -> None:
         for pose in cell["equilibria"]:
             cosine, sine, s = pose["at"]
             assert pose["nodes"][2] == pytest.approx([s, 0]) and pose["nodes"][3] == pytest.approx([sine, cosine])
+
+
+def test_a_page_tells_and_draws_torsion_springs() -> None:
+    """What its poses say is what exact poses say; a mechanism without such springs has no word of them."""
+    result = ptmcad.classify(TURNED)
+    data = data_of(result)
+    assert data["mechanism"]["torsion"] == [{"name": "θ", "at": [0, 1]}, {"name": "2*θ", "at": []}]
+    cell, shown = result.cells[0], data["cells"][0]
+    at = {name: cell.sample[name] for name in cell.sample.names}
+    exact = poses_at(result.slice.model, point_from_mapping(at, result.slice.model), 10)
+
+    def told(text: str) -> float:
+        return float(text.rstrip("°").replace("−", "-"))
+
+    entries = {round(told(entry["unknowns"][0]), 2): entry["torsion"] for entry in shown["equilibria"]}
+    assert len(entries) == len(exact.equilibria) > 2
+    for pose in exact.equilibria:
+        for spring, (deflection, moment) in zip(pose.torsion, entries[round(float(pose.degrees[0]), 2)], strict=True):
+            assert told(deflection) == pytest.approx(float(spring.degrees), abs=1e-4)
+            assert told(moment) == pytest.approx(float(spring.moment), abs=1e-6)
+    plain = data_of(ptmcad.classify(PENDULUM))
+    assert "torsion" not in plain["mechanism"]
+    assert not any("torsion" in pose for c in plain["cells"] for pose in c["equilibria"])

@@ -31,7 +31,7 @@ from ptmcad.show.render.figure import draw_figure, point_of
 from ptmcad.show.render.landscape import contour_levels, copies, draw_landscape, energy_of
 from ptmcad.show.render.mechanism import PALE, STRONG
 from ptmcad.show.render.poses import draw_poses, in_order, printed_number, value_text
-from ptmcad.show.render.sketch import BAR_WIDTHS, MIN_TURNS, PIN, arrow_lengths, frame_of, sketch
+from ptmcad.show.render.sketch import BAR_WIDTHS, MIN_TURNS, PIN, SPIRAL, arrow_lengths, frame_of, sketch
 from ptmcad.text.enclosure import Enclosure
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -414,3 +414,54 @@ def test_the_legend_tells_loads_apart_and_names_torsion_springs() -> None:
     )
     assert "torsion springs on θ, ph − θ; not drawn" in text
     assert "W at P, Q = 0.5,  Fy at P = −1," in text and "G = 1/3" in text and "G at" not in text
+
+
+@cache
+def jaw() -> Poses:
+    """A bar and a body on torsion springs, two of them at one joint and one at none that is known."""
+    mechanism = ptmcad.Mechanism(
+        parameters={"W": {"kind": "force"}},
+        unknowns={"th": "angle", "phi": "angle"},
+        points={"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
+        bodies={"tip": {"at": "P", "angle": "phi", "points": {"Q": [1, 0], "R": ["1/2", "1/2"]}}},
+        bars=[["O", "P"], ["P", "Q"], ["Q", "R"], ["P", "R"]],
+        supports={"O": "pin"},
+        torsion=[
+            {"angle": "phi - th", "k": 1, "rest": "pi/2"}, {"angle": "th", "k": 2, "rest": "pi/2"},
+            {"angle": "2*th", "k": "1/5"}, {"angle": "phi - 3*th", "k": "1/9", "at": "P"},
+        ],
+        loads={"Q": {"weight": "W"}},
+    )  # fmt: skip
+    return solve(model=mechanism, W="1/2")
+
+
+def test_torsion_springs_are_spirals_at_their_joints_in_every_pose() -> None:
+    """From the pin's rim outwards to a point on the arm; those of one joint lie around each other."""
+    figure = draw_poses(jaw())
+    shown = in_order(jaw())
+    scene = frame_of(shown)
+    for number, pose in enumerate(shown, 1):
+        lines = {line.get_gid(): line.get_xydata() for line in figure.axes[number - 1].lines if line.get_gid()}
+        assert {gid for gid in lines if "torsion" in gid} == {f"pose-{number}-torsion-{k}" for k in (1, 2, 4)}
+        nodes = scene.nodes(pose)
+        for k, joint, arm, least in ((1, "P", "Q", PIN), (2, "O", "P", PIN), (4, "P", "O", SPIRAL[1])):
+            line = lines[f"pose-{number}-torsion-{k}"] - np.array(nodes[joint])
+            radii = np.hypot(*line.T)
+            assert (np.diff(radii) > 0).all(), "it opens"
+            assert radii[0] > least, "clear of the pin, and of another one"
+            along = np.array(nodes[arm]) - np.array(nodes[joint])
+            assert line[-1] == pytest.approx(along / np.hypot(*along) * radii[-1]), "its end is on the arm"
+
+
+def test_labels_keep_clear_of_torsion_springs() -> None:
+    scene, shown = frame_of(jaw().equilibria), in_order(jaw())
+    for pose in shown:
+        seen = sketch(jaw().model, pose, scene, arrow_lengths(jaw()))  # type: ignore[arg-type]
+        turns = [stroke for line in seen.spirals if line is not None for stroke in polyline(line, 0.5)]
+        assert not any(crosses(stroke, placed.box) for placed in seen.labels for stroke in turns)
+
+
+def test_the_legend_says_where_torsion_springs_are() -> None:
+    text = " ".join(t.get_text() for t in draw_poses(jaw()).texts).replace("\N{NO-BREAK SPACE}", " ")
+    assert "torsion springs on φ − θ at P, θ at O, φ − 3*θ at P" in text
+    assert "torsion spring on 2*θ; not drawn" in text

@@ -487,3 +487,44 @@ def test_a_landscape_under_a_moment_is_level_at_the_equilibria(one: Browser, tmp
         # a grid's point is at most half a step away, and second derivatives are below 5; the moments are 1 / 5 and more
         assert all(abs(rise) / (2 * step) < 5 * step for rise in rises[:2]) and abs(rises[2]) < 1e-3
     assert one.complaints() == []
+
+
+def test_torsion_springs_are_drawn_at_their_joints_and_told_in_numbers(one: Browser, tmp_path: Path) -> None:
+    record = {
+        "name": "bent",
+        "mechanism": {
+            "parameters": {"c": {"kind": "stiffness"}, "W": {"kind": "force"}},
+            "unknowns": {"th": "angle"},
+            "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
+            "bars": [["O", "P"]],
+            "torsion": [{"angle": "th", "k": "c", "rest": "pi/2"}, {"angle": "2*th", "k": "1/9"}],
+            "loads": {"P": {"weight": "W"}},
+        },
+        "axes": {"c": ["1/10", 1], "W": [0, 2]},
+    }
+    result = ptmcad.classify(record)
+    path = tmp_path / "bent.html"
+    path.write_text(page(result), encoding="utf-8")
+    one.size(1200, 900)
+    one.open(path)
+    one.run("choose(0, false)")
+    found = one.run(
+        "(() => { const box = (part) => part.getBoundingClientRect();"
+        " const middle = ({ left, top, width, height }) => [left + width / 2, top + height / 2];"
+        " return [...document.querySelectorAll('#poses .pose')].map((pose) =>"
+        " [...pose.querySelectorAll('.torsion')].map((part) => {"
+        " const [here, frame] = [box(part), box(pose.querySelector('svg'))];"
+        " const [[x, y], [u, v]] = [here, box(pose.querySelector('.node'))].map(middle);"
+        " const inside = here.top >= frame.top && here.left >= frame.left && here.right <= frame.right"
+        " && here.bottom <= frame.bottom;"
+        " return { away: Math.hypot(x - u, y - v) / here.width, inside }; })) })()"
+    )
+    assert len(found) == result.cells[0].total
+    for springs in found:
+        assert len(springs) == 1, "the joint of the other one is not known"
+        assert springs[0]["away"] < 0.15 and springs[0]["inside"]
+    text = one.run("document.querySelector('#poses').textContent")
+    assert "spirals: torsion springs on θ at O; torsion springs on 2*θ are not drawn" in text
+    assert "deflection θmoment θdeflection 2*θmoment 2*θ" in text
+    assert one.complaints() == []
+    one.picture("torsion.png")

@@ -49,6 +49,28 @@ def test_derived_units(axes: dict[str, list[int]], units: dict[str, str], expect
     assert (unit(slice, 0), unit(slice, 1), area_unit(slice)) == expected
 
 
+@pytest.mark.parametrize(
+    ("stiffness", "spring", "expected"),
+    [("2*c", "k", "N·mm"), ("c", "k", "N·mm"), ("c*L^2", "k", "N/mm"), ("c", "c", "N/mm")],
+)
+def test_a_torsion_springs_stiffness_is_a_moment(stiffness: str, spring: str, expected: str) -> None:
+    """Unless a length makes one of it, or a spring between points has it, too."""
+    record = {
+        "mechanism": {
+            "parameters": {"L": {"kind": "length"}, **{name: {"kind": "stiffness", "default": 1} for name in "kc"}},
+            "unknowns": {"th": "angle"},
+            "points": {"A": [0, 3], "P": ["L*cos(th)", "L*sin(th)"]},
+            "springs": [{"between": ["A", "P"], "k": spring}, {"between": ["A", "P"], "k": "k/9"}],
+            "torsion": [{"angle": "th", "k": stiffness}],
+        },
+        "axes": {"L": [1, 2], "c": [1, 2]},
+        "units": {"length": "mm", "force": "N"},
+    }
+    slice = slice_from(record)
+    assert (unit(slice, 0), unit(slice, 1)) == ("mm", expected)
+    assert area_unit(slice) == f"mm·{expected}"
+
+
 def test_stored_results_keep_units_and_match_the_schemas() -> None:
     result = ptmcad.classify(RECORD)
     text = result.to_json()

@@ -11,14 +11,15 @@ from fractions import Fraction
 
 from flint import acb_mat, arb, arb_mat, ctx
 
-from ptmcad.answer.poses import Pose, Poses, Spring
+from ptmcad.answer.poses import Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.points import PlainCounter, plain_counter
-from ptmcad.certified.plain.relaxed import relaxed_numbers
-from ptmcad.certified.plain.symmetric import fixed_turns, rational_numbers
+from ptmcad.certified.plain.relaxed import Relaxed, relaxed_numbers
+from ptmcad.certified.plain.resting import rational_point
+from ptmcad.certified.plain.symmetric import quarter_turns, rational_numbers
 from ptmcad.certified.potential import potential
 from ptmcad.certified.tape import Tape, record
 from ptmcad.mechanism import Mechanism
@@ -99,6 +100,9 @@ def _tape(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[Tap
     found |= {f"{name} {n}": coordinate for name, pair in at.points.items() for n, coordinate in enumerate(pair)}
     found |= {f"length {n}": length for n, length in enumerate(at.lengths)}
     found |= {f"force {n}": force for n, force in enumerate(at.forces)}
+    for n, (spring, (cosine, sine)) in enumerate(zip(mechanism.torsion, at.deflections, strict=True)):
+        moment = value_at(spring.stiffness, parameters) * sine
+        found |= {f"torsion cos {n}": cosine, f"torsion sin {n}": sine, f"torsion moment {n}": moment}
     if not mechanism.has_potential:
         return record([list(found.values()), []]), tuple(found)
     found["energy"] = at.energy
@@ -128,8 +132,9 @@ def _pose(
         if attempt == 1:  # some number is not settled: it may be a short one
             with ctx.workprec(bits):
                 held, boxes = (dict(zip(mechanism.unknowns, some[2:], strict=True)) for some in (box, whole))
-                turns = fixed_turns(mechanism, parameters, held, boxes)
-            found |= rational_numbers(mechanism, parameters, turns) if turns else {}
+                at = rational_point(mechanism, parameters, held, boxes)
+            turns = quarter_turns(mechanism, at)
+            found |= rational_numbers(mechanism, parameters, at) if at else {}
         with ctx.workprec(bits):
             values = run_arb(tape, box, bits)
             numbers = {name: values[int(place)] for name, place in zip(names, tape.outputs[0], strict=True)}
@@ -138,6 +143,8 @@ def _pose(
                 if angle in turns:
                     radians = arb.pi() * turns[angle] / 2
                 numbers |= {angle: radians, f"degrees {angle}": radians * 180 / arb.pi()}
+            for n in range(len(mechanism.torsion)):
+                numbers |= _deflection(found, n, numbers.pop(f"torsion cos {n}"), numbers.pop(f"torsion sin {n}"))
             size = len(mechanism.unknowns) if mechanism.has_potential else 0
             entries = arb_mat(size, size, [values[int(place)] for place in tape.outputs[1]])
             numbers |= {f"eigenvalue {n}": value for n, value in enumerate(_eigenvalues(entries))}
@@ -148,13 +155,33 @@ def _pose(
                 if settled is not None:
                     found[name] = settled
         if attempt == 1:
-            unsettled = [n for n in range(len(mechanism.springs)) if f"force {n}" not in found]
-            found |= relaxed_numbers(mechanism, parameters, unsettled, (whole, box), bits)
+            relaxed = Relaxed(
+                tuple(n for n in range(len(mechanism.springs)) if f"force {n}" not in found),
+                tuple(n for n in range(len(mechanism.torsion)) if f"torsion moment {n}" not in found),
+            )
+            found |= relaxed_numbers(mechanism, parameters, relaxed, (whole, box), bits)
         if found.keys() >= numbers.keys() and (last in found or not mechanism.has_potential):
             index = solution.signs.count("-") if mechanism.has_potential else None
             return assembled(mechanism, parameters, found, index), bits
         bits *= 2
     return None, bits // 2
+
+
+def _deflection(found: Mapping[str, Enclosure], number: int, cosine: arb, sine: arb) -> dict[str, arb]:
+    """A torsion spring's deflection in radians and degrees; exact balls where it is known to be none.
+
+    Parameters
+    ----------
+    found : has the cosine or the sine, where it is known to be zero.
+    """
+    quarters = None
+    for part, other, turns in (("sin", cosine, (0, 2)), ("cos", sine, (1, -1))):
+        known = found.get(f"torsion {part} {number}")
+        if known is not None and known.exact == 0 and not other.contains(0):
+            quarters = turns[0 if other > 0 else 1]
+    radians = arb.atan2(sine, cosine) if quarters is None else arb.pi() * quarters / 2
+    degrees = radians * 180 / arb.pi() if quarters is None else arb(90 * quarters)
+    return {f"torsion deflection {number}": radians, f"torsion degrees {number}": degrees}
 
 
 def _eigenvalues(matrix: arb_mat) -> list[arb]:
@@ -193,6 +220,14 @@ def assembled(
         )
         for n, spring in enumerate(mechanism.springs)
     )
+    torsion = tuple(
+        TorsionSpring(
+            spring.name,
+            value_at(spring.stiffness, parameters),
+            *(at[f"torsion {what} {n}"] for what in ("deflection", "degrees", "moment")),
+        )
+        for n, spring in enumerate(mechanism.torsion)
+    )
     size = 0 if index is None else len(mechanism.unknowns)
     eigenvalues = tuple(at[f"eigenvalue {n}"] for n in range(size))
     if index is not None and sum(value.high < 0 for value in eigenvalues) != index:
@@ -211,4 +246,5 @@ def assembled(
         flat=flat,
         admissible=None if index is None else index == 0 and all(spring.force.low > 0 for spring in springs),
         reals=tuple(at[f"real {name}"] for name in mechanism.reals),
+        torsion=torsion,
     )

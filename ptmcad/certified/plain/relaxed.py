@@ -1,9 +1,12 @@
 """Springs that are proved to have exactly their free lengths at an equilibrium, so that their forces are exactly zero.
 
-Guarantee: exact. Let S be some springs and R the energy of all the rest. Where |d_s|^2 = l0_s^2 for all s in S and the
-slopes of R vanish, all slopes of the energy do: each is that of R plus multiples of the |d_s| - l0_s. If these
-equations, without those that vanish identically, are as many as the unknowns, interval Newton can prove that they have
-a zero in a box; if the box holds one equilibrium only, that is the zero.
+And torsion springs that are proved to be at rest there, or half a turn from it, so that their moments are.
+
+Guarantee: exact. Let S be some springs, T some torsion springs and R the energy of all the rest. Where |d_s|^2 = l0_s^2
+for all s in S, sin(deflection) = 0 for all in T and the slopes of R vanish, all slopes of the energy do: each is that
+of R plus multiples of the |d_s| - l0_s and of the sines. If these equations, without those that vanish identically, are
+as many as the unknowns, interval Newton can prove that they have a zero in a box; if the box holds one equilibrium
+only, that is the zero.
 
 Balls alone would never tell such a force from its neighbours. The lemma is that of interval Newton as in
 `ptmcad.certified.arb_isolation`.
@@ -11,17 +14,20 @@ Balls alone would never tell such a force from its neighbours. The lemma is that
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
+from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.arb_isolation import Box, newton
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.potential import potential
 from ptmcad.certified.system import system
+from ptmcad.certified.tape import record
 from ptmcad.mechanism import Mechanism
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.work import split_moments
@@ -29,18 +35,26 @@ from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.tree import names_of
 
 
+class Relaxed(NamedTuple):
+    """The numbers, in the description, of springs and torsion springs of which it is asked whether they are relaxed."""
+
+    springs: tuple[int, ...]
+    torsion: tuple[int, ...]
+
+
 def relaxed_numbers(
     mechanism: Mechanism,
     parameters: Mapping[str, Fraction],
-    springs: Collection[int],
+    relaxed: Relaxed,
     boxes: tuple[Box, Box],
     precision: int,
 ) -> dict[str, Enclosure]:
-    """The lengths and forces of these springs, if all are proved to be relaxed, and the energy if it is rational then.
+    """The numbers of these springs, if all are proved to be relaxed, and the energy if it is rational then.
+
+    Lengths and forces of springs, sines and moments of torsion springs.
 
     Parameters
     ----------
-    springs : their numbers in the description.
     boxes : one that holds no other equilibrium, and a narrower one around the equilibrium.
     precision : in bits.
 
@@ -48,19 +62,26 @@ def relaxed_numbers(
     -------
     By name, as exact enclosures; nothing where there is no proof.
     """
-    free = {n: value_at(mechanism.springs[n].free, parameters) for n in springs}
-    if not free or not all(value > 0 for value in free.values()) or _has_steady_moment(mechanism, parameters):
+    free = {n: value_at(mechanism.springs[n].free, parameters) for n in relaxed.springs}
+    if (
+        not (free or relaxed.torsion)
+        or not all(value > 0 for value in free.values())
+        or _has_steady_moment(mechanism, parameters)
+    ):
         return {}
     graph = Graph()
     unknowns = {name: graph.variable(number) for number, name in enumerate(mechanism.unknowns, FIRST)}
     values = {name: graph.constant(value) for name, value in parameters.items()}
     others = tuple(spring for n, spring in enumerate(mechanism.springs) if n not in free)
-    rest = potential(replace(mechanism, springs=others), values, unknowns)
+    bent = tuple(torsion for n, torsion in enumerate(mechanism.torsion) if n not in relaxed.torsion)
+    rest = potential(replace(mechanism, springs=others, torsion=bent), values, unknowns)
     equations = [graph.derivative(rest.energy, v.variable) for v in unknowns.values()]
     equations = [slope for slope in equations if slope.value != 0]
     for n, value in free.items():
         (x0, y0), (x1, y1) = (rest.points[end] for end in (mechanism.springs[n].start, mechanism.springs[n].end))
         equations.append((x1 - x0).squared() + (y1 - y0).squared() - value**2)
+    deflections = potential(mechanism, values, unknowns).deflections if relaxed.torsion else ()
+    equations += [deflections[n][1] for n in relaxed.torsion]
     if len(equations) != len(unknowns):
         return {}
     whole, narrow = boxes
@@ -74,8 +95,17 @@ def relaxed_numbers(
     if step is None or not step[1]:
         return {}
     found = {f"length {n}": value for n, value in free.items()} | {f"force {n}": Fraction(0) for n in free}
-    if rest.energy.value is not None:
-        found["energy"] = rest.energy.value
+    energy = rest.energy.value
+    if relaxed.torsion:
+        tape = record([[deflections[n][0] for n in relaxed.torsion]])
+        cosines = run_arb(tape, narrow, precision)
+        for n, place in zip(relaxed.torsion, tape.outputs[0], strict=True):
+            cosine = Fraction(1 if cosines[int(place)] > 0 else -1)
+            found |= {f"torsion cos {n}": cosine, f"torsion sin {n}": Fraction(0), f"torsion moment {n}": Fraction(0)}
+            if energy is not None:
+                energy += value_at(mechanism.torsion[n].stiffness, parameters) * (1 - cosine)
+    if energy is not None:
+        found["energy"] = energy
     return {name: Enclosure(value, value) for name, value in found.items()}
 
 

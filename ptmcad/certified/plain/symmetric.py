@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 Point = dict[str, Fraction]
 """Rational values by name: reals, and cosines and sines as ``cos NAME`` and ``sin NAME``."""
-_QUARTERS = ((1, 0), (0, 1), (-1, 0), (0, -1))
+QUARTERS = ((1, 0), (0, 1), (-1, 0), (0, -1))
+"""Cosine and sine of the multiples of a quarter turn."""
 
 
 def fixed_turns(
@@ -62,32 +63,43 @@ def _is_equilibrium(mechanism: Mechanism, parameters: Mapping[str, Fraction], tu
     """Whether these values of all unknowns are proved to be those of an equilibrium, which the boxes hold."""
     if turns.keys() != mechanism.unknowns.keys() or mechanism.moments:
         return False
-    jet = rational_energy(mechanism, parameters, _point(mechanism, turns))
+    jet = rational_energy(mechanism, parameters, point_of(mechanism, turns))
     return jet is not None and not any(jet.gradient)
 
 
-def _point(mechanism: Mechanism, turns: Mapping[str, int]) -> Point:
+def point_of(mechanism: Mechanism, turns: Mapping[str, int]) -> Point:
     """The values of fixed unknowns."""
     at: Point = {}
     for name, n in turns.items():
         if name in mechanism.angles:
-            at |= {f"cos {name}": Fraction(_QUARTERS[n % 4][0]), f"sin {name}": Fraction(_QUARTERS[n % 4][1])}
+            at |= {f"cos {name}": Fraction(QUARTERS[n % 4][0]), f"sin {name}": Fraction(QUARTERS[n % 4][1])}
         else:
             at[name] = Fraction(0)
     return at
 
 
-def rational_numbers(
-    mechanism: Mechanism, parameters: Mapping[str, Fraction], turns: Mapping[str, int]
-) -> dict[str, Enclosure]:
+def quarter_turns(mechanism: Mechanism, at: Point) -> dict[str, int]:
+    """The angles that are quarter turns, from -1 to 2."""
+    found = {}
+    for name in mechanism.angles:
+        if f"cos {name}" in at and (quarters := _quarters(at[f"cos {name}"], at[f"sin {name}"])) is not None:
+            found[name] = quarters
+    return found
+
+
+def _quarters(cosine: Fraction, sine: Fraction) -> int | None:
+    """The quarter turns, from -1 to 2, of a direction; None of one that is not along an axis."""
+    if not cosine.denominator == sine.denominator == 1:
+        return None
+    return (QUARTERS.index((cosine.numerator, sine.numerator)) + 1) % 4 - 1
+
+
+def rational_numbers(mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Point) -> dict[str, Enclosure]:
     """Those numbers of an equilibrium that are rational by these fixed unknowns, by name, as exact enclosures."""
-    at = _point(mechanism, turns)
     found = {name: value for name, value in at.items() if " " in name}
-    for name, n in turns.items():
-        if name in mechanism.angles:
-            found |= {f"degrees {name}": Fraction(90 * n)} | ({name: Fraction(0)} if n == 0 else {})
-        else:
-            found[f"real {name}"] = Fraction(0)
+    found |= {f"real {name}": at[name] for name in mechanism.reals if name in at}
+    for name, n in quarter_turns(mechanism, at).items():
+        found |= {f"degrees {name}": Fraction(90 * n)} | ({name: Fraction(0)} if n == 0 else {})
     image = MirrorImage(parameters)
     for name, pair in mechanism.points.items():
         for n, tree in enumerate(pair):
@@ -100,9 +112,25 @@ def rational_numbers(
         if length is not None:
             stretch = length - value_at(spring.free, parameters)
             found |= {f"length {n}": length, f"force {n}": value_at(spring.stiffness, parameters) * stretch}
-    if turns.keys() == mechanism.unknowns.keys():
+    for n, torsion in enumerate(mechanism.torsion):
+        cosine, sine = (_value(image.value(tree), at) for tree in torsion.deflection)
+        if cosine is not None and sine is not None:
+            found |= _of_torsion(n, cosine, sine, value_at(torsion.stiffness, parameters))
+    if len(at) == len(mechanism.angles) + len(mechanism.unknowns):
         found |= _of_energy(mechanism, parameters, at)
     return {name: Enclosure(value, value) for name, value in found.items()}
+
+
+def _of_torsion(number: int, cosine: Fraction, sine: Fraction, stiffness: Fraction) -> dict[str, Fraction]:
+    """What is rational of a torsion spring, by cosine and sine of its deflection."""
+    part = f"torsion %s {number}"
+    found = {part % "cos": cosine, part % "sin": sine, part % "moment": stiffness * sine}
+    quarters = _quarters(cosine, sine)
+    if quarters is not None:
+        found[part % "degrees"] = Fraction(90 * quarters)
+        if not quarters:
+            found[part % "deflection"] = Fraction(0)
+    return found
 
 
 def _of_energy(mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Point) -> dict[str, Fraction]:

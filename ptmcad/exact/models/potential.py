@@ -77,6 +77,17 @@ def squared_lengths(mechanism: Mechanism) -> tuple[TrigonometricPolynomial, ...]
     return tuple(geometry.ring.reduce(_squared(geometry, s.start, s.end)) for s in mechanism.springs)
 
 
+def deflections_of(mechanism: Mechanism) -> tuple[Vector, ...]:
+    """Cosine and sine of each torsion spring's angle less the one at rest, reduced."""
+    ring = geometry_of(mechanism).ring
+    within = _Evaluation(ring)
+
+    def reduced(tree: Tree) -> TrigonometricPolynomial:
+        return ring.reduce(evaluate(tree, within))
+
+    return tuple((reduced(cosine), reduced(sine)) for cosine, sine in (t.deflection for t in mechanism.torsion))
+
+
 def potential(mechanism: Mechanism) -> TrigonometricPolynomial:
     """Elastic energy of the springs minus the work of the loads; for ``ptm`` this is (1) of Wenger & Chablat.
 

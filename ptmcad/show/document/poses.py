@@ -14,8 +14,9 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TypeVar
 
-from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring
+from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Status
+from ptmcad.mechanism import Mechanism
 from ptmcad.show.document import codec
 from ptmcad.show.document.codec import NATURAL, TEXT, TRUTH, Codec, line, listed, optional, record
 from ptmcad.show.document.model import MODEL, either
@@ -26,6 +27,8 @@ FORMAT = "ptmcad-poses/1"
 MAX_TEXT = 2_000_000
 MAX_NAME = 40
 MAX_REMARK = 300
+MAX_ANGLE = 600
+"""Characters of the name of a sum of angles."""
 
 T = TypeVar("T")
 
@@ -57,9 +60,11 @@ def read_poses(text: str) -> Poses:
 
 
 def _check_lengths(found: Poses, document: Node) -> None:
-    """Refuse poses that have not as many unknowns as their model."""
+    """Refuse poses that have not as many unknowns, or torsion springs, as their model."""
     angles, reals = len(found.model.angles), len(found.model.reals)
     wanted = {"angles": angles, "degrees": angles, "cosines_sines": 2 * angles, "reals": reals}
+    if any(pose.torsion for pose in found.equilibria):  # documents of earlier versions have none
+        wanted["torsion"] = len(found.model.torsion) if isinstance(found.model, Mechanism) else 0
     for place in document.mapping()["equilibria"].each(lambda node: node):
         entries = place.mapping()
         for key, length in wanted.items():
@@ -107,6 +112,14 @@ def _pose(digits: int, free: bool) -> Codec[Pose]:
         force=number,
         **({"free_length": _EXACT} if free else {}),
     )
+    torsion = record(
+        TorsionSpring,
+        name=line(MAX_ANGLE),
+        stiffness=_EXACT,
+        deflection=number,
+        degrees=number,
+        moment=number,
+    )
     return record(
         Pose,
         stable=optional(TRUTH),
@@ -120,6 +133,7 @@ def _pose(digits: int, free: bool) -> Codec[Pose]:
         reals=codec.Key(listed(number), default=()),
         nodes=_by_name(pair),
         springs=listed(spring),
+        torsion=codec.Key(listed(torsion), default=()),
         energy=optional(number),
         eigenvalues=listed(number),
     )

@@ -82,6 +82,11 @@ def symbol(name: str) -> str:
     return _GREEK.get(name, name)
 
 
+def with_symbols(text: str) -> str:
+    """A sum with the symbols of its names and true minus signs, such as ``φ − 2*θ``."""
+    return re.sub(r"[A-Za-z]\w*", lambda match: symbol(match[0]), text).replace("-", "−")
+
+
 def axis_name(slice: Slice, axis: int) -> str:
     """An axis's symbol with its unit, such as ``L₂ (length)``."""
     return with_unit(symbol(slice.axes[axis].name), unit(slice, axis))

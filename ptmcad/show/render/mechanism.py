@@ -1,4 +1,4 @@
-"""The drawing of a mechanism's sketch: thick bars, zigzag springs, supports, sliders, arrows for loads.
+"""The drawing of a mechanism's sketch: thick bars, zigzag springs, spirals, supports, sliders, arrows for loads.
 
 Guarantee: stable poses are strong and others pale, which grey prints and colour-blind eyes see as well: each colour's
 pale version is lighter by at least 25 units of CIE L*, and two bars differ in width and lightness.
@@ -24,10 +24,12 @@ from ptmcad.show.render.sketch import (
     MANY_BARS,
     PIN,
     SLIDER,
+    SPIRAL,
     SUPPORT,
     Sketch,
     bar_width,
 )
+from ptmcad.show.spiral import spiral
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +58,10 @@ def draw_sketch(axes: Any, seen: Sketch, style: Style, prefix: str) -> None:
     for number, points in enumerate(seen.springs):
         _line(axes, points, "white", 2.4, "", 4)
         _line(axes, points, style.spring, 0.95, f"{prefix}spring-{number + 1}", 5)
+    for number, wound in enumerate(seen.spirals):
+        if wound is not None:
+            _line(axes, wound, "white", 2.2, "", 4)
+            _line(axes, wound, style.spring, 0.95, f"{prefix}torsion-{number + 1}", 5)
     for name, (x, y) in seen.nodes.items():
         axes.add_artist(_pin(x, y, style.base, f"{prefix}node-{name}"))
     for arrow in seen.arrows:
@@ -141,6 +147,26 @@ def spring_mark() -> Mark:
         u = ends + (SWATCH - 2 * ends) * (k + 0.5) / (2 * turns)
         points.append((u, AMPLITUDE / 72 * (1 if k % 2 else -1)))
     return _line_mark([*points, (SWATCH - ends, 0.0), (SWATCH, 0.0)], STRONG.spring, 0.95)
+
+
+_SMALL_SPIRAL = 6.8
+"""In points, the radius in a legend, whose lines are no higher."""
+
+
+def torsion_mark() -> Mark:
+    """A torsion spring in a legend, about its joint."""
+
+    def mark(figure: Any, left: float, middle: float) -> None:
+        x, y = (left + SWATCH / 2) * 72, middle * 72
+        line = Line2D(
+            *zip(*spiral((x, y), (x + 1, y), SPIRAL[0] - 0.4, _SMALL_SPIRAL), strict=True), color=STRONG.spring,
+            linewidth=0.95, solid_capstyle="round", solid_joinstyle="round",
+        )  # fmt: skip
+        for artist in (line, _pin(x, y, STRONG.base)):
+            artist.set_transform(_points(figure))
+            figure.add_artist(artist)
+
+    return mark
 
 
 def _line_mark(points: Sequence[Position], colour: str, width: float) -> Mark:

@@ -8,7 +8,6 @@ Not guaranteed: anything that only the picture shows. It is drawn in floating po
 
 from __future__ import annotations
 
-import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -21,16 +20,17 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.words import counted, kind_name, noun, of_what, untold
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model, Support
+from ptmcad.mechanism.joints import joints_of
 from ptmcad.question.slice import merged
 from ptmcad.show.drawable import no_drawing
-from ptmcad.show.render.axes import symbol
+from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.legend import INK, Entry, draw_legend, height
-from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark
+from ptmcad.show.render.mechanism import PALE, STRONG, bar_mark, draw_sketch, spring_mark, symbol_mark, torsion_mark
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import LONGEST_ARROW, SHORTEST_ARROW, Frame, Scene, arrow_lengths, frame_of, load_values
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import magnitude, shortest_text
-from ptmcad.text.tree import Tree, to_text
+from ptmcad.text.tree import to_text
 
 MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
 """In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of the title."""
@@ -281,16 +281,20 @@ def parts_legend(mechanism: Mechanism) -> Iterator[Entry]:
     if springs:
         names = textwrap.wrap(f"spring{'s' * (len(springs) > 1)} {', '.join(springs)};", _KEY_COLUMNS)
         yield Entry((*names, "drawn aside where one lies on", "a bar or is very short"), spring_mark())
-    if mechanism.torsion:
-        angles = ", ".join(_angle_text(torsion.angle) for torsion in mechanism.torsion)
-        words = f"torsion spring{'s' * (len(mechanism.torsion) > 1)} on {angles}; not drawn"
-        yield Entry(tuple(textwrap.wrap(words, _KEY_COLUMNS)))
+    yield from torsion_legend(mechanism)
     yield from support_legend(mechanism)
 
 
-def _angle_text(angle: Tree) -> str:
-    """A sum of angles with their symbols."""
-    return re.sub(r"[A-Za-z]\w*", lambda match: symbol(match[0]), to_text(angle)).replace("-", "−")
+def torsion_legend(mechanism: Mechanism) -> Iterator[Entry]:
+    """Torsion springs at their joints, and those of which no joint is known."""
+    joints = list(zip(mechanism.torsion, joints_of(mechanism), strict=True))
+    drawn = [f"{with_symbols(to_text(t.angle))} at {symbol(joint.point)}" for t, joint in joints if joint is not None]
+    others = [with_symbols(to_text(t.angle)) for t, joint in joints if joint is None]
+    for texts, end, mark in ((drawn, "", torsion_mark()), (others, "; not drawn", None)):
+        if texts:
+            each = ", ".join(text.replace(" ", "\N{NO-BREAK SPACE}") for text in texts)
+            words = f"torsion spring{'s' * (len(texts) > 1)} on {each}{end}"
+            yield Entry(tuple(textwrap.wrap(words, _KEY_COLUMNS)), mark)
 
 
 def support_legend(mechanism: Mechanism) -> Iterator[Entry]:

@@ -1,4 +1,6 @@
-"""The sketch of a pose: bars, zigzag springs, supports, load arrows and labels as lines on paper, in points.
+"""The sketch of a pose: bars, zigzag springs, spirals, supports, load arrows and labels as lines on paper, in points.
+
+Spirals are torsion springs, where their joints are known (`ptmcad.mechanism.joints`).
 
 Guarantee: nodes are where the pose has them, at one scale for all poses. A spring that would lie on a bar or on another
 spring, or is too short for its turns, is drawn aside and led back to its nodes. Labels keep clear of all that is drawn
@@ -16,8 +18,10 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.mechanism import Mechanism, Support
 from ptmcad.mechanism.description import Load
 from ptmcad.mechanism.evaluate import value_at
+from ptmcad.mechanism.joints import joints_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.clearance import Box, Label, Placed, Position, Stroke, distance, place, polyline
+from ptmcad.show.spiral import spirals
 
 BAR_WIDTHS = (5.5, 3.2)
 """Of two bars, which are told apart; more are alike."""
@@ -31,6 +35,8 @@ MIN_TURNS, TURN = 6, 6.0
 """A spring has so many turns, or one for each such length: else the teeth of a long one lie so flat that it looks like
 stairs."""
 AMPLITUDE = 3.4
+SPIRAL, SPIRAL_GAP = (PIN + 1.3, 8.8), 2.4
+"""The inner and the outer radius of a torsion spring, and what is left free between two at one joint."""
 _END, _SHORTEST = 7.0, 19.0
 _ASIDE = (9.0, -9.0, 15.5, -15.5, 22.0, -22.0)
 LONGEST_ARROW, SHORTEST_ARROW = 27.0, 8.5
@@ -77,6 +83,7 @@ class Sketch:
     rails : what sliders slide on: a telescopic base from a fixed support at their height, else a short one.
     bars : in the order of the mechanism's.
     springs : polylines in the order of the mechanism's.
+    spirals : of torsion springs, in their order, from the joint outwards; None for one whose joint is not known.
     """
 
     mechanism: Mechanism
@@ -84,6 +91,7 @@ class Sketch:
     rails: tuple[tuple[Position, Position], ...]
     bars: tuple[tuple[Position, Position], ...]
     springs: tuple[tuple[Position, ...], ...]
+    spirals: tuple[tuple[Position, ...] | None, ...]
     arrows: tuple[Arrow, ...]
     labels: tuple[Placed, ...]
 
@@ -168,6 +176,9 @@ def sketched(
         line = _spring(nodes[spring.start], nodes[spring.end], drawn, turns)
         springs.append(line)
         drawn += polyline(line, 0.5)
+    wound = spirals(joints_of(mechanism), nodes, *SPIRAL, SPIRAL_GAP)
+    for line in filter(None, wound):
+        drawn += polyline(line, 0.5)
     placed_arrows = tuple(_arrows(mechanism.loads, nodes, arrows))
     rails = tuple(_rails(mechanism, nodes))
     strokes = [*drawn, *(Stroke(a, b, 1.0) for a, b in rails)]
@@ -175,7 +186,7 @@ def sketched(
     placed = place(
         (labels or _labels)(nodes), strokes, _symbols(mechanism, nodes), (2.0, 2.0, sides[0] - 2.0, sides[1] - 2.0)
     )
-    return Sketch(mechanism, nodes, rails, bars, tuple(springs), placed_arrows, tuple(placed))
+    return Sketch(mechanism, nodes, rails, bars, tuple(springs), tuple(wound), placed_arrows, tuple(placed))
 
 
 def _rails(mechanism: Mechanism, nodes: Mapping[str, Position]) -> Iterator[tuple[Position, Position]]:

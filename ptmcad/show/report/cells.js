@@ -164,6 +164,9 @@ function legendOfParts() {
   const parts = [];
   if (rods.length) parts.push(`thick lines: the rods ${rods.map(nameOf).join(" and ")}`);
   if (springs.length) parts.push("zigzag: springs");
+  const [drawn, others] = [true, false].map((known) => TORSION.filter(({ at }) => at.length > 0 === known));
+  if (drawn.length) parts.push(`spirals: torsion springs on ${drawn.map(({ name, at }) => `${name} at ${MECHANISM.points[at[0]]}`).join(" and ")}`);
+  if (others.length) parts.push(`torsion springs on ${others.map(({ name }) => name).join(" and ")} are not drawn`);
   if (loaded.length) parts.push(`arrows: the loads at ${points(loaded)}`);
   const held = [];
   if (pinned.length) held.push(`${points(pinned)} ${pinned.length > 1 ? "are" : "is"} pinned`);

@@ -164,7 +164,7 @@ def _solutions(
 def _parts(
     mechanism: Mechanism, boxes: Sequence[tuple[Bounds, ...]], values: Mapping[str, Fraction]
 ) -> list[dict[str, Any]]:
-    """Of each equilibrium the points, and the springs' lengths and forces."""
+    """Of each equilibrium the points, the springs' lengths and forces, and what torsion springs do."""
     nodes = [_nodes(mechanism, box, values) for box in boxes]
     springs = mechanism.springs
     lengths = [[square_root(_squared_distance(where[s.start], where[s.end])) for s in springs] for where in nodes]
@@ -186,8 +186,28 @@ def _parts(
             ],
             "lengths": [decimal_text(length, length_place) for length in long],
             "forces": [decimal_text(force, force_place) for force in strong],
+            **({"torsion": turned} if turned else {}),
         }
-        for where, long, strong in zip(nodes, lengths, forces, strict=True)
+        for where, long, strong, turned in zip(nodes, lengths, forces, _torsion(mechanism, boxes, values), strict=True)
+    ]
+
+
+def _torsion(
+    mechanism: Mechanism, boxes: Sequence[tuple[Bounds, ...]], values: Mapping[str, Fraction]
+) -> list[list[tuple[str, str]]]:
+    """Of each equilibrium the deflection and the moment of every torsion spring, as texts."""
+    rings = [_InBounds(mechanism, box, values) for box in boxes]
+    turned = [[tuple(evaluate(t, ring).bounds for t in s.deflection) for s in mechanism.torsion] for ring in rings]
+    stiffnesses = [exactly(value_at(spring.stiffness, values)) for spring in mechanism.torsion]
+    moments = [[times(k, sine) for k, (_, sine) in zip(stiffnesses, row, strict=True)] for row in turned]
+    place = last_place([moment for row in moments for moment in row], _DIGITS)
+    angles = [[degrees(cosine, sine) for cosine, sine in row] for row in turned]
+    return [
+        [
+            ("not determined" if angle is None else _angle_text(angle), decimal_text(moment, place))
+            for angle, moment in zip(of_angles, of_moments, strict=True)
+        ]
+        for of_angles, of_moments in zip(angles, moments, strict=True)
     ]
 
 

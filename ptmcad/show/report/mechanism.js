@@ -1,8 +1,26 @@
-// A pose as a drawing: supports, slider, rods, springs, loads. Lengths are in the mechanism's unit, y upwards.
+// A pose as a drawing: supports, slider, rods, springs, torsion springs, loads. Lengths are in the mechanism's unit, y upwards.
 
-// What is drawn, by the numbers of points: { unknowns, points, rods, springs, loaded, moving, pinned, sliding, rising }.
+// What is drawn, by the numbers of points: { unknowns, points, rods, springs, loaded, moving, pinned, sliding, rising, torsion }.
 const MECHANISM = DATA.mechanism;
+// Torsion springs { name, at }: the joint, and the point that the outer end turns to; empty where no joint is known.
+const TORSION = MECHANISM.torsion || [];
 const nameOf = (ends) => ends.map((point) => MECHANISM.points[point]).join("");
+
+// Inner and outer radius of each spiral, as shares of the size: springs at one joint lie around each other.
+const SPIRALS = TORSION.map(({ at }, k) => {
+  const before = TORSION.slice(0, k).filter((other) => at.length && other.at[0] === at[0]).length;
+  return [0.035 + 0.055 * before, 0.075 + 0.055 * before];
+});
+
+function spiral([x, y], [u, v], inner, outer) {
+  const end = Math.hypot(u - x, v - y) > 0 ? Math.atan2(v - y, u - x) : Math.PI / 2;
+  const steps = 42; // of 24 to a turn
+  return Array.from({ length: steps + 1 }, (_, k) => {
+    const radius = inner + (outer - inner) * k / steps;
+    const angle = end - 2 * Math.PI * (steps - k) / 24;
+    return [x + radius * Math.cos(angle), y + radius * Math.sin(angle)];
+  });
+}
 
 function loadVectors(cell, size) {
   const most = Math.max(...cell.loads.map((f) => Math.hypot(f[0], f[1])));
@@ -26,14 +44,16 @@ function frameOf(cell) {
     });
   }
   const pad = 0.08 * size;
-  return [left - pad, right - left + 2 * pad, size];
+  const wound = size * Math.max(0, ...SPIRALS.map((radii) => radii[1] - 0.075));
+  return [left - pad - wound, right - left + 2 * (pad + wound), size];
 }
 
 // The vertical range of one pose, with its supports and loads: [bottom, height].
 function verticalRange(cell, pose, size) {
   const loads = loadVectors(cell, size);
   const feet = [...MECHANISM.pinned, ...MECHANISM.sliding].map((point) => pose.nodes[point][1] - 0.1 * size);
-  const heights = [...feet, ...pose.nodes.map((node) => node[1]), ...loads.map((f, k) => pose.nodes[MECHANISM.loaded[k]][1] + f[1])];
+  const wound = TORSION.flatMap(({ at }, k) => (at.length ? [1, -1].map((side) => pose.nodes[at[0]][1] + side * SPIRALS[k][1] * size) : []));
+  const heights = [...feet, ...wound, ...pose.nodes.map((node) => node[1]), ...loads.map((f, k) => pose.nodes[MECHANISM.loaded[k]][1] + f[1])];
   const [low, high] = [Math.min(...heights), Math.max(...heights)];
   const pad = 0.06 * size;
   return [low - pad, high - low + 2 * pad];
@@ -95,6 +115,10 @@ function drawPose(cell, pose, frame) {
   }
   for (const [a, b] of MECHANISM.springs) line(zigzag(nodes[a], nodes[b], 0.03 * size), "spring");
   for (const [a, b] of MECHANISM.rods) line([nodes[a], nodes[b]], "bar");
+  TORSION.forEach(({ at }, k) => {
+    const turns = at.length ? spiral(nodes[at[0]], nodes[at[at.length - 1]], ...SPIRALS[k].map((share) => share * size)) : [];
+    for (const className of at.length ? ["halo", "spring torsion"] : []) line(turns, className);
+  });
   loadVectors(cell, size).forEach((f, k) => {
     const length = Math.hypot(f[0], f[1]);
     if (length === 0) return;
@@ -124,6 +148,7 @@ function springTable(cell) {
   const energy = cell.equilibria.some((pose) => pose.energy) ? ["energy"] : [];
   const columns = [DATA.drawable ? "pose" : "solution", ...MECHANISM.unknowns, ...energy, ...MECHANISM.moving.map((point) => MECHANISM.points[point])];
   for (const name of MECHANISM.springs.map(nameOf)) columns.push(`length ${name}`, `force ${name}`);
+  for (const { name } of TORSION) columns.push(`deflection ${name}`, `moment ${name}`);
   for (const text of columns) {
     const th = html("th", "", text);
     th.scope = "col";
@@ -134,6 +159,7 @@ function springTable(cell) {
     const row = body.insertRow();
     const entries = [pose.kind, ...pose.unknowns, ...(energy.length ? [pose.energy] : []), ...(pose.places || [])];
     (pose.lengths || []).forEach((length, k) => entries.push(length, pose.forces[k]));
+    for (const pair of pose.torsion || []) entries.push(...pair);
     entries.forEach((text, k) => {
       const entry = row.insertCell();
       entry.dataset.label = columns[k];

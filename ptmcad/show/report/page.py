@@ -19,8 +19,9 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words, moments_work, untold
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism, Model, Support
+from ptmcad.mechanism.joints import joints_of
 from ptmcad.mechanism.work import split_moments
-from ptmcad.show.render.axes import symbol
+from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.view import Shapes
@@ -152,6 +153,11 @@ def drawing_of(model: Model) -> dict[str, Any]:
     def held(support: Support) -> list[int]:
         return [number[name] for name, kind in model.supports.items() if kind is support]
 
+    # a mechanism without torsion springs says nothing of them
+    torsion = [
+        {"name": with_symbols(spring.name), "at": [number[name] for name in joint if name] if joint else []}
+        for spring, joint in zip(model.torsion, joints_of(model), strict=True)
+    ]
     return unknowns | {
         "points": [symbol(name) for name in model.points],
         "rods": [[number[a], number[b]] for a, b in model.bars],
@@ -161,6 +167,7 @@ def drawing_of(model: Model) -> dict[str, Any]:
         "pinned": held(Support.PIN),
         "sliding": held(Support.SLIDER_X),
         "rising": held(Support.SLIDER_Y),
+        **({"torsion": torsion} if torsion else {}),
     }
 
 

@@ -1,0 +1,271 @@
+"""Torsion springs in poses: deflections and moments by hand, by both engines, and in documents and tables."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+from flint import arb, ctx
+
+from ptmcad import Poses, solve
+from ptmcad.answer.poses import Pose
+from ptmcad.answer.regionmap import Status
+from ptmcad.certified.plain.poses import plain_poses
+from ptmcad.exact.poses import exact_poses
+from ptmcad.mechanism import Mechanism, described
+from ptmcad.mechanism.evaluate import multiples
+from ptmcad.text.balls import ball_of
+
+SCHEMA = json.loads((Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8"))
+PENDULUM: dict[str, Any] = {
+    "parameters": {"W": {"kind": "force"}, "c": {"kind": "stiffness", "default": 2}},
+    "unknowns": {"th": "angle"},
+    "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
+    "bars": [["O", "P"]],
+    "torsion": [{"angle": "th", "k": "c"}],
+    "loads": {"P": {"weight": "W"}},
+}
+"""c sin(th) + W cos(th) = 0: the weight W turns the bar down, the spring back up to th = 0."""
+CHAIN: dict[str, Any] = {
+    "parameters": {"l0": {"kind": "free length"}, "W": {"kind": "force"}},
+    "unknowns": {"th": "angle", "phi": "angle"},
+    "points": {
+        "O": [0, 0], "A": ["8/5", "4/5"], "P": ["cos(th)", "sin(th)"], "Q": ["cos(th) + cos(phi)", "sin(th) + sin(phi)"]
+    },
+    "bars": [["O", "P"], ["P", "Q"]],
+    "springs": [{"between": ["A", "Q"], "k": 3, "free": "l0"}],
+    "torsion": [
+        {"angle": "th", "k": 2, "rest": {"cos": "3/5", "sin": "4/5"}}, {"angle": "phi - 2*th - pi/2", "k": "1/3"},
+    ],
+    "loads": {"Q": ["W", "-W"]},
+}  # fmt: skip
+
+
+def with_torsion(record: dict[str, Any], *springs: dict[str, Any]) -> Mechanism:
+    return described({**record, "torsion": list(springs)})
+
+
+def turned(pose: Pose) -> list[tuple[str, str, str]]:
+    return [(t.deflection.text(8), t.degrees.text(8), t.moment.text(8)) for t in pose.torsion]
+
+
+def test_a_bar_that_hangs_on_a_torsion_spring_by_hand() -> None:
+    """tan th = -W/c, so that (cos, sin) = (4, -3)/5 for W = 3/2: the moment is 2 (-3/5), the weight's 3/2 4/5."""
+    held, fallen = solve(model=described(PENDULUM), W="3/2").equilibria
+    (spring,) = held.torsion
+    assert (spring.name, spring.stiffness, spring.moment.exact) == ("th", 2, Fraction(-6, 5))
+    assert (spring.deflection.text(10), spring.degrees.text(10)) == ("-0.6435011088", "-36.86989765")
+    assert fallen.torsion[0].moment.exact == Fraction(6, 5)
+    assert fallen.torsion[0].degrees.text(10) == "143.1301024"
+
+
+BENT = ("-0.78539816", "-45", "-1.4142136")
+
+
+@pytest.mark.parametrize(
+    ("further", "expected"),
+    [
+        ([], []),
+        ([{"angle": "4*th", "k": 1, "rest": "pi"}], [("0", "0", "0")]),
+        ([{"angle": "4*th", "k": 1}], [("3.1415927", "180", "0")]),
+        ([{"angle": "th", "k": 0, "rest": "-pi/2"}], [("0.78539816", "45", "0")]),
+    ],
+    ids=["one", "at rest", "half a turn off", "no stiffness"],
+)
+@pytest.mark.parametrize(
+    "first", [{"angle": "th", "k": 2}, {"angle": "th + pi/2", "k": 2, "rest": "pi/2"}], ids=["", "quarter turns"]
+)
+def test_rational_degrees_and_rests_are_told_exactly(
+    first: dict[str, Any], further: list[dict[str, Any]], expected: list[tuple[str, str, str]]
+) -> None:
+    """W = c: th = -45 degrees is an equilibrium; what is added there has no moment at it."""
+    poses = solve(model=with_torsion(PENDULUM, first, *further), W=2).equilibria
+    (pose,) = (p for p in poses if p.degrees[0].exact == -45)
+    assert turned(pose) == [BENT, *expected]
+    for spring in pose.torsion:
+        assert spring.degrees.exact is not None
+        assert (spring.deflection.exact == 0) == (spring.degrees.exact == 0)
+
+
+def recomputed(poses: Poses, pose: Pose, bits: int = 400) -> list[tuple[arb, arb]]:
+    """Deflection and moment of each torsion spring, from the pose's angles alone."""
+    model = poses.model
+    assert isinstance(model, Mechanism)
+    found = []
+    angles = dict(zip(model.angles, pose.angles, strict=True))
+    with ctx.workprec(bits):
+        for spring, torsion in zip(pose.torsion, model.torsion, strict=True):
+            total = -arb.atan2(ball_of(torsion.rest[1]), ball_of(torsion.rest[0]))
+            for name, m in multiples(torsion.angle).items():
+                total += ball_of(m) * arb(ball_of(angles[name].center), ball_of(angles[name].radius))
+            turns = round(float(total / (2 * arb.pi())))
+            total -= 2 * arb.pi() * turns
+            found.append((total, ball_of(spring.stiffness) * total.sin()))
+    return found
+
+
+@pytest.mark.parametrize("digits", [6, 40])
+@pytest.mark.parametrize("l0", ["0", "1/3"], ids=["exact", "certified"])
+def test_every_digit_is_that_of_the_angles(l0: str, digits: int) -> None:
+    poses = solve(model=described(CHAIN), l0=l0, W="1/7", digits=digits)
+    assert poses.status is (Status.EXACT if l0 == "0" else Status.CERTIFIED)
+    assert len(poses.equilibria) >= 4
+    precise = solve(model=described(CHAIN), l0=l0, W="1/7", digits=60)
+    for pose, fine in zip(poses.equilibria, precise.equilibria, strict=True):
+        for spring, (angle, moment) in zip(pose.torsion, recomputed(precise, fine), strict=True):
+            with ctx.workprec(400):
+                degrees = angle * 180 / arb.pi()
+                for number, ball in ((spring.deflection, angle), (spring.degrees, degrees), (spring.moment, moment)):
+                    printed = ball_of(Fraction(number.text(digits)))
+                    assert abs(printed - ball) < abs(ball) * arb(10) ** (1 - digits) / 2
+                    assert ball_of(number.low) <= ball.upper() and ball.lower() <= ball_of(number.high)
+
+
+def test_moments_balance_the_pull_of_spring_and_loads() -> None:
+    """By hand for the chain without its spring's free length: the sum of all that turns phi alone, and of th."""
+    for pose in solve(model=described(CHAIN), l0=0, W="1/7").equilibria:
+        (qx, qy), (px, py) = ([float(x) for x in pose.nodes[name]] for name in "QP")
+        fx, fy = 1 / 7 - 3 * (qx - 8 / 5), -1 / 7 - 3 * (qy - 4 / 5)
+        one, two = (float(t.moment) for t in pose.torsion)
+        assert (qx - px) * fy - (qy - py) * fx == pytest.approx(two, abs=1e-9)
+        assert px * fy - py * fx == pytest.approx(one - 2 * two, abs=1e-9)
+
+
+def test_both_engines_agree() -> None:
+    """On springs of free length zero, which the certified engine takes as well."""
+    model = described(CHAIN)
+    at = {"W": Fraction(1, 7)}
+    exact, certified = exact_poses(model, at, 10), plain_poses(model, {**at, "l0": Fraction(0)}, 10)
+    assert [p.index for p in exact.equilibria] == [p.index for p in certified.equilibria]
+    assert [turned(p) for p in exact.equilibria] == [turned(p) for p in certified.equilibria]
+
+
+def test_a_symmetric_pose_has_exact_deflections_in_the_certified_engine() -> None:
+    """Upright under its spring: at rest, a quarter, half a turn off, and by the angle whose cosine is 3/5."""
+    rests: list[Any] = ["pi/2", 0, "-pi/2", "pi", {"cos": "3/5", "sin": "4/5"}]
+    balanced = [{"angle": "th", "k": 1, "rest": rest} for rest in (*rests, {"cos": "-3/5", "sin": "4/5"})]
+    model = described({
+        **PENDULUM,
+        "parameters": {"l0": {"kind": "free length"}},
+        "points": {**PENDULUM["points"], "A": [0, 3]},
+        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
+        "torsion": balanced,
+        "loads": {},
+    })  # fmt: skip
+    up = solve(model=model, l0="1/2").equilibria[0]
+    assert up.degrees[0].exact == 90
+    assert turned(up) == [
+        ("0", "0", "0"), ("1.5707963", "90", "1"), ("3.1415927", "180", "0"), ("-1.5707963", "-90", "-1"),
+        ("0.64350111", "36.869898", "0.6"), ("-0.64350111", "-36.869898", "-0.6"),
+    ]  # fmt: skip
+    assert up.torsion[4].moment.exact == Fraction(3, 5)
+
+
+def test_relaxed_torsion_springs_are_proved_to_be() -> None:
+    """P at rest is (3, 4)/5, A = P + (13, -3)/10: Q is 1 from A, and the energy 0, at atan(-3/13) +- acos(|PA|/2)."""
+    rest = {"cos": "3/5", "sin": "4/5"}
+    placed = {**CHAIN, "points": {**CHAIN["points"], "A": ["19/10", "1/2"]}}
+    model = with_torsion(placed, {"angle": "th", "k": 2, "rest": rest})
+    relaxed = [p for p in solve(model=model, l0=1, W=0).equilibria if p.springs[0].force.exact == 0]
+    assert sorted(p.degrees[1].text(6) for p in relaxed) == ["-61.1523", "35.1630"]
+    assert [turned(p) for p in relaxed] == [[("0", "0", "0")]] * 2
+
+
+REST = {"cos": "3/5", "sin": "4/5"}
+
+
+@pytest.mark.parametrize(
+    ("anchor", "springs", "expected"),
+    [
+        # the spring pulls along the bar
+        (["6/5", "8/5"], [{"angle": "th", "k": 2, "rest": REST}], [("0", "0", "0")]),
+        # Q = P + (1, 0) is 1 from its anchor (13, 4)/5
+        (
+            ["13/5", "4/5"],
+            [{"angle": "th", "k": 2, "rest": REST}, {"angle": "th - phi", "k": 1, "rest": REST}],
+            [("0", "0", "0")] * 2,
+        ),
+        # phi is known first, and th by it
+        (
+            ["13/5", "4/5"],
+            [{"angle": "2*phi - th", "k": 1, "rest": {"cos": "3/5", "sin": "-4/5"}}, {"angle": "phi", "k": 1}],
+            [("0", "0", "0")] * 2,
+        ),
+    ],
+    ids=["one", "two", "the other way around"],
+)
+def test_a_mechanism_at_rest_as_it_was_assembled_is_proved_to_be(
+    anchor: list[str], springs: list[dict[str, Any]], expected: list[tuple[str, str, str]]
+) -> None:
+    """Springs of which none pulls sideways, more than there are unknowns: no energy but that of the stretched one."""
+    chain = len(springs) > 1
+    record = {**CHAIN, "points": {**CHAIN["points"], "A": anchor}}
+    if not chain:
+        record |= {"unknowns": {"th": "angle"}, "points": {"A": anchor, "O": [0, 0], "P": ["cos(th)", "sin(th)"]}}
+        record |= {"bars": [["O", "P"]], "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}], "loads": {}}
+        record["parameters"] = {"l0": {"kind": "free length"}}
+    poses = solve(model=with_torsion(record, *springs), l0="1" if chain else "1/3")
+    assert poses.status is Status.CERTIFIED
+    held = poses.equilibria[0]
+    assert held.stable
+    assert turned(held) == expected
+    assert held.cosines_sines[0].exact == Fraction(3, 5)
+    assert held.known_energy.exact == (0 if chain else Fraction(2, 9))
+    if not chain:
+        assert turned(poses.equilibria[1]) == [("3.1415927", "180", "0")], "and half a turn from it"
+
+
+def test_a_mechanism_that_is_nearly_at_rest_is_not_taken_for_one_that_is() -> None:
+    """A load of 1e-90 turns the bar by as much as a stiffness of 2 + 2 2/3 lets it, which balls of 224 bits miss."""
+    record = {
+        **PENDULUM,
+        "parameters": {"l0": {"kind": "free length"}, "W": {"kind": "force"}},
+        "points": {**PENDULUM["points"], "A": ["6/5", "8/5"]},
+        "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
+        "loads": {"P": ["W", 0]},
+    }
+    poses = solve(model=with_torsion(record, {"angle": "th", "k": 2, "rest": REST}), l0="1/3", W="1e-90")
+    (spring,) = next(pose for pose in poses.equilibria if pose.stable).torsion
+    # by the law of cosines |AP|^2 = 5 - 4 cos(deflection), so that |AP|'' = 2 where the spring pulls with 2/3
+    assert float(spring.deflection.center * 10**90) == pytest.approx(-0.8 / (2 + 4 / 3))
+    assert spring.moment.exact is None
+
+
+def test_documents_tell_what_torsion_springs_do_and_are_read_back() -> None:
+    poses = solve(model=described(CHAIN), l0=0, W="1/7")
+    text = poses.to_json()
+    jsonschema.validate(json.loads(text), SCHEMA)
+    again = Poses.from_json(text)
+    assert again == poses and again.to_json() == text
+    entries = json.loads(text)["equilibria"][0]["torsion"]
+    assert [list(entry) for entry in entries] == [["name", "stiffness", "deflection", "degrees", "moment"]] * 2
+    assert [entry["name"] for entry in entries] == ["th", "phi-2*th"]
+
+
+def test_documents_without_them_are_those_of_before_and_half_of_them_are_refused() -> None:
+    data = json.loads(solve(model=described(CHAIN), l0=0, W="1/7").to_json())
+    data["equilibria"][1]["torsion"].pop()
+    with pytest.raises(ValueError, match=r"equilibria\[1\]\.torsion has 1 entries, not 2"):
+        Poses.from_json(json.dumps(data))
+    del data["equilibria"][1]["torsion"]
+    with pytest.raises(ValueError, match=r"equilibria\[1\] lacks the key 'torsion'"):
+        Poses.from_json(json.dumps(data))
+    for pose in data["equilibria"]:
+        pose.pop("torsion", None)
+    assert all(pose.torsion == () for pose in Poses.from_json(json.dumps(data)).equilibria)
+    assert '"torsion"' not in solve(rho=1).to_json(), "the paper's mechanism has none"
+
+
+def test_the_table_has_columns_for_them_with_their_sign() -> None:
+    lines = solve(model=described(CHAIN), l0=0, W="1/7").table(6).splitlines()
+    columns = [line.split() for line in lines]
+    header = [f"deflection {name} {unit}" for unit in ("[rad]", "[deg]") for name in ("th", "phi-2*th")]
+    assert ["#", *" ".join(header).split()] in columns
+    assert ["#", "moment", "th", "moment", "phi-2*th"] in columns
+    assert lines[-2].endswith("energies, moments and the Hessian's eigenvalues in their product")
+    assert lines[-1].startswith("torsion deflection: angle - rest; moment: k sin(deflection), positive where")
+    assert not any("moment" in line for line in solve(rho=1).table().splitlines())
