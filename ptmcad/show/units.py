@@ -5,9 +5,13 @@ Guarantee: an axis has the unit of the parameters which are a number times it, o
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ptmcad.mechanism import Kind
 from ptmcad.mechanism.description import UnknownKind
 from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.parsing import names_in, parse
 
 _LENGTH, _FORCE, _STIFFNESS = ("length",), ("force",), ("force", "length")
 _QUANTITIES = {Kind.LENGTH: _LENGTH, Kind.BASE: _LENGTH, Kind.STIFFNESS: _STIFFNESS, Kind.FORCE: _FORCE}
@@ -16,18 +20,38 @@ _QUANTITIES = {Kind.LENGTH: _LENGTH, Kind.BASE: _LENGTH, Kind.STIFFNESS: _STIFFN
 
 def _quantities(slice: Slice, axis: int) -> tuple[str, ...]:
     """Of an axis; empty where they are not known, or not the same for all parameters that are a number times it."""
-    exponents = (1, 0) if axis == 0 else (0, 1)
+    return _quantities_in(slice, slice.parameters, (1, 0) if axis == 0 else (0, 1))
+
+
+def _quantities_in(slice: Slice, parameters: Mapping[str, Expression], exponents: tuple[int, int]) -> tuple[str, ...]:
+    """Those of the parameters that are a number times the axis with these exponents."""
     found = set()
-    for name, expression in slice.parameters.items():
+    for name, expression in parameters.items():
         if expression.is_polynomial and [term[:2] for term in expression.numerator] == [exponents]:
             known = slice.model.parameters.get(name)
             found |= {_QUANTITIES[known.kind]} if known is not None and known.kind in _QUANTITIES else set()
     return found.pop() if len(found) == 1 else ()
 
 
+def _joined(slice: Slice, quantities: tuple[str, ...]) -> str:
+    return "/".join(slice.units.get(quantity, quantity) for quantity in quantities)
+
+
 def unit(slice: Slice, axis: int) -> str:
     """The unit of an axis, such as ``mm``, or ``length`` where the record declares none; empty when not known."""
-    return "/".join(slice.units.get(quantity, quantity) for quantity in _quantities(slice, axis))
+    return _joined(slice, _quantities(slice, axis))
+
+
+def unit_of_free(slice: Slice, free: str, text: Mapping[str, str]) -> str:
+    """The same of a family's free parameter.
+
+    Parameters
+    ----------
+    slice : one of the members.
+    text : of the family's parameters, as `FamilyMap.text`.
+    """
+    own = {name: parse(written, {free: axis(0)}) for name, written in text.items() if names_in(written) == (free,)}
+    return _joined(slice, _quantities_in(slice, {free: axis(0), **own}, (1, 0)))
 
 
 def unit_of_unknown(slice: Slice, name: str) -> str:
