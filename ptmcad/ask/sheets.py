@@ -164,10 +164,8 @@ class _Builder:
         """Two triangles between each two columns, parted along the shorter diagonal."""
         for (a, b), (d, c) in zip(pairwise(lower), pairwise(upper), strict=True):
             halves = ((a, b, c), (a, c, d)) if self._apart(a, c) <= self._apart(b, d) else ((a, b, d), (b, c, d))
-            for face in halves:
-                if len(set(face)) == 3:
-                    self.faces.append(face)
-                    self.of_sheet.append(sheet)
+            self.faces += halves
+            self.of_sheet += [sheet] * 2
 
     def _apart(self, m: int, n: int) -> float:
         return hypot(self.points[m][0] - self.points[n][0], self.points[m][1] - self.points[n][1])

@@ -27,6 +27,8 @@ Floats = NDArray[np.float64]
 Pair = tuple[tuple[int, ...], tuple[int, ...]]
 """The counts on both sides of a sheet."""
 
+BOX = (1.0, 1.0, 1.05)
+"""Sides of the box as it is seen."""
 MAX_PIECES = 20_000
 """Of a vector picture, SVG or PDF, some megabytes: of more pieces it has an image, in the resolution of a PNG."""
 _LIGHT = np.array([-0.35, -0.55, 0.76])
@@ -35,7 +37,7 @@ _DARKEST, _FLATTEST = 0.66, 0.25
 """Of a colour's lightness, where a sheet is seen against the light; and of the shading's range, what is never used."""
 _LIFT = 0.03
 """Of the box: how far towards the eye curves are moved, so that the sheets on which they lie do not hide them."""
-_LONGEST = 0.045
+LONGEST = 0.045
 """Of the box: sides of triangles as they are painted."""
 _OTHER = 0.15
 """Of a sheet's colour, what comes from the smaller count's."""
@@ -51,8 +53,8 @@ class Camera(NamedTuple):
 
     Attributes
     ----------
-    low, size : of the box in data's units, shape (3,).
-    towards : unit vector towards the eye, in the box's coordinates from 0 to 1.
+    low, size : the box's corner, and a unit of its coordinates, in data's units; shape (3,).
+    towards : unit vector towards the eye, in the box's coordinates.
     """
 
     low: Floats
@@ -60,7 +62,7 @@ class Camera(NamedTuple):
     towards: Floats
 
     def boxed(self, points: Floats) -> Floats:
-        """Points in the box's coordinates, from 0 to 1."""
+        """Points in the box's coordinates, from 0 to `BOX`."""
         return (points - self.low) / self.size
 
     def unboxed(self, points: Floats) -> Floats:
@@ -73,7 +75,7 @@ def camera_of(axes: Any) -> Camera:
     elevation, azimuth = np.deg2rad([axes.elev, axes.azim])
     flat = np.cos(elevation)
     towards = np.array([flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation)])
-    return Camera(limits[:, 0], limits[:, 1] - limits[:, 0], towards)
+    return Camera(limits[:, 0], (limits[:, 1] - limits[:, 0]) / BOX, towards)
 
 
 def sheet_colours(family: FamilyMap, surface: BoundarySurface, paint: Paint) -> dict[Pair, str]:
@@ -139,10 +141,10 @@ def add_sheets(
     corners = camera.boxed(surface.vertices)[surface.faces]
     plain = np.array([to_rgb(colours[sheet.counts]) for sheet in surface.sheets]).reshape(-1, 3)
     faces = plain[surface.sheet] * _brightness(corners)[:, None]
-    corners, faces = _halved(corners, faces)
+    corners, faces = halved(corners, faces)
     ribbons = [_ribbons(camera.boxed(line) + _LIFT * camera.towards, camera.towards, width) for line in curves]
     lines = np.concatenate([np.zeros((0, 3, 3)), *ribbons])
-    lines, inks = _halved(lines, np.tile(to_rgb(INK), (len(lines), 1)))
+    lines, inks = halved(lines, np.tile(to_rgb(INK), (len(lines), 1)))
     pieces = camera.unboxed(np.concatenate([corners, lines]))
     shades = np.concatenate([faces, inks])
     if len(pieces):
@@ -154,14 +156,14 @@ def add_sheets(
         )  # fmt: skip
 
 
-def _halved(corners: Floats, colours: Floats) -> tuple[Floats, Floats]:
-    """Triangles cut in two along their longest sides until none is longer than `_LONGEST`, with their colours.
+def halved(corners: Floats, colours: Floats) -> tuple[Floats, Floats]:
+    """Triangles cut in two along their longest sides until none is longer than `LONGEST`, with their colours.
 
     Pieces are sorted by their middles' distance from the eye, which says little of long ones.
     """
     while True:
         sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-        long = sides.max(axis=1, initial=0.0) > _LONGEST
+        long = sides.max(axis=1, initial=0.0) > LONGEST
         if not long.any():
             return corners, colours
         first = sides[long].argmax(axis=1)

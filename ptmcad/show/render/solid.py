@@ -23,7 +23,7 @@ from ptmcad.show.render.multiples import draw_flowed, family_entries, flowed, in
 from ptmcad.show.render.painting import Paint
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
-from ptmcad.show.render.sheets import add_sheets, sheet_colours, sheet_entries
+from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
 from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.style import MIN_FONT, Place, Style
 from ptmcad.show.units import unit_of_free, with_unit
@@ -114,7 +114,7 @@ def _axes(figure: Figure, box: tuple[float, float, float, float], family: Family
     for each, end in ((axes.xaxis, "upper"), (axes.yaxis, "lower"), (axes.zaxis, None)):
         # at the corner that two axes share, one number would lie on the other
         each.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 2.5, 5, 10], prune=end))
-    axes.set_box_aspect((1, 1, 1.05), zoom=0.95)
+    axes.set_box_aspect(BOX, zoom=0.95)
     return axes
 
 
