@@ -25,6 +25,7 @@ from ptmcad.ask.sheets import Joined, mesh_of
 from ptmcad.errors import ConfigError
 from ptmcad.exact.strips import Strips
 from ptmcad.options import DEFAULTS, Options, Progress
+from ptmcad.question.doubles import within_doubles
 from ptmcad.text.parsing import number_for
 
 TOLERANCE = Fraction(1, 100)
@@ -98,12 +99,15 @@ def surface_of(
     ------
     LimitReached
         When the time is over.
+    ConfigError
+        For numbers beyond doubles.
     """
     search = _Search(common, changes, fineness, options)
     search.run()
-    axes, free = common.family.axes, common.family.free
-    mesh = mesh_of(search.runs(), axes, fineness.tolerance / 4)
-    members = tuple(sorted({value for run in search.runs() for value, _ in run}))
+    axes, free, runs = common.family.axes, common.family.free, search.runs()
+    with within_doubles(common.family.member(changes.between[0])):
+        mesh = mesh_of(runs, axes, fineness.tolerance / 4)
+    members = tuple(sorted({value for run in runs for value, _ in run}))
     return BoundarySurface(
         (axes[0].name, axes[1].name, free.name), mesh.vertices, mesh.faces, mesh.sheet, mesh.member, mesh.sheets,
         members, search.deviation, search.unresolved, changes.complete,

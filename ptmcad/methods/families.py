@@ -109,6 +109,12 @@ def _surface_to_ply(self: BoundarySurface) -> str:
     return ply_text(self)
 
 
+def _surface_repr_html(self: BoundarySurface) -> str:
+    from ptmcad.show.notebook import text_html
+
+    return text_html(f"{self!r}\n{self.words()}")
+
+
 def _family_repr_html(self: FamilyMap) -> str:
     from ptmcad.show.notebook import family_html
 
@@ -241,7 +247,7 @@ def _sweep_repr_html(self: Sweep) -> str:
 
 METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "boundary_surface": _family_boundary_surface,
                         "_repr_html_": _family_repr_html, "_repr_png_": _family_repr_png}  # fmt: skip
-METHODS["BoundarySurface"] = {"to_obj": _surface_to_obj, "to_ply": _surface_to_ply}
+METHODS["BoundarySurface"] = {"to_obj": _surface_to_obj, "to_ply": _surface_to_ply, "_repr_html_": _surface_repr_html}
 METHODS["BestDesign"] = {
     "table": _design_table,
     "to_json": _design_to_json,
