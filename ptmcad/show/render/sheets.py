@@ -35,9 +35,9 @@ _LIGHT = np.array([-0.35, -0.55, 0.76])
 """Where light comes from, in the box's own coordinates."""
 _DARKEST, _FLATTEST = 0.66, 0.25
 """Of a colour's lightness, where a sheet is seen against the light; and of the shading's range, what is never used."""
-_LIFT = 0.03
+_LIFT = 0.018
 """Of the box: how far towards the eye curves are moved, so that the sheets on which they lie do not hide them."""
-LONGEST = 0.045
+LONGEST = 0.03
 """Of the box: sides of triangles as they are painted."""
 _OTHER = 0.15
 """Of a sheet's colour, what comes from the smaller count's."""
@@ -120,7 +120,7 @@ def sheet_entries(surface: BoundarySurface, colours: Mapping[Pair, str], told: S
 
 
 def _key_text(key: tuple[int, ...]) -> str:
-    return "-".join(map(str, key))
+    return str(key[0]) if len(key) == 1 else f"({', '.join(map(str, key))})"
 
 
 def add_sheets(
