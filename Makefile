@@ -24,7 +24,7 @@ help:
 	@echo "make ablation   what each saving is worth, into docs/benchmarks/: nine minutes"
 	@echo "make scaling    how time and memory grow, into docs/benchmarks/: three minutes"
 	@echo "make stress     stiff and extreme cases against double precision, into docs/benchmarks/: some minutes"
-	@echo "make docs       the manual, as out/docs/html/index.html, and the README's picture, into docs/img/"
+	@echo "make docs       the manual, as out/docs/html/index.html, and the pictures of fig. 4, into docs/img/"
 	@echo "make free-maps  the manual's maps of springs with free lengths, into docs/img/: some minutes each"
 	@echo "make clean      removes what the targets made, except the environment"
 	@echo "make distclean  removes the environment too"
@@ -118,6 +118,8 @@ stress: $(VENV)/.installed
 
 docs: $(VENV)/.installed-docs
 	$(BIN)/ptmcad classify configs/fig4.yaml --format png --out docs/img
+	$(BIN)/ptmcad classify configs/families/equal-loads.yaml --surface --no-areas --format png --out out/docs
+	cp out/docs/equal-loads-3d.png docs/img
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet -b html -d out/docs/doctrees docs out/docs/html
 	@echo "the manual is out/docs/html/index.html"
 

@@ -19,6 +19,8 @@ from ptmcad.text.terms import terms_text
 if TYPE_CHECKING:
     from typing import Any
 
+    from ptmcad.answer.boundarysurface import BoundarySurface
+
 SpaceTerms = tuple[tuple[tuple[int, int, int], int], ...]
 """Exponents of the axes and the free parameter, and the coefficient: a polynomial in Z[x, y, z]."""
 
@@ -84,6 +86,8 @@ class FamilyMap:
         def table(self) -> str: ...
 
         def plot(self, style: Any = "default", **options: Any) -> Any: ...
+
+        def boundary_surface(self, tolerance: Any = "1/100", **options: Any) -> BoundarySurface: ...
 
         def _repr_html_(self) -> str: ...
 

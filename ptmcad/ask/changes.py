@@ -24,7 +24,7 @@ from ptmcad.answer.changes import Change, Changes
 from ptmcad.ask.changewords import described
 from ptmcad.ask.classification import check_count
 from ptmcad.ask.engines import is_certified
-from ptmcad.ask.members import Common, in_common, in_space
+from ptmcad.ask.members import Asked, Common, in_common, in_space
 from ptmcad.errors import ConfigError, HypothesisError, LimitReached
 from ptmcad.exact.arrangement import Picture, picture_of
 from ptmcad.exact.familyprojection import OutOfReach, critical_values
@@ -106,15 +106,20 @@ def changes_of(common: Common, tolerance: Fraction = TOLERANCE, options: Options
 
 
 class Members:
-    """The arrangements of a family's members, each computed once, until the time is over."""
+    """The arrangements of a family's members, each computed once, until the time is over.
 
-    def __init__(self, common: Common, options: Options) -> None:
-        self.common, self.options = common, options
+    Attributes
+    ----------
+    base : the axis over which windows are cut, 0 or 1; the cheaper one when None.
+    """
+
+    def __init__(self, common: Common, options: Options, base: int | None = None) -> None:
+        self.common, self.options, self.base = common, options, base
         self.deadline = None if options.timeout is None else perf_counter() + options.timeout
         self._known: dict[Fraction, Picture] = {}
 
     @property
-    def family(self) -> Family:
+    def family(self) -> Asked:
         return self.common.family
 
     def check(self) -> None:
@@ -138,7 +143,7 @@ class Members:
             variety = self.common.variety
             known = None if variety is None else partial(variety.at, from_fraction(value))
             try:
-                self._known[value] = picture_of(self.family.member(value), known, self.check)
+                self._known[value] = picture_of(self.family.member(value), known, self.check, self.base)
             except HypothesisError as error:
                 raise type(error)(f"{error} (at {self.family.free.name} = {text_of(value)})") from error
         return self._known[value]

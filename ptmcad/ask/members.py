@@ -6,18 +6,22 @@ the member alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from ptmcad.answer.family import SpaceTerms
+from ptmcad.answer.family import FamilyMap, SpaceTerms
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.classification import region_map
 from ptmcad.ask.engines import is_certified
-from ptmcad.errors import DegenerateSliceError, ExpressionError, InfiniteSolutionsError
+from ptmcad.errors import ConfigError, DegenerateSliceError, ExpressionError, InfiniteSolutionsError
+from ptmcad.mechanism import Model
 from ptmcad.options import DEFAULTS, Options
-from ptmcad.question.config import Family
+from ptmcad.question.config import member_like
+from ptmcad.question.slice import Axis, Slice
+from ptmcad.text.numerals import text_of
 
 if TYPE_CHECKING:
     from ptmcad.algebra.polynomials import Ratio
@@ -25,10 +29,71 @@ if TYPE_CHECKING:
     from ptmcad.exact.models import ParametricSystem
 
 
+class Asked(Protocol):
+    """A family as a question, read from a record (`Family`) or off its maps (`Restored`)."""
+
+    @property
+    def free(self) -> Axis: ...
+
+    @property
+    def values(self) -> tuple[Fraction, ...]: ...
+
+    @property
+    def axes(self) -> tuple[Axis, Axis]: ...
+
+    @property
+    def text(self) -> Mapping[str, str]: ...
+
+    @property
+    def model(self) -> Model: ...
+
+    def member(self, value: Fraction) -> Slice: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Restored:
+    """The family whose maps are given."""
+
+    maps: FamilyMap
+
+    @property
+    def free(self) -> Axis:
+        return self.maps.free
+
+    @property
+    def values(self) -> tuple[Fraction, ...]:
+        return self.maps.values
+
+    @property
+    def axes(self) -> tuple[Axis, Axis]:
+        return self.maps.axes
+
+    @property
+    def text(self) -> Mapping[str, str]:
+        return self.maps.text
+
+    @property
+    def model(self) -> Model:
+        return self.maps.members[0].slice.model
+
+    def member(self, value: Fraction) -> Slice:
+        """The slice at a value of the free parameter.
+
+        Raises
+        ------
+        ConfigError
+            When the maps do not say of what the family's parameters are made, or that divides by zero at this value.
+        """
+        try:
+            return member_like(self.maps.members[0].slice, self.text, self.free.name, value)
+        except ExpressionError as error:
+            raise ConfigError(f"{error.message} (at {self.free.name} = {text_of(value)})") from error
+
+
 class Common(NamedTuple):
     """A family with what its members have in common; nothing where there is no variety of its own."""
 
-    family: Family
+    family: Asked
     variety: FamilyVariety | None
 
     @property
@@ -64,7 +129,7 @@ def member_map(common: Common, value: Fraction, options: Options = DEFAULTS) -> 
     return region_map(slice, options, partial(common.variety.at, from_fraction(value)))
 
 
-def in_common(asked: Family, options: Options = DEFAULTS) -> Common:
+def in_common(asked: Asked, options: Options = DEFAULTS) -> Common:
     """What the members of a family have in common, computed once.
 
     Nothing, where all members are certified, where the parameters are too large to be expanded in three variables, or
@@ -80,7 +145,7 @@ def in_common(asked: Family, options: Options = DEFAULTS) -> Common:
         return Common(asked, None)
 
 
-def in_space(asked: Family) -> tuple[ParametricSystem, dict[str, Ratio]]:
+def in_space(asked: Asked) -> tuple[ParametricSystem, dict[str, Ratio]]:
     """The system, and its parameters over Z[x, y, z].
 
     Raises

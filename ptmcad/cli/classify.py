@@ -13,7 +13,7 @@ import click
 
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.regionmap import with_compilation
-from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of, share_of
+from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, drawing_options, names_of, share_of
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
@@ -38,7 +38,7 @@ from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.bounds import percent
 
-FORMATS = ("json", *PICTURES, *DATA)
+FORMATS = ("json", *PICTURES, *DATA, *MESHES)
 MIN_SECONDS = 0.01
 """Seconds that are left in any case, so that the result from which to go on is handed on."""
 
@@ -261,22 +261,25 @@ def _classify_family(
 ) -> None:
     """Classify and draw the members of a family."""
     # with what stores and draws families, which a slice does without
-    from ptmcad.cli.families import SOLID, Wanted, family_to_files
+    from ptmcad.cli.families import Wanted, family_to_files, names_of_family
 
     report_idle((
         Idle("resume", resume is not None, "the members of a family are classified anew"),
         Idle("explain", output.explain, "a family has a plan for each of its members: give one with --set"),
+        Idle("surface", third.surface and not set(output.formats) & {*PICTURES, *MESHES},
+             "no picture and no mesh is written, see --format"),
         *idle_drawing(output.formats),
     ))  # fmt: skip
+    further = (third.changes, third.between, third.surface)
+    wanted = Wanted(output.out, output.formats, output.no_timings, output.drawing, *further)
     with held(limits):
-        further = (third.changes, third.between)
-        wanted = Wanted(output.out, output.formats, output.no_timings, output.drawing, *further)
-        result = family_to_files(family, options, wanted)
+        result, surface = family_to_files(family, options, wanted)
     click.echo(result.table())
-    own = [f"{family.name}{end}.{kind}" for kind in output.formats for end in ("", SOLID) if kind in PICTURES]
-    own += [f"{family.name}.json"] if "json" in output.formats else []
-    report_written(output.out, own)
-    files = sum(len(names_of("", (kind,))) for kind in output.formats if kind not in PICTURES) * len(result.values)
+    if surface is not None:
+        click.echo(f"boundary surface: {surface.words()}")
+    report_written(output.out, names_of_family(family.name, wanted))
+    single = [kind for kind in output.formats if kind not in (*PICTURES, *MESHES)]
+    files = sum(len(names_of("", (kind,))) for kind in single) * len(result.values)
     if files:
         click.echo(f"          and {files} files of the members, {result.members[0].slice.name} and so on")
 
@@ -292,6 +295,11 @@ def _classify_family(
     "--changes",
     is_flag=True,
     help="Find the values of the free parameter at which regions appear, split, join, reach a side or vanish.",
+)
+@click.option(
+    "--surface",
+    is_flag=True,
+    help="Draw NAME-3d as the surface between regions of different counts, with --changes so that it bridges none.",
 )
 @click.option("--count", type=click.Choice([c.value for c in Count]), help="What distinguishes two regions.")
 @click.option("--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True)
@@ -335,7 +343,8 @@ def command(
     With a third parameter (--free, or `free:` in the record) there is a map for each of its --members, computed from
     what they have in common: NAME.png shows them side by side, NAME-3d.png one above the other, and NAME.json names the
     files of the members' own maps. --changes says at which values the arrangement of the regions changes: exactly and
-    with proof where algebra can eliminate, else enclosed.
+    with proof where algebra can eliminate, else enclosed. --surface draws the surface between regions of different
+    counts, from exact members between which it is interpolated; --format obj,ply writes it as a mesh.
 
     Springs with a free length (--set l0=1/5) are the certified engine's: it leaves a part of the window undetermined,
     which shrinks with time. Stopped by Ctrl-C or --timeout, it saves the best map so far, from the first level of the
@@ -349,6 +358,7 @@ def command(
         ptmcad classify --slice rho,F --range rho=0:2 --range F=-10:0 --set F3=F --set F4=F --format json
         ptmcad classify --slice rho,L2 --set F3=F --set F4=F --free F=-40:0 --members -40,-20,-10,-1
         ptmcad classify --slice rho,L2 --set F3=F --set F4=2*F --free F=-40:0 --changes --members between
+        ptmcad classify --slice rho,L2 --set F3=F --set F4=F --free F=-40:0 --surface --format json,png,ply
         ptmcad classify --slice rho,L2 --range rho=1/20:2 --range L2=0:2 --set l0=1/5 --set F3=-10 --set F4=-10
     """
     slice = asked.question(count, third)
@@ -356,9 +366,12 @@ def command(
     if isinstance(slice, Family):
         _classify_family(slice, third, options, output, limits, resume)
         return
+    if meshes := [kind for kind in output.formats if kind in MESHES]:
+        raise ConfigError(f"{meshes[0]} is for the boundary surface of a family: add --free NAME=LO:HI", key="--format")
     report_idle((
         *_idle(slice, options),
         Idle("changes", third.changes, "no parameter is free: add --free NAME=LO:HI"),
+        Idle("surface", third.surface, "no parameter is free: add --free NAME=LO:HI"),
         *idle_drawing(output.formats),
     ))  # fmt: skip
     spent = 0.0

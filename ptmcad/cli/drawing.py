@@ -32,6 +32,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 PICTURES = ("png", "svg", "pdf", "eps", "pgf")
 DATA = ("csv", "npz")
+MESHES = ("obj", "ply")
+"""Of a family's boundary surface."""
 TABLES = ("boundaries", "regions", "cells")
 """Each is a file of its own in CSV."""
 MAX_SIDE = 10_000

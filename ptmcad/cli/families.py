@@ -17,7 +17,7 @@ import click
 from ptmcad.answer.changes import Changes
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cli.drawing import DATA, PICTURES, Drawing, names_of
+from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, names_of
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import MAX_BYTES, read_result
@@ -30,6 +30,7 @@ from ptmcad.text.numerals import text_of
 from ptmcad.text.textfile import read_text
 
 if TYPE_CHECKING:
+    from ptmcad.answer.boundarysurface import BoundarySurface
     from ptmcad.ask.members import Common
 
 SOLID = "-3d"
@@ -43,6 +44,7 @@ class Wanted(NamedTuple):
     ----------
     changes : whether to find where the arrangement of the regions changes.
     between : whether the members are those between the changes.
+    surface : whether the picture in three dimensions is one of the boundary surface.
     """
 
     out: Path
@@ -51,6 +53,15 @@ class Wanted(NamedTuple):
     drawing: Drawing
     changes: bool = False
     between: bool = False
+    surface: bool = False
+
+    @property
+    def meshes(self) -> tuple[str, ...]:
+        return tuple(kind for kind in self.formats if kind in MESHES)
+
+    @property
+    def needs_surface(self) -> bool:
+        return bool(self.meshes) or (self.surface and bool(self.pictures))
 
     @property
     def pictures(self) -> tuple[str, ...]:
@@ -62,8 +73,15 @@ class Wanted(NamedTuple):
         return tuple(kind for kind in self.formats if kind in DATA)
 
 
-def family_to_files(family: Family, options: Options, wanted: Wanted) -> FamilyMap:
-    """Classify the members one by one, write each, then the family's own files; return the maps.
+class Made(NamedTuple):
+    """A family's maps, and its boundary surface where that is wanted."""
+
+    maps: FamilyMap
+    surface: BoundarySurface | None
+
+
+def family_to_files(family: Family, options: Options, wanted: Wanted) -> Made:
+    """Classify the members one by one, write each, then the family's own files; return what was made.
 
     Raises
     ------
@@ -72,7 +90,7 @@ def family_to_files(family: Family, options: Options, wanted: Wanted) -> FamilyM
     PtmcadError
         Any other of its kinds, naming the member.
     """
-    names = _names(family.name, wanted)
+    names = names_of_family(family.name, wanted)
     check_writable(wanted.out, names)
     members: list[RegionMap] = []
     with ProgressBar() as progress:
@@ -97,18 +115,24 @@ def family_to_files(family: Family, options: Options, wanted: Wanted) -> FamilyM
                 raise _at(error, f"{family.free.name} = {text_of(value)}") from error
             _write_member(found, wanted)
             members.append(found)
+        surface = None
+        if wanted.needs_surface and changes is not None:
+            from ptmcad.ask.boundarysurface import surface_of
+
+            left = None if ends is None else max(ends - time.monotonic(), 0.01)
+            surface = surface_of(common, changes, options=replace(options, timeout=left, progress=progress))
     title = family.record.title
     result = FamilyMap(
         family.name, family.free, family.values, tuple(members), common.surfaces, title, changes, family.text
     )
-    if writers := _writers(result, family.name, wanted):
+    if writers := _writers(result, surface, wanted):
         write_files(wanted.out, writers)
-    return result
+    return Made(result, surface)
 
 
 def _changes(common: Common, options: Options, wanted: Wanted) -> Changes | None:
     """Where the arrangement changes, if that is asked for."""
-    if not (wanted.changes or wanted.between):
+    if not (wanted.changes or wanted.between or wanted.needs_surface):
         return None
     from ptmcad.ask.changes import TOLERANCE, changes_of
 
@@ -122,10 +146,11 @@ def _at(error: PtmcadError, place: str) -> PtmcadError:
     return type(error)(f"{error} (at {place})")
 
 
-def _names(name: str, wanted: Wanted) -> tuple[str, ...]:
+def names_of_family(name: str, wanted: Wanted) -> tuple[str, ...]:
     """The family's own files."""
-    pictures = [f"{name}{end}.{kind}" for end in ("", SOLID) for kind in wanted.pictures]
-    return (*pictures, f"{name}.json") if "json" in wanted.formats else tuple(pictures)
+    names = [f"{name}{end}.{kind}" for kind in wanted.pictures for end in ("", SOLID)]
+    names += [f"{name}.{kind}" for kind in wanted.meshes]
+    return (*names, f"{name}.json") if "json" in wanted.formats else tuple(names)
 
 
 def _write_member(found: RegionMap, wanted: Wanted) -> None:
@@ -137,22 +162,40 @@ def _write_member(found: RegionMap, wanted: Wanted) -> None:
         write_files(wanted.out, writers)
 
 
-def _writers(result: FamilyMap, name: str, wanted: Wanted) -> dict[str, Writer]:
-    writers = picture_writers(result, name, wanted.pictures, wanted.drawing)
+def _writers(result: FamilyMap, surface: BoundarySurface | None, wanted: Wanted) -> dict[str, Writer]:
+    name = result.name
+    shown = surface if wanted.surface else None
+    writers = picture_writers(result, name, wanted.pictures, wanted.drawing, shown)
+    if surface is not None:
+        writers |= mesh_writers(surface, name, wanted.meshes)
     if "json" in wanted.formats:
         files = [f"{member.slice.name}.json" for member in result.members]
         writers[f"{name}.json"] = text_writer(write_family(result, files))
     return writers
 
 
-def picture_writers(result: FamilyMap, stem: str, formats: tuple[str, ...], drawing: Drawing) -> dict[str, Writer]:
-    """For each picture of a family a function that writes it."""
+def picture_writers(
+    result: FamilyMap, stem: str, formats: tuple[str, ...], drawing: Drawing, surface: BoundarySurface | None = None
+) -> dict[str, Writer]:
+    """For each picture of a family a function that writes it.
+
+    Parameters
+    ----------
+    surface : drawn instead of the stack of maps.
+    """
     found = {}
     for kind in formats:
-        for end, draw in (("", _draw_multiples), (SOLID, _draw_solid)):
+        for end, draw in (("", _draw_multiples), (SOLID, partial(_draw_solid, surface))):
             for file in names_of(f"{stem}{end}", (kind,)):
                 found[file] = picture(file, partial(draw, result, drawing))
     return found
+
+
+def mesh_writers(surface: BoundarySurface, stem: str, formats: tuple[str, ...]) -> dict[str, Writer]:
+    """For each of `MESHES` a function that writes the surface."""
+    from ptmcad.show.export.mesh import MESHES as KNOWN
+
+    return {f"{stem}.{kind}": text_writer(KNOWN[kind](surface)) for kind in formats}
 
 
 def _draw_multiples(result: FamilyMap, drawing: Drawing, path: Path) -> None:
@@ -161,10 +204,10 @@ def _draw_multiples(result: FamilyMap, drawing: Drawing, path: Path) -> None:
     draw_multiples(result, path, drawing.dpi, drawing.style)
 
 
-def _draw_solid(result: FamilyMap, drawing: Drawing, path: Path) -> None:
+def _draw_solid(surface: BoundarySurface | None, result: FamilyMap, drawing: Drawing, path: Path) -> None:
     from ptmcad.show.render.solid import draw_solid  # brings matplotlib
 
-    draw_solid(result, path, drawing.dpi, drawing.style)
+    draw_solid(result, path, drawing.dpi, drawing.style, surface)
 
 
 def is_family(path: Path) -> bool:

@@ -38,7 +38,7 @@ def report_idle(cases: Iterable[Idle]) -> None:
 def idle_drawing(formats: Iterable[str]) -> tuple[Idle, ...]:
     """The options of `ptmcad.cli.drawing` that none of these formats heeds."""
     chosen = set(formats)
-    picture = bool(chosen - {"json", "csv", "npz", "table"})
+    picture = bool(chosen - {"json", "csv", "npz", "table", "obj", "ply"})
     return (
         *(Idle(name, not picture, "no picture is written") for name in STYLE),
         Idle("dpi", not picture, "no picture is written"),

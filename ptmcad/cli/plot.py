@@ -9,16 +9,19 @@ from typing import NamedTuple
 
 import click
 
+from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.comparison import Comparison
+from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cli.drawing import DATA, PICTURES, Drawing, drawing_options, names_of
-from ptmcad.cli.families import is_family, picture_writers, read_family_file
+from ptmcad.cli.drawing import DATA, MESHES, PICTURES, Drawing, drawing_options, names_of
+from ptmcad.cli.families import is_family, mesh_writers, picture_writers, read_family_file
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.idle import Idle, idle_drawing, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.paths import file_option
 from ptmcad.cli.pictures import picture
 from ptmcad.cli.points import disagreements, measured, places, poses_at
+from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.stored import read_result, stored_in
 from ptmcad.cli.values import files
 from ptmcad.errors import ConfigError, shown_path
@@ -33,6 +36,7 @@ class Added(NamedTuple):
     overlay: Path | None
     at: tuple[str, ...]
     compare: Path | None
+    surface: bool
 
 
 def _with_points(stored: RegionMap, drawing: Drawing, added: Added) -> Drawing:
@@ -55,6 +59,7 @@ def _idle(result: Path, drawing: Drawing, added: Added) -> tuple[Idle, ...]:
     return (
         Idle("samples", several or bool(added.at), "sample points are drawn on a map alone"),
         Idle("legend", below, "a legend of several maps is below them"),
+        Idle("surface", not is_family(result), "this is one map: a surface is of a family"),
     )
 
 
@@ -69,7 +74,7 @@ def _check_compared(added: Added, formats: tuple[str, ...]) -> None:
         return
     if added.at or added.overlay is not None:
         raise ConfigError("two maps are drawn without further points: leave out --at and --overlay", key="--compare")
-    if any(kind in DATA for kind in formats):
+    if any(kind not in PICTURES for kind in formats):
         raise ConfigError(f"of a difference there are pictures only: {', '.join(PICTURES)}", key="--format")
 
 
@@ -111,20 +116,38 @@ def _draw_comparison(draw: Callable[..., None], found: Comparison, drawing: Draw
 
 
 def _plot_family(result: Path, folder: Path, formats: tuple[str, ...], drawing: Drawing, added: Added) -> None:
-    if added != Added(None, (), None):
+    if added._replace(surface=False) != Added(None, (), None, False):
         raise ConfigError("points and comparisons are for one map: give a member's file", file=str(result))
     if any(kind in DATA for kind in formats):
-        raise ConfigError(f"of a family there are pictures only: {', '.join(PICTURES)}", key="--format")
-    writers = picture_writers(read_family_file(result), result.stem, formats, drawing)
+        known = ", ".join((*PICTURES, *MESHES))
+        raise ConfigError(f"of a family there are pictures and meshes only: {known}", key="--format")
+    family = read_family_file(result)
+    meshes, pictures = (tuple(kind for kind in formats if kind in known) for known in (MESHES, PICTURES))
+    surface = _surface(family, result) if meshes or added.surface else None
+    writers = picture_writers(family, result.stem, pictures, drawing, surface if added.surface else None)
+    if surface is not None:
+        click.echo(f"boundary surface: {surface.words()}")
+        writers |= mesh_writers(surface, result.stem, meshes)
     check_writable(folder, tuple(writers))
     for path in write_files(folder, writers):
         click.echo(shown_path(path))
 
 
+def _surface(family: FamilyMap, file: Path) -> BoundarySurface:
+    """The boundary surface of a stored family, from members that are computed for it."""
+    from ptmcad.ask.boundarysurface import boundary_surface
+
+    try:
+        with ProgressBar() as progress:
+            return boundary_surface(family, progress=progress)
+    except ConfigError as error:
+        raise ConfigError(error.message, file=str(file)) from error
+
+
 @click.command("plot")
 @click.argument("result", type=click.Path(path_type=Path), shell_complete=files(".json"))
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the files.  [default: that of RESULT]")
-@drawing_options((*PICTURES, *DATA), "png", "What to make")
+@drawing_options((*PICTURES, *DATA, *MESHES), "png", "What to make")
 @file_option(
     "--overlay", ".csv", "FILE",
     "A CSV file of points to draw on the map: columns named like the axes, and label and count if there are.",
@@ -138,6 +161,10 @@ def _plot_family(result: Path, folder: Path, formats: tuple[str, ...], drawing: 
 @file_option(
     "--compare", ".json", "OTHER",
     "Draw RESULT, another map of the same window, and where their counts differ; print how large that is.",
+)  # fmt: skip
+@click.option(
+    "--surface", is_flag=True,
+    help="Of a family with its changes: draw NAME-3d as the surface between regions of different counts.",
 )  # fmt: skip
 @limit_options
 @gathered(added=Added)
@@ -155,12 +182,15 @@ def command(
         ptmcad plot slice-L2-rho.json --at L2=1,rho=1 --at L2=3,rho=1/2 --format pdf
         ptmcad plot slice-L2-rho.json --overlay measured.csv
         ptmcad plot slice-L2-rho.json --compare heavier.json
+        ptmcad plot loads.json --surface --format pdf,ply
     """
     report_idle((*idle_drawing(formats), *_idle(result, drawing, added)))
     with held(limits):
         if is_family(result):
             _plot_family(result, result.parent if out is None else out, formats, drawing, added)
             return
+        if meshes := [kind for kind in formats if kind in MESHES]:
+            raise ConfigError(f"{meshes[0]} is for a family's boundary surface, and this is one map", key="--format")
         stored = read_result(result)
         folder = result.parent if out is None else out
         stem = result.stem if added.compare is None else f"{result.stem}-and-{added.compare.stem}"

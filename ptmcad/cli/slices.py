@@ -26,11 +26,12 @@ BETWEEN = "between"
 
 
 class Third(NamedTuple):
-    """The free parameter of a family, its members, and whether changes are wanted, as they were typed."""
+    """What was typed of a family: its free parameter, its members, and whether its changes and surface are wanted."""
 
     free: str | None
     members: str | None
     changes: bool
+    surface: bool
 
     @property
     def between(self) -> bool:

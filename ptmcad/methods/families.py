@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from pandas import DataFrame
 
+    from ptmcad.answer.boundarysurface import BoundarySurface
     from ptmcad.answer.changes import Changes
     from ptmcad.answer.design import BestDesign
     from ptmcad.answer.family import FamilyMap
@@ -29,13 +30,20 @@ def _family_table(self: FamilyMap) -> str:
 
 
 def _family_plot(
-    self: FamilyMap, style: Any = "default", *, solid: bool = False, dpi: int = 150, **options: Any
+    self: FamilyMap,
+    style: Any = "default",
+    *,
+    solid: bool = False,
+    surface: BoundarySurface | None = None,
+    dpi: int = 150,
+    **options: Any,
 ) -> Any:
     """The members' maps side by side, all alike, as a `Figure` of matplotlib's.
 
     Parameters
     ----------
-    solid : draw the maps one above the other in three dimensions, between them the surfaces at which they change.
+    solid : draw the maps one above the other in three dimensions.
+    surface : what `boundary_surface` gave: drawn in three dimensions with the members' curves, instead of their maps.
     style, dpi, options : as of `RegionMap.plot`.
 
     Raises
@@ -46,13 +54,65 @@ def _family_plot(
     from ptmcad.show.render.usersettings import user_styled
 
     made = user_styled(style, **options)
-    if solid:
+    if solid or surface is not None:
         from ptmcad.show.render.solid import solid_figure
 
-        return solid_figure(self, dpi, made)
+        return solid_figure(self, dpi, made, surface)
     from ptmcad.show.render.multiples import multiples_figure
 
     return multiples_figure(self, dpi, made)
+
+
+def _family_boundary_surface(
+    self: FamilyMap,
+    tolerance: Any = "1/100",
+    *,
+    max_members: int = 120,
+    timeout: float | None = None,
+    progress: Any = None,
+) -> BoundarySurface:
+    """The surface between regions of different counts, over the free parameter, as a mesh.
+
+    Its vertices lie on the boundaries of exact members, which are computed for it; between them it is linear
+    interpolation. No sheet reaches past a change of the arrangement, which is why the changes have to be known:
+    ``ptmcad.family(record, changes=True)``.
+
+    Parameters
+    ----------
+    tolerance : members are added until the boundary of one halfway between neighbours is this near to the sheet between
+        them, as a share of the window.
+    max_members : the most members that are computed; what is left then, `BoundarySurface.deviation` says.
+    timeout : seconds after which `LimitReached` is raised.
+    progress : called as progress(stage, done, total).
+
+    Raises
+    ------
+    ConfigError
+        When the changes are not known, and for a tolerance that is not between 0 and 1.
+    """
+    from ptmcad.ask.boundarysurface import boundary_surface
+
+    return boundary_surface(self, tolerance, max_members=max_members, timeout=timeout, progress=progress)
+
+
+def _surface_to_obj(self: BoundarySurface) -> str:
+    """The mesh as Wavefront OBJ, a group for each sheet."""
+    from ptmcad.show.export.mesh import obj_text
+
+    return obj_text(self)
+
+
+def _surface_to_ply(self: BoundarySurface) -> str:
+    """The mesh as Stanford PLY, with each face's sheet and the counts on both of its sides."""
+    from ptmcad.show.export.mesh import ply_text
+
+    return ply_text(self)
+
+
+def _surface_repr_html(self: BoundarySurface) -> str:
+    from ptmcad.show.notebook import text_html
+
+    return text_html(f"{self!r}\n{self.words()}")
 
 
 def _family_repr_html(self: FamilyMap) -> str:
@@ -185,8 +245,9 @@ def _sweep_repr_html(self: Sweep) -> str:
     return text_html(repr(self))
 
 
-METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "_repr_html_": _family_repr_html,
-                        "_repr_png_": _family_repr_png}  # fmt: skip
+METHODS["FamilyMap"] = {"table": _family_table, "plot": _family_plot, "boundary_surface": _family_boundary_surface,
+                        "_repr_html_": _family_repr_html, "_repr_png_": _family_repr_png}  # fmt: skip
+METHODS["BoundarySurface"] = {"to_obj": _surface_to_obj, "to_ply": _surface_to_ply, "_repr_html_": _surface_repr_html}
 METHODS["BestDesign"] = {
     "table": _design_table,
     "to_json": _design_to_json,

@@ -5,11 +5,15 @@ Guarantee: an axis has the unit of the parameters which are a number times it, o
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ptmcad.errors import ExpressionError
 from ptmcad.mechanism import Kind, Mechanism, Model, Parameter
 from ptmcad.mechanism.description import UnknownKind
 from ptmcad.mechanism.evaluate import multiples
 from ptmcad.question.slice import Slice
+from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.parsing import names_in, parse
 from ptmcad.text.tree import Tree, names_of
 
 _LENGTH, _FORCE, _STIFFNESS, _MOMENT = ("length",), ("force",), ("force", "/", "length"), ("force", "·", "length")
@@ -40,18 +44,38 @@ def _is_multiple(tree: Tree) -> bool:
 
 def _quantities(slice: Slice, axis: int) -> tuple[str, ...]:
     """Of an axis; empty where they are not known, or not the same for all parameters that are a number times it."""
-    exponents = (1, 0) if axis == 0 else (0, 1)
+    return _quantities_in(slice, slice.parameters, (1, 0) if axis == 0 else (0, 1))
+
+
+def _quantities_in(slice: Slice, parameters: Mapping[str, Expression], exponents: tuple[int, int]) -> tuple[str, ...]:
+    """Those of the parameters that are a number times the axis with these exponents."""
     found = set()
-    for name, expression in slice.parameters.items():
+    for name, expression in parameters.items():
         if expression.is_polynomial and [term[:2] for term in expression.numerator] == [exponents]:
             known = slice.model.parameters.get(name)
             found |= {_quantities_of(slice.model, known)} if known is not None and known.kind in _QUANTITIES else set()
     return found.pop() if len(found) == 1 else ()
 
 
+def _joined(slice: Slice, quantities: tuple[str, ...]) -> str:
+    return "".join(slice.units.get(part, part) for part in quantities)
+
+
 def unit(slice: Slice, axis: int) -> str:
     """The unit of an axis, such as ``mm``, or ``length`` where the record declares none; empty when not known."""
-    return "".join(slice.units.get(part, part) for part in _quantities(slice, axis))
+    return _joined(slice, _quantities(slice, axis))
+
+
+def unit_of_free(slice: Slice, free: str, text: Mapping[str, str]) -> str:
+    """The same of a family's free parameter.
+
+    Parameters
+    ----------
+    slice : one of the members.
+    text : of the family's parameters, as `FamilyMap.text`.
+    """
+    own = {name: parse(written, {free: axis(0)}) for name, written in text.items() if names_in(written) == (free,)}
+    return _joined(slice, _quantities_in(slice, {free: axis(0), **own}, (1, 0)))
 
 
 def unit_of_unknown(slice: Slice, name: str) -> str:

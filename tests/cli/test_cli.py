@@ -343,6 +343,9 @@ def test_help_examples_about_a_result_run(
     if "--compare" in example:
         Path("out").mkdir()
         Path("out/fig4.bench.json").symlink_to(ROOT / "docs" / "benchmarks" / "fig4.bench.json")
+    if "loads.json" in example:
+        Path("free.yaml").write_text("name: loads\n" + FAMILY.replace("sweep:", "free:"), encoding="utf-8")
+        assert run(["classify", "free.yaml", "--changes", "--members", "2", "--no-areas", "--format", "json"]) == 0
     assert run(example.split()) == 0
 
 

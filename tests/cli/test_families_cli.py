@@ -188,6 +188,53 @@ def test_changes_are_told_with_their_kind(
     assert "--changes has no effect here" in capsys.readouterr().err
 
 
+def test_a_boundary_surface_is_drawn_and_written_as_a_mesh(
+    disc: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = str(disc / "disc.yaml")
+    wanted = ["--surface", "--format", "json,svg,ply,obj", "--no-areas", "--members", "-1,1/2,3/2"]
+    assert run(["classify", record, "--out", str(tmp_path), *wanted]) == 0
+    out = capsys.readouterr().out
+    assert "boundary surface: sheets interpolated linearly between " in out
+    assert "changes of the arrangement for c between -1 and 3: 3" in out
+    assert "disc.svg, " in out
+    assert "disc.ply, " in out
+    own = {"disc.json", "disc.svg", "disc-3d.svg", "disc.ply", "disc.obj"}
+    assert own == {path.name for path in tmp_path.iterdir() if not path.name.startswith("disc-c")}
+    assert "between 0 and 2" in (tmp_path / "disc-3d.svg").read_text()
+    ply = (tmp_path / "disc.ply").read_text()
+    assert run(["plot", str(tmp_path / "disc.json"), "--format", "ply", "--out", str(tmp_path / "again")]) == 0
+    assert (tmp_path / "again" / "disc.ply").read_text() == ply
+    assert run(["plot", str(tmp_path / "disc.json"), "--surface", "--out", str(tmp_path / "again")]) == 0
+    assert {path.name for path in (tmp_path / "again").iterdir()} == {"disc.ply", "disc.png", "disc-3d.png"}
+
+
+def test_without_a_surface_the_picture_is_a_stack_and_a_mesh_needs_no_option(
+    disc: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    common = ["classify", str(disc / "disc.yaml"), "--out", str(tmp_path), "--no-areas", "--members", "1/2,3/2"]
+    assert run([*common, "--format", "svg,obj"]) == 0
+    assert "between 0 and 2" not in (tmp_path / "disc-3d.svg").read_text()
+    assert (tmp_path / "disc.obj").read_text().startswith("# boundary surface over a, b, c")
+    capsys.readouterr()
+    assert run([*common, "--format", "json", "--surface"]) == 0
+    told = capsys.readouterr()
+    assert "--surface has no effect here: no picture and no mesh" in told.err
+    assert "boundary surface" not in told.out
+    for asked, message in (
+        (["plot", str(tmp_path / "disc.json"), "--surface"], "disc.json: a sheet must not reach past a change"),
+        (["plot", str(tmp_path / "disc-c1_2.json"), "--format", "ply"], "ply is for a family's boundary surface"),
+        (["classify", "--slice", "L2,rho", "--format", "obj", "--out", str(tmp_path)], "add --free NAME=LO:HI"),
+    ):
+        assert run(asked) == 2
+        assert message in capsys.readouterr().err
+    plain = ["classify", "--slice", "L2,rho", "--surface", "--format", "json", "--no-areas", "--out", str(tmp_path)]
+    assert run(plain) == 0
+    assert "--surface has no effect here: no parameter is free" in capsys.readouterr().err
+    assert run(["plot", str(tmp_path / "disc-c1_2.json"), "--surface", "--format", "svg"]) == 0
+    assert "--surface has no effect here: this is one map" in capsys.readouterr().err
+
+
 def test_changes_are_verified_and_what_is_not_is_said(disc: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["verify", str(disc / "disc.json")]) == 0
     out = capsys.readouterr().out

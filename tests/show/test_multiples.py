@@ -7,12 +7,16 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from mpl_toolkits.mplot3d import proj3d
 
 import ptmcad
+from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.family import FamilyMap
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.multiples import draw_multiples
+from ptmcad.show.render.sheets import LONGEST, camera_of, halved
 from ptmcad.show.render.solid import MAX_FLOORS, draw_solid
 from ptmcad.show.style import styled
 
@@ -77,6 +81,74 @@ def test_of_many_maps_a_few_are_filled_and_of_the_others_there_are_curves(family
     left_out = [n for n in range(8) if n not in (0, 1, 2, 4, 5, 6, 7)]
     whole = sum(len(result.regions) for result in more.members)
     assert len(drawn.axes[0].patches) == whole - sum(len(more.members[n].regions) for n in left_out)
+
+
+@pytest.fixture(name="solid", scope="module")
+def with_surface() -> tuple[FamilyMap, BoundarySurface]:
+    found = ptmcad.family(RECORD | {"members": 3}, areas=False, changes=True)
+    return found, found.boundary_surface("1/50")
+
+
+def test_a_boundary_surface_is_drawn_with_the_members_curves_and_says_what_it_is(
+    solid: tuple[FamilyMap, BoundarySurface], tmp_path: Path
+) -> None:
+    found, surface = solid
+    figure = found.plot(surface=surface)
+    (axes,) = figure.axes
+    (sheets,) = (each for each in axes.collections if each.get_gid() == "sheets")
+    assert len(sheets.get_facecolor()) > len(surface.faces)  # and pieces of curves
+    assert not sheets.get_rasterized()
+    texts = [text.get_text() for text in figure.texts]
+    assert {"1", "3", "between 1 and 3", "boundary of a member"} <= set(texts)
+    assert f"sheets: linear between {len(surface.members)} exact boundaries" in texts
+    assert not any("not proved" in text for text in texts)
+    # of the maps there is the lowest member's, on the floor
+    assert len(axes.patches) == len(found.members[0].regions)
+    for name in ("a.svg", "b.svg"):
+        draw_solid(found, tmp_path / name, 100, styled(), surface)
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+    assert "exact members" in (tmp_path / "a.svg").read_text()
+
+
+def test_a_surface_of_many_pieces_is_an_image_in_a_vector_picture(
+    solid: tuple[FamilyMap, BoundarySurface], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ptmcad.show.render.sheets.MAX_PIECES", 100)
+    found, surface = solid
+    draw_solid(found, tmp_path / "a.svg", 100, styled(), surface)
+    assert (tmp_path / "a.svg").read_text().count("<image") == 1
+
+
+def test_what_is_in_front_is_painted_last(solid: tuple[FamilyMap, BoundarySurface]) -> None:
+    """Triangles are cut so that none is long, together as large as before; the camera knows where the eye is."""
+    corners = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 1]], [[0, 0, 0], [0.01, 0, 0], [0, 0.01, 0]]])
+    cut, colours = halved(corners, np.array([[1.0, 0, 0], [0, 1, 0]]))
+    sides = np.linalg.norm(np.roll(cut, -1, axis=1) - cut, axis=2)
+    areas = np.linalg.norm(np.cross(cut[:, 1] - cut[:, 0], cut[:, 2] - cut[:, 0]), axis=1) / 2
+    assert sides.max() <= LONGEST
+    assert areas[colours[:, 0] == 1].sum() == pytest.approx(2**0.5 / 2)
+    assert (colours[:, 1] == 1).sum() == 1
+    axes = solid[0].plot(surface=solid[1]).axes[0]
+    camera = camera_of(axes)
+    eye = camera.unboxed(np.full(3, 0.5) + 10 * camera.towards)
+    middle = camera.unboxed(np.full(3, 0.5))
+    depths = [proj3d.proj_transform(*point, axes.get_proj())[2] for point in (eye, middle)]
+    screen = [proj3d.proj_transform(*point, axes.get_proj())[:2] for point in (eye, middle)]
+    assert depths[0] < depths[1]
+    assert screen[0] == pytest.approx(screen[1], abs=1e-9)
+
+
+def test_the_free_parameter_has_its_unit() -> None:
+    loads = {
+        "mechanism": "ptm", "parameters": {"F3": "F", "F4": "2*F"}, "axes": {"rho": [0, 2], "L2": [0, 2]},
+        "free": {"F": [-40, 0]},
+    }  # fmt: skip
+    axes = ptmcad.family(loads, values=[-10], areas=False).plot(solid=True).axes[0]
+    assert [axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()] == ["ρ (length)", "L₂ (length)", "F (force)"]
+    mixed = {**loads, "parameters": {"F3": "F", "k": "200 + F"}}
+    assert ptmcad.family(mixed, values=[-10], areas=False).plot(solid=True).axes[0].get_zlabel() == "F (force)"
+    own = {"mechanism": "ptm", "axes": {"rho": [0, 2], "L2": [0, 2]}, "free": {"L1": [1, 2]}, "units": {"length": "mm"}}
+    assert ptmcad.family(own, values=[1], areas=False).plot(solid=True).axes[0].get_zlabel() == "L₁ (mm)"
 
 
 def test_the_table_has_a_line_for_each_member(family: FamilyMap) -> None:

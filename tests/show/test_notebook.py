@@ -91,6 +91,7 @@ def every_kind(tmp_path_factory: pytest.TempPathFactory) -> list[object]:
     poses = ptmcad.solve(rho="1", L2="3/2")
     return [
         *made, ptmcad.operation_widths(slice, "rho", 2), changed, changed.changes, changed.changes.changes[0],
+        changed.boundary_surface("1/20"),
         shipped("fig4").compare(shipped("fig4")), shipped("fig4").animate("rho=1/10:1/5,L2=1", "stable:1", 2), swept,
         swept[0], poses.equilibria[0].energy, ptmcad.counts_at(slice.model, rho="1", L2="3/2"), slice.count,
         shipped("fig4").locate(rho=1, L2=1), ptmcad.load(CONFIGS / "systems" / "duffing.yaml").model,

@@ -134,7 +134,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     marks = [marks_of(shape, (side, side), dpi, max(MIN_FONT, 0.85 * font)) for shape in seen]
     thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
     told = family_entries(family, paint, thin, sum(mark.hidden for mark in marks))
-    lines = [] if style.legend is Place.NONE else _flowed(told, wide - 1.2 * em, type)
+    lines = [] if style.legend is Place.NONE else flowed(told, wide - 1.2 * em, type)
     rest = 1.5 * em * len(titles) + 0.4 * em + rows * head + below + (type.line * 1.35) * len(lines) + 0.7 * em
     between = 0.5 * em * (rows - 1)
     tall = (style.size[1] - rest - between) / rows if style.size is not None else side
@@ -160,9 +160,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
             box[0], box[1] + tall + 0.75 * em, value_text(family, value), fontsize=font, va="center",
             transform=figure.dpi_scale_trans, color=INK,
         )  # fmt: skip
-    for k, entries in enumerate(reversed(lines)):
-        for at, entry in entries:
-            draw_legend(figure, [entry], 0.6 * em + at, 0.5 * em + (k + 1) * type.line * 1.35, type)
+    draw_flowed(figure, lines, em, type)
     return figure
 
 
@@ -189,7 +187,14 @@ def _strip_inner(axes: Any, has_left: bool, has_below: bool) -> None:
         axes.tick_params(axis="x", labelbottom=False)
 
 
-def _flowed(entries: Sequence[Entry], width: float, type: Type) -> list[list[tuple[float, Entry]]]:
+def draw_flowed(figure: Figure, lines: Sequence[Sequence[tuple[float, Entry]]], em: float, type: Type) -> None:
+    """A legend of `flowed` at the figure's foot."""
+    for k, entries in enumerate(reversed(lines)):
+        for at, entry in entries:
+            draw_legend(figure, [entry], 0.6 * em + at, 0.5 * em + (k + 1) * type.line * 1.35, type)
+
+
+def flowed(entries: Sequence[Entry], width: float, type: Type) -> list[list[tuple[float, Entry]]]:
     """The legend in rows, each entry with its place from the left in inches."""
     lines: list[list[tuple[float, Entry]]] = [[]]
     at = 0.0

@@ -1,96 +1,144 @@
-"""A family in three dimensions: its members' maps one above the other, with the curves at which counts change between.
+"""A family in three dimensions: its members' maps one above the other, or the surface between different counts.
 
-Guarantee: every curve that is drawn is one of a member's map. Between members nothing is drawn but the members that
-were asked for to fill the gaps.
+Guarantee: every curve that is drawn is one of a member's map. Between members nothing is drawn but the sheets of a
+boundary surface, where one is given; the picture says that they are interpolated.
 """
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from ptmcad.answer.boundarysurface import BoundarySurface
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, draw_legend
-from ptmcad.show.render.multiples import family_entries, in_words, paint_of_family, title_of
+from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type
+from ptmcad.show.render.multiples import draw_flowed, family_entries, flowed, in_words, paint_of_family, title_of
 from ptmcad.show.render.painting import Paint
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
+from ptmcad.show.render.textwidth import wrapped
 from ptmcad.show.style import MIN_FONT, Place, Style
+from ptmcad.show.units import unit_of_free, with_unit
 
-SIZE = (6.4, 5.2)
+SIZE = (5.8, 5.5)
+_BOX_DIAGONAL = 1.7
+"""Of the box's side: how much the picture's width or height shows, about; widths of lines on a surface rest on it."""
 MAX_FLOORS = 7
 """Of filled maps: more would hide each other."""
 
 
-def draw_solid(family: FamilyMap, path: Path, dpi: int, style: Style) -> None:
+def draw_solid(family: FamilyMap, path: Path, dpi: int, style: Style, surface: BoundarySurface | None = None) -> None:
     """Write the picture, as `ptmcad.show.render.printing.save` does."""
-    figure = solid_figure(family, dpi, style)
-    figure.set_label(f"{title_of(family)}, in three dimensions\n{in_words(family)}")
+    figure = solid_figure(family, dpi, style, surface)
+    words = in_words(family) if surface is None else f"{in_words(family)}. Surface: {surface.words()}"
+    figure.set_label(f"{title_of(family)}, in three dimensions\n{words}")
     save(figure, path, dpi=dpi, style=style)
 
 
-def solid_figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
-    """The picture: at most `MAX_FLOORS` maps are filled, of the other members there are the curves."""
+def solid_figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface | None = None) -> Figure:
+    """The picture: at most `MAX_FLOORS` maps are filled, of the other members there are the curves.
+
+    Parameters
+    ----------
+    surface : drawn instead of the maps, with the members' curves on it.
+    """
     with settings(style):
-        return _figure(family, dpi, style)
+        return _figure(family, dpi, style, surface)
 
 
-def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
-    from matplotlib.ticker import MaxNLocator
-    from mpl_toolkits.mplot3d import Axes3D
-
+def _figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface | None) -> Figure:
     font = style.base_font
     em = font / 72
     wide, tall = style.size or SIZE
-    slice = family.members[0].slice
     figure = Figure(figsize=(wide, tall), dpi=dpi, facecolor="white")
     title = title_of(family) if style.title is None else style.title
     paint = paint_of_family(family, style)
     type = Type(font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, style.strong * THIN / STRONG)
+    colours = {} if surface is None else sheet_colours(family, surface, paint)
     told = family_entries(family, paint)
-    if len(family.values) > MAX_FLOORS:
+    if surface is None and len(family.values) > MAX_FLOORS:
         told.append(Entry(("curves of the other members",), THIN))
-    entries = [] if style.legend is Place.NONE else told
-    legend = max((type.entry_width(entry) for entry in entries), default=0.0) + (1.2 * em if entries else 0.0)
-    head = 2 * em if title else 0.0
-    axes: Any = Axes3D(figure, rect=(0.02, 0.03, (wide - legend) / wide - 0.06, (tall - head) / tall - 0.03),
-                       auto_add_to_figure=False)  # fmt: skip
+    elif surface is not None:
+        told = sheet_entries(surface, colours, told if _lowest(family) else told[:1])
+    lines = [] if style.legend is Place.NONE else flowed(told, wide - 1.2 * em, type)
+    titles = wrapped(title, wide - 1.2 * em, font, True) if title else []
+    head, foot = 1.5 * em * len(titles) + 0.4 * em, 1.35 * type.line * len(lines) + (0.7 * em if lines else 0.0)
+    # names of axes are so many letters below the box, whose lowest corner is a tenth above the axes' end
+    foot += max(0.0, 4.8 * em - 0.1 * (tall - head - foot))
+    box = (0.02, foot / tall, 0.92, (tall - head - foot) / tall)
+    axes = _axes(figure, box, family, font)
+    # what is added is taken for further data, beside limits that matplotlib leaves at infinity
+    with np.errstate(over="ignore", invalid="ignore"):
+        if surface is None:
+            _add_floors(axes, family, paint)
+        else:
+            for value, result in _lowest(family):
+                _floor(axes, result, float(value), paint, _least(result))
+            inches = min(box[2] * wide, box[3] * tall) / _BOX_DIAGONAL
+            add_sheets(axes, surface, colours, _curves(family), 0.6 * paint.strong / 72 / inches)
+    axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
+    for k, line in enumerate(titles):
+        figure.text(
+            0.6 * em, tall - em - 1.5 * em * k, line, fontsize=font, fontweight="bold", va="center",
+            transform=figure.dpi_scale_trans, color=INK,
+        )  # fmt: skip
+    draw_flowed(figure, lines, em, type)
+    return figure
+
+
+def _axes(figure: Figure, box: tuple[float, float, float, float], family: FamilyMap, font: float) -> Any:
+    """Empty axes in three dimensions, in parallel projection."""
+    from matplotlib.ticker import MaxNLocator
+    from mpl_toolkits.mplot3d import Axes3D
+
+    slice = family.members[0].slice
+    axes: Any = Axes3D(figure, rect=box, auto_add_to_figure=False)
     figure.add_axes(axes)
     axes.set_proj_type("ortho")
     axes.view_init(elev=22, azim=-62)
     axes.computed_zorder = False
-    least = min(counted_by(r, slice.count) for result in family.members for r in result.regions)
-    floors = set(np.linspace(0, len(family.values) - 1, min(MAX_FLOORS, len(family.values))).round().astype(int))
-    axes.set(xlim=_ends(slice.axes[0]), ylim=_ends(slice.axes[1]), zlim=_ends(family.free))
-    # what is added is taken for further data, beside limits that matplotlib leaves at infinity
-    with np.errstate(over="ignore", invalid="ignore"):
-        for number, (value, result) in enumerate(family):
-            _floor(axes, result, float(value), paint, least if number in floors else None)
+    axes.set(xlim=_ends(family.axes[0]), ylim=_ends(family.axes[1]), zlim=_ends(family.free))
     how = {"fontsize": 0.95 * font, "labelpad": 0.3 * font}
-    axes.set(
-        xlim=_ends(slice.axes[0]), ylim=_ends(slice.axes[1]), zlim=_ends(family.free),
-    )  # fmt: skip
     axes.set_xlabel(axis_name(slice, 0), **how)
     axes.set_ylabel(axis_name(slice, 1), **how)
-    axes.set_zlabel(symbol(family.free.name), **how)
+    axes.set_zlabel(with_unit(symbol(family.free.name), unit_of_free(slice, family.free.name, family.text)), **how)
     axes.tick_params(labelsize=max(MIN_FONT, 0.85 * font), pad=0)
     for each, end in ((axes.xaxis, "upper"), (axes.yaxis, "lower"), (axes.zaxis, None)):
         # at the corner that two axes share, one number would lie on the other
         each.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 2.5, 5, 10], prune=end))
-    axes.set_box_aspect((1, 1, 1.05), zoom=0.92)
-    if title:
-        figure.text(
-            0.6 * em, tall - em, title, fontsize=font, fontweight="bold", va="center",
-            transform=figure.dpi_scale_trans, color=INK,
-        )  # fmt: skip
-    draw_legend(figure, entries, wide - legend, tall - head - em, type)
-    return figure
+    axes.set_box_aspect(BOX, zoom=0.95)
+    return axes
+
+
+def _add_floors(axes: Any, family: FamilyMap, paint: Paint) -> None:
+    least = _least(*family.members)
+    number = len(family.values)
+    floors = set(np.linspace(0, number - 1, min(MAX_FLOORS, number)).round().astype(int))
+    for k, (value, result) in enumerate(family):
+        _floor(axes, result, float(value), paint, least if k in floors else None)
+
+
+def _least(*members: RegionMap) -> tuple[int, ...]:
+    """The least count that a region has."""
+    return min(counted_by(r, result.slice.count) for result in members for r in result.regions)
+
+
+def _lowest(family: FamilyMap) -> list[tuple[Fraction, RegionMap]]:
+    """The member at the lower end of the range, if there is one: on the box's floor its map hides nothing."""
+    return [member for member in family if member[0] == family.free.low]
+
+
+def _curves(family: FamilyMap) -> list[Any]:
+    """The members' curves at which counts change, at their heights."""
+    return [line for value, result in family for line in _lifted(result, float(value))]
 
 
 def _ends(axis: Any) -> tuple[float, float]:
@@ -104,12 +152,7 @@ def _floor(axes: Any, result: RegionMap, height: float, paint: Paint, least: tup
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, pathpatch_2d_to_3d
 
     seen = shapes(result)
-    (left, right), (low, high) = (_ends(axis) for axis in result.slice.axes)
-    scale, origin = np.array([right - left, high - low]), np.array([left, low])
-
-    def lifted(points: Any) -> Any:
-        return np.column_stack([points * scale + origin, np.full(len(points), height)])
-
+    scale, origin = _frame(result)
     if least is not None:
         for number, region in enumerate(result.regions):
             polygons = [Curve(polygon * scale + origin, closed=False) for polygon in seen.polygons(number)]
@@ -121,8 +164,7 @@ def _floor(axes: Any, result: RegionMap, height: float, paint: Paint, least: tup
                 )  # fmt: skip
                 axes.add_patch(patch)
                 pathpatch_2d_to_3d(patch, z=height)
-    strong = [lifted(line) for _, separates, line in seen.walls() if separates]
-    strong += [lifted(line) for line in seen.edges()]
+    strong = _lifted(result, height)
     if strong:
         axes.add_collection3d(
             Line3DCollection(
@@ -130,3 +172,17 @@ def _floor(axes: Any, result: RegionMap, height: float, paint: Paint, least: tup
                 alpha=1.0 if least is not None else 0.55, zorder=height + 1e-9 * (1 + abs(height)),
             )
         )  # fmt: skip
+
+
+def _frame(result: RegionMap) -> tuple[Any, Any]:
+    """The window's sides and its lower left corner."""
+    (left, right), (low, high) = (_ends(axis) for axis in result.slice.axes)
+    return np.array([right - left, high - low]), np.array([left, low])
+
+
+def _lifted(result: RegionMap, height: float) -> list[Any]:
+    """The curves of a map at which counts change, and the rims of what is undetermined, at a height."""
+    seen = shapes(result)
+    scale, origin = _frame(result)
+    lines = [line for _, separates, line in seen.walls() if separates] + list(seen.edges())
+    return [np.column_stack([line * scale + origin, np.full(len(line), height)]) for line in lines]
