@@ -135,7 +135,10 @@ def test_unloaded_poses_merge_into_the_flat_one() -> None:
     assert path.high.at.exact == Fraction(5, 4)  # type: ignore[union-attr]
     assert path.high.meeting == (0, 0, 1) and path.high.leaving == (0,)
     assert path.high.target is not None
-    assert all(a.low <= 0 <= a.high for a in path.high.target.angles)
+    assert all(a.exact == 0 for a in path.high.target.angles)
+    below = pose_paths(record("fig2"), "rho", {"L2": "3/2"}, Fraction(6, 5), 2).paths[0].low
+    assert below.fate is Fate.MERGE and below.target is not None
+    assert [a.text(6) for a in below.target.angles] == ["-3.14159", "0"]
 
 
 def test_a_pair_that_meets_elsewhere_does_not_stop_a_path() -> None:

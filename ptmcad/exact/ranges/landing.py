@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from math import pi
 from typing import NamedTuple
 
 from flint import arb, ctx
@@ -107,8 +108,21 @@ def _merged(
     if number.exact is None:
         return region
     poses = exact_poses(family.model, parameters_at(family, line, number.exact), DIGITS).equilibria
-    inside = [p for p in ((*pose.angles, *pose.reals) for pose in poses) if _overlap(p, region)]
+    near = [_turned((*pose.angles, *pose.reals), region, family.angles) for pose in poses]
+    inside = [p for p in near if _overlap(p, region)]
     return inside[0] if len(inside) == 1 else region
+
+
+def _turned(pose: Sequence[Enclosure], region: Sequence[Enclosure], angles: int) -> tuple[Enclosure, ...]:
+    """A pose with its angles whole turns further, as near to a region as they come."""
+    turned = list(pose)
+    with ctx.workprec(BITS):
+        for k in range(angles):
+            turns = round((float(region[k]) - float(pose[k])) / (2 * pi))
+            if turns:
+                ball = ball_of(pose[k].low).union(ball_of(pose[k].high)) + 2 * turns * arb.pi()
+                turned[k] = enclosure_of(ball)
+    return tuple(turned)
 
 
 def _overlap(first: Sequence[Enclosure], second: Sequence[Enclosure]) -> bool:
