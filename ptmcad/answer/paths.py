@@ -40,6 +40,15 @@ class PathPoint:
 
 
 @dataclass(frozen=True, slots=True)
+class Target:
+    """The pose to which a state goes at a critical value: its unknowns at that value itself, and ``sides`` as above."""
+
+    angles: tuple[Enclosure, ...]
+    reals: tuple[Enclosure, ...] = ()
+    sides: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class PathEnd:
     """One end of a path.
 
@@ -50,10 +59,10 @@ class PathEnd:
     meeting : of the solutions on the path's side, the Morse indices (numbers of negative eigenvalues) of those that
         meet there, the path's own included; without a potential 0 for a stable one, and 1 for another.
     leaving : the same for those into which they go on beyond.
-    energy : of the pose at ``last``; None where there is none.
-    target : the stable pose beyond, to which the mechanism goes, close to ``at``; None at the window's edge, and where
-        the energy, of one value for each pose, does not tell it: under a moment it may turn for ever.
-    target_energy : its energy, if it has one.
+    energy : of the pose in which the path ends, at ``at`` itself; None where there is no target.
+    target : the stable pose to which the mechanism goes, at ``at`` itself; None at the window's edge, and where the
+        energy, of one value for each pose, does not tell it: under a moment it may turn for ever.
+    target_energy : its energy, at ``at`` itself.
     among : whether it is proved that the pose vanishes together with one or more of the others in ``meeting``, and
         not with which of them.
     """
@@ -64,7 +73,7 @@ class PathEnd:
     meeting: tuple[int, ...] = ()
     leaving: tuple[int, ...] = ()
     energy: Enclosure | None = None
-    target: PathPoint | None = None
+    target: Target | None = None
     target_energy: Enclosure | None = None
     among: bool = False
 

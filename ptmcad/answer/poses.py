@@ -113,7 +113,8 @@ class Poses:
     equilibria : stable ones first, then by energy.
     status : EXACT; CERTIFIED with free lengths, none degenerate; ON_VARIETY when an equilibrium is degenerate;
         UNDECIDED with no equilibria when there are infinitely many or they could not be separated; see ``remark``.
-    digits : significant digits that each enclosure settles.
+    digits : significant digits that each enclosure settles; one more where it cannot be told from halfway between two
+        texts of so many.
     bits : the precision that was needed.
     """
 

@@ -31,6 +31,7 @@ from ptmcad.ask.fields.field import unknowns_of
 from ptmcad.ask.fields.jets import Floats
 from ptmcad.ask.fields.track import Track, followed
 from ptmcad.certified.intervals import certified_intervals
+from ptmcad.certified.landing import landing, line_of, merger
 from ptmcad.errors import ConfigError
 from ptmcad.mechanism import Mechanism
 from ptmcad.options import Progress
@@ -205,20 +206,26 @@ class _Walker:
         if 0 not in meeting:
             return stopped
         met = replace(stopped, fate=Fate.VANISH, meeting=meeting, leaving=leaving)
-        if self.moved or self.slice.model.reals or not self.slice.model.has_potential:
+        model = self.slice.model
+        if self.moved or model.reals or not model.has_potential or not isinstance(model, Mechanism):
             return met
         at, share = lost
         way = descent(lambda point: track.at(share, point), at)
         target = None if way is None else self._found(after, way[-1])
         if way is None or target is None:
             return met
-        reached = _Reached(value, way[-1], target)
+        merges = 0 in leaving
+        places = (self._point(current), self._point(_Reached(value, way[-1], target)))
+        line = line_of(self.slice, model, self.varying, self.fixed)
+        found = (merger if merges else landing)(line, change.at, *places)
+        if found is None:
+            return met
         return replace(
             met,
-            fate=Fate.MERGE if 0 in leaving else Fate.SNAP,
-            energy=current.pose.energy,
-            target=self._point(reached),
-            target_energy=target.energy,
+            fate=Fate.MERGE if merges else Fate.SNAP,
+            energy=found.energy,
+            target=found.target,
+            target_energy=found.target_energy,
         )
 
     def _point(self, reached: _Reached) -> PathPoint:

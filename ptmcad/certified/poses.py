@@ -19,7 +19,7 @@ from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph, Operation
-from ptmcad.certified.plain.poses import NOT_TOLD, ZERO, assembled, point_slice
+from ptmcad.certified.plain.poses import NOT_TOLD, ZERO, assembled, point_slice, told
 from ptmcad.certified.points import point_counter
 from ptmcad.certified.potential import potential
 from ptmcad.certified.ptm.statics import TH1, TH2
@@ -28,7 +28,7 @@ from ptmcad.certified.tape import Tape, record
 from ptmcad.mechanism import ptm
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Count
-from ptmcad.text.balls import ball_of, enclosed
+from ptmcad.text.balls import ball_of
 from ptmcad.text.enclosure import Enclosure
 
 MECHANISM = ptm()
@@ -96,8 +96,8 @@ class _Number:
     ball: arb
     exact: Fraction | None = None
 
-    def enclosure(self, digits: int) -> Enclosure | None:
-        return enclosed(self.ball, digits) if self.exact is None else Enclosure(self.exact, self.exact)
+    def enclosure(self, digits: int, attempt: int) -> Enclosure | None:
+        return told(self.ball, digits, attempt) if self.exact is None else Enclosure(self.exact, self.exact)
 
 
 def _pose(
@@ -110,18 +110,18 @@ def _pose(
     """The pose with all numbers settled, and the bits that this took; None when some number is not."""
     tape, names = written
     flat = _flat(tape, solution)
-    bits = 64 + 4 * digits
+    bits, attempt = 64 + 4 * digits, 0
     found: dict[str, Enclosure] = {}
     while bits <= MORE_BITS + 8 * digits:
         box = refined(equations, _box(solution, bits), bits)
         with ctx.workprec(bits):
             numbers = _numbers(tape, names, box, flat)
             for name in numbers.keys() - found.keys():  # what a lower precision settled stays as it is
-                if (settled := numbers[name].enclosure(digits)) is not None:
+                if (settled := numbers[name].enclosure(digits, attempt)) is not None:
                     found[name] = settled
         if found.keys() == numbers.keys():
             return assembled(MECHANISM, parameters, found, solution.signs.count("-"), flat is not None), bits
-        bits *= 2
+        bits, attempt = 2 * bits, attempt + 1
     return None, bits // 2
 
 

@@ -3,8 +3,8 @@
 A command module is listed in `COMMANDS` and defines ``command``, a click command that delegates to plain functions.
 
 Guarantee: the exit status is 0 when done, 1 when a check failed, 2 for bad input or output, 3 when a limit stopped
-the computation, 130 after Ctrl-C, 143 after SIGTERM and 129 after SIGHUP; bad input gets one message on standard
-error, no traceback.
+the computation or a point that `solve` was asked about is undecided, 130 after Ctrl-C, 143 after SIGTERM and 129 after
+SIGHUP; bad input gets one message on standard error, no traceback.
 """
 
 from __future__ import annotations

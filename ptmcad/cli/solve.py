@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from ptmcad.answer.poses import MAX_DIGITS, Poses
+from ptmcad.answer.regionmap import Status
 from ptmcad.cli.formats import formats_of
 from ptmcad.cli.idle import Idle, report_idle
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
@@ -119,12 +120,13 @@ def command(
     name: str | None,
     landscape: bool,
     limits: Limits,
-) -> None:
+) -> int:
     """Find every equilibrium, or solution of a system, at one point, with stability, spring forces and energy.
 
     CONFIG is a problem record (YAML) for what --at and --set leave open. Without it, parameters that are not given have
     their defaults: L1 = L2 = rho = 1, k = 100, no load. Every digit that is shown is right; a zero or another number
-    that is shown without trailing digits is exact; a degenerate equilibrium is named, with its multiplicity.
+    that is shown without trailing digits is exact; a degenerate equilibrium is named, with its multiplicity. Where no
+    equilibrium is told, as where there are infinitely many, the answer says why, and the exit status is 3.
 
     \b
     Examples:
@@ -162,3 +164,7 @@ def command(
     report_written(out, names)
     if landscape and (reason := no_landscape(model)):
         raise ConfigError(reason, key="--landscape")
+    if poses.status is not Status.UNDECIDED:
+        return 0
+    click.echo(f"undecided: {poses.remark}", err=True)
+    return 3

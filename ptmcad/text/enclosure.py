@@ -79,6 +79,13 @@ class Enclosure:
         half = Fraction(10) ** (magnitude(near) + 1 - digits) / 2
         return settled(-(-near // half), far // half)
 
+    def told_digits(self, digits: int = DIGITS) -> int | None:
+        """The fewest digits, from so many on, that the enclosure settles: what `text` writes; None of a wider one.
+
+        A number halfway between two texts of so many digits, which is known closely and not exactly, has one more.
+        """
+        return next((n for n in range(digits, digits + DIGITS) if self.settles(n)), None)
+
     def text(self, digits: int = DIGITS) -> str:
         """The number rounded to nearest, with ``digits`` significant digits.
 
@@ -101,10 +108,10 @@ class Enclosure:
         ValueError
             When the enclosure is too wide; `settles` says so before.
         """
-        settled = next((n for n in range(digits, digits + DIGITS) if self.settles(n)), None)
-        if settled is None:
+        told = self.told_digits(digits)
+        if told is None:
             raise ValueError(f"the enclosure does not determine {digits} digits")
-        digits = settled
+        digits = told
         if self.low == self.high == 0:
             return "0"
         value = self.center

@@ -44,12 +44,34 @@ def test_it_snaps_at_the_fold_to_the_pose_that_is_left(found: PosePaths) -> None
     assert end.at.text(8) == "1.2316624"
     assert (end.meeting, end.leaving) == ((0, 1), ())
     assert end.target is not None
-    (left,) = [p for p in ptmcad.solve(rho=end.target.value, L2="3/2", F3=-10, F4=-10, l0="1/5").equilibria if p.stable]
-    assert [float(a) for a in end.target.angles] == pytest.approx([float(a) for a in left.angles], abs=1e-10)
-    assert end.target_energy is not None
-    assert float(end.target_energy) == pytest.approx(float(left.known_energy), rel=1e-10)
     assert end.energy is not None
+    assert end.target_energy is not None
+    points = [end.at.center + Fraction(k, 10**5) for k in (1, 2)]
+    beyond = [ptmcad.solve(rho=rho, L2="3/2", F3=-10, F4=-10, l0="1/5").equilibria for rho in points]
+    near, far = (next(p for p in poses if p.stable) for poses in beyond)
+    for got, one, two in zip(end.target.angles, near.angles, far.angles, strict=True):
+        assert got.radius < Fraction(1, 10**20)
+        assert float(got) == pytest.approx(2 * float(one) - float(two), abs=1e-8)
+    lower = 2 * float(near.known_energy) - float(far.known_energy)
+    assert float(end.target_energy) == pytest.approx(lower, abs=1e-7)
     assert end.energy.low > end.target_energy.high
+
+
+@pytest.mark.slow
+def test_what_holds_at_a_fold_is_told_there_wherever_the_path_began(found: PosePaths) -> None:
+    """The energy of the fold itself, by poses before it: it changes as distance, and their square roots cancel."""
+    ends = [found.paths[1].high, ptmcad.pose_paths(slice_of(), "rho", {"L2": "3/2"}, "23/20", 2).paths[0].high]
+    (one, two) = (
+        tuple(e.text(10) for e in (*end.target.angles, end.energy, end.target_energy))  # type: ignore[misc, union-attr]
+        for end in ends
+    )
+    assert one == two
+    assert isinstance(ends[0].at, Enclosure)
+    assert ends[0].energy is not None
+    before = ptmcad.solve(rho=ends[0].at.center - Fraction(1, 10**6), L2="3/2", F3=-10, F4=-10, l0="1/5").equilibria
+    folding = [p.known_energy for p in before if p.index in (0, 1)]
+    assert min(abs(float(e) - float(ends[0].energy)) for e in folding) < 1e-3
+    assert ends[0].energy.radius < Fraction(1, 10**20)
 
 
 def test_every_point_is_a_proved_stable_pose_and_neighbours_are_near(found: PosePaths) -> None:

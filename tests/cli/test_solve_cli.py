@@ -63,11 +63,17 @@ def test_pictures_are_written_beside_the_json(tmp_path: Path) -> None:
     assert (tmp_path / "poses.svg").read_bytes() != (tmp_path / "poses-landscape.svg").read_bytes()
 
 
-@pytest.mark.parametrize("at", ["rho=0", "L2=4/3,rho=2/5,F3=-320/3,F4=-60"], ids=["infinitely-many", "degenerate"])
-def test_special_points_are_answers(at: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["solve", "--at", at, "--landscape", "--out", str(tmp_path)]) == 0
-    out = capsys.readouterr().out
+@pytest.mark.parametrize(
+    ("at", "status"),
+    [("rho=0", 3), ("L2=4/3,rho=2/5,F3=-320/3,F4=-60", 0)],
+    ids=["infinitely-many", "degenerate"],
+)
+def test_special_points_are_answers(at: str, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The exit status tells where there are no poses."""
+    assert run(["solve", "--at", at, "--landscape", "--out", str(tmp_path)]) == status
+    out, error = capsys.readouterr()
     assert "infinitely many equilibria" in out or "1 degenerate, on the variety" in out
+    assert ("undecided: infinitely many equilibria" in error) is (status == 3)
     assert [path.name for path in tmp_path.iterdir()] == ["poses-landscape.png"]
 
 

@@ -89,7 +89,7 @@ def test_an_upright_pose_snaps_to_the_reverse_one(name: str, along: str, at: dic
         assert end.target.sides == (-1, -1)
         assert end.energy is not None and end.target_energy is not None and end.energy.low > end.target_energy.high
         # a little further, because a descent takes long where the pose has just vanished
-        beyond = float(end.target.value) + (0.01 if end is upright[0].high else -0.01)
+        beyond = float(end.at) + (0.01 if end is upright[0].high else -0.01)  # type: ignore[arg-type]
         first, second = (float(a) for a in end.last.angles)
         reached = numbers.descend(beyond, first + 1e-3, second - 1e-3)  # off the symmetry, in which a saddle lies
         for got, want in zip(reached, end.target.angles, strict=True):
@@ -108,6 +108,24 @@ def check_points(numbers: Numbers, path: PosePath) -> None:
         assert max(jumps) < 0.4
 
 
+@pytest.mark.parametrize("start", ["3/4", "1", "26/25"])
+def test_what_holds_at_a_fold_is_told_there_wherever_the_path_began(start: str) -> None:
+    """Against all poses 1e-20 before the fold, by an exact solution: what differs is less than 1e-9."""
+    found = pose_paths(record("fig4"), "rho", {"L2": "3/2"}, Fraction(start), 2)
+    (path,), text = found.paths, path_table(found, 10)
+    snap = "snaps to th1 = -47.52436435°, th2 = -30.75412820° (reverse: y3 < 0, y4 < 0), where the energy is "
+    assert snap in text and text.endswith("lower by 26.173")
+    end, last = path.high, path.high.at.refined(Fraction(1, 10**30))  # type: ignore[union-attr]
+    beside = ptmcad.solve(rho=last.low - Fraction(1, 10**20), L2="3/2", F3=-10, F4=-10)
+    folding, landed = sorted((p for p in beside.equilibria if p.stable), key=lambda p: -float(p.angles[0]))
+    assert end.target is not None and end.energy is not None and end.target_energy is not None
+    for got, want in zip(end.target.angles, landed.angles, strict=True):
+        assert got.radius < Fraction(1, 10**25) and abs(got.center - want.center) < Fraction(1, 10**9)
+    assert abs(end.target_energy.center - landed.known_energy.center) < Fraction(1, 10**8)
+    assert abs(end.energy.center - folding.known_energy.center) < Fraction(1, 10**8)
+    assert end.energy.radius < Fraction(1, 10**12)
+
+
 @pytest.mark.slow
 def test_unloaded_poses_merge_into_the_flat_one() -> None:
     """At 2 rho = L2 + 1 the mirror images and the flat saddle between them become the flat stable pose."""
@@ -117,7 +135,10 @@ def test_unloaded_poses_merge_into_the_flat_one() -> None:
     assert path.high.at.exact == Fraction(5, 4)  # type: ignore[union-attr]
     assert path.high.meeting == (0, 0, 1) and path.high.leaving == (0,)
     assert path.high.target is not None
-    assert all(a.low <= 0 <= a.high for a in path.high.target.angles)
+    assert all(a.exact == 0 for a in path.high.target.angles)
+    below = pose_paths(record("fig2"), "rho", {"L2": "3/2"}, Fraction(6, 5), 2).paths[0].low
+    assert below.fate is Fate.MERGE and below.target is not None
+    assert [a.text(6) for a in below.target.angles] == ["-3.14159", "0"]
 
 
 def test_a_pair_that_meets_elsewhere_does_not_stop_a_path() -> None:
@@ -183,7 +204,7 @@ def test_text_and_document() -> None:
     found = pose_paths(record("fig4"), "rho", {"L2": "3/2"}, Fraction(7, 10), 2)
     text = path_table(found)
     assert "pose 2 at rho = 0.7: th1 = 75.907444" in text and "y3 > 0 and y4 > 0 on the path" in text
-    fold = "fold: the stable pose merges with a saddle and both vanish; the mechanism snaps to th1 = -47.52"
+    fold = "fold: the stable pose merges with a saddle and both vanish; the mechanism snaps to th1 = -47.524364"
     assert f"up: rho = 1.041432630: {fold}" in text
     assert "(reverse: y3 < 0, y4 < 0)" in text
     data = json.loads(document("x", "ptm", {"path": path_data(found)}))

@@ -37,8 +37,7 @@ NOT_TOLD = (
     "nearly no length there"
 )
 ZERO = (
-    "a number of an equilibrium could not be distinguished from zero, or from one halfway between two texts of "
-    "the digits asked for: ask for more digits, or change a value a little, such as 3/2 to 1.5000001"
+    "a number of an equilibrium could not be distinguished from zero: change a value a little, such as 3/2 to 1.5000001"
 )
 
 
@@ -151,7 +150,7 @@ def _pose(
             constants = {n: tape.constants.get(int(k)) for n, k in zip(names, tape.outputs[0], strict=True)}
             for name in numbers.keys() - found.keys():
                 exact = constants.get(name)
-                settled = enclosed(numbers[name], digits) if exact is None else Enclosure(exact, exact)
+                settled = told(numbers[name], digits, attempt) if exact is None else Enclosure(exact, exact)
                 if settled is not None:
                     found[name] = settled
         if attempt == 1:
@@ -182,6 +181,14 @@ def _deflection(found: Mapping[str, Enclosure], number: int, cosine: arb, sine: 
     radians = arb.atan2(sine, cosine) if quarters is None else arb.pi() * quarters / 2
     degrees = radians * 180 / arb.pi() if quarters is None else arb(90 * quarters)
     return {f"torsion deflection {number}": radians, f"torsion degrees {number}": degrees}
+
+
+def told(number: arb, digits: int, attempt: int) -> Enclosure | None:
+    """An enclosure that settles the digits asked for, or, of a number that is still not told from one halfway between
+    two texts of so many after all that may explain it was tried, of one digit more; None of a wider one.
+    """
+    found = enclosed(number, digits)
+    return enclosed(number, digits + 1) if found is None and attempt > 1 else found
 
 
 def _eigenvalues(matrix: arb_mat) -> list[arb]:

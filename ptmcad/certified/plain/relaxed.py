@@ -4,9 +4,11 @@ And torsion springs that are proved to be at rest there, or half a turn from it,
 
 Guarantee: exact. Let S be some springs, T some torsion springs and R the energy of all the rest. Where |d_s|^2 = l0_s^2
 for all s in S, sin(deflection) = 0 for all in T and the slopes of R vanish, all slopes of the energy do: each is that
-of R plus multiples of the |d_s| - l0_s and of the sines. If these equations, without those that vanish identically, are
-as many as the unknowns, interval Newton can prove that they have a zero in a box; if the box holds one equilibrium
-only, that is the zero.
+of R plus multiples of the |d_s| - l0_s and of the sines. If these equations, without those that vanish identically and
+those of springs that follow from others', are as many as the unknowns, interval Newton can prove that they have a zero
+in a box; if the box holds one equilibrium only, that is the zero. An equation |d_s|^2 = l0_s^2 follows from others
+where the polynomial, reduced by cos^2 + sin^2 = 1, is a linear combination of theirs, such as that of the other half of
+a symmetric truss.
 
 Balls alone would never tell such a force from its neighbours. The lemma is that of interval Newton as in
 `ptmcad.certified.arb_isolation`.
@@ -28,8 +30,10 @@ from ptmcad.certified.plain.problem import FIRST
 from ptmcad.certified.potential import potential
 from ptmcad.certified.system import system
 from ptmcad.certified.tape import record
+from ptmcad.errors import ExpressionError
 from ptmcad.mechanism import Mechanism
 from ptmcad.mechanism.evaluate import value_at
+from ptmcad.mechanism.proofs import MirrorImage, Monomial, squared_length
 from ptmcad.mechanism.work import split_moments
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.tree import names_of
@@ -77,7 +81,8 @@ def relaxed_numbers(
     rest = potential(replace(mechanism, springs=others, torsion=bent), values, unknowns)
     equations = [graph.derivative(rest.energy, v.variable) for v in unknowns.values()]
     equations = [slope for slope in equations if slope.value != 0]
-    for n, value in free.items():
+    for n in _independent(mechanism, parameters, free):
+        value = free[n]
         (x0, y0), (x1, y1) = (rest.points[end] for end in (mechanism.springs[n].start, mechanism.springs[n].end))
         equations.append((x1 - x0).squared() + (y1 - y0).squared() - value**2)
     deflections = potential(mechanism, values, unknowns).deflections if relaxed.torsion else ()
@@ -107,6 +112,29 @@ def relaxed_numbers(
     if energy is not None:
         found["energy"] = energy
     return {name: Enclosure(value, value) for name, value in found.items()}
+
+
+def _independent(mechanism: Mechanism, parameters: Mapping[str, Fraction], free: Mapping[int, Fraction]) -> list[int]:
+    """Springs from whose equations |d|^2 = l0^2 those of all these springs follow, by linear combination.
+
+    All of them, where that is too much to be multiplied out.
+    """
+    rows: list[tuple[Monomial, dict[Monomial, Fraction]]] = []
+    chosen = []
+    try:
+        for n, value in free.items():
+            image, spring = MirrorImage(parameters), mechanism.springs[n]
+            rest = dict((squared_length(mechanism, image, spring.start, spring.end) - image.constant(value**2)).terms)
+            for pivot, row in rows:
+                if factor := rest.get(pivot):
+                    rest = {m: c for m in rest.keys() | row.keys() if (c := rest.get(m, 0) - factor * row.get(m, 0))}
+            if rest:
+                pivot = min(rest)
+                rows.append((pivot, {m: c / rest[pivot] for m, c in rest.items()}))
+                chosen.append(n)
+    except ExpressionError:
+        return list(free)
+    return chosen
 
 
 def _has_steady_moment(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> bool:

@@ -53,12 +53,15 @@ class Meeting(NamedTuple):
     meeting, leaving : as in `ptmcad.answer.paths.PathEnd`.
     among : whether the branch is proved to vanish with one or more of those, and not with which.
     beyond : all solutions on the far side.
+    box : where there is a region that no solution enters or leaves meanwhile, what it holds of each unknown, angles as
+        the branch has them; else None.
     """
 
     meeting: tuple[int, ...]
     leaving: tuple[int, ...]
     among: bool
     beyond: tuple[Solution, ...]
+    box: Vector | None = None
 
 
 class _Member(NamedTuple):
@@ -102,9 +105,10 @@ def what_meets(family: Family, line: Line, current: Reached, after: Fraction) ->
     members = [_member(family, current, s, ahead) for s, ahead in unmatched]
     if not all(m.sign for m in members):
         return None
-    group = _region(family, current, after, members)
-    if group is None:
+    region = _region(family, current, after, members)
+    if region is None:
         return _without_region(family, unmatched, tuple(beyond))
+    group, box = region
     classes = _own_classes(group, _symmetries(family, line, group))
     if not classes:
         return None
@@ -112,7 +116,7 @@ def what_meets(family: Family, line: Line, current: Reached, after: Fraction) ->
         return None
     chosen = [group[k] for k in sorted(frozenset().union(*classes))]
     met, left = (tuple(sorted(m.solution.negative for m in chosen if m.ahead is side)) for side in (False, True))
-    return Meeting(met, left, len(classes) > 1, tuple(beyond))
+    return Meeting(met, left, len(classes) > 1, tuple(beyond), box)
 
 
 def _solutions(family: Family, line: Line, value: Fraction) -> list[Solution] | None:
@@ -195,7 +199,9 @@ def _without_region(
     return Meeting(tuple(sorted(s.negative for s, _ in unmatched)), (), len(unmatched) > 2, beyond)
 
 
-def _region(family: Family, current: Reached, after: Fraction, members: Sequence[_Member]) -> list[_Member] | None:
+def _region(
+    family: Family, current: Reached, after: Fraction, members: Sequence[_Member]
+) -> tuple[list[_Member], Vector] | None:
     """The fewest solutions around the branch's own, the first, in a region that none enters or leaves."""
     with ctx.workprec(BITS):
         own = members[0]
@@ -213,7 +219,7 @@ def _region(family: Family, current: Reached, after: Fraction, members: Sequence
             for margin in (m for m in (2 * extent, extent / 2, room) if 0 < m <= room):
                 box = [_hull([m.shifted[i] for m in group], margin) for i in range(len(own.shifted))]
                 if _isolates(family, box, current.value, after, group, ordered[k:]):
-                    return group
+                    return group, tuple(low.union(high) for low, high in box)
     return None
 
 

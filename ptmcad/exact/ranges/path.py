@@ -20,13 +20,13 @@ from typing import Any
 
 from flint import arb, ctx
 
-from ptmcad.algebra.polynomials import from_fraction, to_fraction
-from ptmcad.algebra.real_roots import simplest_between
-from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
+from ptmcad.algebra.polynomials import from_fraction
+from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.poses import Pose
 from ptmcad.errors import ConfigError
 from ptmcad.exact.models import system_from
 from ptmcad.exact.poses import exact_poses
+from ptmcad.exact.ranges.landing import DIGITS, beside, landing
 from ptmcad.exact.ranges.line import critical_values
 from ptmcad.exact.ranges.meeting import parameters_at, value_at, what_meets
 from ptmcad.exact.ranges.tracking import (
@@ -43,12 +43,11 @@ from ptmcad.mechanism import Mechanism
 from ptmcad.mechanism.evaluate import evaluate
 from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Slice, moved
-from ptmcad.text.balls import enclosure_of
+from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.parsing import number_for
 from ptmcad.text.tree import names_of
 
-DIGITS = 12
 _MIN_DISTANCE = Fraction(1, 10**5)
 """How near to a critical value a branch is followed, against the window's width."""
 
@@ -175,8 +174,8 @@ def _one_way(
         crossed, end = None, None
         for least in _distances(window, gap):
             while crossed is None and gap > least:
-                after = _beside(far, side, gap)
-                steps, done = follow(family, current, _beside(near, -side, gap), window / _MIN_STEPS)
+                after = beside(far, side, gap)
+                steps, done = follow(family, current, beside(near, -side, gap), window / _MIN_STEPS)
                 reached += steps
                 current = steps[-1] if steps else current
                 if not done:
@@ -195,7 +194,7 @@ def _one_way(
             return reached, PathEnd(fate, number, _point(family, current))
         reached.append(crossed)
         current = crossed
-    steps, done = follow(family, current, _beside(edge, -side, window / 10**6), window / _MIN_STEPS)
+    steps, done = follow(family, current, beside(edge, -side, window / 10**6), window / _MIN_STEPS)
     reached += steps
     return reached, PathEnd(
         Fate.WINDOW if done else Fate.UNDECIDED, edge, _point(family, steps[-1] if steps else current)
@@ -215,12 +214,6 @@ def _distances(window: Fraction, gap: Fraction) -> tuple[Fraction, Fraction]:
 def _ends(number: AlgebraicNumber, side: int) -> tuple[Fraction, Fraction]:
     """The near and the far end of an isolating interval, seen from where one comes."""
     return (number.low, number.high) if side > 0 else (number.high, number.low)
-
-
-def _beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
-    """A short rational at a distance between gap / 2 and gap, at one side."""
-    low, high = sorted((value + side * gap / 2, value + side * gap))
-    return to_fraction(simplest_between(from_fraction(low), from_fraction(high)))
 
 
 def _condition(family: Family, line: Line, reached: Reached) -> Fate | None:
@@ -247,14 +240,16 @@ def _meeting(family: Family, line: Line, number: AlgebraicNumber, current: Reach
     if len(found.meeting) == len(found.leaving) == 1 and not told:
         return stopped  # it goes on, and has not been followed
     met = replace(stopped, fate=Fate.VANISH, meeting=found.meeting, leaving=found.leaving, among=found.among)
-    if not told:
+    at = landing(family, line, number, found, current, stable[0]) if told else None
+    if at is None:
         return met
+    sides = _sides(family, number.low, number.high, tuple(_ball(u) for u in at.unknowns))
     return replace(
         met,
         fate=Fate.MERGE if 0 in found.leaving else Fate.SNAP,
-        energy=_energy(family, line, current),
-        target=_point(family, stable[0]),
-        target_energy=_energy(family, line, stable[0]),
+        energy=at.energy,
+        target=Target(at.unknowns[: family.angles], at.unknowns[family.angles :], sides),
+        target_energy=at.target_energy,
     )
 
 
@@ -264,11 +259,9 @@ def _descends(family: Family, line: Line) -> bool:
     return system.has_index and system.is_on_torus and not moved(family.model, line.parameters)
 
 
-def _energy(family: Family, line: Line, reached: Reached) -> Enclosure:
-    """The potential at a place."""
-    potential = family.system.potential
-    assert potential is not None  # snaps and mergers are those of a potential
-    return enclosure_of(value_at(family, line, reached, potential))
+def _ball(enclosure: Enclosure) -> arb:
+    with ctx.workprec(BITS):
+        return ball_of(enclosure.low).union(ball_of(enclosure.high))
 
 
 def _point(family: Family, reached: Reached) -> PathPoint:

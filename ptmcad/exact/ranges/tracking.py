@@ -17,6 +17,7 @@ from flint import arb, arb_mat, ctx, fmpq
 
 from ptmcad.algebra.polynomials import from_fraction, to_fraction
 from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.algebra.trigonometric import TrigonometricPolynomial
 from ptmcad.exact.models.system import ParametricSystem, Terms, terms_of
 from ptmcad.mechanism import Model
 from ptmcad.text.expressions import Expression, Term
@@ -63,6 +64,15 @@ class Family:
         coordinates = coordinates_of(point, self.angles)
         terms = (terms_of(self.system.ring, p) for p in self.system.inequalities)
         return tuple(_evaluated(_specialised(t, numbers)[0], coordinates) for t in terms)
+
+    def slope(self, p: TrigonometricPolynomial, low: Fraction, high: Fraction) -> arb:
+        """The derivative of an element of the system's ring by the parameter, from low to high and at all angles.
+
+        The ring has no unknowns on the line.
+        """
+        value = arb(from_fraction(low)).union(arb(from_fraction(high)))
+        numbers = [_dual(self.parameters[name], value) for name in self.system.ring.parameters]
+        return _evaluated(_specialised(terms_of(self.system.ring, p), numbers)[1], [arb(0, 1)] * (2 * self.angles))
 
 
 Dual = tuple[arb, arb]

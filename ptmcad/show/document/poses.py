@@ -157,6 +157,6 @@ def _number(node: Node, digits: int) -> Enclosure:
     entry = node.record("text", "center", "radius")
     center, radius = entry["center"].fraction(), entry["radius"].size()
     enclosure = Enclosure(center - radius, center + radius)
-    if not enclosure.settles(digits) or enclosure.text(digits) != entry["text"].text():
+    if enclosure.told_digits(digits) is None or enclosure.text(digits) != entry["text"].text():
         raise node.fault(f"is not its enclosure rounded to {digits} digits")
     return enclosure

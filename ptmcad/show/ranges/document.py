@@ -12,11 +12,18 @@ from typing import Any
 
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.intervals import CertifiedIntervals, CountInterval, CountIntervals, CriticalFreeLength
-from ptmcad.answer.paths import PathEnd, PathPoint, PosePaths
+from ptmcad.answer.paths import PathEnd, PathPoint, PosePaths, Target
 from ptmcad.answer.widths import CertifiedWidths, OperationWidths
 from ptmcad.question.slice import Axis
-from ptmcad.show.ranges.numbers import enclosure_data, end_data, known, number_data, place_data, settled, width_text
-from ptmcad.text.enclosure import Enclosure
+from ptmcad.show.ranges.numbers import (
+    enclosure_data,
+    end_data,
+    narrowly_known,
+    number_data,
+    place_data,
+    settled,
+    width_text,
+)
 from ptmcad.text.numerals import text_of
 from ptmcad.version import __version__
 
@@ -172,7 +179,7 @@ def _path_end(end: PathEnd) -> dict[str, Any]:
         "leaving": list(end.leaving),
         **({"among": True} if end.among else {}),
         "energy": None if end.energy is None else settled(end.energy, DIGITS),
-        "target": None if end.target is None else _point(end.target),
+        "target": None if end.target is None else _place(end.target),
         "target_energy": None if end.target_energy is None else settled(end.target_energy, DIGITS),
     }
 
@@ -181,13 +188,13 @@ DIGITS = 12
 
 
 def _point(point: PathPoint) -> dict[str, Any]:
-    return {"value": text_of(point.value), "angles": _numbers(point.angles)} | (
-        {"reals": [known(x, DIGITS) for x in point.reals]} if point.reals else {}
+    return {"value": text_of(point.value), **_place(point)}
+
+
+def _place(point: PathPoint | Target) -> dict[str, Any]:
+    return {"angles": [narrowly_known(a, DIGITS) for a in point.angles]} | (
+        {"reals": [narrowly_known(x, DIGITS) for x in point.reals]} if point.reals else {}
     )
-
-
-def _numbers(unknowns: Sequence[Enclosure]) -> list[str]:
-    return [settled(a, DIGITS) or "0" for a in unknowns]
 
 
 def document(name: str, mechanism: str, parts: dict[str, Any]) -> str:

@@ -15,6 +15,8 @@ from ptmcad.text.numerals import integer_text, magnitude, text_of
 
 MAX_DIGITS = 1000
 """That may be asked for."""
+NARROW = Fraction(1, 10**20)
+"""A number that is so nearly known and does not settle a digit is taken for the short decimal that it cannot leave."""
 
 
 def end_text(end: End | Enclosure, digits: int) -> str:
@@ -48,6 +50,12 @@ def known(enclosure: Enclosure, digits: int) -> str:
     unit = Fraction(10) ** (magnitude(size) + 1 - digits) if size else Fraction(1)
     value = round(enclosure.center / unit) * unit if enclosure.low > 0 or enclosure.high < 0 else Fraction(0)
     return Enclosure(value, value).text(digits)
+
+
+def narrowly_known(enclosure: Enclosure, digits: int) -> str | None:
+    """As many digits as the enclosure settles, or what `known` says of one that is narrow; None of a wider one."""
+    text = settled(enclosure, digits)
+    return known(enclosure, digits) if text is None and enclosure.radius < NARROW else text
 
 
 def width_text(interval: Span, digits: int) -> str:

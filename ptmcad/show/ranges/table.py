@@ -12,13 +12,13 @@ from flint import arb, ctx
 
 from ptmcad.algebra.polynomials import from_fraction
 from ptmcad.answer.intervals import CountIntervals, CriticalFreeLength, End, Span
-from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
+from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.widths import Maximum, OperationWidths, Place
 from ptmcad.answer.words import kind_name, noun
 from ptmcad.mechanism import Mechanism, Model, built_in
 from ptmcad.mechanism.moments import acting
-from ptmcad.show.ranges.numbers import end_text, known, settled, width_text
-from ptmcad.text.balls import enclosed
+from ptmcad.show.ranges.numbers import end_text, narrowly_known, settled, width_text
+from ptmcad.text.balls import enclosure_of
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.plane import PlanePolynomial
@@ -229,7 +229,7 @@ def _kind(negative: int, model: Model) -> str:
     return f"a {kind_name(negative, len(model.unknowns))}"
 
 
-def posture(point: PathPoint, model: Mechanism) -> str:
+def posture(point: Target, model: Mechanism) -> str:
     """The signs of the moving points' heights, such as y3 and y4."""
     heights = _heights(model)
     if set(point.sides) == {1}:
@@ -239,21 +239,21 @@ def posture(point: PathPoint, model: Mechanism) -> str:
     return f"{', '.join(heights)} of mixed sign or zero" if len(heights) > 1 else f"{heights[0]} near zero"
 
 
-def _unknowns(point: PathPoint, model: Model, digits: int) -> str:
-    angles = [f"{name} = {degrees(a, digits)}°" for name, a in zip(model.angles, point.angles, strict=True)]
-    reals = [f"{name} = {known(x, digits)}" for name, x in zip(model.reals, point.reals, strict=True)]
-    return ", ".join([*angles, *reals])
+def _unknowns(point: PathPoint | Target, model: Model, digits: int) -> str:
+    angles = [f"{name} = {degrees(a, digits)}" for name, a in zip(model.angles, point.angles, strict=True)]
+    reals = zip(model.reals, point.reals, strict=True)
+    return ", ".join([*angles, *(f"{name} = {narrowly_known(x, digits) or UNDECIDED}" for name, x in reals)])
+
+
+UNDECIDED = "undecided"
 
 
 def degrees(angle: Enclosure, digits: int) -> str:
-    """An angle in degrees; a whole number that it is nearer to than its enclosure can tell is shown as such."""
+    """An angle in degrees, with as many digits as are settled; zero where it cannot be told from it."""
     with ctx.workprec(200):
         ball = arb(from_fraction(angle.low)).union(arb(from_fraction(angle.high))) * 180 / arb.pi()
-        if (found := enclosed(ball, digits)) is not None:
-            return found.text(digits)
-        whole = ball.mid().unique_fmpz() if ball.mid().is_exact() else None
-        nearest = int((ball.mid() + arb("0.5")).floor().mid().fmpz() if whole is None else whole)
-        return str(nearest) if (ball - nearest).contains(0) else ball.mid().str(3, radius=False)
+        text = narrowly_known(enclosure_of(ball), digits)
+    return UNDECIDED if text is None else f"{text}°"
 
 
 def critical_table(found: Sequence[CriticalFreeLength], digits: int) -> str:

@@ -6,13 +6,14 @@ Guarantee and what is not guaranteed: as of `ptmcad.show.render.ranges`.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 from math import degrees
 from typing import Any
 
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ptmcad.answer.paths import Fate, PathPoint, PosePaths
+from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePaths, Target
 from ptmcad.mechanism import Mechanism
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import scale_of, symbol
@@ -70,7 +71,7 @@ def draw_paths(slice: Slice, found: PosePaths, further: Sequence[Entry] = ()) ->
                     marker = {Fate.SNAP: "o", Fate.MERGE: "s"}.get(end.fate, "x")
                     axes.plot([x], [y], marker, color=colour, fillstyle="none", markersize=6)
                     if end.fate is Fate.SNAP and end.target is not None:
-                        tip = (scaled(end.target.value, found.along), _angle(end.target, number))
+                        tip = (scaled(_middle(end), found.along), _angle(end.target, number))
                         axes.annotate("", tip, (x, y), arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.0,
                                                                    "shrinkA": 4, "shrinkB": 1})  # fmt: skip
             axes.axhline(0, color=INK, linewidth=0.4)
@@ -110,7 +111,12 @@ def _marker(figure: Any, left: float, middle: float, marker: str) -> None:
                              fillstyle="none", markersize=6))  # fmt: skip
 
 
-def _angle(point: PathPoint, number: int) -> float:
+def _middle(end: PathEnd) -> Fraction:
+    at = end.at
+    return at if isinstance(at, Fraction) else (at.low + at.high) / 2
+
+
+def _angle(point: PathPoint | Target, number: int) -> float:
     if number < len(point.angles):
         return degrees(float(point.angles[number]))
     return float(point.reals[number - len(point.angles)])

@@ -147,7 +147,7 @@ def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: tuple[f
 
 def number_text(number: Enclosure, digits: int = _DIGITS) -> str:
     """A certified number rounded to nearest, as it is printed."""
-    return printed_number(number.text(digits) if number.settles(digits) else number.text(1))
+    return printed_number(number.text(1 if number.told_digits(digits) is None else digits))
 
 
 def printed_number(text: str) -> str:

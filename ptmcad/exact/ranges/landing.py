@@ -1,0 +1,129 @@
+"""What holds at the critical value at which a branch ends: the pose that is reached there, and the energies.
+
+Guarantee: every enclosure holds the number at the critical value itself, wherever that lies in its isolating interval;
+so it does not depend on where a path began. A pose that is simple there is carried to it by tubes (`tracking`). Poses
+that merge there are enclosed by a region that none of them leaves meanwhile (`meeting`), or are those of an exact
+solution, where the value is rational. An energy is that at a place beside, which differs by no more than the distance
+times the largest slope: along a branch of critical points the energy changes with the parameter alone, which is
+bounded on the torus.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import pi
+from typing import NamedTuple
+
+from flint import arb, ctx
+
+from ptmcad.algebra.polynomials import from_fraction, to_fraction
+from ptmcad.algebra.real_roots import simplest_between
+from ptmcad.exact.poses import exact_poses
+from ptmcad.exact.ranges.meeting import Meeting, parameters_at, value_at, what_meets
+from ptmcad.exact.ranges.tracking import BITS, Family, Reached, bridge, enclose, follow
+from ptmcad.question.line import Line
+from ptmcad.text.balls import ball_of, enclosure_of
+from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+
+DIGITS = 12
+_NEAREST = Fraction(1, 2**56)
+"""How near to a critical value branches are followed for what holds there, against the window's width."""
+
+
+class Landing(NamedTuple):
+    """The stable pose at a critical value to which a state goes, and the energies.
+
+    Attributes
+    ----------
+    unknowns : the angles, not wrapped into one turn, then the unknowns on the line.
+    energy, target_energy : of the branch that ends, in the limit, and of the pose that is reached.
+    """
+
+    unknowns: tuple[Enclosure, ...]
+    energy: Enclosure
+    target_energy: Enclosure
+
+
+def landing(
+    family: Family, line: Line, number: AlgebraicNumber, met: Meeting, current: Reached, target: Reached
+) -> Landing | None:
+    """What holds at the critical value where a branch ends; None where the pose that is reached is not proved.
+
+    Parameters
+    ----------
+    number : the only critical value between ``current`` and ``target``.
+    met : what the branch meets there.
+    target : the only stable pose beyond.
+    """
+    side = 1 if target.value > current.value else -1
+    distance = (line.along.high - line.along.low) * _NEAREST
+    near, far = (number.low, number.high) if side > 0 else (number.high, number.low)
+    before = _nearer(family, current, beside(near, -side, distance))
+    after = _nearer(family, target, beside(far, side, distance))
+    energy = _limit(family, line, number, before)
+    if 0 in met.leaving:
+        merged = _merged(family, line, number, before, after)
+        return None if merged is None else Landing(merged, energy, energy)
+    across = bridge(family, after, near)
+    at = None if across is None else enclose(family, number.low, number.high, across.point)
+    if across is None or at is None or not across.over.holds(at, near):
+        return None
+    with ctx.workprec(BITS):
+        unknowns = tuple(map(enclosure_of, at.hull()))
+    return Landing(unknowns, energy, _limit(family, line, number, Reached(near, at, at)))
+
+
+def beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
+    """A short rational at a distance between gap / 2 and gap, at one side."""
+    low, high = sorted((value + side * gap / 2, value + side * gap))
+    return to_fraction(simplest_between(from_fraction(low), from_fraction(high)))
+
+
+def _nearer(family: Family, place: Reached, value: Fraction) -> Reached:
+    """The branch at a value, or as near to it as it can be followed."""
+    steps, _ = follow(family, place, value, abs(value - place.value))
+    return steps[-1] if steps else place
+
+
+def _limit(family: Family, line: Line, number: AlgebraicNumber, place: Reached) -> Enclosure:
+    """The energy of a branch at the critical value to which it leads, from its energy at a place beside."""
+    potential = family.system.potential
+    assert potential is not None  # snaps and mergers are those of a potential
+    low, high = min(place.value, number.low), max(place.value, number.high)
+    there = value_at(family, line, place, potential)
+    with ctx.workprec(BITS):
+        return enclosure_of(there + ball_of(high - low) * family.slope(potential, low, high) * arb(0, 1))
+
+
+def _merged(
+    family: Family, line: Line, number: AlgebraicNumber, before: Reached, after: Reached
+) -> tuple[Enclosure, ...] | None:
+    """The pose in which several merge, at the critical value between two places."""
+    found = what_meets(family, line, before, after.value)
+    if found is None or found.box is None:
+        return None
+    with ctx.workprec(BITS):
+        region = tuple(map(enclosure_of, found.box))
+    if number.exact is None:
+        return region
+    poses = exact_poses(family.model, parameters_at(family, line, number.exact), DIGITS).equilibria
+    near = [_turned((*pose.angles, *pose.reals), region, family.angles) for pose in poses]
+    inside = [p for p in near if _overlap(p, region)]
+    return inside[0] if len(inside) == 1 else region
+
+
+def _turned(pose: Sequence[Enclosure], region: Sequence[Enclosure], angles: int) -> tuple[Enclosure, ...]:
+    """A pose with its angles whole turns further, as near to a region as they come."""
+    turned = list(pose)
+    with ctx.workprec(BITS):
+        for k in range(angles):
+            turns = round((float(region[k]) - float(pose[k])) / (2 * pi))
+            if turns:
+                ball = ball_of(pose[k].low).union(ball_of(pose[k].high)) + 2 * turns * arb.pi()
+                turned[k] = enclosure_of(ball)
+    return tuple(turned)
+
+
+def _overlap(first: Sequence[Enclosure], second: Sequence[Enclosure]) -> bool:
+    return all(a.low <= b.high and b.low <= a.high for a, b in zip(first, second, strict=True))
