@@ -34,15 +34,15 @@ count: many
 more: 1
 """
 FAULTS = [
-    (16, "more"),
+    (1, "name"),
     (4, "mechanism.parameters.L.kind"),
     (9, "mechanism.points.P.2"),
-    (12, "mechanism.loads.R"),
     (11, "mechanism.springs.1.between"),
-    (1, "name"),
+    (12, "mechanism.loads.R"),
     (13, "parameters.L"),
     (14, "axes"),
     (15, "count"),
+    (16, "more"),
 ]
 
 
@@ -68,7 +68,7 @@ def test_values_are_checked_together_and_faults_do_not_follow_from_others() -> N
             "axes": {"rho": [2, 0], "u": [0, 1]},
         })  # fmt: skip
     assert [fault.key for fault in caught.value.faults] == [
-        "parameters.rho", "axes.rho", "parameters.L1", "parameters.F3",
+        "parameters.rho", "axes.rho", "parameters.L1", "parameters.F3", "parameters.L2",
     ]  # fmt: skip
     with pytest.raises(ConfigError) as caught:
         slice_from_mapping({

@@ -149,7 +149,7 @@ axes: {a: [-1, 2], b: [-1, 2]}
     ("free", "start"),
     [
         ("1", "9: parameters.L: a length must be positive in the whole window, but L is"),
-        ("1 - a", "7: mechanism.springs.2: a free length must not be negative in the whole window"),
+        ("1 - a", "7: mechanism.springs.2.free: a free length must not be negative in the whole window"),
     ],
 )
 def test_what_the_geometry_asks_for_is_told_with_its_place(
@@ -160,3 +160,127 @@ def test_what_the_geometry_asks_for_is_told_with_its_place(
         text = text.replace("10^-30*(a + b)", "1")
     (fault,) = faults_of(text, tmp_path, capsys)
     assert fault.startswith(start)
+
+
+AXES = "axes: {L: [0, 2], W: [0, 3]}\n"
+SPRUNG = """\
+mechanism:
+  parameters: {L: {kind: length, default: 1}, W: {kind: force}%s}
+  unknowns: {th: angle}
+  points: {O: [0, 0], A: [-2, 0], P: [L*sin(th), L*cos(th)]}
+  springs:
+    - {between: [A, P], k: %s, free: %s}
+  torsion: [{angle: th, k: %s}]
+  loads: {P: {weight: W}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "says"),
+    [
+        ("-1", "a stiffness is positive, but this is -1"),
+        ("0", "a stiffness is positive, but this is 0"),
+        ("0*L", "a stiffness is positive, but this is 0*L = 0"),
+        ("W - 1", "a stiffness must be positive in the whole window, but W - 1 is -1/4 at L = 1, W = 3/4"),
+        ("L - 3", "a stiffness must be positive in the whole window, but L - 3 is -2 at L = 1, W = 3/2"),
+    ],
+)
+def test_a_stiffness_written_in_a_spring_is_proved_positive(
+    stiffness: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = SPRUNG % ("", stiffness, "0", stiffness) + AXES
+    found = faults_of(text, tmp_path, capsys)
+    assert [fault.partition(f": {says}")[0] for fault in found] == [
+        "6: mechanism.springs.1.k", "7: mechanism.torsion.1.k",
+    ]  # fmt: skip
+    path = tmp_path / "bad.yaml"
+    assert run(["classify", str(path), "--out", str(tmp_path)]) == 2
+    assert f"{path}:{found[0]}" in capsys.readouterr().err
+
+
+def test_a_free_length_written_in_a_spring_is_proved_not_negative(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (fault,) = faults_of(SPRUNG % ("", "1", "L - 1", "1") + AXES, tmp_path, capsys)
+    assert fault.startswith("6: mechanism.springs.1.free: a free length must not be negative in the whole window")
+
+
+def test_a_stiffness_is_positive_at_a_single_point_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "sprung.yaml"
+    path.write_text(SPRUNG % ("", "W - 1", "0", "1") + "axes: {L: [0, 2], W: [2, 3]}\n", encoding="utf-8")
+    assert run(["solve", str(path), "--at", "L=1,W=2"]) == 0
+    capsys.readouterr()
+    assert run(["solve", str(path), "--at", "L=1,W=1/2"]) == 2
+    err = capsys.readouterr().err
+    assert f"{path}:6: mechanism.springs.1.k: a stiffness is positive, but this is W - 1 = -1/2" in err
+
+
+PTM = "mechanism: ptm\naxes: {rho: [0, 2], L2: [0, 2]}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "starts"),
+    [
+        (PTM + "count: admissible\n", ["3: count: admissible asks that every spring is longer"]),
+        (PTM + "free: {l0: [0, 1]}\ncount: admissible\n", ["4: count: admissible asks that every spring is longer"]),
+        (
+            "parameters: {L1: abc, F3: 1/0, F4: [1]}\naxes: {rho: [2, 0], L2: [0]}\n",
+            ["1: parameters.F4: expected a num", "1: parameters.L1: unknown name", "1: parameters.F3: division by zero",
+             "2: axes.L2: expected a range", "2: axes.rho: the range of rho is rev"],
+        ),
+        (
+            "parameters: {L1: -1, k: -5, F3: 1/(rho-1)}\naxes: {rho: [-1, 2], L2: [-3, 2]}\n",
+            ["1: parameters.L1: L1 is -1", "1: parameters.k: k is -5", "1: parameters.F3: division by zero inside",
+             "2: axes.rho: the range of rho goes", "2: axes.L2: the range of L2 goes"],
+        ),
+        (
+            "system:\n  unknowns: {x: real, y: real}\n  equations: [x^2+y, x-abc, sin(x)]\n  positive: [y, z]\n"
+            "  stable: [q]\naxes: {a: [0, 1], b: [0, 1]}\n",
+            ["3: system.equations.3: x is not an unknown angle", "3: system.equations: 3 equations for 2 unknowns",
+             "3: system.equations.2: abc has no value", "4: system.positive.2: z has no value",
+             "5: system.stable.1: q has no value"],
+        ),
+        (
+            "notes: [1]\nfree: x\nmembers: q\nsweep: 1\ndesign: 2\n" + PTM,
+            ["2: free: expected one parameter", "3: members: q is neither how many", "4: sweep: expected parameters",
+             "5: design: expected what is designed"],
+        ),
+        (
+            "axes: {L: [-1, 2], W: [0, 3]}\n" + SPRUNG % (", k: {kind: length, default: -1}", "k", "0", "1"),
+            ["1: axes.L: the range of L goes below zero", "3: mechanism.parameters.k.default: k is -1"],
+        ),
+        (
+            AXES + SPRUNG % (", k: {default: 1}", "-1", "0", "1"),
+            ["3: mechanism.parameters.k: nothing uses k", "7: mechanism.springs.1.k: a stiffness is positive"],
+        ),
+        (
+            "axes: {rho: [0, 1, 2], u: [0, 1]}\nparameters: {L1: 2*rho, L2: u - 3, F3: w}\n",
+            ["1: axes.rho: expected a range", "2: parameters.F3: unknown name 'w'"],
+        ),
+        (
+            "parameters: {L1: -1, F3: F}\nfree: {F: [1, 0]}\n" + PTM,
+            ["1: parameters.L1: L1 is -1", "2: free.F: the range of F is reversed"],
+        ),
+        (
+            "parameters: {L1: -1, F3: F}\nsweep: {F: []}\n" + PTM,
+            ["1: parameters.L1: L1 is -1", "2: sweep.F: the list is empty"],
+        ),
+    ],
+)  # fmt: skip
+def test_no_fault_keeps_others_from_being_told(
+    text: str, starts: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = faults_of(text, tmp_path, capsys)
+    assert [fault[: len(start)] for fault, start in zip(found, starts, strict=True)] == starts
+
+
+def test_a_long_expression_is_shown_around_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    long = "+".join(["L*L"] * 30)
+    (fault,) = faults_of(SPRUNG % ("", f"{long}+q", "0", "1") + AXES, tmp_path, capsys)
+    shown = fault.partition("(character 121 of ")[2]
+    assert shown.startswith("'...*L+L*L+") and shown.endswith("+q')") and len(shown) < 70
+
+
+def test_a_model_without_parameters_is_not_asked_for_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = faults_of("mechanism: {}\nparameters: {L: 1}\naxes: {a: [0, 1], b: [0, 1]}\n", tmp_path, capsys)
+    assert "2: parameters.L: unknown parameter 'L': mechanism has none" in found

@@ -52,7 +52,7 @@ CASES = {
     "a bar too large to be proved": (
         record("['(k + W + cos(t) + sin(t))^40', 0]", "  bars: [[O, P]]\n"), "too large to be multiplied out",
     ),
-    "100 bodies on bodies": (record(more=bodies(100) + "  bars: [[O, q99]]\n"), "is not constant"),
+    "100 bodies on bodies": (record(more=bodies(100) + "  bars: [[O, q99]]\n" + springs(1)), "is not constant"),
     "101 bodies": (record(more=bodies(101)), "101 entries, more than the 100"),
     "a large multiple": (record("['cos(65*t)', 0]"), "at most 64"),
     "1500 names": (

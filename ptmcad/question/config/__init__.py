@@ -19,7 +19,7 @@ from typing import Any
 
 from ptmcad.errors import A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Kind, Model, Parameter, ptm
-from ptmcad.question.config.binding import bound, member_name, settled, swept_names
+from ptmcad.question.config.binding import bound, member_name, settled
 from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member, member_like
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
@@ -31,12 +31,14 @@ from ptmcad.question.config.record import (
     check_axis_name,
     count_of,
     file_name,
-    number_text,
     portable_file,
     record_of,
+    swept_names,
     with_place,
 )
-from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, point_of, slice_of
+from ptmcad.question.config.resolution import checked_slice, point_of, slice_of
+from ptmcad.question.config.scalars import number_of, number_text
+from ptmcad.question.domain import MAX_DEGREE
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.expressions import Expression, constant
