@@ -225,7 +225,18 @@ class PoleError(ExpressionError):
 
 
 class HypothesisError(PtmcadError):
-    """A hypothesis of the method is violated; the message names a witness."""
+    """A hypothesis of the method is violated; the message names a witness.
+
+    Attributes
+    ----------
+    parameter : which one it is; empty where it is none.
+    part : the key of what it is else in the model's description, such as ``springs.2``; empty where it is nothing.
+    """
+
+    def __init__(self, message: str, parameter: str = "", part: str = ""):
+        self.parameter = parameter
+        self.part = part
+        super().__init__(message)
 
 
 class DegenerateSliceError(HypothesisError):
@@ -241,18 +252,7 @@ class InfiniteSolutionsError(HypothesisError):
 
 
 class GeometryError(HypothesisError):
-    """A length or stiffness is not positive at some point of the window, or it could not be proved to be.
-
-    Attributes
-    ----------
-    parameter : which one it is; empty where it is none.
-    part : the key of what it is else in the mechanism's description, such as ``springs.2``; empty where it is nothing.
-    """
-
-    def __init__(self, message: str, parameter: str = "", part: str = ""):
-        self.parameter = parameter
-        self.part = part
-        super().__init__(message)
+    """A length or stiffness is not positive at some point of the window, or it could not be proved to be."""
 
 
 class OutputError(PtmcadError):

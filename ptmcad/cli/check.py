@@ -8,10 +8,10 @@ import click
 
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.values import files
-from ptmcad.errors import MAX_FAULTS, ConfigError, GeometryError
+from ptmcad.errors import MAX_FAULTS, ConfigError, HypothesisError
 from ptmcad.question.config import Family, with_place
 from ptmcad.question.config.asked import load_asked
-from ptmcad.question.config.model import located
+from ptmcad.question.config.record import record_of
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.yamltree import read_file
 
@@ -47,10 +47,8 @@ def command(*, record: Path, limits: Limits) -> int:
             click.echo(line)
         try:
             found = check(slice)
-        except ConfigError as error:
-            raise located(error, read_file(record)) from error
-        except GeometryError as error:
-            raise with_place(error, read_file(record)) from error
+        except (ConfigError, HypothesisError) as error:
+            raise with_place(error, record_of(read_file(record))) from error
         for line in cost_text(found):
             click.echo(line)
         if isinstance(asked, Family):

@@ -15,7 +15,7 @@ from ptmcad.mechanism.bodies import add_bodies
 from ptmcad.mechanism.description import Load, Mechanism, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.parts import check_numbers
-from ptmcad.mechanism.proofs import check_bars, check_symmetries, check_unknowns
+from ptmcad.mechanism.proofs import check_bars, check_springs, check_symmetries, check_unknowns
 from ptmcad.mechanism.reading import (
     MAX_BODIES,
     Reader,
@@ -140,6 +140,8 @@ def _prove(found: Mechanism, faults: Faults) -> None:
     faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
     if not faulty & _SHAPE:
         check_bars(found, faults)
+        if "springs" not in faulty and "torsion" not in faulty:
+            check_springs(found, faults)
     if not faulty - _FORCELESS:
         check_unknowns(found, faults)
         check_symmetries(found, faults)

@@ -75,6 +75,11 @@ def size_of(tree: Tree) -> Size:
     return evaluate(tree, Sizes())
 
 
+def terms_of(model: Model) -> int:
+    """A bound of the number of terms of a model's equations, or of its energy."""
+    return sum(size() for _, size in _sizes(model))
+
+
 def check_sizes(model: Model, faults: Faults) -> None:
     """Note the first part with which a model's equations, or its energy, may have too many terms."""
     total = 0

@@ -97,8 +97,10 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
             raise ConfigError(
                 f"{written} equations for {len(unknowns)} unknowns: give as many as there are unknowns", key="equations"
             )
-    check_sizes(system, faults)
-    if not misspelt and not {(fault.key or "").partition(".")[0] for fault in faults.found} & _HOLDING:
+    faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
+    if not faulty & (_HOLDING | {*_LISTS}):
+        check_sizes(system, faults)
+    if not misspelt and not faulty & _HOLDING:
         _check_unknowns(system, faults)
     return system
 

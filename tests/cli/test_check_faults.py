@@ -284,3 +284,80 @@ def test_a_long_expression_is_shown_around_what_is_wrong(tmp_path: Path, capsys:
 def test_a_model_without_parameters_is_not_asked_for_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     found = faults_of("mechanism: {}\nparameters: {L: 1}\naxes: {a: [0, 1], b: [0, 1]}\n", tmp_path, capsys)
     assert "2: parameters.L: unknown parameter 'L': mechanism has none" in found
+
+
+@pytest.mark.parametrize(
+    ("spring", "says"),
+    [
+        ("springs: [{between: [A, P], k: 1}, {between: [A, O], k: 1}]", "springs.2: the length of AO is constant"),
+        ("springs: [{between: [A, P], k: 1}, {between: [O, P], k: L}]", "springs.2: the length of OP is constant"),
+        ("torsion: [{angle: th - th, k: L}]", "torsion.1: no unknown changes its angle"),
+    ],
+)
+def test_a_spring_that_does_nothing_is_a_fault(
+    spring: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        "mechanism:\n  parameters: {L: {kind: length}, W: {kind: force}}\n  unknowns: {th: angle}\n"
+        f"  points: {{O: [0, 0], A: [-2, 0], P: [L*sin(th), L*cos(th)]}}\n  {spring}\n  loads: {{P: {{weight: W}}}}\n"
+    )
+    (fault,) = faults_of(text + AXES, tmp_path, capsys)
+    assert fault.startswith(f"5: mechanism.{says}")
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("name: x\naxes:\n\trho: [0, 1]\n", "3: is not YAML: a tab stands where YAML takes spaces only"),
+        ("name: x\ntitle: @x\n", "2: is not YAML: the character '@' cannot stand at the beginning of a value"),
+    ],
+)
+def test_a_character_that_yaml_does_not_take_is_named(
+    text: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (fault,) = faults_of(text, tmp_path, capsys)
+    assert fault.startswith(says)
+
+
+LINE = "system:\n  unknowns: {x: real}\n  equations: [%s]\n  stable: [%s]\naxes: {a: [-2, 2], b: [-2, 2]}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "start"),
+    [
+        (LINE % ("(x - a)^2", "x"), "1: system: the slice lies inside the discriminant variety"),
+        (LINE % ("x^3 - a*x + b", "x^3 - a*x + b"), "4: system.stable.1: at every point of the slice"),
+        (
+            "mechanism:\n  parameters: {L: {kind: length}, l0: {kind: free length, default: 1}}\n"
+            "  unknowns: {a: angle, b: angle, c: angle, d: angle}\n"
+            "  points: {A: [2, 0], P: [sin(a) + sin(b) + sin(c) + sin(d), L*cos(a) + cos(b) + cos(c) + cos(d)]}\n"
+            "  springs: [{between: [A, P], k: 1, free: l0}]\naxes: {L: [0, 1], l0: [0, 1]}\n",
+            "3: mechanism.unknowns: the certified engine takes up to 3 unknowns",
+        ),
+        (
+            "parameters: {L1: (a - b)^2 + 10^-30*(a + b), k: 1}\naxes: {a: [-1, 2], b: [-1, 2]}\n",
+            "1: parameters.L1: a length must be positive in the whole window, but L1 is",
+        ),
+    ],
+)
+def test_what_an_engine_refuses_has_its_place_in_every_command(
+    text: str, start: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (fault,) = faults_of(text, tmp_path, capsys)
+    assert fault.startswith(start)
+    path = tmp_path / "bad.yaml"
+    for command in (["classify", str(path), "--out", str(tmp_path)], ["variety", str(path)]):
+        if command[0] == "variety" and "free length" in text:
+            continue  # which it does not take
+        assert run(command) == 2
+        assert capsys.readouterr().err.startswith(f"error: {path}:{start}"), command
+
+
+def test_what_an_engine_refuses_of_an_option_names_the_option(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "good.yaml"
+    path.write_text("axes: {a: [-1, 2], b: [-1, 2]}\nparameters: {L2: 1 + a^2, rho: 1 + b^2}\n", encoding="utf-8")
+    given = ["--set", "L1=(a - b)^2 + 10^-30*(a + b)"]
+    assert run(["classify", str(path), *given, "--out", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.startswith("error: --set L1: a length must be positive")

@@ -63,6 +63,10 @@ class Described:
         """Where a key of the description stands; None where nobody has written it."""
         return None if self.node is None else _place(self.node, key)
 
+    def has_part(self, key: str) -> bool:
+        """Whether the description has a key."""
+        return self.node is not None and _entry(self.node, key) is not None
+
 
 def model_of(record: Tree) -> Model:
     """The mechanism or system of a record; the paper's mechanism where it says nothing.
@@ -118,14 +122,6 @@ def described_in(record: Tree, faults: Faults) -> Described:
     raise mechanism.place.error(
         f"unknown mechanism{hint}; a file that holds one ends in .yaml, and a mapping describes one"
     )
-
-
-def located(fault: ConfigError, record: Tree) -> ConfigError:
-    """A fault of a model that was read from a record, with the place of its key where the description has the key."""
-    node = described_in(record, Faults()).node
-    if node is None or not fault.key or fault.file is not None or _entry(node, fault.key) is None:
-        return fault
-    return _place(node, fault.key).error(fault.message)
 
 
 def named_model(name: Scalar) -> Model:

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ptmcad.errors import ConfigError, Faults, GeometryError, shown
+from ptmcad.errors import ConfigError, Faults, HypothesisError, PtmcadError, shown
 from ptmcad.mechanism import Model, ptm
-from ptmcad.question.config.model import Described, described_in, located
+from ptmcad.question.config.model import Described, described_in
 from ptmcad.question.config.parameters import unknown_parameter
 from ptmcad.question.config.scalars import names_in_scalar, number_text
 from ptmcad.question.examples import A_DESIGN, A_SWEEP, AXES
@@ -154,18 +154,39 @@ def read_record(tree: Tree, faults: Faults) -> Record:
     return Record(**read)
 
 
-def with_place(error: GeometryError, tree: Tree) -> ConfigError | GeometryError:
-    """A fault of a slice's geometry with file, line and key, where it is that of a parameter or of a part."""
+def with_place(error: ConfigError | HypothesisError, record: Record) -> PtmcadError:
+    """A fault that an engine finds, with file, line and key: those of a parameter, of a part, or of the whole slice.
+
+    As it is where its place is known already, or nothing in the record is to blame.
+    """
+    if isinstance(error, ConfigError):
+        if error.file is not None or error.line is not None or len(error.faults) > 1:
+            return error
+        if error.key == "count" and record.count is not None:
+            return record.count_place.error(error.message)
+        described = record.described
+        return (
+            error
+            if described is None or not described.has_part(error.key or "-")
+            else (record.place_of_part(error.key or "").error(error.message))
+        )
+    place = _place_of_fault(error, record)
+    return error if place is None else place.error(str(error))
+
+
+def _place_of_fault(error: HypothesisError, record: Record) -> Place | None:
     if error.part:
-        return located(ConfigError(str(error), key=error.part), tree)
-    record = read_record(tree, Faults())
-    if not error.parameter:
-        return error
-    name = error.parameter
-    if name not in record.values and name not in record.axes:
-        name = record.model.parameters[name].alias_of or name
-    place = record.axes[name].place if name in record.axes else record.place_of(name)
-    return place.error(str(error))
+        return record.place_of_part(error.part)
+    if name := error.parameter:
+        if name not in record.values and name not in record.axes:
+            name = record.model.parameters[name].alias_of or name
+        return record.axes[name].place if name in record.axes else record.place_of(name)
+    if record.described is not None and (place := record.described.place_of_part("")) is not None:
+        return place
+    axes = next(iter(record.axes.values()), None)
+    if axes is None or axes.place.file is None:
+        return None  # only options, or a mapping
+    return Place("axes", axes.place.file, axes.place.line)
 
 
 def _node_place(node: Node, key: str, tree: Tree) -> Place:
