@@ -51,6 +51,26 @@ def shown(text: str, most: int = MAX_MESSAGE) -> str:
     return text
 
 
+def quoted(text: object, most: int = 60) -> str:
+    """A text of someone else's in quotation marks; the middle of a long one is left out, as by `shown`.
+
+    >>> print(quoted("L*sin(th)"), quoted("a" * 100, most=20))
+    'L*sin(th)' 'aaaaaaa ... aaaaaaa'
+    """
+    return repr(shown(str(text), most))
+
+
+def excerpt(text: str, position: int, most: int = 60) -> str:
+    """The part of a text around a position in quotation marks, with dots where something is left out.
+
+    >>> print(excerpt("a + b + c + d + e", 8, most=9))
+    '...+ b + c +...'
+    """
+    start = min(max(position - most // 2, 0), max(len(text) - most, 0))
+    part = shown(text[start : start + most], 5 * most)
+    return repr(f"{'...' if start else ''}{part}{'...' if start + most < len(text) else ''}")
+
+
 def shown_path(path: object) -> str:
     """A path as a terminal can show it; whole, because the next command may be given it."""
     return shown(str(path), 5 * MAX_MESSAGE)
@@ -135,7 +155,7 @@ A_MODEL = "a mechanism or a system, as ptmcad.Mechanism(...), ptmcad.System(...)
 class Faults:
     """Everything that is wrong with a record: a `ConfigError` in a ``with`` block is noted, and work goes on behind it.
 
-    Guarantee: after `MAX_FAULTS` nothing more is looked for, and those are raised.
+    Guarantee: no fault is there twice. After `MAX_FAULTS` nothing more is looked for, and those are raised.
 
     >>> faults = Faults()
     >>> for key in ("a", "b"):
@@ -155,7 +175,8 @@ class Faults:
     ) -> bool:
         if not isinstance(error, ConfigError) or len(self.found) >= MAX_FAULTS:
             return False
-        self.found += error.faults
+        known = {_said(fault) for fault in self.found}
+        self.found += [fault for fault in error.faults if _said(fault) not in known]
         if len(self.found) >= MAX_FAULTS:
             self.check()
         return True
@@ -166,10 +187,16 @@ class Faults:
         Raises
         ------
         ConfigError
-            The first fault; it knows the others.
+            The first fault, in the order of the files' lines; it knows the others.
         """
         if self.found:
-            raise ConfigError.of([_alone(fault) for fault in self.found])
+            files = [fault.file for fault in self.found]
+            found = sorted(self.found, key=lambda fault: (files.index(fault.file), fault.line or 0))
+            raise ConfigError.of([_alone(fault) for fault in found])
+
+
+def _said(fault: ConfigError) -> tuple[str | None, int | None, str | None, str]:
+    return fault.file, fault.line, fault.key, fault.message
 
 
 def _alone(fault: ConfigError) -> ConfigError:
@@ -199,7 +226,18 @@ class PoleError(ExpressionError):
 
 
 class HypothesisError(PtmcadError):
-    """A hypothesis of the method is violated; the message names a witness."""
+    """A hypothesis of the method is violated; the message names a witness.
+
+    Attributes
+    ----------
+    parameter : which one it is; empty where it is none.
+    part : the key of what it is else in the model's description, such as ``springs.2``; empty where it is nothing.
+    """
+
+    def __init__(self, message: str, parameter: str = "", part: str = ""):
+        self.parameter = parameter
+        self.part = part
+        super().__init__(message)
 
 
 class DegenerateSliceError(HypothesisError):
@@ -215,18 +253,7 @@ class InfiniteSolutionsError(HypothesisError):
 
 
 class GeometryError(HypothesisError):
-    """A length or stiffness is not positive at some point of the window, or it could not be proved to be.
-
-    Attributes
-    ----------
-    parameter : which one it is; empty where it is none.
-    part : the key of what it is else in the mechanism's description, such as ``springs.2``; empty where it is nothing.
-    """
-
-    def __init__(self, message: str, parameter: str = "", part: str = ""):
-        self.parameter = parameter
-        self.part = part
-        super().__init__(message)
+    """A length or stiffness is not positive at some point of the window, or it could not be proved to be."""
 
 
 class OutputError(PtmcadError):

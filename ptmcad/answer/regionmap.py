@@ -34,6 +34,7 @@ class Status(Enum):
     PARTIAL = "partial"
     UNDECIDED = "undecided"
     ON_VARIETY = "on the variety"
+    ON_EDGE = "on the window's edge"
     OUTSIDE = "outside the window"
 
 

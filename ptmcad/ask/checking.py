@@ -17,6 +17,7 @@ from ptmcad.ask.classification import check_taken
 from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, GeometryError, LimitReached, shown
 from ptmcad.mechanism import Mechanism, ptm
+from ptmcad.mechanism.sizes import terms_of
 from ptmcad.process.timed import returns_within
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Slice, merged
@@ -35,6 +36,10 @@ MAX_PROVED = 8
 """Complex solutions: of more it is not proved that the slice is degenerate, which takes seconds and more."""
 MAX_SECONDS = 4.0
 """For that proof."""
+MAX_EXPANDING = 2.0
+"""Seconds for what is written out as functions of the axes."""
+MAX_QUICK = 1_000
+"""Terms of the equations times those of the longest parameter up to which that takes no while."""
 MAX_DEGREE, MAX_BOUND = 12, 400
 """Of an equation, and of the number of solutions by Bezout's theorem: beyond, too."""
 MAX_COUNTED = 40
@@ -92,8 +97,10 @@ def check(slice: Slice) -> Check:
     sample = tuple(a.low + (a.high - a.low) * share for a, share in zip(slice.axes, (_ACROSS, _UP), strict=True))
     at = (sample[0], sample[1])
     if is_certified(slice, "auto"):
-        check_taken(slice)
-        _check_bounded(slice)
+        if not _is_large(slice):
+            _check_certified(slice)
+        elif not returns_within(MAX_EXPANDING, _check_certified, slice):
+            return Check(slice, at, None, "certified", _LARGE)
         return Check(slice, at, None, "certified", _CERTIFIED)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
         return Check(slice, at, None, "exact", _BEYOND)
@@ -105,6 +112,24 @@ _CERTIFIED = (
     "grows as the tolerance falls, and where springs get short: begin with --tolerance 1/20 --timeout 60, and go on "
     "with --resume"
 )
+
+
+_LARGE = (
+    "not known: with such long expressions for parameters the equations take long to be written out; try single points "
+    "first, by ptmcad solve"
+)
+
+
+def _is_large(slice: Slice) -> bool:
+    """Whether the equations may take more than some tenths of a second to be written out as functions of the axes."""
+    longest = max((len(e.numerator) + len(e.denominator) for e in slice.parameters.values()), default=1)
+    return slice.model != ptm() and terms_of(slice.model) * longest > MAX_QUICK
+
+
+def _check_certified(slice: Slice) -> None:
+    """Refuse what the certified engine refuses before it searches."""
+    check_taken(slice)
+    _check_bounded(slice)
 
 
 def _check_bounded(slice: Slice) -> None:
@@ -165,7 +190,7 @@ def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[in
         When they are not counted within about a second.
     """
     from ptmcad.algebra.fibre import Work
-    from ptmcad.exact.point_system import solutions_at
+    from ptmcad.exact.point_system import none_is_stable, solutions_at
 
     most = Work(MAX_COUNTED, *MAX_BASIS)
     different, multiplicity = solutions_at(system, values, most=most)
@@ -179,11 +204,15 @@ def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[in
         return None, "there are infinitely many solutions"
     if not different:
         return 0, "there is no solution, real or complex"
+    if different == multiplicity and none_is_stable(system, values, most):
+        return different, "each solution makes the left side of a condition for stability zero"
     return different, "" if different == multiplicity else "some solution is multiple"
 
 
 def _encloses(slice: Slice) -> bool:
-    """Whether the certified engine takes a slice that the exact one takes too."""
+    """Whether the certified engine takes a slice that the exact one takes too, as far as that is known at once."""
+    if _is_large(slice):
+        return False
     try:
         check_taken(slice)
     except (ConfigError, GeometryError):

@@ -19,13 +19,13 @@ from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.regionmap import RegionMap, Status, with_compilation
 from ptmcad.ask.engines import is_certified
-from ptmcad.errors import ConfigError, LimitReached, expect
+from ptmcad.errors import ConfigError, LimitReached, expect, quoted
 from ptmcad.mechanism import ptm
 from ptmcad.options import Options, Progress
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import slice_from
 from ptmcad.question.savings import load_all, switched_off
-from ptmcad.question.slice import Count, Slice, without_free_lengths
+from ptmcad.question.slice import NOTHING_ADMISSIBLE, Count, Slice, without_free_lengths
 from ptmcad.text.numerals import exactly
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def _counted(slice: Slice, count: Count | str | None) -> Slice:
     except ValueError as error:
         expect(count, str, "count", "the name of a count")
         known = ", ".join(member.value for member in Count)
-        raise ConfigError(f"{count!r:.60} is none of {known}", key="count") from error
+        raise ConfigError(f"{quoted(count)} is none of {known}", key="count") from error
 
 
 def _names(without: Iterable[str], keep: Iterable[str] | None) -> frozenset[str]:
@@ -270,11 +270,7 @@ def check_resumable(slice: Slice, earlier: RegionMap) -> None:
 def check_count(slice: Slice) -> None:
     """Without free lengths every spring that is not of length zero is longer than its own: stable says it all."""
     if slice.count is Count.ADMISSIBLE and not slice.has_free_lengths:
-        raise ConfigError(
-            "admissible asks that every spring is longer than its free length, and none has a free length here: "
-            "choose stable",
-            key="count",
-        )
+        raise ConfigError(f"{NOTHING_ADMISSIBLE}: choose stable", key="count")
 
 
 def _share(value: Fraction | float | str | None, key: str) -> Fraction | None:

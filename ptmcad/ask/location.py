@@ -38,8 +38,9 @@ def locate(result: RegionMap, at: Mapping[str, Any]) -> Location:
     expect(at, (Mapping, Point), "point", f"the values of {names[0]} and {names[1]} by name, or a mapping of them")
     point = _point(result, at)
     inside = all(axis.low < value < axis.high for axis, value in zip(result.slice.axes, point, strict=True))
-    if not inside:
-        return Location(Status.OUTSIDE)
+    if not inside:  # of the open window, which is what a map is of
+        on_edge = all(axis.low <= value <= axis.high for axis, value in zip(result.slice.axes, point, strict=True))
+        return Location(Status.ON_EDGE if on_edge else Status.OUTSIDE)
     if result.cover is not None:
         return _locate_outside_cover(result, result.cover, point)
     if not result.cells:

@@ -8,12 +8,10 @@ import click
 
 from ptmcad.cli.limits import Limits, clock_stopped, held, limit_options
 from ptmcad.cli.values import files
-from ptmcad.errors import MAX_FAULTS, ConfigError, GeometryError
-from ptmcad.question.config import Family, question_from_options, with_place
-from ptmcad.question.config.designs import asks_for_design, load_design
-from ptmcad.question.config.model import located
-from ptmcad.question.config.options import Typed
-from ptmcad.question.config.sweeps import asks_for_sweep, load_sweep
+from ptmcad.errors import MAX_FAULTS, ConfigError, HypothesisError
+from ptmcad.question.config import Family, with_place
+from ptmcad.question.config.asked import load_asked
+from ptmcad.question.config.record import record_of
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.yamltree import read_file
 
@@ -34,9 +32,7 @@ def command(*, record: Path, limits: Limits) -> int:
         ptmcad check configs/fig4.yaml
     """
     try:
-        sweeping = load_sweep(record) if asks_for_sweep(record) else None
-        designed = load_design(record) if asks_for_design(record) else None
-        asked = question_from_options(Typed(record)) if sweeping is None else sweeping.slice(0)
+        asked, sweeping, designed = load_asked(record)
     except ConfigError as error:
         for fault in error.faults:
             click.echo(f"error: {fault}", err=True)
@@ -51,10 +47,8 @@ def command(*, record: Path, limits: Limits) -> int:
             click.echo(line)
         try:
             found = check(slice)
-        except ConfigError as error:
-            raise located(error, read_file(record)) from error
-        except GeometryError as error:
-            raise with_place(error, read_file(record)) from error
+        except (ConfigError, HypothesisError) as error:
+            raise with_place(error, record_of(read_file(record))) from error
         for line in cost_text(found):
             click.echo(line)
         if isinstance(asked, Family):

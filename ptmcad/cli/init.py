@@ -10,13 +10,15 @@ import click
 from ptmcad.cli.mechanisms import known_starter
 from ptmcad.cli.values import mechanisms
 from ptmcad.errors import ConfigError, OutputError
+from ptmcad.process.commit import reason
 from ptmcad.question.config.starters import starter_text
 
 
 @click.command("init")
 @click.argument("mechanism", default="pendulum", shell_complete=mechanisms)
 @click.option("--out", type=click.Path(path_type=Path), metavar="FILE",
-              help="The file to write; never one that is there.  [default: standard output]")  # fmt: skip
+              help="The file to write; never one that is there. A missing folder is made.  "
+                   "[default: standard output]")  # fmt: skip
 def command(*, mechanism: str, out: Path | None) -> None:
     """Write a commented record to start from: of MECHANISM, or of a pendulum.
 
@@ -32,11 +34,17 @@ def command(*, mechanism: str, out: Path | None) -> None:
         return
     text = text.replace("THIS-FILE", out.name)
     try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        raise OutputError(
+            f"the folder {out.parent} cannot be made: {reason(error)}; choose another with --out"
+        ) from error
+    try:
         descriptor = os.open(out, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
     except FileExistsError as error:
         raise ConfigError("is there already: choose another name, or remove it", key="--out", file=str(out)) from error
     except (OSError, ValueError) as error:
-        raise OutputError(f"{out} cannot be written: {getattr(error, 'strerror', None) or error}") from error
+        raise OutputError(f"{out} cannot be written: {reason(error)}") from error
     with open(descriptor, "w", encoding="utf-8") as stream:
         stream.write(text)
     click.echo(f"wrote {out}; next: ptmcad check {out}, then ptmcad classify {out} --out out")

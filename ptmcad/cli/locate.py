@@ -56,7 +56,9 @@ def point_of(text: str) -> dict[str, str]:
     point: dict[str, str] = {}
     for part in text.split(","):
         name, equals, value = (piece.strip() for piece in part.partition("="))
-        if not (name and equals and value) or name in point:
+        if name in point:
+            raise ConfigError(f"{shown(name, 40)} is given twice: leave one out", key="--at")
+        if not (name and equals and value):
             raise ConfigError(f"'{shown(part, 60)}' is not NAME=VALUE: as in {POINT}", key="--at")
         point[name] = value
     return point
@@ -160,9 +162,9 @@ def _lines(location: Location, point: Mapping[str, str], fields: Sequence[str], 
 def command(*, result: Path, at: str | None, table: Path | None, limits: Limits) -> None:
     """Tell in which cell and region of RESULT a rational point lies, and the number of equilibria there.
 
-    The answer is exact, however near the point is to a boundary: "on the variety" exactly on a curve, "outside the
-    window" otherwise outside. In a certified map a point of its undetermined part is "undecided". Numbers such as 7/10,
-    0.7 and 7e-1 are exact.
+    The answer is exact, however near the point is to a boundary: "on the variety" exactly on a curve, "on the
+    window's edge" where the map ends, "outside the window" beyond. In a certified map a point of its undetermined part
+    is "undecided". Numbers such as 7/10, 0.7 and 7e-1 are exact.
 
     \b
     Examples:

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.values import mechanisms as known_mechanisms
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, quoted
 from ptmcad.mechanism import Mechanism, Model
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config.model import model_of
@@ -31,7 +31,7 @@ def known_starter(name: str, option: str) -> str:
     """
     if name not in NAMES:
         hint = did_you_mean(name, NAMES) or f"; there are {', '.join(NAMES)}"
-        raise ConfigError(f"{name!r:.60} is no built-in mechanism{hint}", key=option)
+        raise ConfigError(f"{quoted(name)} is no built-in mechanism{hint}", key=option)
     return name
 
 

@@ -6,6 +6,7 @@ Guarantee: every such command takes the same words for the same slice.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
@@ -13,7 +14,14 @@ import click
 
 from ptmcad.cli.gathering import gathered
 from ptmcad.cli.values import files, mechanisms, pair_of_names, settings
-from ptmcad.question.config import Family, question_from_options, record_from_options, slice_from_options
+from ptmcad.errors import ConfigError, HypothesisError, PtmcadError
+from ptmcad.question.config import (
+    Family,
+    question_from_options,
+    record_from_options,
+    slice_from_options,
+    with_place,
+)
 from ptmcad.question.config.options import Typed
 from ptmcad.question.config.record import Record
 from ptmcad.question.slice import Slice
@@ -68,6 +76,13 @@ class Asked(NamedTuple):
         """
         return record_from_options(self._typed(None)._replace(free=free))
 
+    def placed(self, error: ConfigError | HypothesisError) -> PtmcadError:
+        """A fault of the question with its place, as far as the record or the options can still be read for it."""
+        try:
+            return with_place(error, record_from_options(self._typed(None)))
+        except ConfigError:  # it is this one
+            return error
+
     def question(self, count: str | None, third: Third) -> Slice | Family:
         """The slice that is meant, or the family where a third parameter is free.
 
@@ -83,9 +98,23 @@ class Asked(NamedTuple):
         return Typed(self.config, self.axes, self.sets, self.ranges, count, self.mechanism)
 
 
+def _with_places(command: F) -> F:
+    @wraps(command)
+    def placed(*, asked: Asked, **given: Any) -> Any:
+        try:
+            return command(asked=asked, **given)
+        except (ConfigError, HypothesisError) as error:
+            raise asked.placed(error) from error
+
+    return placed  # type: ignore[return-value]
+
+
 def slice_options(command: F) -> F:
-    """Add CONFIG, ``--mechanism``, ``--slice``, ``--set`` and ``--range``, which the command gets as ``asked``."""
-    command = gathered(asked=Asked)(command)
+    """Add CONFIG, ``--mechanism``, ``--slice``, ``--set`` and ``--range``, which the command gets as ``asked``.
+
+    What an engine finds wrong with the question is told with its place in the record.
+    """
+    command = gathered(asked=Asked)(_with_places(command))
     for add in (
         click.option("--range", "ranges", multiple=True, metavar="NAME=LO:HI", shell_complete=settings,
                      help="The range of an axis."),

@@ -170,6 +170,23 @@ def solutions_at(
     return _off(point, point.inequalities if saturated else ())
 
 
+def none_is_stable(system: ParametricSystem, values: Mapping[str, fmpq], most: Work | None = None) -> bool:
+    """Whether at a point some condition for stability is zero at each of finitely many solutions, of which there are.
+
+    Raises
+    ------
+    LimitReached
+        When it is more work than `most`.
+    """
+    if not system.stability:
+        return False
+    try:
+        point = point_system(system, values, most=most)
+    except DegeneratePoint:
+        return False
+    return bool(point.algebra.dimension) and any(_off(point, (p,))[0] == 0 for p in point.stability)
+
+
 def _off(point: PointSystem, conditions: Sequence[RationalPolynomial]) -> tuple[int, int]:
     """Number of different solutions at which no condition vanishes, and their number with multiplicity.
 

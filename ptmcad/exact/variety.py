@@ -127,7 +127,9 @@ def discriminant_variety(
 def check_hypotheses(system: ParametricSystem, parameters: Mapping[str, Ratio]) -> None:
     """Refuse what `discriminant_variety` would refuse, without the curves."""
     simplest = system if system.turns is None else system.turns.system
-    nondegenerate(on_slice(simplest, parameters))
+    equations, algebra, *_ = nondegenerate(on_slice(simplest, parameters))
+    for _ in sign_changes(equations._replace(inequalities=()), algebra):
+        pass  # which refuses conditions
 
 
 class _Components:
@@ -228,15 +230,25 @@ def _lifted(p: UnknownPolynomial, equations: SliceSystem) -> UnknownPolynomial:
 
 
 def sign_changes(equations: SliceSystem, algebra: QuotientAlgebra) -> Iterator[Coefficient]:
-    """The norms of the conditions, over those solutions at which they are not zero all over the slice."""
+    """The norms of the conditions, over those solutions at which they are not zero all over the slice.
+
+    Raises
+    ------
+    NothingToCountError
+        When a condition for stability is zero at all of them.
+    """
     for p in equations.inequalities:
         yield norm(algebra, p)[0]
-    for p in equations.stability:
+    for n, p in enumerate(equations.stability, 1):
         product = norm(algebra, p)[0]
         if product.is_zero():  # there solutions with p = 0 are not stable, whatever the others are
             others = _algebra(saturated(equations, p))
             if not others.dimension:
-                continue  # at all solutions p = 0: none is stable anywhere
+                raise NothingToCountError(
+                    "at every point of the slice this condition's left side is zero at each solution, real or complex: "
+                    "none is stable; leave the condition out, or mend it",
+                    part=f"stable.{n}",
+                )
             product = norm(others, {(*m, 0): c for m, c in p.items()})[0]
         yield product
 

@@ -56,7 +56,7 @@ def with_witness(
         return error
     # one that is not proved to be typical is shown only where none is
     words, at, _ = first if first[2] else next((e for e in examples if e[2]), first)
-    return type(error)(f"{error}; for example at {place(at)}{words}")
+    return type(error)(f"{error}; for example at {place(at)}{words}", part=error.part)
 
 
 def _example(

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from ptmcad.explore.panel import Panel
 from ptmcad.mechanism import Mechanism
-from ptmcad.question.config.resolution import number_of
+from ptmcad.question.config.scalars import number_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.report.chart import RIM_WIDTH
 from ptmcad.show.report.frame import SIDE

@@ -18,7 +18,8 @@ from ptmcad.options import Options
 from ptmcad.question.config.binding import bound, member_name
 from ptmcad.question.config.family import family_of
 from ptmcad.question.config.record import Record
-from ptmcad.question.config.resolution import number_of, slice_of, written_in
+from ptmcad.question.config.resolution import slice_of, written_in
+from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import names_in, rational

@@ -16,7 +16,7 @@ from fractions import Fraction
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism.description import Mechanism, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, multiples
-from ptmcad.text.tree import Call, Name, Negative, Number, Tree
+from ptmcad.text.tree import Call, Name, Negative, Number, Tree, names_of
 
 MAX_WORK = 12_000
 """Products of terms for one question, a fraction of a second; two bars and a spring take some hundred."""
@@ -148,6 +148,23 @@ def check_bars(mechanism: Mechanism, faults: Faults) -> None:
                     "rigid; leave it out, or make it a spring",
                     key=key,
                 )
+
+
+def check_springs(mechanism: Mechanism, faults: Faults) -> None:
+    """Note each spring whose length no unknown changes, and each torsion spring whose angle none does."""
+    points = _Points(mechanism)
+    for n, spring in enumerate(mechanism.springs, 1):
+        with faults:
+            if not points.moves(spring.start, spring.end):
+                raise ConfigError(
+                    f"the length of {spring.start}{spring.end} is constant, so that this spring does nothing: leave it "
+                    "out, or put an end where it moves",
+                    key=f"springs.{n}",
+                )
+    for n, torsion in enumerate(mechanism.torsion, 1):
+        with faults:
+            if not any(multiples(torsion.angle).get(angle) for angle in mechanism.angles):
+                raise ConfigError("no unknown changes its angle, so that this spring does nothing", key=f"torsion.{n}")
 
 
 def check_unknowns(mechanism: Mechanism, faults: Faults) -> None:
@@ -334,6 +351,17 @@ class _Points:
             x, y = self.mechanism.points[name]
             self.known[name] = self.value(x), self.value(y)
         return self.known[name]
+
+    def moves(self, start: str, end: str) -> bool:
+        """Whether a distance changes with an unknown; also where that is too much to be multiplied out."""
+        unknowns = self.mechanism.unknowns.keys()
+        if not any({*names_of(tree)} & unknowns for point in (start, end) for tree in self.mechanism.points[point]):
+            return False
+        try:
+            squared = self.squared(start, end)
+            return any(squared.derivative(u).terms for u in unknowns)
+        except ExpressionError:
+            return True
 
     def squared(self, start: str, end: str) -> Polynomial:
         """The square of a distance."""

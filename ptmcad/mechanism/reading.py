@@ -10,10 +10,11 @@ from enum import Enum
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.errors import ConfigError, ExpressionError, Faults, excerpt, quoted
 from ptmcad.mechanism.angles import PI, split_angle, without_quarter_turns
 from ptmcad.mechanism.description import Kind, Parameter, UnknownKind
 from ptmcad.mechanism.evaluate import evaluate, value_at
+from ptmcad.mechanism.sizes import size_of
 from ptmcad.text.syntax import NAME, NOT_NUMBERS, did_you_mean, parse
 from ptmcad.text.tree import FUNCTIONS, Call, Negative, Number, Tree, names_of
 from ptmcad.text.tree import to_text as text_of
@@ -66,7 +67,7 @@ def as_written(value: object) -> str:
         return f"the yes-or-no value '{str(value).lower()}'"
     if isinstance(value, list | tuple):
         return "a list"
-    return "a mapping" if isinstance(value, Mapping) else f"{value!r:.60}"
+    return "a mapping" if isinstance(value, Mapping) else quoted(value) if isinstance(value, str) else f"{value!r:.60}"
 
 
 def _check_size(size: int, key: str, most: int) -> None:
@@ -105,7 +106,7 @@ def new_name(name: object, key: str, taken: Mapping[str, object]) -> str:
     """A name that nothing else has."""
     if not isinstance(name, str) or not NAME.fullmatch(name) or len(name) > MAX_NAME:
         raise ConfigError(
-            f"{name!r:.60} is no name: use ASCII letters, digits and '_', starting with a letter", key=key
+            f"{as_written(name)} is no name: use ASCII letters, digits and '_', starting with a letter", key=key
         )
     if name in FUNCTIONS or name == PI or name.lower() in NOT_NUMBERS:
         raise ConfigError(f"'{name}' has a meaning of its own: choose another name", key=key)
@@ -131,7 +132,7 @@ def point_name(name: object, key: str, points: Mapping[str, object]) -> str:
         raise ConfigError(f"{as_written(name)} is no point's name; the points are {', '.join(points)}", key=key)
     if name not in points:
         hint = did_you_mean(str(name), points) or f"; the points are {', '.join(points)}"
-        raise ConfigError(f"there is no point {name!r:.60}{hint}", key=key)
+        raise ConfigError(f"there is no point {quoted(name)}{hint}", key=key)
     return name
 
 
@@ -233,6 +234,7 @@ class Reader:
         """The tree with quarter turns in cosines and sines worked out, once it was found to have a value."""
         turned = without_quarter_turns(tree)
         evaluate(turned, names)
+        size_of(turned)
         return turned
 
     def pair(
@@ -354,7 +356,8 @@ def located(work: Callable[[], _T], text: object, key: str) -> _T:
     try:
         return work()
     except ExpressionError as error:
-        where = "" if error.position is None else f" (character {error.position + 1} of {str(text)!r:.60})"
+        at = error.position
+        where = "" if at is None else f" (character {at + 1} of {excerpt(str(text), at)})"
         raise ConfigError(f"{error.message}{where}", key=key) from None
 
 

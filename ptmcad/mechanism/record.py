@@ -10,12 +10,13 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.mechanism.angles import angle_name
 from ptmcad.mechanism.bodies import add_bodies
 from ptmcad.mechanism.description import Load, Mechanism, Moment, Spring, Support, TorsionSpring
 from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.proofs import check_bars, check_symmetries, check_unknowns
+from ptmcad.mechanism.parts import check_numbers
+from ptmcad.mechanism.proofs import check_bars, check_springs, check_symmetries, check_unknowns
 from ptmcad.mechanism.reading import (
     MAX_BODIES,
     Reader,
@@ -33,9 +34,10 @@ from ptmcad.mechanism.reading import (
     point_name,
     unknowns_of,
 )
+from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.mechanism.work import split_moments
 from ptmcad.text.syntax import did_you_mean, parse
-from ptmcad.text.tree import Name, Negative, Number, Tree, names_of
+from ptmcad.text.tree import Name, Negative, Number, Tree
 
 KEYS = (
     "name", "parameters", "unknowns", "points", "bodies", "bars", "supports", "springs", "torsion", "loads", "moments",
@@ -59,6 +61,7 @@ _LIKE = {
 }  # fmt: skip
 """Examples for messages."""
 _ZERO: Tree = Number(Fraction(0))
+_ONE: Tree = Number(Fraction(1))
 
 
 def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
@@ -77,6 +80,7 @@ def described(record: Mapping[str, Any], proved: bool = False) -> Mechanism:
     """
     faults = Faults()
     found = read_mechanism(record, faults, proved)
+    check_numbers(found, faults)
     faults.check()
     return found
 
@@ -122,6 +126,8 @@ def read_mechanism(record: Mapping[str, Any], faults: Faults, proved: bool = Fal
         source=record,
     )
     if not proved:
+        if not {(fault.key or "").partition(".")[0] for fault in faults.found} - _FORCELESS:
+            check_sizes(found, faults)
         _prove(found, faults)
     return found
 
@@ -135,6 +141,8 @@ def _prove(found: Mechanism, faults: Faults) -> None:
     faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
     if not faulty & _SHAPE:
         check_bars(found, faults)
+        if "springs" not in faulty and "torsion" not in faulty:
+            check_springs(found, faults)
     if not faulty - _FORCELESS:
         check_unknowns(found, faults)
         check_symmetries(found, faults)
@@ -213,7 +221,7 @@ class _Parts:
                 if needed not in fields:
                     raise ConfigError("is missing", key=f"{key}.{needed}")
         start = end = ""
-        stiffness = free = _ZERO
+        stiffness, free = _ONE, _ZERO
         with self.faults:
             if "between" in fields:
                 start, end = ends(fields["between"], f"{key}.between", points)
@@ -222,8 +230,6 @@ class _Parts:
                 stiffness = self.reader.tree(fields["k"], f"{key}.k")
         with self.faults:
             free = self.reader.tree(fields.get("free", 0), f"{key}.free")
-            if not names_of(free) and value_at(free, {}) < 0:
-                raise ConfigError(f"a free length is not negative, but this is {fields['free']}", key=f"{key}.free")
         return Spring("", start, end, stiffness, free)
 
     def torsion(self, points: Mapping[str, object]) -> tuple[TorsionSpring, ...]:
@@ -243,7 +249,7 @@ class _Parts:
             with self.faults:
                 if needed not in fields:
                     raise ConfigError("is missing", key=f"{key}.{needed}")
-        angle, turns, stiffness, rest, at = _ZERO, 0, _ZERO, (Fraction(1), Fraction(0)), ""
+        angle, turns, stiffness, rest, at = _ZERO, 0, _ONE, (Fraction(1), Fraction(0)), ""
         with self.faults:
             if "angle" in fields:
                 angle, turns = self.reader.angle(fields["angle"], f"{key}.angle")
@@ -285,7 +291,7 @@ class _Parts:
             with self.faults:
                 if name not in unknowns:
                     hint = did_you_mean(str(name), unknowns) or f"; they are {', '.join(unknowns)}"
-                    raise ConfigError(f"there is no unknown {name!r:.60}{hint}", key=key)
+                    raise ConfigError(f"there is no unknown {quoted(name)}{hint}", key=key)
                 found.append(Moment(name, self.reader.tree(value, key, moving=True)))
         return tuple(found)
 

@@ -24,6 +24,7 @@ from ptmcad.mechanism.reading import (
     parsed,
     unknowns_of,
 )
+from ptmcad.mechanism.sizes import check_sizes
 from ptmcad.text.tree import Tree, names_of
 
 SYSTEM_KEYS = ("name", "parameters", "unknowns", "equations", "potential", "positive", "stable")
@@ -65,8 +66,10 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
         if "unknowns" not in record:
             raise ConfigError("is missing", key="unknowns")
         unknowns = unknowns_of(record["unknowns"], parameters, faults)
+    # a key that nobody knows has been told, and may be meant for one of these
+    misspelt = not {"equations", "potential"} & record.keys() and any(key not in SYSTEM_KEYS for key in record)
     with faults:
-        if ("equations" in record) is ("potential" in record):
+        if ("equations" in record) is ("potential" in record) and not misspelt:
             raise ConfigError("give either equations or a potential", key="equations")
     texts = _texts(record, faults)
     trees = {key: tree for key, text in texts.items() if (tree := _tree(text, key, faults)) is not None}
@@ -94,7 +97,10 @@ def read_system(record: Mapping[str, Any], faults: Faults) -> System:
             raise ConfigError(
                 f"{written} equations for {len(unknowns)} unknowns: give as many as there are unknowns", key="equations"
             )
-    if not {(fault.key or "").partition(".")[0] for fault in faults.found} & _HOLDING:
+    faulty = {(fault.key or "").partition(".")[0] for fault in faults.found}
+    if not faulty & (_HOLDING | {*_LISTS}):
+        check_sizes(system, faults)
+    if not misspelt and not faulty & _HOLDING:
         _check_unknowns(system, faults)
     return system
 

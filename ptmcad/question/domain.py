@@ -1,6 +1,8 @@
 """The domain of the geometry: what each parameter of the mechanism needs to be in the whole open window.
 
-Guarantee: `prove` returns only when every parameter is, by proof, what it needs to be: hypotheses (H1) and (H2) of
+So does each stiffness and free length that is an expression of parameters, written where a spring has it.
+
+Guarantee: `prove` returns only when all of them are, by proof, what they need to be: hypotheses (H1) and (H2) of
 docs/soundness.md. Nothing is concluded from not having found a counterexample.
 """
 
@@ -8,11 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ptmcad.errors import GeometryError
+from ptmcad.errors import ExpressionError, GeometryError
 from ptmcad.mechanism import Kind, Model
+from ptmcad.mechanism.parts import Part, fault_of_number, parts
 from ptmcad.question.positivity import Axes, Need, Undecided, Witness, decide, named, number, place
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import Expression
+from ptmcad.text.expressions import Expression, constant
+from ptmcad.text.parsing import value_in_axes
+
+MAX_DEGREE = 32
+"""Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far more."""
 
 
 def need(kind: Kind, expression: Expression) -> Need:
@@ -62,18 +69,56 @@ def unproved(name: str, kind: Kind, expression: Expression, axes: Axes, max_work
 
 
 def prove(model: Model, parameters: Mapping[str, Expression], axes: Axes) -> None:
-    """Prove of every parameter that it is in the whole open window what it needs to be.
+    """Prove of every parameter that it is in the whole open window what it needs to be, and of what springs are given.
 
     Raises
     ------
     GeometryError
-        With the parameter and the place where it is not, or where that could not be decided.
+        With the parameter, or the part of the description, and the place where it is not, or where that could not be
+        decided.
     """
     for name, expression in parameters.items():
         kind = model.kind(name)
         problem = fault(name, kind, expression, axes) or unproved(name, kind, expression, axes)
         if problem:
             raise GeometryError(problem, parameter=name)
+    for part in parts(model):
+        problem = fault_of_part(model, part, parameters, axes) or unproved_of_part(model, part, parameters, axes)
+        if problem:
+            raise GeometryError(problem, part=part.key)
+
+
+def fault_of_part(
+    model: Model, part: Part, parameters: Mapping[str, Expression], axes: Axes, max_work: int | None = None
+) -> str:
+    """The same as `fault` of what a spring is given: a stiffness or a free length that is written there."""
+    try:
+        value = value_of_part(model, part, parameters)
+    except ExpressionError as error:
+        return f"cannot be judged: {error.message}"
+    if value.is_constant:
+        return fault_of_number(part, value.constant())
+    if value.degree > MAX_DEGREE:
+        return f"{part.text} has degree {value.degree} in the axes: at most {MAX_DEGREE} can be computed"
+    return fault(part.text, part.kind, value, axes, max_work)
+
+
+def unproved_of_part(
+    model: Model, part: Part, parameters: Mapping[str, Expression], axes: Axes, max_work: int | None = None
+) -> str:
+    """The same as `unproved` of what a spring is given, of which `fault_of_part` has found nothing."""
+    return unproved(part.text, part.kind, value_of_part(model, part, parameters), axes, max_work)
+
+
+def value_of_part(model: Model, part: Part, parameters: Mapping[str, Expression]) -> Expression:
+    """What a spring is given, as a function of the axes; free lengths that a slice does not name are zero.
+
+    Raises
+    ------
+    ExpressionError
+        When it is too large.
+    """
+    return value_in_axes(part.tree, {**dict.fromkeys(model.free_lengths, constant(0)), **parameters})
 
 
 def prove_slice(slice: Slice) -> None:

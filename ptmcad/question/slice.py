@@ -38,6 +38,10 @@ def unstorable(data: Any) -> str | None:
     return next((found for part in parts if (found := unstorable(part)) is not None), None)
 
 
+NOTHING_ADMISSIBLE = "admissible asks that every spring is longer than its free length, and none has a free length here"
+"""What is wrong with that count then."""
+
+
 class Count(Enum):
     """Which count distinguishes two regions."""
 

@@ -27,7 +27,7 @@ from ptmcad.text.numerals import exactly
 from ptmcad.text.syntax import names_in as names_in_text
 from ptmcad.text.syntax import parse as tree_of
 from ptmcad.text.syntax import unknown_name
-from ptmcad.text.tree import Call, Name, Number, Power, Step, interpret
+from ptmcad.text.tree import Call, Name, Number, Power, Step, Tree, interpret
 
 MAX_EXPONENT = 64
 MAX_DEGREE = 64
@@ -61,6 +61,21 @@ def parse(text: object, names: Mapping[str, Expression] | None = None) -> Expres
         return constant(exactly(text))
     except (TypeError, ValueError) as error:
         raise ExpressionError(str(error)) from error
+
+
+def value_in_axes(tree: Tree, names: Mapping[str, Expression]) -> Expression:
+    """The function of the axes that a tree is.
+
+    Parameters
+    ----------
+    names : what each name stands for.
+
+    Raises
+    ------
+    ExpressionError
+        As `parse`.
+    """
+    return interpret(tree, _InTheAxes(names))
 
 
 def rational(text: object) -> Fraction:

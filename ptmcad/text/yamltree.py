@@ -105,6 +105,8 @@ def read_text(text: str, file: str | None = None) -> Tree:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         problem = shown(" ".join(filter(None, (error.context, error.problem))), 300)
+        if mark is not None and "cannot start any token" in problem:
+            problem = _cannot_start(text, mark) or problem
         raise ConfigError(f"is not YAML: {problem}", file=file, line=mark.line + 1 if mark else None) from error
     except yaml.YAMLError as error:
         raise ConfigError(
@@ -114,6 +116,20 @@ def read_text(text: str, file: str | None = None) -> Tree:
         found = "is empty" if isinstance(node, Scalar) and node.is_null else "is not a mapping of keys to values"
         raise ConfigError(f"{found}: a problem record has lines such as 'count: stable'", file=file)
     return node
+
+
+def _cannot_start(text: str, mark: Any) -> str:
+    """What is said where a text cannot go on so, in words of a character that has a name; else empty."""
+    lines = text.splitlines()
+    line = lines[mark.line] if mark.line < len(lines) else ""
+    character = line[mark.column : mark.column + 1]
+    if character == "\t":
+        return "a tab stands where YAML takes spaces only: write spaces in its place"
+    return (
+        f"the character {character!r} cannot stand at the beginning of a value: put the value in quotation marks"
+        if (character.isprintable() and character)
+        else ""
+    )
 
 
 def from_python(value: object, place: Place) -> Node:

@@ -151,7 +151,7 @@ def test_points_of_two_maps_are_not_confused() -> None:
     free = replace(certified_map(), cover=Cover(2, ()), cells=certified_map().cells[:1])
     for result in (one, free, other, free, one):
         assert result.locate(rho=1, L2="15/8").status is (Status.CERTIFIED if result is free else Status.UNDECIDED)
-    assert one.locate(rho=0, L2=2).status is Status.OUTSIDE
+    assert one.locate(rho=0, L2=2).status is Status.ON_EDGE
 
 
 def test_a_stopped_map_answers_too() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -16,6 +17,7 @@ from ptmcad.errors import ConfigError, NothingToCountError
 from ptmcad.exact.point_system import point_system, solutions_at
 from ptmcad.exact.stages import point_values, problem_of
 from ptmcad.question.config import slice_from
+from ptmcad.question.slice import Slice
 from ptmcad.verification import verify
 
 LINE = {"unknowns": {"x": "real", "y": "real"}}
@@ -63,9 +65,21 @@ STABLE_NOWHERE = [
 
 
 @pytest.mark.parametrize("system", STABLE_NOWHERE, ids=["the equation", "a multiple of it", "and another one"])
-def test_a_condition_that_is_zero_at_every_solution_makes_none_stable(system: dict[str, Any]) -> None:
+@pytest.mark.parametrize("ask", [ptmcad.classify, check])
+def test_a_condition_that_is_zero_at_every_solution_is_refused(
+    ask: Callable[[Slice], object], system: dict[str, Any]
+) -> None:
+    slice = slice_from({"system": system, "axes": {"a": [-1, 1], "b": [-1, 1]}, "count": "stable"})
+    with pytest.raises(NothingToCountError, match="zero at each solution, real or complex: none is stable") as caught:
+        ask(slice)
+    assert caught.value.part == "stable.1"
+
+
+def test_a_condition_that_is_zero_at_some_solutions_is_none_that_is_refused() -> None:
+    system = {"unknowns": {"x": "real"}, "equations": ["x*(x - 2 + a)"], "stable": ["x"]}
     found = ptmcad.classify({"system": system, "axes": {"a": [-1, 1], "b": [-1, 1]}, "count": "stable"})
-    assert {region.stable for region in found.regions} == {0}
+    assert {region.stable for region in found.regions} == {1}
+    assert check(found.slice).complex_solutions == 2
     assert verify(found).ok
 
 

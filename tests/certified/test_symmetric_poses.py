@@ -156,7 +156,7 @@ def test_a_number_that_may_be_halfway_between_two_texts_has_one_digit_more(digit
         "springs": [{"between": ["A", "P"], "k": 1, "free": 2}],
         "loads": {"P": [0, "f"]},
     }
-    poses = ptmcad.solve(digits, model=ptmcad.Mechanism(pendulum), a="23/10", f=0)
+    poses = ptmcad.solve(digits=digits, model=ptmcad.Mechanism(pendulum), a="23/10", f=0)
     (eigenvalue,) = poses.equilibria[0].eigenvalues
     assert eigenvalue.text(digits) == {6: "0.994744", 7: "0.99474375", 8: "0.99474375"}[digits]
     assert ptmcad.Poses.from_json(poses.to_json()).equilibria == poses.equilibria

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import Any
 
@@ -34,15 +35,15 @@ count: many
 more: 1
 """
 FAULTS = [
-    (16, "more"),
+    (1, "name"),
     (4, "mechanism.parameters.L.kind"),
     (9, "mechanism.points.P.2"),
-    (12, "mechanism.loads.R"),
     (11, "mechanism.springs.1.between"),
-    (1, "name"),
+    (12, "mechanism.loads.R"),
     (13, "parameters.L"),
     (14, "axes"),
     (15, "count"),
+    (16, "more"),
 ]
 
 
@@ -68,7 +69,7 @@ def test_values_are_checked_together_and_faults_do_not_follow_from_others() -> N
             "axes": {"rho": [2, 0], "u": [0, 1]},
         })  # fmt: skip
     assert [fault.key for fault in caught.value.faults] == [
-        "parameters.rho", "axes.rho", "parameters.L1", "parameters.F3",
+        "parameters.rho", "axes.rho", "parameters.L1", "parameters.F3", "parameters.L2",
     ]  # fmt: skip
     with pytest.raises(ConfigError) as caught:
         slice_from_mapping({
@@ -140,6 +141,39 @@ def test_classify_says_at_once_that_it_will_take_long(
     assert first.startswith("note: the equations have 20 complex solutions") and "nothing is computed" in last
     assert run([*asked, "--engine", "certified"]) == 2
     assert "note" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "equations",
+    [
+        ["(a+sin(t)+cos(u)+sin(v)+b)^10", "(a+sin(t)+cos(u)+cos(v)+b)^10", "(a+cos(t)+cos(u)+cos(v)+b)^10"],
+        ["sin(60*t + u) - a", "cos(u + v) - a*b", "sin(v) - b"],
+    ],
+    ids=["many terms", "a high degree"],
+)
+def test_other_angles_are_not_searched_for_where_that_takes_long(equations: list[str]) -> None:
+    system = {"unknowns": {"t": "angle", "u": "angle", "v": "angle"}, "equations": equations}
+    started = time.process_time()
+    found = check(slice_from_mapping({"system": system, "axes": {"a": [0, 2], "b": [0, 3]}}))
+    assert time.process_time() - started < 4
+    assert found.complex_solutions is None and found.cost.startswith("not known")
+
+
+def test_equations_with_long_parameters_are_not_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The certified engine's, in which parameters are functions of the axes."""
+    monkeypatch.setattr(checking, "MAX_EXPANDING", 0.5)
+    slice = slice_from_mapping({
+        "mechanism": {
+            "parameters": {"L": {"kind": "length"}, "W": {"kind": "force"}},
+            "unknowns": {"th": "angle"},
+            "points": {"A": ["-2", "0"], "P": ["(L+W+sin(th))^8", "L*cos(th)"]},
+            "springs": [{"between": ["A", "P"], "k": "1", "free": "1"}],
+        },
+        "parameters": {"L": "(u+v+1)^16/(u+2)^3", "W": "(v+1)^20/(u^2+v+1)"},
+        "axes": {"u": [0, 2], "v": [0, 3]},
+    })  # fmt: skip
+    found = check(slice)
+    assert found.engine == "certified" and found.cost.startswith("not known: with such long expressions")
 
 
 def test_long_numbers_are_shown_short(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -149,7 +149,7 @@ axes: {a: [-1, 2], b: [-1, 2]}
     ("free", "start"),
     [
         ("1", "9: parameters.L: a length must be positive in the whole window, but L is"),
-        ("1 - a", "7: mechanism.springs.2: a free length must not be negative in the whole window"),
+        ("1 - a", "7: mechanism.springs.2.free: a free length must not be negative in the whole window"),
     ],
 )
 def test_what_the_geometry_asks_for_is_told_with_its_place(
@@ -160,3 +160,204 @@ def test_what_the_geometry_asks_for_is_told_with_its_place(
         text = text.replace("10^-30*(a + b)", "1")
     (fault,) = faults_of(text, tmp_path, capsys)
     assert fault.startswith(start)
+
+
+AXES = "axes: {L: [0, 2], W: [0, 3]}\n"
+SPRUNG = """\
+mechanism:
+  parameters: {L: {kind: length, default: 1}, W: {kind: force}%s}
+  unknowns: {th: angle}
+  points: {O: [0, 0], A: [-2, 0], P: [L*sin(th), L*cos(th)]}
+  springs:
+    - {between: [A, P], k: %s, free: %s}
+  torsion: [{angle: th, k: %s}]
+  loads: {P: {weight: W}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "says"),
+    [
+        ("-1", "a stiffness is positive, but this is -1"),
+        ("0", "a stiffness is positive, but this is 0"),
+        ("0*L", "a stiffness is positive, but this is 0*L = 0"),
+        ("W - 1", "a stiffness must be positive in the whole window, but W - 1 is -1/4 at L = 1, W = 3/4"),
+        ("L - 3", "a stiffness must be positive in the whole window, but L - 3 is -2 at L = 1, W = 3/2"),
+    ],
+)
+def test_a_stiffness_written_in_a_spring_is_proved_positive(
+    stiffness: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = SPRUNG % ("", stiffness, "0", stiffness) + AXES
+    found = faults_of(text, tmp_path, capsys)
+    assert [fault.partition(f": {says}")[0] for fault in found] == [
+        "6: mechanism.springs.1.k", "7: mechanism.torsion.1.k",
+    ]  # fmt: skip
+    path = tmp_path / "bad.yaml"
+    assert run(["classify", str(path), "--out", str(tmp_path)]) == 2
+    assert f"{path}:{found[0]}" in capsys.readouterr().err
+
+
+def test_a_free_length_written_in_a_spring_is_proved_not_negative(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (fault,) = faults_of(SPRUNG % ("", "1", "L - 1", "1") + AXES, tmp_path, capsys)
+    assert fault.startswith("6: mechanism.springs.1.free: a free length must not be negative in the whole window")
+
+
+def test_a_stiffness_is_positive_at_a_single_point_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "sprung.yaml"
+    path.write_text(SPRUNG % ("", "W - 1", "0", "1") + "axes: {L: [0, 2], W: [2, 3]}\n", encoding="utf-8")
+    assert run(["solve", str(path), "--at", "L=1,W=2"]) == 0
+    capsys.readouterr()
+    assert run(["solve", str(path), "--at", "L=1,W=1/2"]) == 2
+    err = capsys.readouterr().err
+    assert f"{path}:6: mechanism.springs.1.k: a stiffness is positive, but this is W - 1 = -1/2" in err
+
+
+PTM = "mechanism: ptm\naxes: {rho: [0, 2], L2: [0, 2]}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "starts"),
+    [
+        (PTM + "count: admissible\n", ["3: count: admissible asks that every spring is longer"]),
+        (PTM + "free: {l0: [0, 1]}\ncount: admissible\n", ["4: count: admissible asks that every spring is longer"]),
+        (
+            "parameters: {L1: abc, F3: 1/0, F4: [1]}\naxes: {rho: [2, 0], L2: [0]}\n",
+            ["1: parameters.F4: expected a num", "1: parameters.L1: unknown name", "1: parameters.F3: division by zero",
+             "2: axes.L2: expected a range", "2: axes.rho: the range of rho is rev"],
+        ),
+        (
+            "parameters: {L1: -1, k: -5, F3: 1/(rho-1)}\naxes: {rho: [-1, 2], L2: [-3, 2]}\n",
+            ["1: parameters.L1: L1 is -1", "1: parameters.k: k is -5", "1: parameters.F3: division by zero inside",
+             "2: axes.rho: the range of rho goes", "2: axes.L2: the range of L2 goes"],
+        ),
+        (
+            "system:\n  unknowns: {x: real, y: real}\n  equations: [x^2+y, x-abc, sin(x)]\n  positive: [y, z]\n"
+            "  stable: [q]\naxes: {a: [0, 1], b: [0, 1]}\n",
+            ["3: system.equations.3: x is not an unknown angle", "3: system.equations: 3 equations for 2 unknowns",
+             "3: system.equations.2: abc has no value", "4: system.positive.2: z has no value",
+             "5: system.stable.1: q has no value"],
+        ),
+        (
+            "notes: [1]\nfree: x\nmembers: q\nsweep: 1\ndesign: 2\n" + PTM,
+            ["2: free: expected one parameter", "3: members: q is neither how many", "4: sweep: expected parameters",
+             "5: design: expected what is designed"],
+        ),
+        (
+            "axes: {L: [-1, 2], W: [0, 3]}\n" + SPRUNG % (", k: {kind: length, default: -1}", "k", "0", "1"),
+            ["1: axes.L: the range of L goes below zero", "3: mechanism.parameters.k.default: k is -1"],
+        ),
+        (
+            AXES + SPRUNG % (", k: {default: 1}", "-1", "0", "1"),
+            ["3: mechanism.parameters.k: nothing uses k", "7: mechanism.springs.1.k: a stiffness is positive"],
+        ),
+        (
+            "axes: {rho: [0, 1, 2], u: [0, 1]}\nparameters: {L1: 2*rho, L2: u - 3, F3: w}\n",
+            ["1: axes.rho: expected a range", "2: parameters.F3: unknown name 'w'"],
+        ),
+        (
+            "parameters: {L1: -1, F3: F}\nfree: {F: [1, 0]}\n" + PTM,
+            ["1: parameters.L1: L1 is -1", "2: free.F: the range of F is reversed"],
+        ),
+        (
+            "parameters: {L1: -1, F3: F}\nsweep: {F: []}\n" + PTM,
+            ["1: parameters.L1: L1 is -1", "2: sweep.F: the list is empty"],
+        ),
+    ],
+)  # fmt: skip
+def test_no_fault_keeps_others_from_being_told(
+    text: str, starts: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = faults_of(text, tmp_path, capsys)
+    assert [fault[: len(start)] for fault, start in zip(found, starts, strict=True)] == starts
+
+
+def test_a_long_expression_is_shown_around_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    long = "+".join(["L*L"] * 30)
+    (fault,) = faults_of(SPRUNG % ("", f"{long}+q", "0", "1") + AXES, tmp_path, capsys)
+    shown = fault.partition("(character 121 of ")[2]
+    assert shown.startswith("'...*L+L*L+") and shown.endswith("+q')") and len(shown) < 70
+
+
+def test_a_model_without_parameters_is_not_asked_for_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = faults_of("mechanism: {}\nparameters: {L: 1}\naxes: {a: [0, 1], b: [0, 1]}\n", tmp_path, capsys)
+    assert "2: parameters.L: unknown parameter 'L': mechanism has none" in found
+
+
+@pytest.mark.parametrize(
+    ("spring", "says"),
+    [
+        ("springs: [{between: [A, P], k: 1}, {between: [A, O], k: 1}]", "springs.2: the length of AO is constant"),
+        ("springs: [{between: [A, P], k: 1}, {between: [O, P], k: L}]", "springs.2: the length of OP is constant"),
+        ("torsion: [{angle: th - th, k: L}]", "torsion.1: no unknown changes its angle"),
+    ],
+)
+def test_a_spring_that_does_nothing_is_a_fault(
+    spring: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        "mechanism:\n  parameters: {L: {kind: length}, W: {kind: force}}\n  unknowns: {th: angle}\n"
+        f"  points: {{O: [0, 0], A: [-2, 0], P: [L*sin(th), L*cos(th)]}}\n  {spring}\n  loads: {{P: {{weight: W}}}}\n"
+    )
+    (fault,) = faults_of(text + AXES, tmp_path, capsys)
+    assert fault.startswith(f"5: mechanism.{says}")
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("name: x\naxes:\n\trho: [0, 1]\n", "3: is not YAML: a tab stands where YAML takes spaces only"),
+        ("name: x\ntitle: @x\n", "2: is not YAML: the character '@' cannot stand at the beginning of a value"),
+    ],
+)
+def test_a_character_that_yaml_does_not_take_is_named(
+    text: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (fault,) = faults_of(text, tmp_path, capsys)
+    assert fault.startswith(says)
+
+
+LINE = "system:\n  unknowns: {x: real}\n  equations: [%s]\n  stable: [%s]\naxes: {a: [-2, 2], b: [-2, 2]}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "start"),
+    [
+        (LINE % ("(x - a)^2", "x"), "1: system: the slice lies inside the discriminant variety"),
+        (LINE % ("x^3 - a*x + b", "x^3 - a*x + b"), "4: system.stable.1: at every point of the slice"),
+        (
+            "mechanism:\n  parameters: {L: {kind: length}, l0: {kind: free length, default: 1}}\n"
+            "  unknowns: {a: angle, b: angle, c: angle, d: angle}\n"
+            "  points: {A: [2, 0], P: [sin(a) + sin(b) + sin(c) + sin(d), L*cos(a) + cos(b) + cos(c) + cos(d)]}\n"
+            "  springs: [{between: [A, P], k: 1, free: l0}]\naxes: {L: [0, 1], l0: [0, 1]}\n",
+            "3: mechanism.unknowns: the certified engine takes up to 3 unknowns",
+        ),
+        (
+            "parameters: {L1: (a - b)^2 + 10^-30*(a + b), k: 1}\naxes: {a: [-1, 2], b: [-1, 2]}\n",
+            "1: parameters.L1: a length must be positive in the whole window, but L1 is",
+        ),
+    ],
+)
+def test_what_an_engine_refuses_has_its_place_in_every_command(
+    text: str, start: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (fault,) = faults_of(text, tmp_path, capsys)
+    assert fault.startswith(start)
+    path = tmp_path / "bad.yaml"
+    for command in (["classify", str(path), "--out", str(tmp_path)], ["variety", str(path)]):
+        if command[0] == "variety" and "free length" in text:
+            continue  # which it does not take
+        assert run(command) == 2
+        assert capsys.readouterr().err.startswith(f"error: {path}:{start}"), command
+
+
+def test_what_an_engine_refuses_of_an_option_names_the_option(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "good.yaml"
+    path.write_text("axes: {a: [-1, 2], b: [-1, 2]}\nparameters: {L2: 1 + a^2, rho: 1 + b^2}\n", encoding="utf-8")
+    given = ["--set", "L1=(a - b)^2 + 10^-30*(a + b)"]
+    assert run(["classify", str(path), *given, "--out", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.startswith("error: --set L1: a length must be positive")

@@ -50,9 +50,23 @@ CASES = {
     "4900 levels": (record(f"['{'(' * 4900}1{')' * 4900}', 0]"), "more than 100 levels of nesting"),
     "10^5 levels of lists": (record("[" * 90_000), "levels of nesting"),
     "a bar too large to be proved": (
-        record("['(k + W + cos(t) + sin(t))^40', 0]", "  bars: [[O, P]]\n"), "too large to be multiplied out",
+        record("['(k + W + cos(t) + sin(t))^14', cos(t)]", "  bars: [[O, P]]\n"), "bars.1: it is not proved that its",
     ),
-    "100 bodies on bodies": (record(more=bodies(100) + "  bars: [[O, q99]]\n"), "is not constant"),
+    "a point of too many terms": (
+        record("['(k + W + sin(t) + cos(t))^64', cos(t)]"), "points.P.1: this is too large to be multiplied out",
+    ),
+    "a spring of too many terms": (
+        record("['(k + W + sin(t) + cos(t))^16', cos(t)]", springs(1)), "springs.1: this is too large to be multiplied",
+    ),
+    "equations of too many terms": (
+        "system: {unknowns: {x: real, y: real}, equations: ['(k+W+x+y+1)^60', 'x-y']}\n" + AXES,
+        "equations.1: this is too large to be multiplied out",
+    ),
+    "equations of too many terms together": (
+        "system: {unknowns: {x: real, y: real}, equations: ['(k+W+x+y+1)^29', '(k-W+x-y+1)^29']}\n" + AXES,
+        "equations.2: with what stands before, this is too large",
+    ),
+    "100 bodies on bodies": (record(more=bodies(100) + "  bars: [[O, q99]]\n" + springs(1)), "is not constant"),
     "101 bodies": (record(more=bodies(101)), "101 entries, more than the 100"),
     "a large multiple": (record("['cos(65*t)', 0]"), "at most 64"),
     "1500 names": (

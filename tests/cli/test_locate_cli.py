@@ -32,6 +32,8 @@ def test_a_point(fig2: Path, capsys: pytest.CaptureFixture[str]) -> None:
     [
         ("L2=3/2,rho=5/4", "on the variety"),
         ("L2=9,rho=1", "outside the window"),
+        ("L2=0,rho=1", "on the window's edge"),
+        ("L2=0,rho=-1", "outside the window"),
         ("L2=3/2,rho=1.25000000000000000000000000000000000000001", "stable  1"),
         ("L2=3/2,rho=1.24999999999999999999999999999999999999999", "stable  2"),
     ],

@@ -82,7 +82,7 @@ def test_special_points_are_answers(at: str, status: int, tmp_path: Path, capsys
     [
         ([], "error: give a point, as in --at L1=1,L2=3/2"),
         (["--at", "rho"], "error: --at: 'rho' is not NAME=VALUE"),
-        (["--at", "rho=1,rho=2"], "error: --at: 'rho=2' is not NAME=VALUE"),
+        (["--at", "rho=1,rho=2"], "error: --at: rho is given twice: leave one out"),
         (["--at", "roh=1"], "did you mean 'rho'"),
         (["--at", "rho=0.1.2"], "error: --at rho: "),
         (["--at", "rho=1/0"], "error: --at rho: division by zero"),

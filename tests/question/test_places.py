@@ -181,7 +181,7 @@ def test_faults_of_values_are_told_with_those_of_the_description(tmp_path: Path)
     with pytest.raises(ConfigError) as caught:
         load(path)
     assert [(fault.line, fault.key) for fault in caught.value.faults] == [
-        (30, "mechanism.springs.1.between"), (45, "parameters.V"), (44, "count"), (45, "parameters.k"),
+        (30, "mechanism.springs.1.between"), (44, "count"), (45, "parameters.V"), (45, "parameters.k"),
     ]  # fmt: skip
 
 

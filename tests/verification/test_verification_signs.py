@@ -5,15 +5,18 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 from flint import fmpq
 from support.certified_maps import certified
 from support.dips import AXES, DIPS, NAMES, random_square, thin_dip
 
+import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.positivity import Need, Proved, Undecided, decide
+from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import parse
 from ptmcad.verification.certified.parameters import check_domain
@@ -115,3 +118,32 @@ def test_signs_of_an_exact_map_too(name: str, text: str, shipped: Callable[..., 
     assert not isinstance(check_domain(Claims(true)), Unchecked)
     with pytest.raises(Violation, match=f"{name} (is|has)"):
         check_domain(Claims(replace(true, slice=altered)))
+
+
+@pytest.mark.parametrize(
+    ("part", "message"),
+    [
+        ({"k": "a - 1"}, "the stiffness of spring AP is not positive"),
+        ({"k": "1", "free": "b - 1"}, "the free length of spring AP is negative"),
+        ({"k": "a + 1", "free": "b"}, ""),
+    ],
+)
+def test_what_a_spring_is_given_is_checked(
+    part: dict[str, str], message: str, shipped: Callable[..., RegionMap]
+) -> None:
+    mechanism = ptmcad.Mechanism(
+        parameters={"a": {}, "b": {}},
+        unknowns={"th": "angle"},
+        points={"A": ["-2", "0"], "P": ["sin(th)", "cos(th)"]},
+        springs=[{"between": ["A", "P"], **part}],
+        loads={"P": ["a", "b"]},
+    )
+    true = shipped("fig4")
+    axes = (Axis("a", Fraction(0), Fraction(2)), Axis("b", Fraction(0), Fraction(3)))
+    slice = Slice("s", mechanism, axes, {"a": axis(0), "b": axis(1)}, Count.STABLE, text={"a": "a", "b": "b"})
+    claims = Claims(replace(true, slice=slice))
+    if message:
+        with pytest.raises(Violation, match=message):
+            check_domain(claims)
+    else:
+        assert not isinstance(check_domain(claims), Unchecked)

@@ -74,7 +74,8 @@ def refusal(problem: Problem, found: Sequence[Range]) -> ConfigError:
             key=f"unknowns.{missing[0]}",
         )
     return ConfigError(
-        f"{which}, and the certified engine searches a bounded box: choose exact, or narrow the window", key="engine"
+        f"{which}, and the certified engine searches a bounded box: choose exact, or narrow the window",
+        key=f"unknowns.{missing[0]}",
     )
 
 

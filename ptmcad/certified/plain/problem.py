@@ -104,7 +104,7 @@ def problem_of(slice: Slice) -> Problem:
     if len(model.unknowns) > MAX_UNKNOWNS:
         raise ConfigError(
             f"the certified engine takes up to {MAX_UNKNOWNS} unknowns, and {model.name} has {len(model.unknowns)}",
-            key="engine",
+            key="unknowns",
         )
     if slice.count is Count.ADMISSIBLE:
         raise ConfigError(
@@ -114,7 +114,7 @@ def problem_of(slice: Slice) -> Problem:
         )
     for key in (found.name for found in fields(model)):
         if key not in _IRRELEVANT | _USED and getattr(model, key):
-            raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key="engine")
+            raise ConfigError(f"the certified engine does not take {key}, and {model.name} has some", key=key)
     ring = Harmonics(tuple(model.unknowns), model.reals, slice.parameters)
     if isinstance(model, System):
         return _of_system(model, ring)
@@ -133,7 +133,8 @@ def problem_of(slice: Slice) -> Problem:
 
 
 def _of_system(system: System, ring: Harmonics) -> Problem:
-    inequalities, stability = _conditions(system.inequalities, ring), _conditions(system.stability, ring)
+    inequalities = _conditions("positive", system.inequalities, ring)
+    stability = _conditions("stable", system.stability, ring)
     if system.potential is not None:
         gradient = _gradient(evaluate(system.potential, ring), ring)
         return Problem(ring.unknowns, ring.reals, gradient, (), True, inequalities)
@@ -146,8 +147,8 @@ def _of_system(system: System, ring: Harmonics) -> Problem:
     return Problem(ring.unknowns, ring.reals, divided, (), False, inequalities, stability, multiples)
 
 
-def _conditions(trees: Sequence[Tree], ring: Harmonics) -> tuple[Condition, ...]:
-    """The conditions that say something.
+def _conditions(key: str, trees: Sequence[Tree], ring: Harmonics) -> tuple[Condition, ...]:
+    """The conditions that say something; the key is that of their list.
 
     Raises
     ------
@@ -155,12 +156,12 @@ def _conditions(trees: Sequence[Tree], ring: Harmonics) -> tuple[Condition, ...]
         When one holds nowhere.
     """
     found = []
-    for tree in trees:
+    for n, tree in enumerate(trees, 1):
         value, text = evaluate(tree, ring), to_text(tree)
         if set(value.terms) - set(ring.constant(Fraction(1)).terms) or not constant_of(value).is_constant:
             found.append(Condition(text, value))
         elif (number := constant_of(value).constant()) <= 0:
-            raise ConfigError(f"no solution counts: {text} is {text_of(number)} all over the window", key="engine")
+            raise ConfigError(f"no solution counts: {text} is {text_of(number)} all over the window", key=f"{key}.{n}")
     return tuple(found)
 
 

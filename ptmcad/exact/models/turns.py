@@ -18,6 +18,8 @@ from ptmcad.exact.models.system import ParametricSystem, from_equations
 
 MIN_ANGLES = 3
 """With two angles the gain is nothing."""
+MAX_DEGREE, MAX_TERMS = 20, 2_000
+"""Of an equation, and of all of them: with more the search alone would take many seconds. Six bars have 8 and 1170."""
 Matrix = tuple[tuple[int, ...], ...]
 
 
@@ -40,7 +42,7 @@ def with_turns(system: ParametricSystem) -> ParametricSystem:
     By steps, each of which measures one angle against another while that helps.
     """
     count = len(system.ring.angles)
-    if count < MIN_ANGLES:
+    if count < MIN_ANGLES or not _is_searched(system.equations):
         return system
     identity = tuple(tuple(int(i == j) for j in range(count)) for i in range(count))
     best, equations = identity, system.equations
@@ -94,6 +96,12 @@ def _moved(
         positive=system.positive,
         nonnegative=system.nonnegative,
     )
+
+
+def _is_searched(equations: tuple[TrigonometricPolynomial, ...]) -> bool:
+    """Whether it is worth while to look for other angles."""
+    degree = max((int(e.total_degree()) for e in equations), default=0)
+    return degree <= MAX_DEGREE and sum(map(len, equations)) <= MAX_TERMS
 
 
 def _cost(equations: tuple[TrigonometricPolynomial, ...]) -> tuple[int, int]:

@@ -31,7 +31,7 @@ from ptmcad.algebra.polynomials import to_fraction
 from ptmcad.algebra.window import Interval
 from ptmcad.answer.intervals import End
 from ptmcad.answer.widths import Maximum, OperationWidths, Place, WidthRow
-from ptmcad.errors import A_SLICE, ConfigError, HypothesisError, expect
+from ptmcad.errors import A_SLICE, ConfigError, HypothesisError, expect, quoted
 from ptmcad.exact.ranges.limits import chord_length, ends_of, limit
 from ptmcad.exact.ranges.line import intervals
 from ptmcad.exact.ranges.strips import (
@@ -73,7 +73,7 @@ def operation_widths(slice: Slice, along: str, rows: int = ROWS) -> OperationWid
     expect(slice, Slice, "slice", A_SLICE)
     names = slice.axis_names
     if along not in names:
-        raise ConfigError(f"{along!r:.60} is not an axis of the slice: choose {names[0]} or {names[1]}", key="along")
+        raise ConfigError(f"{quoted(along)} is not an axis of the slice: choose {names[0]} or {names[1]}", key="along")
     if isinstance(rows, bool) or not isinstance(rows, int) or rows < 1:
         raise ConfigError(f"{rows!r:.60} is not a number of rows", key="rows")
     over = slice.axes[1 - names.index(along)]

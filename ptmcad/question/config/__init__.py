@@ -18,7 +18,7 @@ from typing import Any
 
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Kind, Parameter
-from ptmcad.question.config.binding import bound, member_name, released_names, settled, swept_names
+from ptmcad.question.config.binding import bound, member_name, released_names, settled
 from ptmcad.question.config.family import Family, checked_family, family_of, fault_of_member, member_like
 from ptmcad.question.config.model import named_model
 from ptmcad.question.config.objects import make_mechanism, make_system, plain
@@ -32,9 +32,12 @@ from ptmcad.question.config.record import (
     file_name,
     portable_file,
     record_of,
+    swept_names,
     with_place,
 )
-from ptmcad.question.config.resolution import MAX_DEGREE, checked_slice, number_of, slice_of
+from ptmcad.question.config.resolution import checked_slice, slice_of
+from ptmcad.question.config.scalars import number_of
+from ptmcad.question.domain import MAX_DEGREE
 from ptmcad.question.examples import FIRST, SECOND
 from ptmcad.question.slice import Count, Slice
 from ptmcad.text.syntax import did_you_mean

@@ -10,14 +10,13 @@ from dataclasses import replace
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError
-from ptmcad.question.config.record import Record
-from ptmcad.question.config.resolution import number_of
+from ptmcad.question.config.record import Record, swept_names
+from ptmcad.question.config.scalars import number_of
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Number, Tree, names_of, replaced, to_text
-from ptmcad.text.yamltree import Place, Scalar, Sequence
-from ptmcad.text.yamltree import Tree as Entries
+from ptmcad.text.yamltree import Place, Scalar
 
 
 def with_numbers(record: Record, numbers: Mapping[str, Fraction], places: Mapping[str, Place]) -> Record:
@@ -55,16 +54,6 @@ def member_name(record: Record, name: str, value: Fraction) -> str:
     """The name of a member, and of its files: the record's, the parameter's, and its value."""
     start = f"{record.name or 'family-' + '-'.join((*record.axes, name))}-{name}"
     return f"{start}{text_of(value).replace('/', '_')}"
-
-
-def swept_names(record: Record) -> dict[str, Place]:
-    """What a record sweeps, with its places, as far as that can be read."""
-    found: dict[str, Place] = {}
-    node = record.sweep
-    for part in node.items if isinstance(node, Sequence) else (node,):
-        if isinstance(part, Entries):
-            found |= {name: entry.place for name, entry in part.entries.items()}
-    return found
 
 
 def settled(record: Record, given: Mapping[str, Scalar]) -> tuple[Record, dict[str, Scalar]]:

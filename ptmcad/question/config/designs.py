@@ -16,10 +16,11 @@ from ptmcad.mechanism import Mechanism
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.objects import plain
 from ptmcad.question.config.options import ranges_of
-from ptmcad.question.config.record import Record, Window, check_axis_name, number_text, read_record
-from ptmcad.question.config.resolution import axis_of, names_in_scalar, number_of
+from ptmcad.question.config.record import Record, Window, check_axis_name, read_record
+from ptmcad.question.config.resolution import axis_of, note_values, unread_names
+from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
 from ptmcad.question.design import Condition, condition_of, named
-from ptmcad.question.examples import FIRST, SECOND, THIRD
+from ptmcad.question.examples import A_DESIGN, FIRST, SECOND
 from ptmcad.question.slice import Axis
 from ptmcad.text.syntax import did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_python, read_file
@@ -27,7 +28,6 @@ from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, from_pytho
 KEYS = ("maximise", "along", "over", "where", "pose")
 WHERE_KEYS = ("stable", "tension", "conditions")
 MAX_PARAMETERS = 8
-EXAMPLE = f"{{maximise: range, along: {THIRD}, over: {{{FIRST}: [1/2, 2], {SECOND}: [1/2, 2]}}}}"
 
 
 def load_design(path: str | Path) -> Design:
@@ -129,23 +129,23 @@ def checked_design(tree: Tree, given: Mapping[str, Node] | None = None) -> Desig
     """
     faults = Faults()
     record = read_record(tree, faults)
-    if record.model is None or any(
-        (f.key or "").split(".")[0] in ("mechanism", "system", "axes") for f in faults.found
-    ):
-        faults.check()  # without these nothing can be said of the rest
+    if record.described is None:
+        faults.check()  # without it nothing can be said of the rest
     node = record.design
-    if node is not None and not isinstance(node, Tree):
-        with faults:
-            raise node.place.error(f"expected what is designed, such as {EXAMPLE}")
     place = tree.place.below("design") if node is None else node.place
     entries = {**_entries(node), **_merged(_entries(node), given or {})}
-    faults.check()
-    if not entries:
-        raise place.error(f"is missing: say what is designed, such as {EXAMPLE}")
+    with faults:
+        if not entries and (node is not None or "design" not in tree.entries):
+            raise place.error(f"is missing: say what is designed, such as {A_DESIGN}")
     for other, asked in (("free", record.free), ("sweep", record.sweep)):
-        if asked is not None:
-            raise tree.entries[other].place.error(f"a design has no {other!r}: its parameters are those of 'over'")
-    return _Reader(replace(record, design=None), entries, place, faults).design()
+        with faults:
+            if asked is not None:
+                raise tree.entries[other].place.error(f"a design has no {other!r}: its parameters are those of 'over'")
+    unread = unread_names(record, tree, faults) | _entries(entries.get("over")).keys()
+    if faults.found and (not entries or len(record.axes) != 2):
+        note_values(replace(record, unread=unread), faults)
+    record = replace(record, design=None, unread=unread if faults.found else frozenset())
+    return _Reader(record, entries, place, faults).design()
 
 
 def _merged(old: Mapping[str, Node], new: Mapping[str, Node]) -> dict[str, Node]:
@@ -183,7 +183,9 @@ class _Reader:
         working = self._whole(parts["stable"]) if "stable" in parts else 2
         tension = self._flag(parts["tension"]) if "tension" in parts else False
         conditions = self._conditions(parts["conditions"], over) if "conditions" in parts else ()
-        self.faults.check()
+        if self.faults.found:
+            unread = _entries(self.entries.get("over")).keys()
+            note_values(replace(self.record, unread=self.record.unread | unread), self.faults)
         found = Design(self.record, maximise, along, over, working, conditions, tension, pose)
         self._check_slice(found)
         return found

@@ -14,8 +14,9 @@ from fractions import Fraction
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.mechanism import Model
 from ptmcad.question.config.binding import bound, member_name
-from ptmcad.question.config.record import Record, Window, read_record
-from ptmcad.question.config.resolution import axis_of, names_in_scalar, number_of, slice_of, written_in
+from ptmcad.question.config.record import MAX_MEMBERS, Record, Window, check_members, read_record
+from ptmcad.question.config.resolution import axis_of, note_values, slice_of, unread_names, written_in
+from ptmcad.question.config.scalars import number_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.numerals import text_of
@@ -24,7 +25,6 @@ from ptmcad.text.yamltree import Node, Scalar, Sequence, Tree
 
 MEMBERS = 9
 """Where nothing is stated: so many values, evenly spaced."""
-MAX_MEMBERS = 400
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +88,11 @@ def family_of(record: Record, faults: Faults | None = None) -> Family:
     with faults:
         _check_name(record, name, window)
         free = axis_of(name, window, record.model)
-    if free is None:
-        faults.check()
+    if free is None or faults.found:  # of the values only what does not depend on the free parameter
+        with faults:
+            if free is not None:
+                _values(free, record.members, faults)
+        note_values(replace(record, unread=record.unread | {name}), faults)
     assert free is not None
     values: tuple[Fraction, ...] = (free.low, free.high)
     with faults:
@@ -116,10 +119,14 @@ def checked_family(tree: Tree) -> Family:
     """
     faults = Faults()
     record = read_record(tree, faults)
-    if any((fault.key or "").split(".")[0] in ("mechanism", "system", "axes", "free") for fault in faults.found):
+    if record.described is None:
         faults.check()
     if record.free is None:
-        raise tree.place.below("free").error("is missing: a family has a third parameter, such as free: {F: [-20, 0]}")
+        with faults:
+            if "free" not in tree.entries:
+                missing = tree.place.below("free")
+                raise missing.error("is missing: a family has a third parameter, such as free: {F: [-20, 0]}")
+        note_values(replace(record, unread=unread_names(record, tree, faults)), faults)
     return family_of(record, faults)
 
 
@@ -207,18 +214,13 @@ def _values(free: Axis, members: Node | None, faults: Faults) -> tuple[Fraction,
     """Where members are wanted: at the values of a list, or at as many as a number says, evenly spaced."""
     if members is None:
         return _spaced(free, MEMBERS)
-    if isinstance(members, Tree):
-        raise members.place.error("expected a list of values such as [-20, -10, 0], or how many, such as 9")
+    check_members(members)
     if isinstance(members, Scalar):
-        if names := names_in_scalar(members):
-            raise members.place.error(
-                f"{names[0][:40]} is neither how many members there are, 2 to {MAX_MEMBERS}, nor a list of values "
-                "such as -20,-10,0, nor 'between', which --changes finds"
-            )
         number = number_of(members, "the number of members")
         if number.denominator != 1 or not 2 <= number <= MAX_MEMBERS:
             raise members.place.error(f"write how many members there are, 2 to {MAX_MEMBERS}, or a list of values")
         return _spaced(free, int(number))
+    assert isinstance(members, Sequence)
     return _listed(free, members, faults)
 
 

@@ -6,11 +6,11 @@ record's folder, or in folders below, are read.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.errors import ConfigError, ExpressionError, Faults, quoted
 from ptmcad.mechanism import (
     Mechanism,
     Model,
@@ -22,9 +22,14 @@ from ptmcad.mechanism import (
     read_system,
     recognised,
 )
+from ptmcad.mechanism.parts import check_numbers
 from ptmcad.question.config.starters import NAMES, starter_mechanism
 from ptmcad.text.syntax import NAME, did_you_mean, names_in
-from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data, read_file
+from ptmcad.text.yamltree import Node, Place, Scalar, Tree, plain_data, read_file
+from ptmcad.text.yamltree import Sequence as Listed
+
+_EXPRESSIONS = ("equations", "potential", "positive", "stable")
+"""The keys of a system that hold them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +58,14 @@ class Described:
         if isinstance(entry, Tree):
             return _place(self.node, f"{declared}.default" if "default" in entry.entries else declared)
         return next((place for place, text in _texts(self.node) if parameter in NAME.findall(text)), None)
+
+    def place_of_part(self, key: str) -> Place | None:
+        """Where a key of the description stands; None where nobody has written it."""
+        return None if self.node is None else _place(self.node, key)
+
+    def has_part(self, key: str) -> bool:
+        """Whether the description has a key."""
+        return self.node is not None and _entry(self.node, key) is not None
 
 
 def model_of(record: Tree) -> Model:
@@ -111,14 +124,6 @@ def described_in(record: Tree, faults: Faults) -> Described:
     )
 
 
-def located(fault: ConfigError, record: Tree) -> ConfigError:
-    """A fault of a model that was read from a record, with the place of its key where the description has the key."""
-    node = described_in(record, Faults()).node
-    if node is None or not fault.key or fault.file is not None or _entry(node, fault.key) is None:
-        return fault
-    return _place(node, fault.key).error(fault.message)
-
-
 def named_model(name: Scalar) -> Model:
     """The model of a name, or of a file that is wherever the user says it is: what an option gives.
 
@@ -146,7 +151,7 @@ def _file_of(name: Scalar, record: str | None) -> Tree:
         path = (folder / name.text).resolve()
         itself = Path(record).resolve() if record else None
     except (OSError, ValueError, RuntimeError) as error:  # a null character, a circle of links
-        raise name.place.error(f"{name.text!r:.60} cannot name a file: {error}") from error
+        raise name.place.error(f"{quoted(name.text)} cannot name a file: {error}") from error
     if not path.is_relative_to(folder):
         raise name.place.error("the file is not in the record's folder nor below it: move it there")
     if path == itself:
@@ -156,7 +161,7 @@ def _file_of(name: Scalar, record: str | None) -> Tree:
     except ConfigError as error:
         if error.line is not None:  # a place in that file, where something is to be mended
             raise
-        raise name.place.error(f"{name.text!r:.100}: {error.message}") from error
+        raise name.place.error(f"{quoted(name.text, 100)}: {error.message}") from error
 
 
 def _description(tree: Tree) -> Tree:
@@ -185,6 +190,7 @@ def _read(node: Tree, faults: Faults, used: Iterable[str] = (), is_system: bool 
             with found:
                 model = recognised(model)  # written down again, the built-in one is the same one
         _check_use(model, {*used}, found)
+        check_numbers(model, found)
     except ConfigError:  # so many faults that no more are looked for: they still have to be put where they stand
         model = None
     # what is said of an empty value, or of a list because of one in it, says no more
@@ -232,16 +238,32 @@ def _doubtful(model: Model, keys: Iterable[str]) -> frozenset[str]:
     names = {step[1] for step in steps if step[0] == "parameters" and len(step) > 1}
     if any(step[0] == "parameters" and len(step) == 1 for step in steps):
         return frozenset(model.parameters)
-    if isinstance(model, System) and any(step[0] not in ("parameters", "name") for step in steps):
-        names |= {name for name in model.parameters if name not in model.source.get("parameters", {})}
+    if isinstance(model, System):
+        names |= _hidden(model, steps)
     return frozenset(names | {name for name, p in model.parameters.items() if p.alias_of in names})
+
+
+def _hidden(model: System, faulty: Sequence[list[str]]) -> set[str]:
+    """The names that a system does not list, and of which faults hide what they are: parameters, or something else."""
+    undeclared = {name for name in model.parameters if name not in model.source.get("parameters", {})}
+    if any(step[0] not in ("parameters", "name", *_EXPRESSIONS) for step in faulty):
+        return undeclared
+    hidden: set[str] = set()
+    right: set[str] = set()
+    for key in _EXPRESSIONS:
+        found = model.source.get(key, ())
+        texts = enumerate(found, 1) if isinstance(found, list | tuple) else [("", found)]
+        for n, text in texts:
+            if isinstance(text, str):
+                (hidden if [key, *filter(None, (str(n),))] in faulty else right).update(NAME.findall(text))
+    return undeclared & (hidden - right)
 
 
 def _empty(node: Node, key: str) -> Iterator[str]:
     """The keys of what has no value in a description, which has no meaning for it."""
     if isinstance(node, Scalar) and node.is_null and not (key.startswith("parameters.") and key.count(".") == 1):
         yield key  # of a whole parameter its reader says what could be there
-    entries = enumerate(node.items, 1) if isinstance(node, Sequence) else ()
+    entries = enumerate(node.items, 1) if isinstance(node, Listed) else ()
     for step, entry in node.entries.items() if isinstance(node, Tree) else entries:
         yield from _empty(entry, f"{key}.{step}" if key else str(step))
 
@@ -255,7 +277,7 @@ def _texts(node: Node, place: Place | None = None) -> Iterator[tuple[Place, str]
     place = place or node.place
     if isinstance(node, Scalar):
         yield place, node.text
-    entries = enumerate(node.items, 1) if isinstance(node, Sequence) else ()
+    entries = enumerate(node.items, 1) if isinstance(node, Listed) else ()
     for step, entry in node.entries.items() if isinstance(node, Tree) else entries:
         yield from _texts(entry, place.below(str(step), entry.place.line))
 
@@ -266,7 +288,7 @@ def _entry(node: Node, key: str) -> Node | None:
     for step in key.split(".") if key else ():
         if isinstance(found, Tree):
             found = found.entries.get(step)
-        elif isinstance(found, Sequence) and step.isdecimal() and 1 <= int(step) <= len(found.items):
+        elif isinstance(found, Listed) and step.isdecimal() and 1 <= int(step) <= len(found.items):
             found = found.items[int(step) - 1]
         else:
             return None

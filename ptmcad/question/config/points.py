@@ -10,12 +10,13 @@ from typing import Any
 
 from ptmcad.errors import A_RECORD, A_SLICE, ConfigError, expect
 from ptmcad.mechanism import Model, ptm
-from ptmcad.question.config.binding import bound, released_names, settled, swept_names
+from ptmcad.question.config.binding import bound, released_names, settled
 from ptmcad.question.config.objects import plain
 from ptmcad.question.config.options import settings_of
 from ptmcad.question.config.parameters import unknown_parameter
-from ptmcad.question.config.record import Record, number_text, record_of
-from ptmcad.question.config.resolution import number_of, point_of, without_shorthands
+from ptmcad.question.config.record import Record, record_of, swept_names
+from ptmcad.question.config.resolution import point_of, without_shorthands
+from ptmcad.question.config.scalars import number_of, number_text
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.yamltree import Place, Scalar, Tree, from_python, read_file

@@ -11,17 +11,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ptmcad.errors import ConfigError, Faults, GeometryError, shown
+from ptmcad.errors import ConfigError, Faults, HypothesisError, PtmcadError, shown
 from ptmcad.mechanism import Model, ptm
-from ptmcad.question.config.model import Described, described_in, located
+from ptmcad.question.config.model import Described, described_in
 from ptmcad.question.config.parameters import unknown_parameter
-from ptmcad.question.examples import AXES
+from ptmcad.question.config.scalars import names_in_scalar, number_text
+from ptmcad.question.examples import A_DESIGN, A_SWEEP, AXES
 from ptmcad.question.slice import MAX_UNIT, QUANTITIES, Count, unstorable
 from ptmcad.text.syntax import NAME, did_you_mean
 from ptmcad.text.yamltree import Node, Place, Scalar, Sequence, Tree, plain_data
 
 RECORD_KEYS = ("name", "title", "notes", "mechanism", "system", "parameters", "axes", "free", "members", "sweep",
                "design", "count", "units", "reference")  # fmt: skip
+MAX_MEMBERS = 400
+"""Of a family."""
 _MAX_NAME = 100
 _MAX_TITLE = 300
 _PORTS = tuple(f"{port}{digit}" for port in ("COM", "LPT") for digit in "0123456789¹²³")
@@ -46,6 +49,7 @@ class Record:
     values_place : where the values are given, or would be; None of what is no record.
     sweep : what is swept, as it is written; `ptmcad.question.config.sweeps` reads it.
     design : what is designed, as it is written; `ptmcad.question.config.designs` reads it, and no other command asks.
+    unread : names that may stand in values and of which nothing can be said, because what says it is faulty.
     """
 
     name: str = ""
@@ -64,6 +68,7 @@ class Record:
     count_place: Place = field(default_factory=lambda: Place("count"))
     values_place: Place | None = None
     described: Described | None = None
+    unread: frozenset[str] = frozenset()
 
     def place_of(self, name: str) -> Place:
         """Where a parameter's value is written, or what describes it, or where a value would be given."""
@@ -74,8 +79,13 @@ class Record:
 
     @property
     def doubtful(self) -> frozenset[str]:
-        """Parameters of which nothing can be said, because what describes them is faulty."""
-        return self.described.doubtful if self.described is not None else frozenset()
+        """Names of which nothing can be said, because what describes them is faulty."""
+        return self.unread | (self.described.doubtful if self.described is not None else frozenset())
+
+    def place_of_part(self, key: str) -> Place:
+        """Where a part of the description stands, such as ``springs.2.k``."""
+        found = self.described.place_of_part(key) if self.described is not None else None
+        return found or Place(key)
 
 
 def record_of(tree: Tree) -> Record:
@@ -124,9 +134,9 @@ def read_record(tree: Tree, faults: Faults) -> Record:
         "parameters": lambda node: _values(node, model, faults),
         "axes": lambda node: _axes(node, faults),
         "free": _free,
-        "members": lambda node: node,
-        "sweep": lambda node: node,
-        "design": lambda node: node,
+        "members": _members,
+        "sweep": _sweep,
+        "design": _design,
         "count": count_of,
         "units": lambda node: _units(node, faults),
         "reference": _reference,
@@ -144,18 +154,39 @@ def read_record(tree: Tree, faults: Faults) -> Record:
     return Record(**read)
 
 
-def with_place(error: GeometryError, tree: Tree) -> ConfigError | GeometryError:
-    """A fault of a slice's geometry with file, line and key, where it is that of a parameter or of a part."""
+def with_place(error: ConfigError | HypothesisError, record: Record) -> PtmcadError:
+    """A fault that an engine finds, with file, line and key: those of a parameter, of a part, or of the whole slice.
+
+    As it is where its place is known already, or nothing in the record is to blame.
+    """
+    if isinstance(error, ConfigError):
+        if error.file is not None or error.line is not None or len(error.faults) > 1:
+            return error
+        if error.key == "count" and record.count is not None:
+            return record.count_place.error(error.message)
+        described = record.described
+        return (
+            error
+            if described is None or not described.has_part(error.key or "-")
+            else (record.place_of_part(error.key or "").error(error.message))
+        )
+    place = _place_of_fault(error, record)
+    return error if place is None else place.error(str(error))
+
+
+def _place_of_fault(error: HypothesisError, record: Record) -> Place | None:
     if error.part:
-        return located(ConfigError(str(error), key=error.part), tree)
-    record = read_record(tree, Faults())
-    if not error.parameter:
-        return error
-    name = error.parameter
-    if name not in record.values and name not in record.axes:
-        name = record.model.parameters[name].alias_of or name
-    place = record.axes[name].place if name in record.axes else record.place_of(name)
-    return place.error(str(error))
+        return record.place_of_part(error.part)
+    if name := error.parameter:
+        if name not in record.values and name not in record.axes:
+            name = record.model.parameters[name].alias_of or name
+        return record.axes[name].place if name in record.axes else record.place_of(name)
+    if record.described is not None and (place := record.described.place_of_part("")) is not None:
+        return place
+    axes = next(iter(record.axes.values()), None)
+    if axes is None or axes.place.file is None:
+        return None  # only options, or a mapping
+    return Place("axes", axes.place.file, axes.place.line)
 
 
 def _node_place(node: Node, key: str, tree: Tree) -> Place:
@@ -254,17 +285,6 @@ def _example(model: Model) -> str:
     return ", ".join(f"{name}: {parameter.default or 1}" for name, parameter in list(model.parameters.items())[:2])
 
 
-def number_text(node: Node) -> Scalar:
-    """A scalar that may hold a number or an expression."""
-    if not isinstance(node, Scalar):
-        raise node.place.error("expected a number or an expression, not a list or a mapping")
-    if node.is_null:
-        raise node.place.error("has no value: write a number or an expression, or leave the key out")
-    if node.is_boolean:
-        raise node.place.error(f"'{node.text}' is a yes-or-no value: write a number or an expression")
-    return node
-
-
 def _axes(node: Node, faults: Faults) -> dict[str, Window]:
     if not isinstance(node, Tree):
         raise node.place.error(f"expected two axes with their ranges, such as {AXES}")
@@ -292,6 +312,45 @@ def _window(name: str, node: Node) -> Window:
         raise node.place.error("expected a range such as [0, 2]")
     low, high = (number_text(item) for item in node.items)
     return Window(low, high, node.place)
+
+
+def _members(node: Node) -> Node:
+    """The members of a family as they are written; of values only that they are some is known."""
+    check_members(node)
+    return node
+
+
+def _sweep(node: Node) -> Node:
+    if isinstance(node, Scalar):
+        raise node.place.error(f"expected parameters with their values, such as {A_SWEEP}")
+    return node
+
+
+def swept_names(record: Record) -> dict[str, Place]:
+    """What a record sweeps, with its places, as far as that can be read."""
+    found: dict[str, Place] = {}
+    node = record.sweep
+    for part in node.items if isinstance(node, Sequence) else (node,):
+        if isinstance(part, Tree):
+            found |= {name: entry.place for name, entry in part.entries.items()}
+    return found
+
+
+def _design(node: Node) -> Node:
+    if not isinstance(node, Tree):
+        raise node.place.error(f"expected what is designed, such as {A_DESIGN}")
+    return node
+
+
+def check_members(node: Node) -> None:
+    """Refuse what can neither be a list of values nor a number of members."""
+    if isinstance(node, Tree):
+        raise node.place.error("expected a list of values such as [-20, -10, 0], or how many, such as 9")
+    if isinstance(node, Scalar) and (names := names_in_scalar(number_text(node))):
+        raise node.place.error(
+            f"{names[0][:40]} is neither how many members there are, 2 to {MAX_MEMBERS}, nor a list of values such as "
+            "-20,-10,0, nor 'between', which --changes finds"
+        )
 
 
 def check_axis_name(name: str, place: Place) -> None:

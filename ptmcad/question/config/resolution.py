@@ -8,23 +8,26 @@ engines, which decide or refuse: `ptmcad.question.domain.prove`. A slice's texts
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 
-from ptmcad.errors import ConfigError, ExpressionError, Faults
+from ptmcad.errors import Faults
 from ptmcad.mechanism import Kind, Mechanism, Model, System
+from ptmcad.mechanism.evaluate import value_at
 from ptmcad.mechanism.moments import foreign
-from ptmcad.question.config.record import Record, Window, read_record
-from ptmcad.question.domain import fault, unproved
+from ptmcad.mechanism.parts import fault_of_number, parts
+from ptmcad.question.config.names import Resolution
+from ptmcad.question.config.record import Record, Window, read_record, swept_names
+from ptmcad.question.config.scalars import names_in_scalar, number_of
+from ptmcad.question.domain import MAX_DEGREE, fault, fault_of_part, unproved
 from ptmcad.question.examples import AXES
 from ptmcad.question.positivity import READING_WORK
-from ptmcad.question.slice import Axis, Count, Slice
-from ptmcad.text.expressions import Expression, axis, constant
-from ptmcad.text.parsing import names_in, parse
+from ptmcad.question.slice import NOTHING_ADMISSIBLE, Axis, Count, Slice, have_free_lengths
+from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.parsing import names_in
 from ptmcad.text.syntax import did_you_mean
-from ptmcad.text.yamltree import Place, Scalar, Tree
-
-MAX_DEGREE = 32
-"""Of a parameter in the two axes; F3 = F^24 takes a minute and a half, and a dense polynomial far more."""
+from ptmcad.text.tree import names_of
+from ptmcad.text.yamltree import Place, Tree
 
 
 def checked_slice(tree: Tree) -> Slice:
@@ -37,12 +40,42 @@ def checked_slice(tree: Tree) -> Slice:
     """
     faults = Faults()
     record = read_record(tree, faults)
-    if record.described is None or any((fault.key or "").partition(".")[0] == "axes" for fault in faults.found):
-        for name, window in record.axes.items() if record.described is not None else ():
-            with faults:
-                axis_of(name, window, record.model)
-        faults.check()  # without these nothing can be said of the values
-    return slice_of(record, faults)
+    if record.described is None:
+        faults.check()  # without it nothing can be said of the values
+    return slice_of(replace(record, unread=unread_names(record, tree, faults)), faults)
+
+
+def unread_names(record: Record, tree: Tree, faults: Faults) -> frozenset[str]:
+    """The names in a record's values of which nothing can be said, because what would tell what they are is faulty."""
+    faulty = {fault.key or "" for fault in faults.found}
+    found, hidden = set(), False
+    for key in ("axes", "free", "sweep"):
+        node = tree.entries.get(key)
+        if isinstance(node, Tree):
+            found |= {name for name in node.entries if key != "axes" or f"{key}.{name}" in faulty}
+        hidden = hidden or (key in faulty and not isinstance(node, Tree))
+    if hidden:  # any name may be one of those, and any parameter without a value
+        found |= record.model.parameters.keys() - record.values.keys()
+        for scalar in record.values.values():
+            with Faults():  # a text that cannot be read is told with the others
+                found.update(names_in_scalar(scalar))
+    return frozenset(found - record.axes.keys())
+
+
+def note_values(record: Record, faults: Faults) -> None:
+    """Note what is wrong with the axes and values of a record that asks nothing yet, and raise all that is known.
+
+    Parameters
+    ----------
+    record : whose `unread` are the names of which nothing can be said.
+
+    Raises
+    ------
+    ConfigError
+        When anything was noted, there or before.
+    """
+    _resolved(record, faults)
+    faults.check()
 
 
 def slice_of(record: Record, faults: Faults | None = None) -> Slice:
@@ -58,12 +91,16 @@ def slice_of(record: Record, faults: Faults | None = None) -> Slice:
             raise record.sweep.place.error(
                 "the record asks for a sweep: `ptmcad sweep` answers it, and --set NAME=VALUE chooses one member"
             )
-        faults.check()  # of what is swept nothing can be said here
+        record = replace(record, unread=record.unread | swept_names(record).keys())
     if record.free is not None:
         with faults:
             refuse_free(*record.free)
-        faults.check()
+        record = replace(record, unread=record.unread | {record.free[0]})
     axes, resolved = _resolved(record, faults)
+    with faults:
+        described = (fault for fault in faults.found if (fault.key or "").startswith(("mechanism", "system")))
+        if not any(described) and all(fault.file == record.place.file for fault in faults.found):
+            _check_count(record, resolved)
     faults.check()
     return _slice(record, axes, resolved)
 
@@ -86,13 +123,10 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
             if name in record.values:
                 place = record.values[name].place
                 raise place.error(f"{name} is an axis and cannot be fixed too: remove it here or from the axes")
-    axes = []
-    for name, window in record.axes.items():
-        with faults:
-            if name in record.model.unknowns:
-                raise window.place.error(f"{name} is an unknown: an axis is a parameter, or a new name that one uses")
-            axes.append(axis_of(name, window, record.model))
-    resolution = _Resolution(record, {name: axis(index) for index, name in enumerate(record.axes)})
+    axes = [_judged_axis(name, window, record, faults) for name, window in record.axes.items()]
+    unread = record.unread | set(tuple(record.axes)[2:])  # of three axes the last one
+    record = replace(record, unread=unread)
+    resolution = Resolution(record, {name: axis(index) for index, name in enumerate(tuple(record.axes)[:2])})
     for name in record.values:
         with faults:
             resolution.check_names(name)
@@ -100,18 +134,42 @@ def _resolved(record: Record, faults: Faults) -> tuple[tuple[Axis, Axis], dict[s
         with faults:
             resolution.resolve(name, ())
     resolved = {name: resolution.done[name] for name in record.model.parameters}
-    if len(axes) == 2:
-        wrong: set[str] = set()
-        for name in sorted(resolved, key=lambda name: bool(_inherited(name, record))):
-            if name in record.axes or name in resolution.faulty or _inherited(name, record) in wrong:
-                continue  # what has the value of another one is wrong with that one, where it stands
-            with faults:
-                wrong.add(name)
-                _check_value(name, resolved[name], record, (axes[0], axes[1]))
-                wrong.remove(name)
-    else:
+    known = [a for a in axes[:2] if a is not None]
+    window = (known[0], known[1]) if len(known) == 2 else None
+    wrong: set[str] = set()
+    for name in sorted(resolved, key=lambda name: bool(_inherited(name, record))):
+        if name in record.axes or name in resolution.faulty or _inherited(name, record) in wrong:
+            continue  # what has the value of another one is wrong with that one, where it stands
+        with faults:
+            wrong.add(name)
+            _check_value(name, resolved[name], record, window)
+            wrong.remove(name)
+    doubtful = wrong | resolution.faulty
+    for part in parts(record.model):
+        with faults:
+            if window is not None and not doubtful & {*names_of(part.tree)}:
+                problem = fault_of_part(record.model, part, resolved, window, READING_WORK)
+                if problem:
+                    raise record.place_of_part(part.key).error(problem)
+    if window is None:
         faults.check()
-    return (axes[0], axes[1]), resolved
+        raise AssertionError("what is wrong with an axis was noted")
+    return window, resolved
+
+
+def _judged_axis(name: str, window: Window, record: Record, faults: Faults) -> Axis | None:
+    """An axis, of which what is wrong is noted: then where in its range values make sense, if they do anywhere."""
+    with faults:
+        if name in record.model.unknowns:
+            raise window.place.error(f"{name} is an unknown: an axis is a parameter, or a new name that one uses")
+    with faults:
+        return axis_of(name, window, record.model)
+    with Faults():  # noted above
+        low, high = sorted((number_of(window.low), number_of(window.high)))
+        kind = record.model.kind(name) if name in record.model.parameters else Kind.NUMBER
+        low = max(low, Fraction(0)) if kind.is_positive or kind.may_vanish else low
+        return Axis(name, low, high) if low < high else None
+    return None
 
 
 def _inherited(name: str, record: Record) -> str:
@@ -146,7 +204,7 @@ def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expre
         model=record.model,
         axes=axes,
         parameters=effective,
-        count=_count(record),
+        count=record.count or _usual_count(record.model),
         title=record.title,
         reference=record.reference,
         text=_texts(effective, resolved, record, axes),
@@ -154,11 +212,14 @@ def _slice(record: Record, axes: tuple[Axis, Axis], resolved: Mapping[str, Expre
     )
 
 
-def _count(record: Record) -> Count:
-    """The count that is asked for; without one that of stable solutions, where it is known what these are."""
+def _usual_count(model: Model) -> Count:
+    """Where none is asked for, that of stable solutions, where it is known what these are."""
+    return Count.STABLE if model.tells_stability else Count.TOTAL
+
+
+def _check_count(record: Record, resolved: Mapping[str, Expression]) -> None:
+    """Refuse a count that makes no sense for the model."""
     model, count = record.model, record.count
-    if count is None:
-        return Count.STABLE if model.tells_stability else Count.TOTAL
     problem = ""
     if count is Count.STABLE and not model.tells_stability:
         problem = "nothing says what a stable solution is: add conditions as 'stable:' to the system, or count total"
@@ -172,21 +233,25 @@ def _count(record: Record) -> Count:
         problem = "solutions of equations have no index, which is that of a potential's Hessian: count total"
     if count is Count.ADMISSIBLE and isinstance(model, System):
         problem = "a system has no springs, whose lengths would be admissible: count stable or total"
+    elif count is Count.ADMISSIBLE and not have_free_lengths(model, resolved):
+        problem = f"{NOTHING_ADMISSIBLE}: choose stable"
     if problem:
         raise record.count_place.error(problem)
-    return count
 
 
 def point_of(record: Record, axes: Mapping[str, Expression]) -> dict[str, Fraction]:
     """Resolve a record to a point; ``axes`` holds the values of its axes that are no parameters."""
     mechanism = record.model
-    resolved = _Resolution(record, axes).run()
+    resolved = Resolution(record, axes).run()
     values = {}
     for name, expression in resolved.items():
         place = record.place_of(name)
         value = expression.constant()
         check_number(name, mechanism.kind(name), value, place)
         values[name] = value
+    for part in parts(mechanism):
+        if problem := fault_of_number(part, value_at(part.tree, values)):
+            raise record.place_of_part(part.key).error(problem)
     _check_shorthands_are_used(record, mechanism, set(record.values))
     return without_shorthands(values, mechanism)
 
@@ -270,115 +335,15 @@ def axis_of(name: str, window: Window, model: Model) -> Axis:
     return Axis(name, low, high)
 
 
-def number_of(scalar: Scalar, what: str = "the end of a range") -> Fraction:
-    names = names_in_scalar(scalar)
-    if names and names[0].lower() not in ("nan", "inf", "infinity"):
-        raise scalar.place.error(f"{what} is a number, not an expression in {names[0][:40]}")
-    return _parsed(scalar, {}).constant()
-
-
-def names_in_scalar(scalar: Scalar) -> tuple[str, ...]:
-    """The names in a scalar's text; raises `ConfigError` at its place."""
-    try:
-        return names_in(scalar.text)
-    except ExpressionError as error:
-        raise _located(scalar, error) from error
-
-
-def _parsed(scalar: Scalar, names: Mapping[str, Expression]) -> Expression:
-    try:
-        return parse(scalar.text, names)
-    except ExpressionError as error:
-        raise _located(scalar, error) from error
-
-
-def _located(scalar: Scalar, error: ExpressionError) -> ConfigError:
-    shown = scalar.text if len(scalar.text) <= 60 else f"{scalar.text[:57]}..."
-    where = f" (character {error.position + 1} of {shown!r})" if error.position is not None and len(shown) > 1 else ""
-    return scalar.place.error(f"{error.message}{where}")
-
-
-class _Resolution:
-    """Replaces names by what they stand for, depth first, refusing cycles.
-
-    Attributes
-    ----------
-    done : names to what they stand for; 1 for one that could not be resolved.
-    faulty : those, and what depends on them.
-    misnamed : those with a name in them that stands for nothing, which has been said.
-    """
-
-    def __init__(self, record: Record, free: Mapping[str, Expression]):
-        self.record = record
-        self.faulty = set(record.doubtful - free.keys())
-        self.done = {**dict.fromkeys(self.faulty, constant(1)), **free}
-        self.misnamed: set[str] = set()
-        self.parameters = record.model.parameters
-        self.known = tuple(dict.fromkeys((*free, *self.parameters)))
-
-    def run(self) -> dict[str, Expression]:
-        for name in self.parameters:
-            self.resolve(name, ())
-        return {name: self.done[name] for name in self.parameters}
-
-    def resolve(self, name: str, chain: tuple[str, ...]) -> Expression:
-        if name not in self.done:
-            try:
-                self.done[name] = self._found(name, chain)
-            except ConfigError:
-                self.done[name] = constant(1)
-                self.faulty.add(name)
-                raise
-        return self.done[name]
-
-    def check_names(self, name: str) -> None:
-        """Refuse a name in a given value that stands for nothing; without it, what depends on the value is faulty."""
-        if name in self.done:
-            return
-        scalar = self.record.values[name]
-        try:
-            names = names_in_scalar(scalar)
-        except ConfigError:
-            return  # said where the value is resolved
-        for other in names:
-            if other not in self.known and other.lower() not in ("nan", "inf", "infinity"):
-                self.misnamed.add(name)
-                known = f"; the names are {', '.join(self.known)}" if self.known else "; no name is known here"
-                hint = did_you_mean(other, self.known) or known
-                raise scalar.place.error(f"unknown name '{other[:40]}'{hint}")
-
-    def _found(self, name: str, chain: tuple[str, ...]) -> Expression:
-        scalar = self.record.values.get(name)
-        if scalar is None:
-            scalar = Scalar(self.parameters[name].default, self.record.place_of(name))
-            if not scalar.text:
-                raise scalar.place.error(f"{name} has no value: give it one under 'parameters', or make it an axis")
-        if name in chain:
-            cycle = " -> ".join((*chain[chain.index(name) :], name))
-            raise scalar.place.error(f"the definition goes round in a circle: {cycle}")
-        names = {}
-        for other in names_in_scalar(scalar):
-            if other in self.known:
-                names[other] = self.resolve(other, (*chain, name))
-                if other in self.faulty:
-                    self.faulty.add(name)
-            elif name in self.misnamed:
-                names[other] = constant(1)
-                self.faulty.add(name)
-            elif name in self.record.values:
-                self.check_names(name)
-        return constant(1) if name in self.misnamed else _parsed(scalar, names)
-
-
-def _check_value(name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis]) -> None:
-    """Refuse what the geometry excludes, and a denominator that vanishes in the window."""
+def _check_value(name: str, expression: Expression, record: Record, axes: tuple[Axis, Axis] | None) -> None:
+    """Refuse what the geometry excludes, and a denominator that vanishes in the window, where that is known."""
     place = record.place_of(name)
     if expression.degree > MAX_DEGREE:
         raise place.error(f"{name} has degree {expression.degree} in the axes: at most {MAX_DEGREE} can be computed")
     if expression.is_constant:
         check_number(name, record.model.kind(name), expression.constant(), place)
         return
-    problem = fault(name, record.model.kind(name), expression, axes, READING_WORK)
+    problem = "" if axes is None else fault(name, record.model.kind(name), expression, axes, READING_WORK)
     if problem:
         raise place.error(problem)
 

@@ -16,9 +16,10 @@ from ptmcad.errors import A_RECORD, Faults, expect
 from ptmcad.mechanism import Model
 from ptmcad.question.config.binding import with_numbers
 from ptmcad.question.config.objects import plain
-from ptmcad.question.config.record import Record, check_axis_name, number_text, read_record
-from ptmcad.question.config.resolution import check_number, names_in_scalar, number_of, slice_of
-from ptmcad.question.examples import FIRST
+from ptmcad.question.config.record import Record, check_axis_name, read_record, swept_names
+from ptmcad.question.config.resolution import check_number, note_values, slice_of, unread_names
+from ptmcad.question.config.scalars import names_in_scalar, number_of, number_text
+from ptmcad.question.examples import A_SWEEP, FIRST
 from ptmcad.question.slice import Slice
 from ptmcad.question.sweep import Listed, Product, Spaced, Sweep, Values
 from ptmcad.text.syntax import did_you_mean
@@ -27,7 +28,6 @@ from ptmcad.text.yamltree import Node, Place, Sequence, Tree, from_python, read_
 MAX_MEMBERS = 1_000_000
 """Of a sweep; more would rather be asked in parts."""
 RANGE_KEYS = ("from", "to", "step", "steps")
-_EXAMPLE = "{F: [-10, -20]} or {F: {from: -40, to: 0, step: 5}}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,16 +111,20 @@ def checked_sweep(tree: Tree) -> Sweeping:
     """
     faults = Faults()
     record = read_record(tree, faults)
-    if any((fault.key or "").split(".")[0] in ("mechanism", "system", "axes") for fault in faults.found):
-        faults.check()  # without these nothing can be said of the values
-    if record.sweep is None:
+    if record.described is None:
+        faults.check()  # without it nothing can be said of the values
+    sweep = None
+    if record.sweep is not None:
+        sweep = _read(record.sweep, record, faults)
+    elif "sweep" not in tree.entries:
         with faults:
-            raise tree.place.below("sweep").error(f"is missing: say what is swept, such as {_EXAMPLE}")
-    elif (sweep := _read(record.sweep, record, faults)) is not None and not faults.found:
-        slice_of(with_values(record, sweep[0]))
-        return Sweeping(record, sweep)
-    faults.check()
-    raise AssertionError("a fault was noted")
+            raise tree.place.below("sweep").error(f"is missing: say what is swept, such as {A_SWEEP}")
+    if sweep is None:  # of the values only what does not depend on what is swept
+        unread = unread_names(record, tree, faults) | swept_names(record).keys()
+        note_values(replace(record, unread=unread), faults)
+    assert sweep is not None
+    slice_of(with_values(record, sweep[0]), faults)
+    return Sweeping(record, sweep)
 
 
 def _read(node: Node, record: Record, faults: Faults) -> Sweep | None:
@@ -131,14 +135,14 @@ def _read(node: Node, record: Record, faults: Faults) -> Sweep | None:
     for part in parts:
         with faults:
             if not isinstance(part, Tree) or not part.entries:
-                raise part.place.error(f"expected parameters with their values, such as {_EXAMPLE}")
+                raise part.place.error(f"expected parameters with their values, such as {A_SWEEP}")
             first = first or tuple(part.entries)
             if set(part.entries) != set(first):
                 raise part.place.error(f"each mapping of the list sweeps the same parameters: {', '.join(first)}")
             products.append(_product(part, record, faults))
     if not parts:
         with faults:
-            raise node.place.error(f"expected parameters with their values, such as {_EXAMPLE}")
+            raise node.place.error(f"expected parameters with their values, such as {A_SWEEP}")
     if len(products) < max(len(parts), 1) or not all(product.values for product in products):
         return None
     sweep = Sweep(tuple(products))

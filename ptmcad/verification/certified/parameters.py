@@ -10,9 +10,12 @@ from fractions import Fraction
 
 from flint import arb
 
-from ptmcad.mechanism import Kind
+from ptmcad.errors import ExpressionError
+from ptmcad.mechanism import Kind, Mechanism
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
+from ptmcad.text.parsing import parse
+from ptmcad.text.tree import Name, to_text
 from ptmcad.verification.certified.energy import Energy
 from ptmcad.verification.certified.equilibria import Unproved
 from ptmcad.verification.certified.field import power
@@ -53,6 +56,7 @@ def check_domain(claims: Claims) -> str:
                 raise Violation(f"{name} is {'not positive' if strict else 'negative'} somewhere in the window")
         if Sign.UNCHECKED in (pole, sign):
             unchecked.append(name)
+    unchecked += _undecided_parts(slice, here)
     if claims.result.cover is not None and claims.result.slice.model != MECHANISM:
         unchecked += _undecided_pulls(claims, here)
     if unchecked:
@@ -60,6 +64,30 @@ def check_domain(claims: Claims) -> str:
             f"{', '.join(unchecked)}: of too high degree, or zero at a point where that could not be decided"
         )
     return f"{len(asked)} parameters"
+
+
+def _undecided_parts(slice: Slice, window: Window) -> list[str]:
+    """The stiffnesses and free lengths written in springs of which it could not be decided that they make sense."""
+    model, undecided = slice.model, []
+    if not isinstance(model, Mechanism):
+        return []
+    known = {name: 0 * axis(0) for name in model.free_lengths} | dict(slice.parameters)
+    asked = [(f"the stiffness of spring {s.name}", s.stiffness, True) for s in model.springs]
+    asked += [(f"the free length of spring {s.name}", s.free, False) for s in model.springs]
+    asked += [(f"the stiffness of torsion spring {n}", t.stiffness, True) for n, t in enumerate(model.torsion, 1)]
+    right = ({*model.positive}, {*model.positive, *model.nonnegative})  # as parameters, or nothing is
+    for what, tree, strict in asked:
+        if isinstance(tree, Name) and tree.name in right[not strict]:
+            continue
+        try:
+            sign = is_in_domain(parse(to_text(tree), known), window, strict)
+        except ExpressionError:  # too long to be multiplied out
+            sign = Sign.UNCHECKED
+        if sign is Sign.WRONG:
+            raise Violation(f"{what} is {'not positive' if strict else 'negative'} somewhere in the window")
+        if sign is Sign.UNCHECKED:
+            undecided.append(what)
+    return undecided
 
 
 def _undecided_pulls(claims: Claims, window: Window) -> list[str]:

@@ -1,0 +1,74 @@
+"""What springs of a mechanism ask of the expressions that they are given, besides what each parameter has to be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import NamedTuple
+
+from ptmcad.errors import ConfigError, Faults, shown
+from ptmcad.mechanism.description import Kind, Mechanism, Model
+from ptmcad.mechanism.evaluate import value_at
+from ptmcad.text.numerals import text_of as value_text
+from ptmcad.text.tree import Name, Tree, names_of
+from ptmcad.text.tree import to_text as text_of
+
+MAX_SHOWN = 60
+"""Characters of an expression."""
+
+
+class Part(NamedTuple):
+    """A stiffness or a free length that is written where it is used.
+
+    Attributes
+    ----------
+    key : where it stands in the description, such as ``springs.2.k``.
+    kind : what it measures, which decides which values make sense.
+    """
+
+    key: str
+    kind: Kind
+    tree: Tree
+
+    @property
+    def text(self) -> str:
+        """As it is written, for messages."""
+        return shown(text_of(self.tree), MAX_SHOWN)
+
+
+def parts(model: Model) -> Iterator[Part]:
+    """The stiffnesses and free lengths of a mechanism's springs that are no parameters of such a kind themselves."""
+    if not isinstance(model, Mechanism):
+        return
+    for n, spring in enumerate(model.springs, 1):
+        yield from _unless_known(model, Part(f"springs.{n}.k", Kind.STIFFNESS, spring.stiffness))
+        yield from _unless_known(model, Part(f"springs.{n}.free", Kind.FREE_LENGTH, spring.free))
+    for n, torsion in enumerate(model.torsion, 1):
+        yield from _unless_known(model, Part(f"torsion.{n}.k", Kind.STIFFNESS, torsion.stiffness))
+
+
+def fault_of_number(part: Part, value: Fraction) -> str:
+    """What is wrong with a number that a spring is given, in words; empty where nothing is."""
+    if value > 0 or (not value and part.kind.may_vanish):
+        return ""
+    number = value_text(value)
+    is_what = number if part.text == number else f"{part.text} = {number}"
+    return f"a {part.kind.noun} is {'not negative' if part.kind.may_vanish else 'positive'}, but this is {is_what}"
+
+
+def check_numbers(model: Model, faults: Faults) -> None:
+    """Note each that is a number, and one that makes no sense."""
+    for part in parts(model):
+        if names_of(part.tree):
+            continue  # a slice tells what it is in its window
+        with faults:
+            if problem := fault_of_number(part, value_at(part.tree, {})):
+                raise ConfigError(problem, key=part.key)
+
+
+def _unless_known(model: Model, part: Part) -> Iterator[Part]:
+    if isinstance(part.tree, Name):
+        kind = model.kind(part.tree.name)
+        if kind.is_positive or (kind.may_vanish and part.kind.may_vanish):
+            return
+    yield part

@@ -1,0 +1,52 @@
+"""Scalars of a record as numbers and expressions; what is wrong with one is a `ConfigError` at its place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from ptmcad.errors import ConfigError, ExpressionError, excerpt
+from ptmcad.text.expressions import Expression
+from ptmcad.text.parsing import names_in, parse
+from ptmcad.text.yamltree import Node, Scalar
+
+
+def number_text(node: Node) -> Scalar:
+    """A scalar that may hold a number or an expression."""
+    if not isinstance(node, Scalar):
+        raise node.place.error("expected a number or an expression, not a list or a mapping")
+    if node.is_null:
+        raise node.place.error("has no value: write a number or an expression, or leave the key out")
+    if node.is_boolean:
+        raise node.place.error(f"'{node.text}' is a yes-or-no value: write a number or an expression")
+    return node
+
+
+def number_of(scalar: Scalar, what: str = "the end of a range") -> Fraction:
+    """The number that a scalar is."""
+    names = names_in_scalar(scalar)
+    if names and names[0].lower() not in ("nan", "inf", "infinity"):
+        raise scalar.place.error(f"{what} is a number, not an expression in {names[0][:40]}")
+    return parsed(scalar, {}).constant()
+
+
+def names_in_scalar(scalar: Scalar) -> tuple[str, ...]:
+    """The names in a scalar's text."""
+    try:
+        return names_in(scalar.text)
+    except ExpressionError as error:
+        raise _located(scalar, error) from error
+
+
+def parsed(scalar: Scalar, names: Mapping[str, Expression]) -> Expression:
+    """The function of the axes that a scalar is, where names are such functions."""
+    try:
+        return parse(scalar.text, names)
+    except ExpressionError as error:
+        raise _located(scalar, error) from error
+
+
+def _located(scalar: Scalar, error: ExpressionError) -> ConfigError:
+    at, text = error.position, scalar.text
+    where = "" if at is None or len(text) < 2 else f" (character {at + 1} of {excerpt(text, at)})"
+    return scalar.place.error(f"{error.message}{where}")
