@@ -78,15 +78,17 @@ class Drawing(NamedTuple):
                 found[name] = picture(name, partial(write, result, name, boundaries))
         return found
 
-    def _picture(self, result: Any, _name: str, _boundaries: Callable[[], Any], path: Path) -> None:
+    def _picture(self, result: Any, name: str, _boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show.render import draw  # brings matplotlib
 
         if self.poses:
             from ptmcad.show.render.plotting import draw_with_poses
 
-            draw_with_poses(result, self.poses, path, self.dpi, self.style, self.overlay)
+            missing = draw_with_poses(result, self.poses, path, self.dpi, self.style, self.overlay)
         else:
-            draw(result, path, samples=self.samples, dpi=self.dpi, style=self.style, overlay=self.overlay)
+            missing = draw(result, path, samples=self.samples, dpi=self.dpi, style=self.style, overlay=self.overlay)
+        if missing:
+            click.echo(f"note: {name} has no room for {' and '.join(missing)}, which a larger --size has", err=True)
 
     def _table(self, result: Any, name: str, boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show import data

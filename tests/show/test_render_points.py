@@ -39,7 +39,7 @@ def around(texts: tuple[str, ...], style: Style) -> Figure:
     result = shipped("fig4")
     points = [(at, poses_at(result, at)) for at in places(result, texts)]
     with settings(style):
-        made = draw_around(result, points, style, 100)
+        made, _ = draw_around(result, points, style, 100)
         FigureCanvasAgg(made).draw()
     return made
 

@@ -31,7 +31,7 @@ from ptmcad.show.render.legend import INK
 from ptmcad.show.render.mechanism import STRONG, draw_sketch
 from ptmcad.show.render.overlay import Overlay
 from ptmcad.show.render.poses import assigned, in_order
-from ptmcad.show.render.regionmap import draw_parts, fit
+from ptmcad.show.render.regionmap import draw_parts, fit, left_out
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sketch import Frame, Scene, arrow_lengths, frame_of
 from ptmcad.show.render.textwidth import wrapped
@@ -107,12 +107,16 @@ class _Page:
 
 def draw_around(
     result: RegionMap, points: Sequence[tuple[Point, Poses]], style: Style, dpi: int, overlay: Overlay = ()
-) -> Figure:
+) -> tuple[Figure, tuple[str, ...]]:
     """The map in the middle and poses at its sides; within `ptmcad.show.render.printing.settings`.
 
     Parameters
     ----------
     points : in the axes' order, with all that is known of the equilibria there.
+
+    Returns
+    -------
+    The figure, and what of the map had no room, in words.
 
     Raises
     ------
@@ -147,7 +151,7 @@ def draw_around(
         for k, (block, place) in enumerate(along.placed(order)):
             _draw_block(figure, block, frame, place, style)
             _lead(figure, courses[k], block.number, style)
-    return figure
+    return figure, left_out(seen, layout)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -166,6 +166,7 @@ def _panels(comparison: Comparison, first: Shapes, style: Style, sides: tuple[fl
         paint = paint_of(result, style)
         marks = marks_of(seen, sides, dpi, small)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
+        paint = replace(paint, thin_walls=thin)
         told = entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined))
         found.append((seen, paint, whole_title(result), told, {}, marks))
     fills = _fills(comparison, style)

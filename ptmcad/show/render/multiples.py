@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -133,6 +134,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     paint = paint_of_family(family, style)
     marks = [marks_of(shape, (side, side), dpi, max(MIN_FONT, 0.85 * font)) for shape in seen]
     thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
+    paint = replace(paint, thin_walls=thin)
     told = family_entries(family, paint, thin, sum(mark.hidden for mark in marks))
     lines = [] if style.legend is Place.NONE else _flowed(told, wide - 1.2 * em, type)
     rest = 1.5 * em * len(titles) + 0.4 * em + rows * head + below + (type.line * 1.35) * len(lines) + 0.7 * em

@@ -81,8 +81,8 @@ def draw_on(axes: Any, result: RegionMap, samples: bool, style: Style) -> None:
 
 def draw_with_poses(
     result: RegionMap, points: Sequence[tuple[Point, Poses]], path: Path, dpi: int, style: Style, overlay: Overlay
-) -> None:
-    """Write the map with the stable poses at points around it.
+) -> tuple[str, ...]:
+    """Write the map with the stable poses at points around it; what had no room is returned, in words.
 
     Raises
     ------
@@ -95,6 +95,7 @@ def draw_with_poses(
     """
     told = " ".join(f"At point {n}: {describe(poses)}" for n, (_, poses) in enumerate(points, 1))
     with settings(style):
-        figure = draw_around(result, points, style, dpi, overlay)
+        figure, missing = draw_around(result, points, style, dpi, overlay)
     figure.set_label(f"{whole_title(result)}\n{description(result)} {told}")
     save(figure, path, dpi=dpi, style=style)
+    return missing
