@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -74,9 +75,20 @@ def test_poses_without_room_are_refused_with_the_least_width(
 ) -> None:
     assert run(["plot", stored, "--at", AT[0], "--size", "3x4in"]) == 2
     said = capsys.readouterr().err
-    assert "need a width of 3.05" in said
+    assert "--size: poses beside the map need a width of 3.05 inches, and there are 3.00" in said
     assert run(["plot", stored, "--at", AT[0], "--size", "5.6x4in"]) == 0
     assert imread(tmp_path / "fig4.png").shape[:2] == (600, 840)
+
+
+def test_poses_that_are_too_tall_are_refused_by_the_option_with_a_size_that_does(
+    stored: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    points = [word for text in AT[:2] for word in ("--at", text)]
+    assert run(["plot", stored, "--style", "beamer", *points]) == 2
+    said = capsys.readouterr().err
+    assert re.search(r"error: --size: poses at 2 points need a height of [\d.]+ inches, and there are 2.76", said)
+    (size,) = re.findall(r"such as ([\d.]+x[\d.]+in)", said)
+    assert run(["plot", stored, "--style", "beamer", "--size", size, "--dpi", "50", *points]) == 0
 
 
 def test_in_a_journals_style_poses_are_as_wide_as_two_columns(

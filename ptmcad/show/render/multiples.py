@@ -6,7 +6,6 @@ Guarantee: every chart shows the whole window to the same scale; a colour stands
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -21,7 +20,18 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import Fill, filler, undetermined_fill
 from ptmcad.show.render.fitting import LEAST, Parts, overhang
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, draw_legend, head_of, hidden_words, thin_entry
+from ptmcad.show.render.legend import (
+    INK,
+    STRONG,
+    THIN,
+    Entry,
+    Type,
+    draw_legend,
+    head_of,
+    hidden_words,
+    in_rows,
+    thin_entry,
+)
 from ptmcad.show.render.painting import Paint, paint_map
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
@@ -136,7 +146,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
     paint = replace(paint, thin_walls=thin)
     told = family_entries(family, paint, thin, sum(mark.hidden for mark in marks))
-    lines = [] if style.legend is Place.NONE else _flowed(told, wide - 1.2 * em, type)
+    lines = [] if style.legend is Place.NONE else in_rows(told, wide - 1.2 * em, type)
     rest = 1.5 * em * len(titles) + 0.4 * em + rows * head + below + (type.line * 1.35) * len(lines) + 0.7 * em
     between = 0.5 * em * (rows - 1)
     tall = (style.size[1] - rest - between) / rows if style.size is not None else side
@@ -189,17 +199,3 @@ def _strip_inner(axes: Any, has_left: bool, has_below: bool) -> None:
     if has_below:
         axes.set_xlabel("")
         axes.tick_params(axis="x", labelbottom=False)
-
-
-def _flowed(entries: Sequence[Entry], width: float, type: Type) -> list[list[tuple[float, Entry]]]:
-    """The legend in rows, each entry with its place from the left in inches."""
-    lines: list[list[tuple[float, Entry]]] = [[]]
-    at = 0.0
-    for entry in entries:
-        each = type.entry_width(entry) + 0.2 * type.scale
-        if at and at + each > width:
-            lines.append([])
-            at = 0.0
-        lines[-1].append((at, entry))
-        at += each
-    return lines

@@ -12,8 +12,9 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import expect
-from ptmcad.show.render.around import Point, draw_around
+from ptmcad.show.render.around import draw_around
 from ptmcad.show.render.axes import axis_name
+from ptmcad.show.render.blocks import Point
 from ptmcad.show.render.legend import INK, head_of
 from ptmcad.show.render.overlay import Overlay
 from ptmcad.show.render.painting import paint_map, paint_of
