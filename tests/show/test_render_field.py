@@ -46,10 +46,10 @@ def test_contours_have_their_values_at_the_scale_and_are_no_tiny_rings() -> None
 
 def test_where_the_branch_changes_is_an_edge_which_no_contour_crosses() -> None:
     result = ptmcad.classify(CONFIGS / "mechanisms" / "platform.yaml", areas=False)
-    field = result.field("angle:phi", columns=30)
+    field = result.field("angle:phi", columns=70)
     assert field.jumps is not None
     right, above = field.jumps
-    assert not right.any() and above.shape == (29, 30)
+    assert not right.any() and above.shape == (69, 70)
     # another way to know: the exact poses below the two lines on which it changes, between them and above
     exact = [
         poses_at(result, (Fraction(2), w)).equilibria[0] for w in (Fraction(-1, 2), Fraction(-1, 10), Fraction(1, 2))
