@@ -97,13 +97,13 @@ def test_edges_are_chains_that_meet_where_three_branches_do() -> None:
     assert len(ends) == 3 and all((1, 3) in pair for pair in ends)
 
 
-@pytest.mark.parametrize("preset", ["default", "ieee", "springer", "poster"])
+@pytest.mark.parametrize("preset", ["ieee", "poster"])
 def test_a_quantitys_map_has_all_text_on_the_page_and_none_too_small(preset: str) -> None:
     result = shipped("fig4")
-    field = result.field("energy", "pose:3", 30)
+    field = result.field("energy", "pose:3", 20)
     style = styled(preset)
     with settings(style):
-        made = field_figure(result, field, result.boundaries(), 8, 60, style)
+        made = field_figure(result, field, result.boundaries(Fraction(1, 20)), 8, 60, style)
         canvas = FigureCanvasAgg(made)
         canvas.draw()
         renderer = canvas.get_renderer()

@@ -155,13 +155,36 @@ def test_measured_points_are_compared_with_the_map(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "words"), [("rho,x\n1,2\n", "must name the axes"), ("rho,L2\n1,two\n", "point 1"), ("", "must name")]
+    ("content", "words"),
+    [
+        ("rho,x\n1,2\n", "must name the axes"),
+        ("rho,L2\n1,two\n", r"points.csv:2: unknown name 'two'"),
+        ("", "must name"),
+        ("rho,L2,count\n1,1,1\n\n1,1,x\n", r"points.csv:4: 'x' is not a count such as 2"),
+        ("rho,L2,count\n1,1,-1\n", "is not a count"),
+        ("rho,L2\n", "has no points"),
+        ("rho,L2\n\n\n", "has no points"),
+    ],
 )
 def test_a_bad_table_is_refused(content: str, words: str, tmp_path: Path) -> None:
     table = tmp_path / "points.csv"
     table.write_text(content)
     with pytest.raises(ConfigError, match=words):
         measured(shipped("fig4"), table)
+
+
+def test_counts_are_compared_as_numbers(tmp_path: Path) -> None:
+    table = tmp_path / "points.csv"
+    table.write_text("rho,L2,count\n0.7,1.5,2.0\n0.7,1.5,02\n0.7,1.5,1\n")
+    found, _ = measured(shipped("fig4"), table)
+    assert [point.agreement for point in found] == [Agreement.SAME, Agreement.SAME, Agreement.OTHER]
+    by_index = shipped("fig4", "index")
+    table.write_text('rho,L2,count\n0.7,1.5,"2,3,1"\n0.7,1.5,"(2,  3, 1)"\n0.7,1.5,"(1,2,1)"\n')
+    found, _ = measured(by_index, table)
+    assert [point.agreement for point in found] == [Agreement.SAME, Agreement.SAME, Agreement.OTHER]
+    table.write_text("rho,L2,count\n0.7,1.5,2\n0.7,1.5,2 of 6\n")
+    with pytest.raises(ConfigError, match=r"points.csv:3: '2 of 6' is not a count by index"):
+        measured(by_index, table)
 
 
 def test_the_command_line_draws_measured_points(

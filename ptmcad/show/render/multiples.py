@@ -100,6 +100,8 @@ def family_entries(family: FamilyMap, paint: Paint, thin: bool = False, hidden: 
     told += [Entry((text,), fill) for text, fill in found]
     if any(result.cover is not None for result in family.members):
         told.append(Entry(("undetermined",), paint.undetermined))
+    if any(result.cover is None and len(result.regions) > 1 for result in family.members):
+        told.append(Entry(("the count changes",), STRONG))
     if thin:
         told.append(Entry((" ".join(thin_entry().lines),), THIN))
     if hidden:

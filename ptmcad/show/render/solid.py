@@ -15,12 +15,13 @@ from matplotlib.figure import Figure
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.show.render.axes import axis_name, symbol
+from ptmcad.show.render.axes import axis_name
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, draw_legend
-from ptmcad.show.render.multiples import family_entries, in_words, paint_of_family, title_of
+from ptmcad.show.render.multiples import family_entries, in_words, paint_of_family, title_of, value_text
 from ptmcad.show.render.painting import Paint
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
+from ptmcad.show.render.textwidth import text_width
 from ptmcad.show.style import MIN_FONT, Place, Style
 
 SIZE = (6.4, 5.2)
@@ -46,7 +47,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     from mpl_toolkits.mplot3d import Axes3D
 
     font = style.base_font
-    em = font / 72
+    em, small = font / 72, max(MIN_FONT, 0.85 * font)
     wide, tall = style.size or SIZE
     slice = family.members[0].slice
     figure = Figure(figsize=(wide, tall), dpi=dpi, facecolor="white")
@@ -56,11 +57,19 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     told = family_entries(family, paint)
     if len(family.values) > MAX_FLOORS:
         told.append(Entry(("curves of the other members",), THIN))
+    if len(family.values) > 1:
+        told.append(Entry(("paler: seen through", "a map above it"), heads=2))
+    if any(not separates for result in family.members for _, separates, _ in shapes(result).walls()):
+        told.append(Entry(("without curves at which", "the count does not change"), heads=2))
     entries = [] if style.legend is Place.NONE else told
     legend = max((type.entry_width(entry) for entry in entries), default=0.0) + (1.2 * em if entries else 0.0)
     head = 2 * em if title else 0.0
-    axes: Any = Axes3D(figure, rect=(0.02, 0.03, (wide - legend) / wide - 0.06, (tall - head) / tall - 0.03),
-                       auto_add_to_figure=False)  # fmt: skip
+    # members' values, which name the third axis, stand at the left of the box, which is not as wide as its axes
+    before = 0.5 * max(text_width(value_text(family, value), small) for value in family.values)
+    axes: Any = Axes3D(
+        figure, rect=(before / wide, 0.03, (wide - legend - before - em) / wide, (tall - head) / tall - 0.03),
+        auto_add_to_figure=False,
+    )  # fmt: skip
     figure.add_axes(axes)
     axes.set_proj_type("ortho")
     axes.view_init(elev=22, azim=-62)
@@ -72,14 +81,19 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     with np.errstate(over="ignore", invalid="ignore"):
         for number, (value, result) in enumerate(family):
             _floor(axes, result, float(value), paint, least if number in floors else None)
+            if number in floors:
+                axes.text(
+                    *(_ends(axis)[0] for axis in slice.axes), float(value), f"{value_text(family, value)} ",
+                    fontsize=small, color=INK, ha="right", va="center", zorder=1e9,
+                    gid=f"member-{number}",
+                )  # fmt: skip
     how = {"fontsize": 0.95 * font, "labelpad": 0.3 * font}
     axes.set(
         xlim=_ends(slice.axes[0]), ylim=_ends(slice.axes[1]), zlim=_ends(family.free),
     )  # fmt: skip
     axes.set_xlabel(axis_name(slice, 0), **how)
     axes.set_ylabel(axis_name(slice, 1), **how)
-    axes.set_zlabel(symbol(family.free.name), **how)
-    axes.tick_params(labelsize=max(MIN_FONT, 0.85 * font), pad=0)
+    axes.tick_params(labelsize=small, pad=0)
     for each, end in ((axes.xaxis, "upper"), (axes.yaxis, "lower"), (axes.zaxis, None)):
         # at the corner that two axes share, one number would lie on the other
         each.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 2.5, 5, 10], prune=end))
