@@ -78,7 +78,8 @@ def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:
     """
     from ptmcad.show.render.overlay import Measured
 
-    found, outside = [], 0
+    found: list[Measured] = []
+    outside = 0
     for line, row in rows_of(path, result, ("label", "count")):
         if len(found) + outside == MAX_ROWS:
             raise ConfigError(f"has more than {MAX_ROWS} points", file=str(path), line=line)
