@@ -35,6 +35,9 @@ class Field:
         zero than 2.2e-308; nan is there.
     checked : number of pixels that were compared with exact poses.
     difference : the largest difference found there, as a share of the largest modulus of a value.
+    jumps : whether the solution at a pixel is of another branch than that at its neighbour of the same region, at the
+        right, shape (rows, columns - 1), and above, shape (rows - 1, columns): following it by Newton's method does
+        not lead there. None where that was not looked for.
     """
 
     quantity: str
@@ -49,6 +52,7 @@ class Field:
     checked: int
     difference: float
     beyond: int = 0
+    jumps: tuple[NDArray[np.bool_], NDArray[np.bool_]] | None = None
 
     @property
     def extent(self) -> tuple[float, float, float, float]:

@@ -80,15 +80,17 @@ class Drawing(NamedTuple):
                 found[name] = picture(name, partial(write, result, name, boundaries))
         return found
 
-    def _picture(self, result: Any, _name: str, _boundaries: Callable[[], Any], path: Path) -> None:
+    def _picture(self, result: Any, name: str, _boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show.render import draw  # brings matplotlib
 
         if self.poses:
             from ptmcad.show.render.plotting import draw_with_poses
 
-            draw_with_poses(result, self.poses, path, self.dpi, self.style, self.overlay)
+            missing = draw_with_poses(result, self.poses, path, self.dpi, self.style, self.overlay)
         else:
-            draw(result, path, samples=self.samples, dpi=self.dpi, style=self.style, overlay=self.overlay)
+            missing = draw(result, path, samples=self.samples, dpi=self.dpi, style=self.style, overlay=self.overlay)
+        if missing:
+            click.echo(f"note: {name} has no room for {' and '.join(missing)}, which a larger --size has", err=True)
 
     def _table(self, result: Any, name: str, boundaries: Callable[[], Any], path: Path) -> None:
         from ptmcad.show import data
@@ -131,12 +133,16 @@ def pixels_of(_context: click.Context, parameter: click.Parameter, value: str) -
     return sides
 
 
-def _drawing(
-    samples: bool, dpi: int, boundary_tolerance: Fraction, pixels: tuple[int, int], style: str, size: str | None,
-    font_size: str | None, font_family: str | None, palette: str | None, title: str | None, legend: str | None,
-    line_width: str | None, thin_lines: str | None, mpl_style: str | None,
-) -> Drawing:  # fmt: skip
+def _drawing(samples: bool, dpi: int, boundary_tolerance: Fraction, pixels: tuple[int, int], style: Style) -> Drawing:
     """The options together."""
+    return Drawing(samples, style, dpi, boundary_tolerance, pixels)
+
+
+def _style(
+    style: str, size: str | None, font_size: str | None, font_family: str | None, palette: str | None,
+    title: str | None, legend: str | None, line_width: str | None, thin_lines: str | None, mpl_style: str | None,
+) -> Style:  # fmt: skip
+    """The options of a style together."""
     options = {
         "size": size, "font_size": font_size, "font_family": font_family, "palette": palette, "title": title,
         "legend": legend, "line_width": line_width, "thin_lines": thin_lines,
@@ -147,7 +153,7 @@ def _drawing(
         raise ConfigError(error.message, key=f"--{(error.key or 'style').replace('_', '-')}") from error
     if made.font_family:
         _check_fonts(made.font_family)
-    return Drawing(samples, made, dpi, boundary_tolerance, pixels)
+    return made
 
 
 def _made(style: str, mpl_style: str | None, options: Mapping[str, str | None]) -> Style:
@@ -171,8 +177,11 @@ def _check_fonts(families: tuple[str, ...]) -> None:
 
 
 def style_options(command: F) -> F:
-    """Add the options that make a `Style`."""
+    """Add the options that make a `Style`, which the command gets as ``style``, and ``--dpi``."""
+    command = gathered(style=_style)(command)
     for option in (
+        click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
+                     help="Resolution of a PNG; regions that it hides are shown zoomed, in every format."),
         click.option("--thin-lines", type=click.Choice(LINES),
                      help="Curves of the variety where the count does not change.  [default: solid]"),
         click.option("--line-width", metavar="PT", help="Width of curves where the count changes, in points."),
@@ -212,8 +221,6 @@ def drawing_options(known: tuple[str, ...], default: str, what: str) -> Callable
             click.option("--boundary-tolerance", callback=share_of, default="1/1000", show_default=True,
                          metavar="EPS", help="How far boundaries in CSV and NPZ may be from the true curves, as a "
                                              "share of the window's side."),
-            click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
-                         help="Resolution of a PNG; regions that it hides are shown zoomed, in every format."),
             click.option("--samples", is_flag=True, help="Draw the cells' sample points."),
             click.option("--format", "formats", callback=partial(formats_of, known=known),
                          shell_complete=formats_known(known), default=default,

@@ -35,14 +35,21 @@ def report_idle(cases: Iterable[Idle]) -> None:
             click.echo(f"note: {flags[parameter]} has no effect here: {why}", err=True)
 
 
+def _has_picture(formats: Iterable[str]) -> bool:
+    return bool(set(formats) - {"json", "csv", "npz", "table", "obj", "ply"})
+
+
+def idle_style(formats: Iterable[str]) -> tuple[Idle, ...]:
+    """The options of a picture's style where none of these formats is a picture."""
+    return tuple(Idle(name, not _has_picture(formats), "no picture is written") for name in (*STYLE, "dpi"))
+
+
 def idle_drawing(formats: Iterable[str]) -> tuple[Idle, ...]:
     """The options of `ptmcad.cli.drawing` that none of these formats heeds."""
     chosen = set(formats)
-    picture = bool(chosen - {"json", "csv", "npz", "table", "obj", "ply"})
     return (
-        *(Idle(name, not picture, "no picture is written") for name in STYLE),
-        Idle("dpi", not picture, "no picture is written"),
-        Idle("samples", not picture, "no picture is written"),
+        *idle_style(formats),
+        Idle("samples", not _has_picture(formats), "no picture is written"),
         Idle("pixels", "npz" not in chosen, "only NPZ has a grid, see --format"),
         Idle("boundary_tolerance", not chosen & {"csv", "npz"}, "only CSV and NPZ have boundaries, see --format"),
     )

@@ -6,6 +6,7 @@ import csv
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import click
 
@@ -64,7 +65,14 @@ def point_of(text: str) -> dict[str, str]:
     return point
 
 
-def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Iterator[dict[str, str]]:
+class Row(NamedTuple):
+    """A row of a CSV file: the line on which it ends, from 1, and its texts by their columns' names."""
+
+    line: int
+    values: dict[str, str]
+
+
+def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Iterator[Row]:
     """The points of a CSV file whose first row names the two axes (other columns than the further ones are not looked
     at).
 
@@ -93,7 +101,7 @@ def rows_of(path: Path, result: RegionMap, further: tuple[str, ...] = ()) -> Ite
             point = {name: (row[name] or "").strip() for name in names}
             if "" in point.values():
                 raise ConfigError("a value is missing", file=str(path), line=reader.line_num)
-            yield point | {name: (row.get(name) or "").strip() for name in further}
+            yield Row(reader.line_num, point | {name: (row.get(name) or "").strip() for name in further})
     except csv.Error as error:
         raise ConfigError(f"is not a CSV file: {error}", file=str(path), line=lines.number) from error
 
@@ -120,11 +128,11 @@ class _Lines:
         return line
 
 
-def _table(result: RegionMap, points: Iterator[dict[str, str]], path: Path) -> None:
+def _table(result: RegionMap, points: Iterator[Row], path: Path) -> None:
     writer = csv.writer(sys.stdout, lineterminator="\n")
     fields = fields_of(result)
     writer.writerow([*result.slice.axis_names, *fields])
-    for number, point in enumerate(points, start=2):
+    for number, point in points:
         try:
             location = result.locate(**point)
         except ConfigError as error:

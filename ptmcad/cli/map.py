@@ -6,14 +6,14 @@ import re
 from fractions import Fraction
 from functools import cache, partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
 from ptmcad.answer.field import Field
-from ptmcad.cli.drawing import pixels_of, share_of
+from ptmcad.cli.drawing import pixels_of, share_of, style_options
 from ptmcad.cli.formats import formats_of
-from ptmcad.cli.idle import Idle, report_idle
+from ptmcad.cli.idle import Idle, idle_style, report_idle
 from ptmcad.cli.limits import Limits, held, limit_options
 from ptmcad.cli.maps import made_map, stored_map
 from ptmcad.cli.paths import out_option
@@ -22,14 +22,23 @@ from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Asked, slice_options
 from ptmcad.cli.stored import stored_in
 from ptmcad.cli.values import poses, quantity_names
-from ptmcad.errors import PtmcadError, shown_path
+from ptmcad.errors import ConfigError, PtmcadError, shown_path
 from ptmcad.options import Options
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.show.style import Place, Style
 
 PICTURES, DATA = ("png", "svg", "pdf"), ("csv", "npz")
 FORMATS = (*PICTURES, *DATA)
 MAX_DIFFERENCE = 1e-6
 """From exact poses, as a share of the largest value: more is a fault of the continuation, which is said."""
+
+
+class Figure(NamedTuple):
+    """How a map is drawn."""
+
+    contours: int
+    style: Style
+    dpi: int
 
 
 class DifferenceError(PtmcadError):
@@ -52,6 +61,7 @@ class DifferenceError(PtmcadError):
               help="Random pixels that are compared with exact poses.")  # fmt: skip
 @click.option("--tolerance", callback=share_of, default="1/100", show_default=True, metavar="EPS",
               help="With free lengths: the share of the window that may stay undetermined.")  # fmt: skip
+@style_options
 @out_option
 @click.option("--format", "formats", callback=partial(formats_of, known=FORMATS), default="png",
               show_default=True, metavar="LIST", help=f"Files to write, of {', '.join(FORMATS)}.")  # fmt: skip
@@ -65,6 +75,8 @@ def command(
     contours: int,
     checks: int,
     tolerance: Fraction,
+    style: Style,
+    dpi: int,
     out: Path,
     formats: tuple[str, ...],
     limits: Limits,
@@ -86,19 +98,27 @@ def command(
     slice = stored.slice if stored else asked.slice()
     if not stored and slice.has_free_lengths and (value.strip() == "barrier" or not pose.strip().startswith("stable")):
         slice = asked.slice("index")  # the certified engine finds the others when they are counted
-    report_idle([Idle("contours", set(formats) <= {"csv", "npz"}, "no picture is written")])
+    nothing_drawn = set(formats) <= set(DATA)
+    report_idle([
+        *idle_style(formats),
+        Idle("contours", nothing_drawn, "no picture is written"),
+        Idle("thin_lines", not nothing_drawn, "the curves over a quantity are those where the count changes"),
+        Idle("legend", not nothing_drawn and style.legend is Place.RIGHT, "beside the map is the scale"),
+    ])  # fmt: skip
     stem = f"{slice.name}-{_slug(value)}-{_slug(pose)}"
     names = tuple(f"{stem}.{kind}" for kind in formats)
     check_writable(out, names)
     with held(limits), ProgressBar() as progress:
-        from ptmcad.ask.fields.field import field_of, request_of
+        from ptmcad.ask.fields.field import expect_somewhere, field_of, request_of
 
         request = request_of(slice, value, pose)  # what means nothing is refused before anything is computed
         options = Options(areas=False, progress=progress, timeout=limits.timeout)
         result = stored or made_map(slice, options, tolerance)
+        expect_somewhere(result, request.choice)
         with stored_in(asked.config if stored else None):
             field = field_of(result, request, *pixels, checks=checks)
-            written = write_files(out, _writers(result, field, names, contours))
+            _expect_values(field)
+            written = write_files(out, _writers(result, field, names, Figure(contours, style, dpi)))
     for path in written:
         click.echo(shown_path(path))
     click.echo(_summary(field))
@@ -121,7 +141,7 @@ def _slug(text: str) -> str:
     return re.sub(r"[^A-Za-z0-9]+", "-", text).strip("-")[:60] or "value"
 
 
-def _writers(result: Any, field: Field, names: tuple[str, ...], contours: int) -> dict[str, Writer]:
+def _writers(result: Any, field: Field, names: tuple[str, ...], figure: Figure) -> dict[str, Writer]:
     boundaries = cache(result.boundaries)
 
     def draw(path: Path) -> None:
@@ -130,7 +150,7 @@ def _writers(result: Any, field: Field, names: tuple[str, ...], contours: int) -
         load_matplotlib()
         from ptmcad.show.render.field import draw_field
 
-        draw_field(result, field, boundaries(), path, contours=contours)
+        draw_field(result, field, boundaries(), path, contours=figure.contours, dpi=figure.dpi, style=figure.style)
 
     def tabulate(path: Path) -> None:
         from ptmcad.show.data import field_csv, field_npz
@@ -143,6 +163,17 @@ def _writers(result: Any, field: Field, names: tuple[str, ...], contours: int) -
     return {name: picture(name, tabulate if name.endswith(DATA) else draw) for name in names}
 
 
+def _expect_values(field: Field) -> None:
+    """Refuse a field of which nothing is to be seen, unless it has values that are beyond doubles or were not found."""
+    import numpy as np
+
+    if np.isnan(field.values).all() and not field.beyond and not field.missed:
+        raise ConfigError(
+            f"no pixel has {field.pose}, or {field.quantity} has no value where it is: there is nothing to show",
+            key="--pose",
+        )
+
+
 def _summary(field: Field) -> str:
     import numpy as np
 
@@ -150,12 +181,14 @@ def _summary(field: Field) -> str:
     if not known.size and field.beyond:
         return f"{field.quantity} of {field.pose} is beyond doubles wherever it has a value"
     if not known.size:
-        return f"{field.pose} is nowhere in this window, or {field.quantity} has no value where it is"
+        return f"at no pixel was {field.pose} found"
     unit = f" {field.unit}" if field.unit else ""
     lines = [
         f"{field.quantity} of {field.pose}: {known.min():.6g} to {known.max():.6g}{unit}, "
         f"at {100 * known.size / field.values.size:.3g} % of the pixels"
     ]
+    if field.jumps is not None and (jumps := sum(int(jump.sum()) for jump in field.jumps)):
+        lines.append(f"its branch changes between {jumps} pairs of neighbouring pixels of one region")
     if field.missed:
         lines.append(f"{field.missed} pixels are empty because their equilibria were not found")
     if field.checked:

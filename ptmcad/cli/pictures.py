@@ -11,8 +11,9 @@ from pathlib import Path
 
 import click
 
-from ptmcad.errors import PictureError, PtmcadError, shown_path
+from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown_path
 from ptmcad.process.output import Writer, save_stopped, where_saved, write_files
+from ptmcad.show.style import Style
 
 
 def report_written(folder: Path, names: Iterable[str]) -> None:
@@ -41,6 +42,8 @@ def picture(name: str, draw: Callable[[Path], None]) -> Writer:
 
 def _reason(error: Exception) -> str:
     """In words for somebody who does not read the program: names of exceptions are none."""
+    if isinstance(error, ConfigError) and error.key in Style._fields:
+        return f"--{error.key.replace('_', '-')}: {error.message}"
     if isinstance(error, PtmcadError):
         return str(error)
     said = (error.strerror if isinstance(error, OSError) else None) or str(error)

@@ -100,11 +100,14 @@ def _compared(
             raise ConfigError(error.message, file=str(blamed)) from error
         raise ConfigError(error.message, key="--compare") from error
     load_matplotlib()
-    from ptmcad.show.render.comparing import draw_comparison, in_words, traced
+    from ptmcad.show.render.comparing import LETTERS, draw_comparison, in_words, traced
 
     for path, each in ((result, stored), (other, second)):
         with stored_in(path):
             traced(each)  # so that of two maps the one that contradicts itself is named
+    click.echo(
+        "; ".join(f"{letter} is {shown_path(path)}" for letter, path in zip(LETTERS, (result, other), strict=True))
+    )
     for line in in_words(found):
         click.echo(line)
     names = names_of(stem, formats)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -10,8 +11,9 @@ from typing import TYPE_CHECKING
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli.locate import point_of, rows_of
-from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.errors import ConfigError, ExpressionError, shown
 from ptmcad.question.config import point_from_mapping
+from ptmcad.question.slice import Count
 from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import rational
 
@@ -71,23 +73,28 @@ def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:
     Raises
     ------
     ConfigError
-        When the file is not such a table, a value is no exact number, or there are more than `MAX_ROWS` points.
+        When the file is not such a table or has no points, a value is no exact number or no count, or there are more
+        than `MAX_ROWS` points.
     """
     from ptmcad.show.render.overlay import Measured
 
-    found, outside = [], 0
-    for number, row in enumerate(rows_of(path, result, ("label", "count")), start=1):
-        if number > MAX_ROWS:
-            raise ConfigError(f"has more than {MAX_ROWS} points", file=str(path))
+    found: list[Measured] = []
+    outside = 0
+    for line, row in rows_of(path, result, ("label", "count")):
+        if len(found) + outside == MAX_ROWS:
+            raise ConfigError(f"has more than {MAX_ROWS} points", file=str(path), line=line)
         try:
             at = _numbers(result, row, None)
+            count = _count(result, row["count"])
         except ConfigError as error:
-            raise ConfigError(f"point {number}: {error.message}", file=str(path)) from error
+            raise ConfigError(error.message, file=str(path), line=line) from error
         if _inside(result, at):
             label = "".join(c if c.isprintable() else " " for c in row["label"])[:MAX_LABEL]
-            found.append(Measured(at, label, _agreement(result, at, row["count"])))
+            found.append(Measured(at, label, _agreement(result, at, count)))
         else:
             outside += 1
+    if not found and not outside:
+        raise ConfigError("has no points below its first row", file=str(path))
     return tuple(found), outside
 
 
@@ -105,6 +112,20 @@ def disagreements(result: RegionMap, found: Sequence[Measured]) -> list[str]:
     return lines
 
 
+def _count(result: RegionMap, text: str) -> str:
+    """A count as the map writes its own, such as ``2``, or ``(1, 2, 1)`` of a map by index; empty for none."""
+    if not text:
+        return ""
+    if result.slice.count is Count.INDEX:
+        numbers = text.removeprefix("(").removesuffix(")").split(",")
+        if all(re.fullmatch(r"\s*\d{1,6}\s*", number, re.ASCII) for number in numbers):
+            return f"({', '.join(str(int(number)) for number in numbers)})"
+        raise ConfigError(f"'{shown(text, 40)}' is not a count by index such as (1, 2, 1)")
+    if re.fullmatch(r"\d{1,6}(\.0*)?", text, re.ASCII):
+        return str(int(text.partition(".")[0]))
+    raise ConfigError(f"'{shown(text, 40)}' is not a count such as 2")
+
+
 def _agreement(result: RegionMap, at: Place, count: str) -> Agreement:
     """Whether the map has this count there; untold where it, or the file, has none."""
     from ptmcad.show.render.overlay import Agreement
@@ -114,7 +135,7 @@ def _agreement(result: RegionMap, at: Place, count: str) -> Agreement:
     if not count or location.region is None or location.status in (Status.UNDECIDED, Status.ON_VARIETY):
         return Agreement.UNTOLD
     said = count_text(result.regions[location.region], result.slice.count)
-    return Agreement.SAME if said.replace(" ", "") == count.replace(" ", "") else Agreement.OTHER
+    return Agreement.SAME if said == count else Agreement.OTHER
 
 
 def _numbers(result: RegionMap, point: Mapping[str, str], key: str | None) -> Place:

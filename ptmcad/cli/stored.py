@@ -20,6 +20,7 @@ from ptmcad.errors import ConfigError, PictureError, PtmcadError, shown
 from ptmcad.process.commit import recover
 from ptmcad.show.document import FORMAT
 from ptmcad.show.document.design import FORMAT as DESIGN
+from ptmcad.show.style import Style
 from ptmcad.text.textfile import read_text
 
 MAX_BYTES = 60_000_000
@@ -93,6 +94,9 @@ def stored_in(path: Path | None) -> Iterator[None]:
         cause = error.__cause__ if isinstance(error, PictureError) else error
         if path is None:
             raise
+        if isinstance(cause, ConfigError) and cause.key in (*Style._fields, "at"):
+            # an option's fault, not the file's
+            raise ConfigError(cause.message, key=f"--{(cause.key or '').replace('_', '-')}") from error
         if isinstance(cause, ConfigError):
             raise ConfigError(cause.message, file=str(path)) from error
         if not isinstance(cause, (ValueError, IndexError, ArithmeticError)):

@@ -220,13 +220,19 @@ def field_csv(field: Field) -> str:
 
 
 def field_npz(field: Field) -> bytes:
-    """A field as arrays: ``x``, ``y``, ``values`` and ``region`` of shape (rows, columns), ``axes`` the names."""
+    """A field as arrays: ``x``, ``y``, ``values`` and ``region`` of shape (rows, columns), ``axes`` the names.
+
+    ``jump_right``, shape (rows, columns - 1), and ``jump_above``, shape (rows - 1, columns), say where the branch
+    changes between a pixel and its neighbour, as `Field.jumps` does; they are missing where it was not looked for.
+    """
     import numpy as np
 
     content = BytesIO()
-    np.savez_compressed(
-        content, axes=np.array(field.names), x=field.x, y=field.y, values=field.values, region=field.region
-    )
+    arrays: dict[str, Any] = {"axes": np.array(field.names), "x": field.x, "y": field.y}
+    arrays |= {"values": field.values, "region": field.region}
+    if field.jumps is not None:
+        arrays["jump_right"], arrays["jump_above"] = field.jumps
+    np.savez_compressed(content, **arrays)
     return content.getvalue()
 
 

@@ -97,6 +97,20 @@ def test_the_picture_has_both_maps_and_the_difference() -> None:
         comparison_figure(found, 100, styled("ieee", size="3.5x2.6in"))
 
 
+def test_the_maps_of_a_change_have_letters_where_a_journal_has_no_titles() -> None:
+    with settings(styled("ieee")):
+        made = comparison_figure(shipped("fig4").compare(heavier_fig4()), 100, styled("ieee"))
+        same = comparison_figure(parabola("1/2").compare(parabola("1/3")), 100, styled("ieee"))
+        titled = comparison_figure(shipped("fig4").compare(heavier_fig4()), 100, styled())
+    said = {t.get_text() for t in made.texts}
+    assert {"A: F₃ = F₄ = −10", "B: F₃ = −14, F₄ = −8", "Difference, A → B"} <= said
+    assert {"A", "B", "Difference, A → B"} <= {t.get_text() for t in same.texts}
+    heads = [t.get_text() for t in titled.texts if t.get_fontweight() == "bold"]
+    assert any(t.startswith("A: Equal loads") for t in heads) and any(t.startswith("B: ") for t in heads)
+    # curves at which nothing differs are no part of a difference
+    assert not [a for a in made.axes[2].findobj() if str(a.get_gid()).endswith("-thin")]
+
+
 def test_a_change_on_a_strip_that_is_not_seen_has_a_mark() -> None:
     with settings():
         wide = comparison_figure(parabola("1/2").compare(parabola("1/3")), 100, styled())
@@ -111,7 +125,8 @@ def test_the_command_line_compares(tmp_path: Path, capsys: pytest.CaptureFixture
         (tmp_path / f"{name}.json").write_text(parabola(shift).to_json())
     one, two = (str(tmp_path / f"{name}.json") for name in ("one", "two"))
     assert run(["plot", one, "--compare", two, "--format", "svg,pdf"]) == 0
-    assert "0 → 2: area 0.0833333" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "0 → 2: area 0.0833333" in said and f"A is {one}; B is {two}" in said
     assert {path.name for path in tmp_path.iterdir()} >= {"one-and-two.svg", "one-and-two.pdf"}
     assert run(["plot", one, "--compare", two, "--format", "csv"]) == 2
     assert run(["plot", one, "--compare", two, "--at", "a=1,b=1"]) == 2

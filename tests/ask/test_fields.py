@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.image import imread
 from support.few import few
 from support.maps import CONFIGS, shipped
 
@@ -466,7 +467,7 @@ def test_the_command_says_at_how_many_pixels_a_value_is_beyond_doubles(
         ("angle:th1", "Angle θ₁ of stable pose 1: fig4", ""),
         ("rho*th1", "rho*th1 of stable pose 1: fig4", ""),
         ("1e-400*rho", "1e-400*rho of stable pose 1: fig4", "1e-400*rho is beyond doubles"),
-        ("1/(rho-1)", "1/(rho-1) of stable pose 1: fig4", "no stable:1 in this window"),
+        ("1/(rho-1)", "1/(rho-1) of stable pose 1: fig4", "no pixel has a value"),
     ],
 )
 def test_a_picture_names_its_quantity_as_the_bar_beside_it(value: str, title: str, nothing: str) -> None:
@@ -477,4 +478,32 @@ def test_a_picture_names_its_quantity_as_the_bar_beside_it(value: str, title: st
     field = result.field(value, "stable:1", 1 if "-1)" in value else 3)
     with settings():
         texts = [t.get_text() for t in field_figure(result, field, (), 0, 50).axes[0].texts]
-    assert texts == [title, *([nothing] if nothing else [])]
+    assert texts == [*([nothing] if nothing else []), title]
+
+
+def test_a_pose_that_the_counts_exclude_is_refused_before_anything_is_drawn(
+    tmp_path: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    result = tmp_path / "fig4.json"
+    result.write_text(shipped("fig4").to_json(), encoding="utf-8")
+    for pose, most in (("stable:9", "at most 2"), ("maximum:3", "at most 2"), ("pose:7", "at most 6")):
+        assert run(["map", str(result), "--pose", pose, "--pixels", "7", "--out", str(tmp_path)]) == 2
+        assert f"--pose: there is no {pose} in the window: of its kind there are {most}" in capsys.readouterr().err
+    # what the counts leave open is seen at the pixels
+    assert run(["map", str(result), "--pose", "maximum:2", "--pixels", "7", "--out", str(tmp_path)]) == 2
+    assert "no pixel has maximum:2" in capsys.readouterr().err
+    assert run(["map", str(result), "--pose", "saddle:3", "--pixels", "7", "--out", str(tmp_path)]) == 0
+    assert [path.suffix for path in tmp_path.iterdir()].count(".png") == 1
+
+
+def test_a_quantitys_map_is_drawn_in_a_style_at_its_size(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    result = tmp_path / "fig4.json"
+    result.write_text(shipped("fig4").to_json(), encoding="utf-8")
+    asked = ["map", str(result), "--pixels", "30", "--checks", "0", "--out", str(tmp_path)]
+    assert run([*asked, "--style", "ieee", "--dpi", "100", "--pose", "stable:2"]) == 0
+    assert imread(tmp_path / "fig4-energy-stable-2.png").shape[:2] == (260, 350)
+    capsys.readouterr()
+    assert run([*asked, "--size", "1.5x1.5in"]) == 2
+    assert "error: --size: the map with its scale does not fit into 1.50x1.50in" in capsys.readouterr().err
+    assert run([*asked, "--thin-lines", "dashed", "--format", "csv", "--dpi", "80"]) == 0
+    assert "--dpi has no effect here: no picture is written" in capsys.readouterr().err

@@ -179,3 +179,16 @@ def test_the_legend_tells_of_thin_curves_and_labels_of_regions_that_are_not_seen
     }  # fmt: skip
     thin = ptmcad.family(loads, values=[-40], areas=False).plot()
     assert "another curve of the variety, the count does not change" in [text.get_text() for text in thin.texts]
+
+
+def test_legends_have_the_curve_and_members_their_values_in_three_dimensions(family: FamilyMap) -> None:
+    assert "the count changes" in [text.get_text() for text in family.plot().texts]
+    drawn = family.plot(solid=True)
+    told = [text.get_text() for text in drawn.texts]
+    assert {"the count changes", "paler: seen through a map above it"} <= set(told)
+    named = {text.get_gid(): text.get_text().strip() for text in drawn.axes[0].texts}
+    assert named == {
+        f"member-{number}": f"c = {value}" for number, value in enumerate(("0", "0.5", "1", "1.5", "2", "2.5", "3"))
+    }
+    one = replace(family, values=family.values[:1], members=family.members[:1])
+    assert "paler: seen through" not in [text.get_text() for text in one.plot(solid=True).texts]

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
+from itertools import combinations
 from typing import Any
 
 import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
-from support.maps import shipped
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from support.maps import CONFIGS, shipped
 
-from ptmcad.show.render.field import MIN_LINE, field_figure
+import ptmcad
+from ptmcad.cli.points import poses_at
+from ptmcad.show.render.field import field_figure
+from ptmcad.show.render.fieldlines import MIN_LINE, _chains, branch_edges, contour_lines
+from ptmcad.show.render.printing import settings
+from ptmcad.show.style import MIN_FONT, styled
 
 
 def test_contours_have_their_values_at_the_scale_and_are_no_tiny_rings() -> None:
@@ -27,4 +38,79 @@ def test_contours_have_their_values_at_the_scale_and_are_no_tiny_rings() -> None
     marks = next(c for c in figure.axes[1].collections if c.get_gid() == "levels")
     values = [s[0][1] for s in marks.get_segments()]
     assert len(values) == len([c for c in lines if c.get_segments()])
-    np.testing.assert_allclose(figure.axes[1].get_yticks(), values)
+    # lines that were left out have their values there, too: the whole scale has numbers
+    ticks = figure.axes[1].get_yticks()
+    assert ticks[0] == 0.0 < values[0] and np.ptp(np.diff(ticks)) < 1e-9
+    np.testing.assert_allclose(ticks[1:], values)
+
+
+def test_where_the_branch_changes_is_an_edge_which_no_contour_crosses() -> None:
+    result = ptmcad.classify(CONFIGS / "mechanisms" / "platform.yaml", areas=False)
+    field = result.field("angle:phi", columns=70)
+    assert field.jumps is not None
+    right, above = field.jumps
+    assert not right.any() and above.shape == (69, 70)
+    # another way to know: the exact poses below the two lines on which it changes, between them and above
+    exact = [
+        poses_at(result, (Fraction(2), w)).equilibria[0] for w in (Fraction(-1, 2), Fraction(-1, 10), Fraction(1, 2))
+    ]
+    assert [float(pose.degrees[1].center) > 0 for pose in exact] == [True, False, True]
+    rows = np.nonzero(above.any(axis=1))[0]
+    assert len(rows) == 2
+    (low, high) = ((field.y[r], field.y[r + 1]) for r in rows)
+    assert low[0] < -0.25 < low[1] and high[0] < 0 < high[1]
+    axes: Any = Figure().add_axes((0, 0, 1, 1))
+    extent = (0.0, 3.0, -2.0, 2.0)
+    found = [line for lines in contour_lines(axes, field, extent, 8).values() for line in lines]
+    points = np.vstack(found)
+    beyond = points[points[:, 0] > 1.4, 1]
+    assert len(found) > 5 and len(beyond) > 50
+    for start, end in (low, high):
+        assert not ((start + 1e-9 < beyond) & (beyond < end - 1e-9)).any()
+    drawn = branch_edges(field, extent)
+    assert len(drawn) == 2 and all(chain[:, 0].max() > 2.9 for chain in drawn)
+
+
+def test_an_angle_that_turns_once_more_is_no_other_branch_and_has_no_contour_there() -> None:
+    result = shipped("fig4")
+    field = result.field("angle:th1", columns=40)
+    rows, columns = np.indices(field.values.shape)
+    turning = np.remainder(columns * 15.0 + rows, 360) - 180
+    field = replace(field, values=turning, region=np.zeros_like(field.region), jumps=None)
+    found = contour_lines(Figure().add_axes((0, 0, 1, 1)), field, (0.0, 40.0, 0.0, 40.0), 8)
+    # lines of the turn's slope only: none along the line of 180 degrees
+    assert sum(map(len, found.values())) >= 7
+    for level, lines in found.items():
+        for line in lines:
+            at = line - 0.5
+            away = np.remainder(at[:, 0] * 15 + at[:, 1] - 180 - level + 180, 360) - 180
+            assert np.abs(away).max() < 1e-6
+    assert branch_edges(field, (0.0, 40.0, 0.0, 40.0)) == []
+
+
+def test_edges_are_chains_that_meet_where_three_branches_do() -> None:
+    right, above = np.zeros((3, 2), dtype=bool), np.zeros((2, 3), dtype=bool)
+    right[:, 0] = True
+    assert _chains(right, above) == [[(1, -1), (1, 0), (1, 2), (1, 4), (1, 5)]]
+    above[1, 1:] = True
+    ends = sorted(tuple(sorted((chain[0], chain[-1]))) for chain in _chains(right, above))
+    assert len(ends) == 3 and all((1, 3) in pair for pair in ends)
+
+
+@pytest.mark.parametrize("preset", ["ieee", "poster"])
+def test_a_quantitys_map_has_all_text_on_the_page_and_none_too_small(preset: str) -> None:
+    result = shipped("fig4")
+    field = result.field("energy", "pose:3", 20)
+    style = styled(preset)
+    with settings(style):
+        made = field_figure(result, field, result.boundaries(Fraction(1, 20)), 8, 60, style)
+        canvas = FigureCanvasAgg(made)
+        canvas.draw()
+        renderer = canvas.get_renderer()
+    shown = [text for text in made.findobj(Text) if text.get_text().strip() and text.get_visible()]
+    assert {"the count changes", "the branch of pose 3 changes"} <= {text.get_text() for text in shown}
+    assert min(text.get_fontsize() for text in shown) >= MIN_FONT
+    boxes = [text.get_window_extent(renderer) for text in shown]
+    width, height = made.bbox.width, made.bbox.height
+    assert all(b.x0 >= 0 and b.y0 >= 0 and b.x1 <= width and b.y1 <= height for b in boxes)
+    assert not [1 for a, b in combinations(boxes, 2) if a.shrunk(0.9, 0.9).overlaps(b.shrunk(0.9, 0.9))]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -39,7 +40,7 @@ def around(texts: tuple[str, ...], style: Style) -> Figure:
     result = shipped("fig4")
     points = [(at, poses_at(result, at)) for at in places(result, texts)]
     with settings(style):
-        made = draw_around(result, points, style, 100)
+        made, _ = draw_around(result, points, style, 100)
         FigureCanvasAgg(made).draw()
     return made
 
@@ -74,9 +75,20 @@ def test_poses_without_room_are_refused_with_the_least_width(
 ) -> None:
     assert run(["plot", stored, "--at", AT[0], "--size", "3x4in"]) == 2
     said = capsys.readouterr().err
-    assert "need a width of 3.05" in said
+    assert "--size: poses beside the map need a width of 3.05 inches, and there are 3.00" in said
     assert run(["plot", stored, "--at", AT[0], "--size", "5.6x4in"]) == 0
     assert imread(tmp_path / "fig4.png").shape[:2] == (600, 840)
+
+
+def test_poses_that_are_too_tall_are_refused_by_the_option_with_a_size_that_does(
+    stored: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    points = [word for text in AT[:2] for word in ("--at", text)]
+    assert run(["plot", stored, "--style", "beamer", *points]) == 2
+    said = capsys.readouterr().err
+    assert re.search(r"error: --size: poses at 2 points need a height of [\d.]+ inches, and there are 2.76", said)
+    (size,) = re.findall(r"such as ([\d.]+x[\d.]+in)", said)
+    assert run(["plot", stored, "--style", "beamer", "--size", size, "--dpi", "50", *points]) == 0
 
 
 def test_in_a_journals_style_poses_are_as_wide_as_two_columns(
@@ -143,13 +155,36 @@ def test_measured_points_are_compared_with_the_map(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "words"), [("rho,x\n1,2\n", "must name the axes"), ("rho,L2\n1,two\n", "point 1"), ("", "must name")]
+    ("content", "words"),
+    [
+        ("rho,x\n1,2\n", "must name the axes"),
+        ("rho,L2\n1,two\n", r"points.csv:2: unknown name 'two'"),
+        ("", "must name"),
+        ("rho,L2,count\n1,1,1\n\n1,1,x\n", r"points.csv:4: 'x' is not a count such as 2"),
+        ("rho,L2,count\n1,1,-1\n", "is not a count"),
+        ("rho,L2\n", "has no points"),
+        ("rho,L2\n\n\n", "has no points"),
+    ],
 )
 def test_a_bad_table_is_refused(content: str, words: str, tmp_path: Path) -> None:
     table = tmp_path / "points.csv"
     table.write_text(content)
     with pytest.raises(ConfigError, match=words):
         measured(shipped("fig4"), table)
+
+
+def test_counts_are_compared_as_numbers(tmp_path: Path) -> None:
+    table = tmp_path / "points.csv"
+    table.write_text("rho,L2,count\n0.7,1.5,2.0\n0.7,1.5,02\n0.7,1.5,1\n")
+    found, _ = measured(shipped("fig4"), table)
+    assert [point.agreement for point in found] == [Agreement.SAME, Agreement.SAME, Agreement.OTHER]
+    by_index = shipped("fig4", "index")
+    table.write_text('rho,L2,count\n0.7,1.5,"2,3,1"\n0.7,1.5,"(2,  3, 1)"\n0.7,1.5,"(1,2,1)"\n')
+    found, _ = measured(by_index, table)
+    assert [point.agreement for point in found] == [Agreement.SAME, Agreement.SAME, Agreement.OTHER]
+    table.write_text("rho,L2,count\n0.7,1.5,2\n0.7,1.5,2 of 6\n")
+    with pytest.raises(ConfigError, match=r"points.csv:3: '2 of 6' is not a count by index"):
+        measured(by_index, table)
 
 
 def test_the_command_line_draws_measured_points(

@@ -34,7 +34,8 @@ from ptmcad.show.render.fitting import rewrapped
 from ptmcad.show.render.layout import BOTTOM, INSET_ABOVE, INSET_BELOW, INSET_LEFT, LEFT, WIDEST, flowing
 from ptmcad.show.render.legend import Entry, Type, entries
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.regionmap import figure_of
+from ptmcad.show.render.regionmap import draw_parts, figure_of, fit, left_out
+from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.slivers import told_apart
 from ptmcad.show.render.usersettings import user_styled
 from ptmcad.show.style import MIN_FONT, PRESETS, Place, Style, styled
@@ -330,15 +331,54 @@ def test_a_thin_part_in_which_unstable_equilibria_differ_is_zoomed_and_named() -
     )
 
 
-def test_a_line_in_the_legend_has_something_to_show() -> None:
-    """Where no thin curve leaves the frame, and no inset has room, none is told of."""
+def thin_curves(made: Figure) -> list[object]:
+    return [a for a in made.findobj(LineCollection) if str(a.get_gid()).endswith("-thin")]
+
+
+def test_what_no_inset_shows_is_named_on_the_map_and_the_legend_has_its_curve() -> None:
+    """Neither does a journal's column drop what the default picture shows."""
     result = shipped("fig4")
     assert "another curve" in legend_of(figure(result, styled(size="6x4in", font_size=9)))
     small = figure(result, styled("ieee"))
-    assert len(small.axes) == 1 and "another curve" not in legend_of(small)
-    assert not [t for t in small.findobj(Annotation) if str(t.get_gid()).startswith("arrow")]
+    assert len(small.axes) == 1 and "another curve" in legend_of(small) and thin_curves(small)
+    (arrow,) = [t for t in small.findobj(Annotation) if str(t.get_gid()).startswith("arrow")]
+    assert arrow.get_text() == "1 of 6"
+    box = arrow.get_bbox_patch().get_window_extent(FigureCanvasAgg(small).get_renderer())
+    chart = small.axes[0].get_window_extent()
+    assert chart.x0 <= box.x0 and box.x1 <= chart.x1 and chart.y0 <= box.y0 and box.y1 <= chart.y1
+
+
+def test_a_line_in_the_legend_has_something_to_show_and_what_is_shown_has_a_line() -> None:
+    result = shipped("fig4")
+    whole = shapes(result)
     thin = replace(result, slice=replace(result.slice, count=Count.TOTAL))
-    assert "another curve" not in legend_of(figure(thin, styled(size="6x4in", font_size=9)))
+    plain = figure(thin, styled(size="6x4in", font_size=9))
+    assert "another curve" not in legend_of(plain) and not thin_curves(plain)
+    # where the part's label has no room either, the curve's trace at the frame is left out, and that is said
+    seen, layout = fit(result, whole, False, 100, styled("ieee"))
+    bare = replace(seen, views=(), thin_lines=False, unnamed=1)
+    page = Figure(figsize=layout.size)
+    with settings():
+        draw_parts(page, bare, layout, styled("ieee"), False)
+    assert not thin_curves(page)
+    assert left_out(bare, layout) == (
+        "1 zoomed view of parts that are too thin to be seen", "labels of such parts, in which unstable ones differ"
+    )  # fmt: skip
+    tiny = seen.with_room((30.0, 30.0), 8.0)
+    assert tiny.unnamed == 1 and not tiny.thin_lines and not tiny.views
+
+
+def test_what_has_no_room_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "fig4.json"
+    path.write_text(shipped("fig4").to_json())
+    assert run(["plot", str(path), "--style", "ieee", "--format", "pdf"]) == 0
+    assert "fig4.pdf has no room for 1 zoomed view" in capsys.readouterr().err
+    assert run(["plot", str(path), "--format", "pdf"]) == 0
+    assert not capsys.readouterr().err
+    with settings():
+        assert left_out(*fit(shipped("fig4"), shapes(shipped("fig4")), False, 100, styled(size="3x1.6in"))) == (
+            "1 zoomed view of parts that are too thin to be seen", "the areas in the legend"
+        )  # fmt: skip
 
 
 def test_areas_are_those_of_the_table() -> None:

@@ -121,6 +121,22 @@ class Follower:
 
     def solved(self, rows: Labels, columns: Labels, start: Floats) -> tuple[Floats, Flags]:
         """Where Newton's method leads from points of shape (n, pixels, solutions), and where these are all."""
+        empty = np.isnan(start[0])
+        at, length, converged = self._led(rows, columns, start)
+        with np.errstate(all="ignore"):
+            good = converged.all(axis=1) & self._different(at, length, empty)
+            good &= self._right_kinds(rows, columns, at, empty)
+        at[:, empty] = np.nan
+        return at, good
+
+    def converged(self, rows: Labels, columns: Labels, start: Floats) -> Floats:
+        """Where Newton's method leads from points of shape (n, pixels, solutions), each alone; nan if nowhere."""
+        at, _, converged = self._led(rows, columns, start)
+        at[:, ~converged | np.isnan(start[0])] = np.nan
+        return at
+
+    def _led(self, rows: Labels, columns: Labels, start: Floats) -> tuple[Floats, Floats, Flags]:
+        """Where Newton's method leads, the lengths of its last steps, and where it has converged or had no start."""
         at = start.copy()
         empty = np.isnan(start[0])
         at[:, empty] = 0.0
@@ -137,10 +153,7 @@ class Follower:
             size = np.sqrt((at**2).sum(axis=0))
             converged = (length <= SMALL * (1 + size)) | empty
             at[: self.angles] = np.remainder(at[: self.angles] + np.pi, 2 * np.pi) - np.pi
-            good = converged.all(axis=1) & self._different(at, length, empty)
-            good &= self._right_kinds(rows, columns, at, empty)
-        at[:, empty] = np.nan
-        return at, good
+        return at, length, converged
 
     def _different(self, at: Floats, length: Floats, empty: Flags) -> Flags:
         """Whether no two of a pixel's solutions are the same."""

@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.answer.boundaries import Grid
+from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.field import Field
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap
@@ -19,6 +19,7 @@ from ptmcad.ask.fields.barrier import barriers
 from ptmcad.ask.fields.branches import Filling, Follower, Places, filled, places_of
 from ptmcad.ask.fields.equations import State, eigenvalues
 from ptmcad.ask.fields.jets import Floats
+from ptmcad.ask.fields.jumps import jumps
 from ptmcad.ask.fields.quantities import OPTION, Valued, quantity_of
 from ptmcad.ask.pixels import grid as grid_of
 from ptmcad.ask.solving import poses_at
@@ -136,22 +137,52 @@ def field_of(
         raise ConfigError("this map knows the stable equilibria only, and a barrier is a saddle's", key=OPTION)
     solutions = filled(result, follower, check)
     missed = complete(result, lambda r, c: centre(result, grid, r, c), solutions, wanted.total, check)
-    values = np.full(grid.region.shape, np.nan)
+    values, chosen = np.full(grid.region.shape, np.nan), np.full(grid.region.shape, NONE, dtype=np.int64)
     places = np.nonzero(solutions.done & (wanted.total > 0))
     batch = LARGE_BATCH if quantity.is_barrier else BATCH
     for first in range(0, len(places[0]), batch):
         check()
         r, c = (p[first : first + batch] for p in places)
-        values[r, c] = _at_pixels(model, quantity, choice, follower, (r, c), solutions.at[:, r, c])
+        values[r, c], chosen[r, c] = _at_pixels(model, quantity, choice, follower, (r, c), solutions.at[:, r, c])
     if quantity.is_barrier:  # there is one wherever there is another stable pose
         missed += int((np.isnan(values) & solutions.done & (grid.stable >= max(2, choice.rank))).sum())
     beyond = np.isinf(values)
     values[beyond] = np.nan
+    other = jumps(result, follower, solutions, chosen, grid.region, check)
     number, difference = _checked(result, quantity, choice, values, follower, checks)
     return Field(
         quantity.name, str(choice), quantity.unit, grid.x, grid.y, grid.names, values, grid.region, missed, number,
-        difference, int(beyond.sum()),
+        difference, int(beyond.sum()), other,
     )  # fmt: skip
+
+
+def expect_somewhere(result: RegionMap, choice: Choice) -> None:
+    """Refuse a pose that the map's counts exclude from the whole window.
+
+    Raises
+    ------
+    ConfigError
+    """
+    most = _most_of(result, choice.kind)
+    if most is not None and most < choice.rank:
+        few = f"of its kind there are at most {most} at any point" if most else "nor any other of its kind"
+        raise ConfigError(f"there is no {choice} in the window: {few}", key="--pose")
+
+
+def _most_of(result: RegionMap, kind: str) -> int | None:
+    """What no point has more solutions of, for a kind of `Choice`, by the counts of all cells; None where these are
+    unknown, or a part of the window is undetermined."""
+    if not result.cells or result.cover is not None:
+        return None
+    found = []
+    for cell in result.cells:
+        unstable = None if cell.total is None or cell.stable is None else cell.total - cell.stable
+        # where the indices are not known, there are no more of one than are unstable
+        inner, last = (unstable, unstable) if cell.index is None else (sum(cell.index[1:-1]), cell.index[-1])
+        counts = {"stable": cell.stable, "pose": cell.total, "unstable": unstable, "saddle": inner, "maximum": last}
+        found.append(counts[kind])
+    known = [number for number in found if number is not None]
+    return max(known) if len(known) == len(found) else None
 
 
 def _at_pixels(
@@ -161,8 +192,9 @@ def _at_pixels(
     follower: Follower,
     places: tuple[NDArray[np.int64], NDArray[np.int64]],
     at: Floats,
-) -> Floats:
-    """The quantity of the chosen solution at pixels; at : shape (n, pixels, most)."""
+) -> tuple[Floats, NDArray[np.int64]]:
+    """The quantity of the chosen solution at pixels, and its number there, `NONE` without one; at : shape (n, pixels,
+    most)."""
     rows, columns = places
     here = np.nan_to_num(at)
     state = follower.state(rows, columns, here)
@@ -186,7 +218,7 @@ def _at_pixels(
         axes = dict(zip(follower.names, coordinates, strict=True))
         given = {name: np.asarray(v)[:, None] if np.ndim(v) else v for name, v in {**given, **axes}.items()}
         values = quantity.values(state, here, given)[own, k]
-    return np.where(found, values, np.nan)
+    return np.where(found, values, np.nan), np.where(found, k, NONE)
 
 
 def _is_stable(model: Model, state: State) -> NDArray[np.bool_]:
@@ -298,6 +330,6 @@ def _checked(
         at[:, n, : points.shape[1]] = points
     own = [k for k, _ in compared]
     places = (rows[own], columns[own])
-    exact = _at_pixels(result.slice.model, quantity, choice, follower, places, at)
+    exact, _ = _at_pixels(result.slice.model, quantity, choice, follower, places, at)
     difference = np.abs(exact - values[places]) / size
     return len(compared), float(np.where(np.isnan(difference), np.inf, difference).max())

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from matplotlib.figure import Figure
 from ptmcad.answer.comparison import Bounds, Change, Comparison
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.axes import Dress, dress
+from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, undetermined_fill
 from ptmcad.show.render.fitting import LEAST, Parts, overhang, rewrapped
 from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, Wording, draw_legend, entries, hidden_words
@@ -33,6 +34,7 @@ from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, Place, Style
 from ptmcad.show.table import area_text, count_text
 from ptmcad.text.bounds import percent, share_text
+from ptmcad.text.numerals import shortest_text
 
 SIDE = 2.7
 """Inches of a map in 9 points, in a picture that grows with what it shows."""
@@ -40,6 +42,9 @@ CHANGES = ("#d55e00", "#0072b2", "#cc79a7", "#009e73", "#f0e442")
 """Of Okabe & Ito, none of which a count has."""
 _EQUAL = Fill("#ffffff")
 _MAX_HEAD = 3
+LETTERS = ("A", "B")
+"""Of the two maps, so that a change of counts has a direction: from A to B."""
+_MAX_NAMES = 3
 NO_MARKS = Marks()
 
 
@@ -162,31 +167,58 @@ def _panels(comparison: Comparison, first: Shapes, style: Style, sides: tuple[fl
     type, side = _type(style), sides[0]
     small = max(MIN_FONT, 0.89 * style.base_font)
     found: list[tuple[Shapes, Paint, str, Sequence[Entry], Mapping[int, Fill], Marks]] = []
-    for result, seen in ((comparison.first, first), (comparison.second, shapes(comparison.second))):
+    pair = (comparison.first, comparison.second)
+    for letter, own, result, seen in zip(LETTERS, own_words(*pair), pair, (first, shapes(pair[1])), strict=True):
         paint = paint_of(result, style)
         marks = marks_of(seen, sides, dpi, small)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
+        paint = replace(paint, thin_walls=thin)
         told = entries(result, thin, False, marks.hidden, Wording(paint.fill, paint.undetermined))
-        found.append((seen, paint, whole_title(result), told, {}, marks))
+        title = whole_title(result) if style.title is None else own
+        found.append((seen, paint, f"{letter}: {title}" if title else letter, told, {}, marks))
     fills = _fills(comparison, style)
     decomposition = comparison.decomposition
     of_cells = {region.cells: fills.get(n, _EQUAL) for n, region in enumerate(decomposition.regions)}
     strong = style.strong / 4
-    bare = Paint(lambda region: of_cells[region.cells], undetermined_fill(style.palette), strong, strong)
+    bare = Paint(
+        lambda region: of_cells[region.cells], undetermined_fill(style.palette), strong, strong, thin_walls=False
+    )
     whole = shapes(decomposition)
     names = [""] * len(decomposition.regions)
     for change in comparison.changes:
         names[change.region] = change_text(comparison, change)
     marks = marks_of(whole, sides, dpi, small, names)
     changes = [*_told(comparison, style), *([Entry((hidden_words(marks.hidden),))] if marks.hidden else [])]
-    found.append((whole, bare, "Difference", changes, fills, marks))
+    found.append((whole, bare, f"Difference, {' → '.join(LETTERS)}", changes, fills, marks))
+    untold = style.legend is Place.NONE
     return [
         _Panel(
-            seen, paint, _head(title, side, type) if style.title is None else [],
-            [] if style.legend is Place.NONE else [rewrapped(entry, side, type) for entry in told], outlined, marks,
+            seen, paint, _head(title, side, type),
+            [] if untold else [rewrapped(entry, side, type) for entry in told], outlined, marks,
         )
         for seen, paint, title, told, outlined, marks in found
     ]  # fmt: skip
+
+
+def own_words(first: RegionMap, second: RegionMap) -> tuple[str, str]:
+    """What each of two maps has and the other has not, in few words: parameters of other values; else their names."""
+    both = [
+        {name: value.constant() for name, value in result.slice.parameters.items() if value.is_constant}
+        for result in (first, second)
+    ]
+    other = [name for name in both[0] if name in both[1] and both[0][name] != both[1][name]]
+    if 0 < len(other) <= _MAX_NAMES:
+        return _assignments(both[0], other), _assignments(both[1], other)
+    names = first.slice.name, second.slice.name
+    return names if names[0] != names[1] else ("", "")
+
+
+def _assignments(values: Mapping[str, Fraction], names: Sequence[str]) -> str:
+    """Such as ``F₃ = F₄ = −40, k = 100``."""
+    equal: dict[Fraction, list[str]] = {}
+    for name in names:
+        equal.setdefault(values[name], []).append(symbol(name))
+    return ", ".join(" = ".join((*symbols, shortest_text(value).replace("-", "−"))) for value, symbols in equal.items())
 
 
 def _head(title: str, side: float, type: Type) -> list[str]:

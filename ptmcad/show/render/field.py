@@ -1,53 +1,70 @@
 """The picture of a continuous quantity over a map's window: colours, contour lines, and the map's exact boundaries.
 
 Guarantee: the same field gives the same bytes with the same matplotlib. Pixels are shown as they are, without any
-smoothing, so that none shows a value from the other side of a boundary; contour lines are drawn within regions only.
+smoothing, so that none shows a value from the other side of a boundary; contour lines are drawn within a region and a
+branch only, and where the branch changes there is an edge. Everything is on the page, in text of at least
+`ptmcad.show.style.MIN_FONT` points.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from ptmcad.answer.boundaries import Boundary
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.errors import ConfigError
 from ptmcad.mechanism import System
-from ptmcad.show.render.axes import dress, scale_of, symbol
-from ptmcad.show.render.legend import INK, STRONG
+from ptmcad.show.render.axes import Dress, dress, scale_of, symbol
+from ptmcad.show.render.colours import Fill
+from ptmcad.show.render.fieldlines import branch_edges, contour_lines
+from ptmcad.show.render.fitting import LEAST
+from ptmcad.show.render.legend import INK, STRONG, SWATCH, THIN, Entry, Type, draw_legend, in_rows
 from ptmcad.show.render.printing import save, settings
+from ptmcad.show.render.textwidth import ALLOWANCE, text_width, wrapped
 from ptmcad.show.render.view import Floats, View
+from ptmcad.show.style import DEFAULT, MIN_FONT, Place, Style
 from ptmcad.show.units import with_unit
 
-LEFT, BOTTOM, SIDE, GAP, BAR, RIGHT, TOP = 0.85, 0.65, 4.6, 0.2, 0.2, 0.95, 0.6
-"""In inches: the space at the map's left and below, its side, the space before the scale, the scale, its numbers."""
-COLOURS = "viridis"
-"""Perceptually uniform, distinguishable to the colour-blind, and monotone on grey prints."""
-MIN_LINE = 16.0
-"""Pixels of the field: shorter contour lines are left out."""
+SIDE, GAP, BAR = 4.6, 0.2, 0.2
+"""In inches, in 9 points: the map's side where no size is given, the space before the scale, and the scale."""
+COLOURS, GREYS = "viridis", ("#000000", "#d4d4d4")
+"""Perceptually uniform, distinguishable to the colour-blind, and monotone on grey prints; or grey, none of it white."""
 _LINES: dict[str, Any] = {"colors": "white", "linewidths": 0.6, "alpha": 0.85}
 _EMPTY = "#ffffff"
 _WORDS = ("energy", "stiffness", "barrier")
 
 
 def draw_field(
-    result: RegionMap, field: Field, boundaries: Sequence[Boundary], path: Path, *, contours: int = 8, dpi: int = 150
-) -> None:
+    result: RegionMap, field: Field, boundaries: Sequence[Boundary], path: Path, *, contours: int = 8, dpi: int = 150,
+    style: Style = DEFAULT,
+) -> None:  # fmt: skip
     """Write the picture of a field over its map, as `ptmcad.show.render.printing.save` does.
 
     Parameters
     ----------
     boundaries : of the map.
     contours : about so many contour lines; none for 0.
+    style : what it looks like; a legend stands below.
+
+    Raises
+    ------
+    ConfigError
+        When it does not fit into the style's size.
     """
-    with settings():
-        figure = field_figure(result, field, boundaries, contours, dpi)
-    save(figure, path, dpi=dpi)
+    with settings(style):
+        figure = field_figure(result, field, boundaries, contours, dpi, style)
+    save(figure, path, dpi=dpi, style=style)
 
 
 def title_of(result: RegionMap, field: Field) -> str:
@@ -55,10 +72,14 @@ def title_of(result: RegionMap, field: Field) -> str:
     text = _name(field)
     # others are names and expressions, which are written as they were asked for: u is not U
     text = text.capitalize() if text in _WORDS else text[0].upper() + text[1:] if ":" in field.quantity else text
+    return f"{text} of {pose_words(result, field)}: {result.slice.name}"
+
+
+def pose_words(result: RegionMap, field: Field) -> str:
+    """Such as ``stable pose 1``."""
     word, _, number = field.pose.partition(":")
     solution = "solution" if isinstance(result.slice.model, System) else "pose"
-    pose = f"{solution} {number}" if word == "pose" else f"{word} {solution} {number}"
-    return f"{text} of {pose}: {result.slice.name}"
+    return f"{solution} {number}" if word == "pose" else f"{word} {solution} {number}"
 
 
 def description(field: Field) -> str:
@@ -73,40 +94,200 @@ def description(field: Field) -> str:
     )
 
 
-def field_figure(result: RegionMap, field: Field, boundaries: Sequence[Boundary], contours: int, dpi: int) -> Figure:
-    """The picture, to be called within `settings`."""
-    size = (LEFT + SIDE + GAP + BAR + RIGHT, BOTTOM + SIDE + TOP)
-    figure = Figure(figsize=size, dpi=dpi, facecolor="white")
-    axes: Any = figure.add_axes((LEFT / size[0], BOTTOM / size[1], SIDE / size[0], SIDE / size[1]))
+def field_figure(
+    result: RegionMap, field: Field, boundaries: Sequence[Boundary], contours: int, dpi: int, style: Style = DEFAULT
+) -> Figure:
+    """The picture, to be called within `settings`.
+
+    Raises
+    ------
+    ConfigError
+        When it does not fit into the style's size.
+    """
+    figure = Figure(figsize=style.size or (6.0, 6.0), dpi=dpi, facecolor="white")
+    font = style.base_font
+    axes: Any = figure.add_axes((0.2, 0.2, 0.5, 0.5))
     axes.set_gid("map")
-    view = View.whole(result)
-    extent = tuple(v for interval in (view.x, view.y) for s in [scale_of(*interval)] for v in (s.low, s.high))
     axes.set_facecolor(_EMPTY)
     known = field.values[~np.isnan(field.values)]
-    axes.text(0, 1.03, title_of(result, field), transform=axes.transAxes, fontsize=11, va="bottom", color=INK)
-    if known.size:
-        low, high = float(known.min()), float(known.max())
-        image = axes.imshow(
-            field.values, origin="lower", extent=extent, aspect="auto", cmap=COLOURS, interpolation="nearest",
-            vmin=low, vmax=high if high > low else low + 1.0, gid="values",
+    view = View.whole(result)
+    bar_axes = _fill(figure, axes, field, view, contours, style) if known.size else None
+    if not known.size:
+        axes.text(
+            0.5, 0.5, _absent(field), transform=axes.transAxes, ha="center", color=INK, fontsize=font, zorder=5,
+            bbox={"facecolor": "white", "edgecolor": "none"},
         )  # fmt: skip
-        levels = _contours(axes, result, field, extent, contours, (low, high))
-        bar_axes = figure.add_axes(((LEFT + SIDE + GAP) / size[0], BOTTOM / size[1], BAR / size[0], SIDE / size[1]))
-        bar = figure.colorbar(image, cax=bar_axes)
-        if levels:
-            # the lines' values are those at the bar
-            bar.set_ticks(levels)
-            bar.ax.hlines(levels, 0, 1, transform=bar.ax.get_yaxis_transform(), gid="levels", **_LINES)
-        bar.ax.tick_params(labelsize=9)
-        bar.set_label(bar_text(field), fontsize=10)
-    else:
-        axes.text(0.5, 0.5, _absent(field), transform=axes.transAxes, ha="center", color=INK)
     for boundary in boundaries:
         if boundary.separates:
-            axes.plot(*_shares(result, boundary.points).T, color=INK, linewidth=STRONG, transform=axes.transAxes)
-    dress(axes, result.slice, view.x, view.y)
+            shares = _shares(result, boundary.points)
+            axes.plot(*shares.T, color=INK, linewidth=style.strong, transform=axes.transAxes)
+    chart = (SIDE, SIDE) if style.size is None else (0.6 * style.size[0], 0.6 * style.size[1])
+    how = Dress()
+    if not style.flows:
+        ticks = max(MIN_FONT, 0.95 * font)
+        many = [int(max(2, min(8, side / (ems * ticks / 72)))) for side, ems in zip(chart, (3.3, 2.0), strict=True)]
+        how = Dress(ticks, max(MIN_FONT, 1.05 * font), (many[0], many[1]), scale=font / 9)
+    dress(axes, result.slice, view.x, view.y, how)
+    legend = [] if style.legend is Place.NONE else _legend(result, field, boundaries)
+    _Page(figure, axes, bar_axes, title_of(result, field) if style.title is None else style.title, legend, style).set()
     figure.set_label(f"{title_of(result, field)}\n{description(field)}")
     return figure
+
+
+def _fill(figure: Figure, axes: Any, field: Field, view: View, number: int, style: Style) -> Any:
+    """The pixels with their lines, and the scale, whose axes are returned."""
+    extent = tuple(v for interval in (view.x, view.y) for s in [scale_of(*interval)] for v in (s.low, s.high))
+    known = field.values[~np.isnan(field.values)]
+    low, high = float(known.min()), float(known.max())
+    image = axes.imshow(
+        field.values, origin="lower", extent=extent, aspect="auto", cmap=_colours(style), interpolation="nearest",
+        vmin=low, vmax=high if high > low else low + 1.0, gid="values",
+    )  # fmt: skip
+    lines = {**_LINES, "linewidths": 0.6 * style.line_scale}
+    levels = contour_lines(axes, field, extent, number)
+    for found in filter(None, levels.values()):
+        axes.add_collection(LineCollection(found, gid="contours", **lines), autolim=False)
+    jumps = branch_edges(field, extent)
+    for width, colour, kind in _edge(style):
+        if jumps:
+            drawn = LineCollection(
+                jumps, colors=colour, linewidths=width, linestyles=kind, gid="jumps", capstyle="butt", zorder=2.5
+            )
+            axes.add_collection(drawn, autolim=False)
+    bar_axes = figure.add_axes((0.8, 0.2, 0.05, 0.5))
+    bar = figure.colorbar(image, cax=bar_axes)
+    if levels:
+        # the lines' values are among those at the bar
+        bar.set_ticks(list(levels))
+        bar.ax.hlines(
+            [level for level, found in levels.items() if found],
+            0,
+            1,
+            transform=bar.ax.get_yaxis_transform(),
+            gid="levels",
+            **lines,
+        )
+    bar.ax.tick_params(labelsize=max(MIN_FONT, style.base_font), width=0.8 * style.line_scale)
+    bar.ax.yaxis.get_offset_text().set_fontsize(max(MIN_FONT, style.base_font))
+    bar.outline.set_linewidth(0.8 * style.line_scale)
+    bar.set_label(bar_text(field), fontsize=max(MIN_FONT, 1.1 * style.base_font))
+    return bar_axes
+
+
+def _colours(style: Style) -> Any:
+    """The palette's, from the least value to the largest."""
+    if style.palette == "default":
+        return COLOURS
+    faces = GREYS if isinstance(style.palette, str) else style.palette
+    faces = faces if len(faces) > 1 else (*faces, GREYS[1])
+    return LinearSegmentedColormap.from_list("own", list(faces))
+
+
+def _edge(style: Style) -> Sequence[tuple[float, str, Any]]:
+    """Width, colour and dashes of the lines that make an edge between branches, from below."""
+    return ((2.4 * style.line_scale, "white", "solid"), (1.1 * style.line_scale, INK, (0, (3.0, 1.6))))
+
+
+def _legend(result: RegionMap, field: Field, boundaries: Sequence[Boundary]) -> list[Entry]:
+    """What lines and white mean, as far as they are there."""
+    told = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
+    if field.jumps is not None and any(jump.any() for jump in field.jumps):
+        told.append(Entry((f"the branch of {pose_words(result, field)} changes",), _edge_mark))
+    empty = np.isnan(field.values)
+    if empty.any() and not empty.all():
+        words = f"no {pose_words(result, field)}" if not field.missed + field.beyond else "no value"
+        told.append(Entry((words,), Fill(_EMPTY)))
+    return told
+
+
+def _edge_mark(figure: Any, left: float, middle: float) -> None:
+    for width, colour, kind in _edge(DEFAULT):
+        figure.add_artist(
+            Line2D((left, left + SWATCH), (middle, middle), transform=figure.dpi_scale_trans, color=colour,
+                   linewidth=width, linestyle=kind)
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class _Page:
+    """The parts of a picture, which are set where they have room: what stands beside axes is measured."""
+
+    figure: Figure
+    axes: Any
+    bar: Any
+    title: str
+    legend: Sequence[Entry]
+    style: Style
+
+    def set(self) -> None:
+        """Give all parts their places; a page without a size gets the one that it needs.
+
+        Raises
+        ------
+        ConfigError
+            When a size leaves too little to the map.
+        """
+        font, size = self.style.base_font, self.style.size
+        em, scale = font / 72, font / 9
+        type = Type(font, max(MIN_FONT, 0.89 * font), scale, self.style.strong, self.style.strong * THIN / STRONG)
+        side = SIDE * scale
+        wide, tall = size or (side + 2.2 * scale, side + 1.5 * scale)
+        title_font = max(MIN_FONT, 1.22 * font)
+        lines = wrapped(self.title, wide - 1.5 * em, title_font) if self.title else []
+        rows = in_rows(self.legend, wide - 1.5 * em, type)
+        head = 1.35 * title_font / 72 * len(lines) + (0.7 if lines else 0.4) * em
+        foot = 1.35 * type.line * len([row for row in rows if row]) + 0.5 * em
+        for _ in range(3):  # how many numbers an axis has depends on its length
+            left, below, right, above = _beside(self.figure, self.axes)
+            gap, after = (0.0, 0.0) if self.bar is None else (GAP * scale, _beside(self.figure, self.bar)[2])
+            bar = gap and BAR * scale
+            rest = (left + max(right, gap + bar + after) + 0.8 * em, below + above + head + foot)
+            if size is None:
+                wide, tall = side + rest[0], side + rest[1]
+                self.figure.set_size_inches(wide, tall)
+            chart = (wide - rest[0], tall - rest[1])
+            if min(chart) < LEAST * em:
+                least = (rest[0] + max(LEAST * em, chart[0]), rest[1] + max(LEAST * em, chart[1]))
+                raise ConfigError(
+                    f"the map with its scale does not fit into {wide:.2f}x{tall:.2f}in in text of {font:g} points; "
+                    f"it needs at least {least[0] + 0.01:.2f}x{least[1] + 0.01:.2f}in", key="size",
+                )  # fmt: skip
+            corner = (0.4 * em + left, foot + below)
+            _place(self.axes, (*corner, *chart), (wide, tall))
+            if self.bar is not None:
+                _place(self.bar, (corner[0] + chart[0] + gap, corner[1], bar, chart[1]), (wide, tall))
+                _thin_numbers(self.bar, chart[1])
+        if lines:
+            title = self.axes.annotate(
+                "\n".join(lines), (0, 1), xycoords="axes fraction", xytext=(0, 72 * above + 0.5 * font),
+                textcoords="offset points", fontsize=title_font, va="bottom", color=INK, annotation_clip=False,
+            )  # fmt: skip
+            if max(text_width(line, title_font) for line in lines) > wide - corner[0] - 0.5 * em:
+                title.set_position((72 * (0.75 * em - corner[0]), 72 * above + 0.5 * font))
+        for k, row in enumerate(reversed(rows)):
+            for at, entry in row:
+                draw_legend(self.figure, [entry], 0.75 * em + at, 0.35 * em + 1.35 * type.line * (k + 0.85), type)
+
+
+def _beside(figure: Figure, axes: Any) -> tuple[float, float, float, float]:
+    """Inches that numbers and names take at the left of axes, below, at the right and above."""
+    canvas: Any = FigureCanvasAgg(figure)
+    outer, inner = axes.get_tightbbox(canvas.get_renderer()), axes.get_window_extent()
+    sides = (inner.x0 - outer.x0, inner.y0 - outer.y0, outer.x1 - inner.x1, outer.y1 - inner.y1)
+    left, below, right, above = (max(0.0, float(side)) / figure.dpi * ALLOWANCE for side in sides)
+    return left, below, right, above
+
+
+def _place(axes: Any, box: tuple[float, float, float, float], size: tuple[float, float]) -> None:
+    axes.set_position((box[0] / size[0], box[1] / size[1], box[2] / size[0], box[3] / size[1]))
+
+
+def _thin_numbers(bar: Any, tall: float) -> None:
+    """Leave out numbers at the scale that would lie on each other."""
+    ticks = [float(v) for v in bar.get_yticks() if bar.get_ylim()[0] <= v <= bar.get_ylim()[1]]
+    apart = 1.3 * bar.yaxis.get_ticklabels()[0].get_fontsize() / 72 if ticks else 0.0
+    if len(ticks) > 1 and tall * (ticks[1] - ticks[0]) / (bar.get_ylim()[1] - bar.get_ylim()[0]) < apart:
+        bar.set_yticks(ticks[::2])
 
 
 def bar_text(field: Field) -> str:
@@ -124,7 +305,7 @@ def _absent(field: Field) -> str:
     """Why nothing is shown."""
     if field.beyond:
         return f"{field.quantity} is beyond doubles"
-    return f"no {field.pose} in this window"
+    return "no pixel has a value"
 
 
 def _shares(result: RegionMap, points: Floats) -> Floats:
@@ -133,36 +314,3 @@ def _shares(result: RegionMap, points: Floats) -> Floats:
     widths = np.array([float(a.high - a.low) for a in result.slice.axes])
     shares: Floats = (points - lows) / widths
     return shares
-
-
-def _contours(
-    axes: Any, result: RegionMap, field: Field, extent: Sequence[float], number: int, ends: tuple[float, float]
-) -> list[float]:
-    """Lines of equal value within each region, at round values; the values of those that are drawn."""
-    from matplotlib.ticker import MaxNLocator
-
-    if number < 1 or min(field.values.shape) < 2 or not ends[0] < ends[1]:
-        return []
-    levels = [v for v in MaxNLocator(nbins=number + 1).tick_values(*ends) if ends[0] < v < ends[1]]
-    if not levels:
-        return []
-    rows, columns = field.values.shape
-    x = extent[0] + (extent[1] - extent[0]) * (np.arange(columns) + 0.5) / columns
-    y = extent[2] + (extent[3] - extent[2]) * (np.arange(rows) + 0.5) / rows
-    pixel = np.array([(extent[1] - extent[0]) / columns, (extent[3] - extent[2]) / rows])
-    found: dict[float, list[Floats]] = {}
-    for region in np.unique(field.region[field.region >= 0]):
-        own = np.where(field.region == region, field.values, np.nan)
-        if (~np.isnan(own)).sum() > 3 and np.nanmin(own) < levels[-1] and np.nanmax(own) > levels[0]:
-            traced = axes.contour(x, y, own, levels=levels)
-            for level, lines in zip(traced.levels, traced.allsegs, strict=True):
-                # along a ridge just above a level there are chains of rings, which pixels alone make
-                found.setdefault(float(level), []).extend(line for line in lines if _length(line / pixel) >= MIN_LINE)
-            traced.remove()
-    for lines in found.values():
-        axes.add_collection(LineCollection(lines, gid="contours", **_LINES), autolim=False)
-    return [level for level, lines in sorted(found.items()) if lines]
-
-
-def _length(points: Floats) -> float:
-    return float(np.hypot(*np.diff(points, axis=0).T).sum())

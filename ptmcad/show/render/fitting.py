@@ -182,7 +182,7 @@ def _on(parts: Parts, style: Style, size: tuple[float, float], font: float) -> L
         for insets in dict.fromkeys((len(parts.views) - 1, 0)):
             found = _placed(page, legend, insets)
             if found is not None:
-                return found
+                return replace(found, shortened=legend != parts.legend[0])
     return None
 
 

@@ -21,8 +21,11 @@ _DIRECTIONS = 16
 _DISTANCES = (34, 50, 70, 95, 125, 160, 200)
 _MET = 1e3
 """What a place costs at the least where something is in its way; distances are less."""
+_OTHER_REGION = 75
+"""What a place costs for every other region than one that its label or its arrow lies on."""
 TRIED = _DIRECTIONS * len(_DISTANCES)
 
+Image = np.ndarray[tuple[int, int], np.dtype[np.int64]]
 Box = tuple[float, float, float, float]
 
 
@@ -64,18 +67,20 @@ def place(
             for k in range(_DIRECTIONS):
                 angle = 2 * pi * (k + 0.5) / _DIRECTIONS
                 x, y = tip[0] + (half[0] + distance) * cos(angle), tip[1] + (half[1] + distance) * sin(angle)
+                # a tip at the frame has room beside itself, along the frame
+                x, y = (_within(v, h, side) for v, h, side in zip((x, y), half, sides, strict=True))
                 box = (x - half[0], y - half[1], x + half[0], y + half[1])
                 cost = float(distance)
                 cost += 1e6 * sum(
                     max(0.0, e) for e in (6 - box[0], 6 - box[1], box[2] - sides[0] + 6, box[3] - sides[1] + 6)
                 )
                 cost += 1e4 * sum(_overlap(box, other) for other in taken)
-                cost += 1e3 * sum(_near(box, p) for j, p in enumerate(points) if j != number)
+                cost += 1e3 * sum(_near(box, p) for p in points)
                 cost += 1e3 * sum(_crosses(a, b, tip, (x, y)) for a, b in arrows)
                 cost += 1e3 * sum(_meets(box, a, b) for a, b in arrows)
                 cost += 1e3 * sum(_meets(other, tip, (x, y)) for other in taken) if skip else 0.0
                 met = cost >= _MET
-                cost += 25 * _variety(image, box, sides)
+                cost += _OTHER_REGION * (_variety(image, box, sides) + _passed(image, tip, (x, y), sides))
                 if cost < best:
                     best, label, clear = cost, (x, y), not met
         result.append(Placement(tips[number], (label[0] / sides[0], label[1] / sides[1]), size, clear))
@@ -84,6 +89,11 @@ def place(
         taken.append((label[0] - half[0], label[1] - half[1], label[0] + half[0], label[1] + half[1]))
         arrows.append((tip, label))
     return result
+
+
+def _within(middle: float, half: float, side: float) -> float:
+    """The middle of a label, moved so that it is within the picture, if it is not longer than that."""
+    return min(max(middle, half + 6), side - half - 6) if 2 * half + 12 <= side else middle
 
 
 def _overlap(a: Box, b: Box) -> bool:
@@ -107,7 +117,17 @@ def _crosses(a: tuple[float, float], b: tuple[float, float], c: tuple[float, flo
     return side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
 
 
-def _variety(image: np.ndarray[tuple[int, int], np.dtype[np.int64]], box: Box, sides: tuple[float, float]) -> int:
+def _passed(image: Image, a: tuple[float, float], b: tuple[float, float], sides: tuple[float, float]) -> int:
+    """How many other regions than one an arrow passes, from its tip to its label's centre."""
+    steps = np.linspace(0.0, 1.0, 24)
+    row, column = (
+        np.clip((a[k] + (b[k] - a[k]) * steps) / sides[k] * image.shape[1 - k], 0, image.shape[1 - k] - 1).astype(int)
+        for k in (1, 0)
+    )
+    return len(np.unique(image[row, column])) - 1
+
+
+def _variety(image: Image, box: Box, sides: tuple[float, float]) -> int:
     """How many other regions than one the box covers."""
     rows, columns = image.shape
     left, right = (int(min(max(v / sides[0], 0.0), 0.999) * columns) for v in (box[0], box[2]))

@@ -47,6 +47,7 @@ class Layout:
     legend : parts of it, each with its upper left corner.
     insets : the places of views of slivers, as many as are shown.
     type, axes, inset_axes, texts : sizes of all text.
+    shortened : whether the legend has no areas because they have no room.
     """
 
     size: Corner
@@ -60,6 +61,7 @@ class Layout:
     axes: Dress = field(default_factory=Dress)
     inset_axes: Dress = SMALL
     texts: Texts = field(default_factory=Texts)
+    shortened: bool = False
 
 
 def flowing(

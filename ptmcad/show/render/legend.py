@@ -186,6 +186,20 @@ def width(legend: Iterable[Entry]) -> float:
     return max(map(Type().entry_width, legend), default=0.0)
 
 
+def in_rows(entries: Sequence[Entry], width: float, type: Type) -> list[list[tuple[float, Entry]]]:
+    """The legend in rows, each entry with its place from the left in inches."""
+    lines: list[list[tuple[float, Entry]]] = [[]]
+    at = 0.0
+    for entry in entries:
+        each = type.entry_width(entry) + 0.2 * type.scale
+        if at and at + each > width:
+            lines.append([])
+            at = 0.0
+        lines[-1].append((at, entry))
+        at += each
+    return lines
+
+
 def draw_legend(figure: Any, legend: Sequence[Entry], left: float, top: float, type: Type | None = None) -> None:
     """Draw the entries from the place given in inches downwards."""
     type = type or Type()

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,18 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import Fill, filler, undetermined_fill
 from ptmcad.show.render.fitting import LEAST, Parts, overhang
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, draw_legend, head_of, hidden_words, thin_entry
+from ptmcad.show.render.legend import (
+    INK,
+    STRONG,
+    THIN,
+    Entry,
+    Type,
+    draw_legend,
+    head_of,
+    hidden_words,
+    in_rows,
+    thin_entry,
+)
 from ptmcad.show.render.painting import Paint, paint_map
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
@@ -89,6 +101,8 @@ def family_entries(family: FamilyMap, paint: Paint, thin: bool = False, hidden: 
     told += [Entry((text,), fill) for text, fill in found]
     if any(result.cover is not None for result in family.members):
         told.append(Entry(("undetermined",), paint.undetermined))
+    if any(result.cover is None and len(result.regions) > 1 for result in family.members):
+        told.append(Entry(("the count changes",), STRONG))
     if thin:
         told.append(Entry((" ".join(thin_entry().lines),), THIN))
     if hidden:
@@ -133,8 +147,9 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     paint = paint_of_family(family, style)
     marks = [marks_of(shape, (side, side), dpi, max(MIN_FONT, 0.85 * font)) for shape in seen]
     thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
+    paint = replace(paint, thin_walls=thin)
     told = family_entries(family, paint, thin, sum(mark.hidden for mark in marks))
-    lines = [] if style.legend is Place.NONE else flowed(told, wide - 1.2 * em, type)
+    lines = [] if style.legend is Place.NONE else in_rows(told, wide - 1.2 * em, type)
     rest = 1.5 * em * len(titles) + 0.4 * em + rows * head + below + (type.line * 1.35) * len(lines) + 0.7 * em
     between = 0.5 * em * (rows - 1)
     tall = (style.size[1] - rest - between) / rows if style.size is not None else side
@@ -188,21 +203,7 @@ def _strip_inner(axes: Any, has_left: bool, has_below: bool) -> None:
 
 
 def draw_flowed(figure: Figure, lines: Sequence[Sequence[tuple[float, Entry]]], em: float, type: Type) -> None:
-    """A legend of `flowed` at the figure's foot."""
+    """A legend in rows at the figure's foot."""
     for k, entries in enumerate(reversed(lines)):
         for at, entry in entries:
             draw_legend(figure, [entry], 0.6 * em + at, 0.5 * em + (k + 1) * type.line * 1.35, type)
-
-
-def flowed(entries: Sequence[Entry], width: float, type: Type) -> list[list[tuple[float, Entry]]]:
-    """The legend in rows, each entry with its place from the left in inches."""
-    lines: list[list[tuple[float, Entry]]] = [[]]
-    at = 0.0
-    for entry in entries:
-        each = type.entry_width(entry) + 0.2 * type.scale
-        if at and at + each > width:
-            lines.append([])
-            at = 0.0
-        lines[-1].append((at, entry))
-        at += each
-    return lines

@@ -15,7 +15,7 @@ from ptmcad.show.style import Style
 
 @dataclass(frozen=True, slots=True)
 class Paint:
-    """Colours and lines."""
+    """Colours and lines; ``thin_walls`` says whether walls that separate nothing are drawn."""
 
     fill: Callable[[Region], Fill]
     undetermined: Fill
@@ -23,6 +23,7 @@ class Paint:
     thin: float = THIN
     thin_lines: str = "solid"
     scale: float = 1.0
+    thin_walls: bool = True
 
 
 def paint_of(result: RegionMap, style: Style) -> Paint:
@@ -73,6 +74,8 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
         )  # fmt: skip
     lines: dict[tuple[bool, int], list[Any]] = {}
     for component, separates, line in seen.walls():
+        if not separates and not paint.thin_walls:
+            continue
         lines.setdefault((separates, component), []).append(line)
     for (separates, component), parts in sorted(lines.items()):
         axes.add_artist(

@@ -12,8 +12,9 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import expect
-from ptmcad.show.render.around import Point, draw_around
+from ptmcad.show.render.around import draw_around
 from ptmcad.show.render.axes import axis_name
+from ptmcad.show.render.blocks import Point
 from ptmcad.show.render.legend import INK, head_of
 from ptmcad.show.render.overlay import Overlay
 from ptmcad.show.render.painting import paint_map, paint_of
@@ -81,8 +82,8 @@ def draw_on(axes: Any, result: RegionMap, samples: bool, style: Style) -> None:
 
 def draw_with_poses(
     result: RegionMap, points: Sequence[tuple[Point, Poses]], path: Path, dpi: int, style: Style, overlay: Overlay
-) -> None:
-    """Write the map with the stable poses at points around it.
+) -> tuple[str, ...]:
+    """Write the map with the stable poses at points around it; what had no room is returned, in words.
 
     Raises
     ------
@@ -95,6 +96,7 @@ def draw_with_poses(
     """
     told = " ".join(f"At point {n}: {describe(poses)}" for n, (_, poses) in enumerate(points, 1))
     with settings(style):
-        figure = draw_around(result, points, style, dpi, overlay)
+        figure, missing = draw_around(result, points, style, dpi, overlay)
     figure.set_label(f"{whole_title(result)}\n{description(result)} {told}")
     save(figure, path, dpi=dpi, style=style)
+    return missing

@@ -51,7 +51,7 @@ TITLE_COLUMNS, TITLE_LINES = 80, 3
 def draw(
     result: RegionMap, path: Path, *, samples: bool = False, dpi: int = 150, style: Style = DEFAULT,
     overlay: Overlay = (),
-) -> None:  # fmt: skip
+) -> tuple[str, ...]:  # fmt: skip
     """Write the picture of a map.
 
     Parameters
@@ -61,6 +61,10 @@ def draw(
     dpi : resolution of a PNG; slivers are what is not seen at this resolution, in every format.
     style : what it looks like, and its size.
     overlay : further points.
+
+    Returns
+    -------
+    What had no room and was left out, in words (see `left_out`).
 
     Raises
     ------
@@ -77,39 +81,39 @@ def draw(
     if that has room.
     """
     with settings(style):
-        figure = figure_of(result, samples, dpi, style=style, overlay=overlay)
+        figure, missing = _figure(result, samples, dpi, NO_ROOM, style, overlay)
     figure.set_label(f"{' '.join(_title(result))}\n{description(result)}")
     save(figure, path, dpi=dpi, style=style)
+    return missing
 
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
     """What of a map is to be drawn: its shapes, and the views of the regions that its resolution hides.
 
-    ``thin_lines`` says whether curves are seen at which the count does not change.
+    ``thin_lines`` says whether curves are seen at which the count does not change; if none is, none is drawn: a
+    trace of one at the frame, which no legend explains, would look like a number's tick. ``unnamed`` is the number of
+    thin parts in which unstable solutions differ that have neither inset nor label.
     """
 
     whole: Shapes
     thin: tuple[int, ...] = ()
     views: tuple[Zoom, ...] = ()
     thin_lines: bool = False
-
-    def without_unstable(self, sides: tuple[float, float]) -> _Seen:
-        """The same but for views of parts in which unstable solutions differ, in a picture with sides in points."""
-        views = tuple(zoom for zoom in self.views if all(sliver.cell is None for sliver in zoom.slivers))
-        if len(views) == len(self.views):
-            return self
-        return replace(self, views=views, thin_lines=seen_thin_walls(self.whole, sides))
+    unnamed: int = 0
 
     def with_room(self, sides: tuple[float, float], size: float) -> _Seen:
-        """The same but for regions whose label has no room of its own, where letters lead to no inset."""
+        """The same but for what has no label of its own in a picture with sides in points, where no inset stands."""
         ranked = self.ranked
         marks = place(*self._labels(ranked), self.whole, sides, size, skip=True)
         kept = [sliver for sliver, mark in zip(ranked, marks, strict=True) if mark.clear]
         if len(kept) == len(ranked):
             return self
-        views = (replace(zoom, slivers=tuple(s for s in zoom.slivers if s in kept)) for zoom in self.views)
-        return replace(self, views=tuple(zoom for zoom in views if zoom.slivers))
+        views = tuple(replace(zoom, slivers=tuple(s for s in zoom.slivers if s in kept)) for zoom in self.views)
+        parts = [sum(sliver.cell is not None for sliver in each) for each in (ranked, kept)]
+        lines = parts[1] > 0 or seen_thin_walls(self.whole, sides)
+        views = tuple(zoom for zoom in views if zoom.slivers)
+        return replace(self, views=views, thin_lines=lines, unnamed=self.unnamed + parts[0] - parts[1])
 
     def _labels(self, slivers: Sequence[Sliver]) -> tuple[list[tuple[float, float]], list[str]]:
         """Where thin regions are, and their counts."""
@@ -158,6 +162,13 @@ def figure_of(
     result: RegionMap, samples: bool, dpi: int, room: Room = NO_ROOM, style: Style = DEFAULT, overlay: Overlay = ()
 ) -> Figure:
     """The picture, to be called within `settings`."""
+    return _figure(result, samples, dpi, room, style, overlay)[0]
+
+
+def _figure(
+    result: RegionMap, samples: bool, dpi: int, room: Room, style: Style, overlay: Overlay
+) -> tuple[Figure, tuple[str, ...]]:
+    """The picture, and what it leaves out."""
     whole = shapes(result)
     if style.flows:
         seen = _seen(whole, (SIDE, SIDE), dpi)
@@ -168,7 +179,20 @@ def figure_of(
         seen, layout = fit(result, whole, samples, dpi, style, overlay)
     figure = Figure(figsize=layout.size, dpi=dpi, facecolor="white")
     draw_parts(figure, seen, layout, style, samples, overlay)
-    return figure
+    return figure, left_out(seen, layout)
+
+
+def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
+    """What a picture of this layout does not show for want of room, in words."""
+    found = []
+    lost, drawn = len(seen.views) + seen.unnamed, len(layout.insets)
+    if lost > drawn and not drawn:
+        found.append(f"{lost} zoomed view{'s' * (lost > 1)} of parts that are too thin to be seen")
+    if seen.unnamed:
+        found.append("labels of such parts, in which unstable ones differ")
+    if layout.shortened:
+        found.append("the areas in the legend")
+    return tuple(found)
 
 
 def fit(
@@ -196,9 +220,9 @@ def fit(
             untold = replace(parts, legend=_legend(result, seen, samples, style, overlay, told=False))
             layout = fitted(untold, style, style.size or _natural(style, untold))
         if seen.views and not layout.insets:
-            # an arrow to what no inset shows helps where a count differs, and where none does it points at nothing
+            # what no inset shows is named by a label that an arrow leads to it, if that has room
             sides = (72 * layout.chart[2], 72 * layout.chart[3])
-            bare = seen.without_unstable(sides).with_room(sides, layout.texts.arrow)
+            bare = seen.with_room(sides, layout.texts.arrow)
             if bare is not seen:
                 seen, tries = bare, 1
                 continue
@@ -236,12 +260,13 @@ def _legend(
 def draw_parts(figure: Figure, seen: _Seen, layout: Layout, style: Style, samples: bool, overlay: Overlay = ()) -> Any:
     """Everything in its place; the map's axes."""
     result, inches, paint = seen.whole.result, figure.dpi_scale_trans, paint_of(seen.whole.result, style)
+    on_map = replace(paint, thin_walls=seen.thin_lines)
     left, middle = layout.title_at
     for k, line in enumerate(layout.title):
         at = middle - layout.title_line * k
         figure.text(left, at, line, transform=inches, fontsize=layout.texts.title, va="center")
     axes = _axes(figure, layout.chart, "map")
-    paint_map(axes, seen.whole, "", paint)
+    paint_map(axes, seen.whole, "", on_map)
     if samples:
         points = np.array([seen.whole.view.approximate_position(c.sample) for c in result.cells])
         axes.plot(

@@ -18,13 +18,13 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
-from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type
-from ptmcad.show.render.multiples import draw_flowed, family_entries, flowed, in_words, paint_of_family, title_of
+from ptmcad.show.render.legend import INK, STRONG, THIN, Entry, Type, in_rows
+from ptmcad.show.render.multiples import draw_flowed, family_entries, in_words, paint_of_family, title_of, value_text
 from ptmcad.show.render.painting import Paint
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.shapes import shapes
 from ptmcad.show.render.sheets import BOX, add_sheets, sheet_colours, sheet_entries
-from ptmcad.show.render.textwidth import wrapped
+from ptmcad.show.render.textwidth import text_width, wrapped
 from ptmcad.show.style import MIN_FONT, Place, Style
 from ptmcad.show.units import unit_of_free, with_unit
 
@@ -56,7 +56,7 @@ def solid_figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySur
 
 def _figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface | None) -> Figure:
     font = style.base_font
-    em = font / 72
+    em, small = font / 72, max(MIN_FONT, 0.85 * font)
     wide, tall = style.size or SIZE
     figure = Figure(figsize=(wide, tall), dpi=dpi, facecolor="white")
     title = title_of(family) if style.title is None else style.title
@@ -64,21 +64,25 @@ def _figure(family: FamilyMap, dpi: int, style: Style, surface: BoundarySurface 
     type = Type(font, max(MIN_FONT, 0.89 * font), font / 9, style.strong, style.strong * THIN / STRONG)
     colours = {} if surface is None else sheet_colours(family, surface, paint)
     told = family_entries(family, paint)
-    if surface is None and len(family.values) > MAX_FLOORS:
-        told.append(Entry(("curves of the other members",), THIN))
-    elif surface is not None:
-        told = sheet_entries(surface, colours, told if _lowest(family) else told[:1])
-    lines = [] if style.legend is Place.NONE else flowed(told, wide - 1.2 * em, type)
+    if surface is None:
+        told += _of_floors(family)
+    else:
+        fills = [entry for entry in told if entry.mark != STRONG]
+        told = sheet_entries(surface, colours, fills if _lowest(family) else fills[:1])
+    lines = [] if style.legend is Place.NONE else in_rows(told, wide - 1.2 * em, type)
     titles = wrapped(title, wide - 1.2 * em, font, True) if title else []
     head, foot = 1.5 * em * len(titles) + 0.4 * em, 1.35 * type.line * len(lines) + (0.7 * em if lines else 0.0)
     # names of axes are so many letters below the box, whose lowest corner is a tenth above the axes' end
     foot += max(0.0, 4.8 * em - 0.1 * (tall - head - foot))
-    box = (0.02, foot / tall, 0.92, (tall - head - foot) / tall)
+    # members' values stand at the left of the box, which is not as wide as its axes
+    before = 0.0 if surface is not None else 0.5 * max(text_width(value_text(family, v), small) for v in family.values)
+    left = max(0.02, before / wide)
+    box = (left, foot / tall, 0.94 - left, (tall - head - foot) / tall)
     axes = _axes(figure, box, family, font)
     # what is added is taken for further data, beside limits that matplotlib leaves at infinity
     with np.errstate(over="ignore", invalid="ignore"):
         if surface is None:
-            _add_floors(axes, family, paint)
+            _add_floors(axes, family, paint, small)
         else:
             for value, result in _lowest(family):
                 _floor(axes, result, float(value), paint, _least(result))
@@ -118,12 +122,29 @@ def _axes(figure: Figure, box: tuple[float, float, float, float], family: Family
     return axes
 
 
-def _add_floors(axes: Any, family: FamilyMap, paint: Paint) -> None:
+def _of_floors(family: FamilyMap) -> list[Entry]:
+    """What the legend says of maps one above the other."""
+    told = []
+    if len(family.values) > MAX_FLOORS:
+        told.append(Entry(("curves of the other members",), THIN))
+    if len(family.values) > 1:
+        told.append(Entry(("paler: seen through a map above it",), heads=0))
+    if any(not separates for result in family.members for _, separates, _ in shapes(result).walls()):
+        told.append(Entry(("without curves at which the count does not change",), heads=0))
+    return told
+
+
+def _add_floors(axes: Any, family: FamilyMap, paint: Paint, small: float) -> None:
     least = _least(*family.members)
     number = len(family.values)
     floors = set(np.linspace(0, number - 1, min(MAX_FLOORS, number)).round().astype(int))
     for k, (value, result) in enumerate(family):
         _floor(axes, result, float(value), paint, least if k in floors else None)
+        if k in floors:
+            axes.text(
+                *(_ends(axis)[0] for axis in family.axes), float(value), f"{value_text(family, value)} ",
+                fontsize=small, color=INK, ha="right", va="center", zorder=1e9, gid=f"member-{k}",
+            )  # fmt: skip
 
 
 def _least(*members: RegionMap) -> tuple[int, ...]:
