@@ -149,7 +149,7 @@ def _pose(
                     found[name] = settled
         if attempt == 1:
             unsettled = [n for n in range(len(mechanism.springs)) if f"force {n}" not in found]
-            found |= relaxed_numbers(mechanism, parameters, unsettled, (whole, box), bits)
+            found |= relaxed_numbers(mechanism, parameters, unsettled, (whole, box), bits, turns)
         if found.keys() >= numbers.keys() and (last in found or not mechanism.has_potential):
             index = solution.signs.count("-") if mechanism.has_potential else None
             return assembled(mechanism, parameters, found, index), bits

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from math import prod
+from math import pi, prod
 from typing import TYPE_CHECKING
 
 from flint import arb
@@ -19,7 +19,7 @@ from flint import arb
 from ptmcad.certified.plain.jets import rational_energy, rational_root
 from ptmcad.errors import ExpressionError
 from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.proofs import MirrorImage, Polynomial, energy_is_kept, squared_length
+from ptmcad.mechanism.proofs import MirrorImage, Monomial, Polynomial, energy_is_kept, squared_length
 from ptmcad.text.enclosure import Enclosure
 
 if TYPE_CHECKING:
@@ -42,9 +42,8 @@ def fixed_turns(
     """
     turns: dict[str, int] = {}
     for name, ball in held.items():
-        half = arb.pi() / 2 if name in mechanism.angles else arb(0)
-        n = round(float(ball.mid()) / float(half.mid())) if name in mechanism.angles else 0
-        place = half * n
+        place = fixed_place(mechanism, name, ball)
+        n = round(float(place.mid()) / (pi / 2))
         if ball.overlaps(place) and boxes[name].contains(2 * place - ball):
             turns[name] = n
     if not turns:
@@ -62,11 +61,11 @@ def _is_equilibrium(mechanism: Mechanism, parameters: Mapping[str, Fraction], tu
     """Whether these values of all unknowns are proved to be those of an equilibrium, which the boxes hold."""
     if turns.keys() != mechanism.unknowns.keys() or mechanism.moments:
         return False
-    jet = rational_energy(mechanism, parameters, _point(mechanism, turns))
+    jet = rational_energy(mechanism, parameters, point_of(mechanism, turns))
     return jet is not None and not any(jet.gradient)
 
 
-def _point(mechanism: Mechanism, turns: Mapping[str, int]) -> Point:
+def point_of(mechanism: Mechanism, turns: Mapping[str, int]) -> Point:
     """The values of fixed unknowns."""
     at: Point = {}
     for name, n in turns.items():
@@ -81,7 +80,7 @@ def rational_numbers(
     mechanism: Mechanism, parameters: Mapping[str, Fraction], turns: Mapping[str, int]
 ) -> dict[str, Enclosure]:
     """Those numbers of an equilibrium that are rational by these fixed unknowns, by name, as exact enclosures."""
-    at = _point(mechanism, turns)
+    at = point_of(mechanism, turns)
     found = {name: value for name, value in at.items() if " " in name}
     for name, n in turns.items():
         if name in mechanism.angles:
@@ -124,8 +123,22 @@ def _of_energy(mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Poi
 
 def _value(p: Polynomial, at: Point) -> Fraction | None:
     """The value of a polynomial; None where it depends on what has no value."""
-    total: dict[tuple[tuple[str, int], ...], Fraction] = {}
+    total = partly_valued(p, at)
+    return total.get((), Fraction(0)) if not any(total.keys() - {()}) else None
+
+
+def partly_valued(p: Polynomial, at: Mapping[str, Fraction]) -> dict[Monomial, Fraction]:
+    """The terms of a polynomial in which some variables have values."""
+    total: dict[Monomial, Fraction] = {}
     for monomial, c in p.terms.items():
         rest = tuple((name, e) for name, e in monomial if name not in at)
         total[rest] = total.get(rest, Fraction(0)) + c * prod(at[name] ** e for name, e in monomial if name in at)
-    return total.get((), Fraction(0)) if not any(c for rest, c in total.items() if rest) else None
+    return {rest: c for rest, c in total.items() if c}
+
+
+def fixed_place(mechanism: Mechanism, name: str, near: arb) -> arb:
+    """The value of a fixed unknown about which a ball is, at the context's precision."""
+    if name not in mechanism.angles:
+        return arb(0)
+    half = arb.pi() / 2
+    return half * round(float(near.mid()) / float(half.mid()))
