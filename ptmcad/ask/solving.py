@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from ptmcad.answer.poses import DIGITS, MAX_DIGITS, Poses
-from ptmcad.errors import A_MODEL, ConfigError, expect, shown
+from ptmcad.ask.manyangles import poses_by_search, work_for
+from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.mechanism import Mechanism, Model, ptm
 from ptmcad.process.memory import check_room, loading
 from ptmcad.question.config import point_from, point_from_mapping
@@ -61,6 +62,8 @@ def solve(
 def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> Poses:
     """All solutions of a model; only the engine that is used is loaded.
 
+    Of a mechanism with more than three angles whose basis grows too large it is the certified one, see `manyangles`.
+
     Parameters
     ----------
     parameters : all of the model's, with the free lengths if some is not zero.
@@ -79,7 +82,13 @@ def poses_at(model: Model, parameters: Mapping[str, Fraction], digits: int) -> P
         return certified_poses(parameters, digits) if model == ptm() else plain_poses(model, parameters, digits)
     from ptmcad.exact.poses import exact_poses
 
-    return exact_poses(model, {n: v for n, v in parameters.items() if n not in model.free_lengths}, digits)
+    given = {n: v for n, v in parameters.items() if n not in model.free_lengths}
+    most = work_for(model) if isinstance(model, Mechanism) else None
+    try:
+        return exact_poses(model, given, digits, most)
+    except LimitReached:
+        assert isinstance(model, Mechanism)  # no other is limited
+        return poses_by_search(model, parameters, digits)
 
 
 def needs_intervals(model: Model, parameters: Mapping[str, Fraction]) -> bool:

@@ -1,6 +1,7 @@
 """The exact engine's steps one by one, for any mechanism or system: the variety, an open CAD, counts at a point.
 
-Guarantee: exact, as the map is that these are the steps of; none of them draws or stores anything.
+Guarantee: exact, as the map is that these are the steps of; none of them draws or stores anything. Where the basis at a
+point grows too large in more than three angles, the count is one that the certified engine proves.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.slicevariety import SliceVariety
-from ptmcad.errors import A_MODEL, ConfigError, expect
+from ptmcad.ask.manyangles import counts_by_search, work_for
+from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.mechanism import Model
 from ptmcad.question.config import point_from_mapping, slice_from
 from ptmcad.question.slice import Point, Slice, without_free_lengths
@@ -18,6 +20,8 @@ from ptmcad.question.slice import Point, Slice, without_free_lengths
 if TYPE_CHECKING:
     from ptmcad.answer.counts import Counts
 
+TIMEOUT = 60.0
+"""Seconds for a search where algebra does not count."""
 Question = Slice | str | Path | Mapping[str, Any]
 
 
@@ -81,7 +85,7 @@ def open_cad(question: Question) -> tuple[Point, ...]:
     return tuple(Point(slice.axis_names, to_fraction(x), to_fraction(y)) for x, y in stacks.points)
 
 
-def counts_at(model: Model, **values: object) -> Counts:
+def counts_at(model: Model, *, timeout: float | None = TIMEOUT, **values: object) -> Counts:
     """Numbers of solutions of a mechanism or system at a rational point: in all, stable, and by index.
 
     >>> from ptmcad.question.config import make_system
@@ -90,6 +94,8 @@ def counts_at(model: Model, **values: object) -> Counts:
 
     Parameters
     ----------
+    timeout : seconds after which a search for critical points in more than three angles, whose basis grew too large
+        for algebra, is given up; None for no limit.
     values : of the parameters, as text, int or Fraction; a mechanism's have defaults.
 
     Raises
@@ -98,7 +104,11 @@ def counts_at(model: Model, **values: object) -> Counts:
         For a name or a value that is wrong, with the name; also for springs that have a free length.
     HypothesisError
         When some solution is singular, or there are infinitely many.
+    LimitReached
+        When that search was given up, or did not tell all solutions apart.
     """
+    if timeout is not None and (isinstance(timeout, bool) or not isinstance(timeout, int | float) or not timeout > 0):
+        raise ConfigError(f"{shown(repr(timeout), 60)} is not a positive number of seconds", key="timeout")
     from ptmcad.algebra.polynomials import from_fraction
     from ptmcad.exact.counting import count_by_isolation
     from ptmcad.exact.models import system_from
@@ -110,4 +120,8 @@ def counts_at(model: Model, **values: object) -> Counts:
     point = point_from_mapping(values, model)
     without_free_lengths(model, {n: constant(v) for n, v in point.items()}, "an exact count is", "use ptmcad.solve")
     system = system_from(model)
-    return count_by_isolation(system, {name: from_fraction(point[name]) for name in system.ring.parameters})
+    exact = {name: from_fraction(point[name]) for name in system.ring.parameters}
+    try:
+        return count_by_isolation(system, exact, work_for(model))
+    except LimitReached:
+        return counts_by_search(model, point, timeout)

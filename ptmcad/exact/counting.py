@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.fibre import CoordinatesInBalls, UnivariateRepresentation
+from ptmcad.algebra.fibre import CoordinatesInBalls, UnivariateRepresentation, Work
 from ptmcad.algebra.inertia import negative_eigenvalues
 from ptmcad.algebra.isolation import root_bound
 from ptmcad.algebra.newton import Newton
@@ -60,26 +60,30 @@ class Equilibria(NamedTuple):
     bits: int
 
 
-def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq]) -> Counts:
+def count_by_isolation(system: ParametricSystem, values: Mapping[str, fmpq], most: Work | None = None) -> Counts:
     """Counts at rational values of all parameters, by real-root isolation.
 
     Raises
     ------
     DegeneratePoint
         When some solution, real or not, is singular, or there are infinitely many.
+    LimitReached
+        When the quotient algebra is more work than `most`.
     """
-    return equilibria(system, values).counts
+    return equilibria(system, values, most).counts
 
 
-def equilibria(system: ParametricSystem, values: Mapping[str, fmpq]) -> Equilibria:
+def equilibria(system: ParametricSystem, values: Mapping[str, fmpq], most: Work | None = None) -> Equilibria:
     """All real solutions that count at rational values of all parameters, by real-root isolation.
 
     Raises
     ------
     DegeneratePoint
         When some solution, real or not, is singular, or there are infinitely many.
+    LimitReached
+        When the quotient algebra is more work than `most`.
     """
-    point, representation = simple_solutions(system, values)
+    point, representation = simple_solutions(system, values, most)
     bits = _FIRST_BITS
     if representation is None:
         return Equilibria(_counts(system, ()), (), bits)

@@ -107,7 +107,7 @@ def text_of_point(values: Mapping[str, fmpq]) -> str:
 
 
 def simple_solutions(
-    system: ParametricSystem, values: Mapping[str, fmpq]
+    system: ParametricSystem, values: Mapping[str, fmpq], most: Work | None = None
 ) -> tuple[PointSystem, UnivariateRepresentation | None]:
     """The point's system when its solutions are simple, and their representation; None when there are none.
 
@@ -117,10 +117,12 @@ def simple_solutions(
     ------
     DegeneratePoint
         When some solution is singular, or there are infinitely many.
+    LimitReached
+        When it is more work than `most`.
     """
     for saturated in (False, True) if system.inequalities else (False,):
         try:
-            point = point_system(system, values, saturated)
+            point = point_system(system, values, saturated, most)
         except DegeneratePoint:
             if saturated or not system.inequalities:
                 raise

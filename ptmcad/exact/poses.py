@@ -14,7 +14,7 @@ from itertools import pairwise
 
 from flint import ctx, fmpq
 
-from ptmcad.algebra.fibre import Fibre
+from ptmcad.algebra.fibre import Fibre, Work
 from ptmcad.algebra.number_field import Element
 from ptmcad.algebra.points import Points, RealPoint, points, real_values
 from ptmcad.algebra.polynomials import from_fraction
@@ -31,7 +31,7 @@ from ptmcad.mechanism.evaluate import value_at
 from ptmcad.text.tree import to_text as text_of
 
 
-def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int) -> Poses:
+def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int, most: Work | None = None) -> Poses:
     """All solutions of a mechanism without free lengths, or of another system.
 
     Parameters
@@ -43,11 +43,13 @@ def exact_poses(given: Model, parameters: Mapping[str, Fraction], digits: int) -
     ------
     ArithmeticError
         When two ways to the same fact disagree, which would be a fault of this program.
+    LimitReached
+        When the quotient algebra is more work than `most`.
     """
     system = system_from(given)
     values = {name: from_fraction(v) for name, v in parameters.items()}
     try:
-        point, found = _solutions(system, values)
+        point, found = _solutions(system, values, most)
     except DegeneratePoint:
         what = "equilibria" if system.has_index or isinstance(given, Mechanism) else "solutions"
         return Poses(given, parameters, (), Status.UNDECIDED, digits, 0, f"infinitely many {what}")
@@ -94,23 +96,25 @@ def _remark(found: Points) -> str:
     return "two solutions that an inequality excludes coincide"
 
 
-def _solutions(system: ParametricSystem, values: Mapping[str, fmpq]) -> tuple[PointSystem, Points]:
+def _solutions(system: ParametricSystem, values: Mapping[str, fmpq], most: Work | None) -> tuple[PointSystem, Points]:
     """All solutions, or those at which no inequality's polynomial is zero, where others are in the way.
 
     Raises
     ------
     DegeneratePoint
         When there are infinitely many.
+    LimitReached
+        When the quotient algebra is more work than `most`.
     """
     try:
-        point = point_system(system, values)
+        point = point_system(system, values, most=most)
         found = points(point.algebra, 1 if point.is_bounded else None)
         if not system.inequalities or found.distinct == found.total:
             return point, found
     except DegeneratePoint:
         if not system.inequalities:
             raise
-    point = point_system(system, values, saturated=True)
+    point = point_system(system, values, True, most)
     if not point.algebra.dimension:
         return point, Points((), (), 0, 0)
     return point, points(point.algebra, None)

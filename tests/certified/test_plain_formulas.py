@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from typing import Any
@@ -320,8 +321,14 @@ def test_poses_by_plain_and_refined_formulas_agree() -> None:
             assert first.text(10) == second.text(10)
 
 
-def test_a_number_that_is_zero_without_being_constant_makes_poses_undecided() -> None:
-    assert solve(VON_MISES, {"a": "1/2", "f": "0"}).status is Status.UNDECIDED  # h = 0 is an equilibrium
+def test_a_number_that_is_zero_without_a_reason_makes_poses_undecided() -> None:
+    """A third spring, from the side, is relaxed at h = 4/5 with the others, by another equation."""
+    record = deepcopy(VON_MISES)
+    record["mechanism"]["points"]["C"] = ["27/20", -1]
+    record["mechanism"]["springs"].append({"between": ["C", "P"], "k": 1, "free": "9/4"})
+    model = _slice(record).model
+    assert ptmcad.solve(model=model, l0=1, a="3/5", f=0).status is Status.UNDECIDED
+    assert ptmcad.solve(model=model, l0=1, a="3/5", f="1/100").status is Status.CERTIFIED
 
 
 def solve(record: dict[str, Any], at: dict[str, str]) -> ptmcad.Poses:

@@ -138,6 +138,33 @@ def test_springs_that_are_relaxed_together_by_the_same_equation(a: str) -> None:
         assert float(pose.reals[0]) ** 2 == pytest.approx(1 - float(Fraction(a)) ** 2)
 
 
+def test_springs_that_are_relaxed_together_by_symmetry() -> None:
+    """A plate between four springs, level where all are relaxed: three equations in two unknowns, one where phi = 0."""
+    plate = {
+        "parameters": {"f": {"kind": "force"}},
+        "unknowns": {"h": "length", "phi": "angle"},
+        "points": {"A": [-2, 0], "B": [2, 0], "P": [0, "h"]},
+        "bodies": {"plate": {"at": "P", "angle": "phi", "points": {"Q": ["-1/2", 0], "R": ["1/2", 0]}}},
+        "springs": [
+            {"between": pair, "k": 1, "free": free}
+            for pair, free in (
+                (["A", "Q"], "21/10"),
+                (["B", "R"], "21/10"),
+                (["A", "R"], "29/10"),
+                (["B", "Q"], "29/10"),
+            )
+        ],
+        "loads": {"P": [0, "f"]},
+    }
+    poses = ptmcad.solve(model=ptmcad.Mechanism(plate), f=0)
+    relaxed = [pose for pose in poses.equilibria if pose.energy is not None and pose.energy.exact == 0]
+    assert len(relaxed) == 2
+    for pose in relaxed:
+        assert [spring.length.exact for spring in pose.springs] == [Fraction(n, 10) for n in (21, 21, 29, 29)]
+        assert float(pose.reals[0]) ** 2 == pytest.approx(2.16)
+        assert pose.angles[0].exact == 0
+
+
 def test_springs_that_are_nearly_relaxed_together_are_not() -> None:
     """With b next to a the springs' equations contradict each other."""
     pose = ptmcad.solve(model=ptmcad.Mechanism(TRUSS), a="3/5", b=Fraction(3, 5) + Fraction(1, 10**40), f=0).equilibria[

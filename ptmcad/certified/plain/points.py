@@ -7,6 +7,7 @@ not proved is undecided. Springs without length are no solutions: total counts d
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
@@ -21,14 +22,17 @@ from ptmcad.certified.evaluation import Indices
 from ptmcad.certified.plain.bounds import Range, known_ranges
 from ptmcad.certified.plain.chart import chart, principal_minors
 from ptmcad.certified.plain.infinity import WITNESSES, patches
-from ptmcad.certified.plain.problem import FIRST, Problem, problem_of
+from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.points import BUDGET, MAX_OPEN_BOXES, MIN_BOX_WIDTHS, PRECISIONS, QUICK_BUDGET, PointCount, boxed
-from ptmcad.certified.search import Boxes, isolate
-from ptmcad.certified.system import System, system
+from ptmcad.certified.search import Boxes, Found, isolate
+from ptmcad.certified.system import Arguments, System, system
 from ptmcad.certified.tape import Tape, enclosing_floats, record
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.numerals import text_of
+
+MANY_BOXES = 6_000_000
+"""Boxes in floating point for one point where there are more than `MAX_UNKNOWNS` unknowns: about half a minute."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,6 +46,7 @@ class PlainCounter:
     equations : the equations alone.
     hessian : a tape of one stage with the Hessian's entries row by row.
     conditions : a tape of one stage with the inequalities, then the conditions for stability.
+    pause : called between the parts of a long search; what it raises ends that.
     """
 
     slice: Slice
@@ -52,6 +57,7 @@ class PlainCounter:
     equations: System
     hessian: Tape
     conditions: Tape
+    pause: Callable[[], None] | None = None
 
     def at(self, x: Fraction, y: Fraction, count: Count, *, thorough: bool = True) -> PointCount:
         """What ``count`` needs at the point (x, y) of the two axes.
@@ -147,10 +153,8 @@ class PlainCounter:
         start = np.array([[x_low, y_low, *low, x_high, y_high, *high]])
         variables = 2 + len(low)
         arguments = (self.stable if stable else self.all).arguments()
-        budget = BUDGET if thorough else QUICK_BUDGET
         for finest in MIN_BOX_WIDTHS if thorough else MIN_BOX_WIDTHS[:1]:
-            limits = finest, budget, MAX_OPEN_BOXES
-            found = isolate(arguments, self.equations.arguments(), start, limits, np.ones(variables))
+            found = self._isolated(arguments, start, finest, thorough)
             if not len(found.left()):
                 periods = np.zeros(variables)
                 for k, name in enumerate(self.problem.unknowns, FIRST):
@@ -158,6 +162,20 @@ class PlainCounter:
                 kept = distinct(found.unique, found.narrow, FIRST, periods)
                 return None if kept is None else (found.unique[kept], found.narrow[kept])
         return None
+
+    def _isolated(self, arguments: Arguments, start: Boxes, finest: float, thorough: bool) -> Found:
+        """The search in boxes no finer than that; of more than three unknowns one of many parts."""
+        equations, weights = self.equations.arguments(), np.ones(start.shape[1] // 2)
+        most = MANY_BOXES if len(self.problem.unknowns) > MAX_UNKNOWNS else BUDGET
+        part = BUDGET if thorough else QUICK_BUDGET
+        found = isolate(arguments, equations, start, (finest, part, MAX_OPEN_BOXES), weights)
+        while thorough and len(found.waiting) and len(found.small) <= MAX_OPEN_BOXES and found.used < most:
+            if self.pause is not None:
+                self.pause()
+            more = isolate(arguments, equations, found.waiting, (finest, part, MAX_OPEN_BOXES), weights)
+            unique, narrow, small = (np.concatenate(pair) for pair in zip(found[:3], more[:3], strict=True))
+            found = Found(unique, narrow, small, more.waiting, found.used + more.used)
+        return found
 
     def zero_condition(self, x: Fraction, y: Fraction, count: Count) -> str:
         """The text of a condition whose sign is not decided at a proved zero, to as many digits as there are."""
@@ -188,8 +206,13 @@ class PlainCounter:
         return None
 
 
-def plain_counter(slice: Slice) -> PlainCounter:
+def plain_counter(slice: Slice, most: int = MAX_UNKNOWNS, pause: Callable[[], None] | None = None) -> PlainCounter:
     """Write the solutions of a slice out, to count them at its points.
+
+    Parameters
+    ----------
+    most : unknowns that the model may have.
+    pause : see `PlainCounter`.
 
     Raises
     ------
@@ -198,7 +221,7 @@ def plain_counter(slice: Slice) -> PlainCounter:
     DegenerateSliceError
         When a condition is zero at a solution wherever one looks, so that nothing would ever be decided.
     """
-    problem = problem_of(slice)
+    problem = problem_of(slice, most)
     found = patches(problem, slice.axes)
     at = chart(problem)
     vanishing = ((), at.balances)
@@ -217,6 +240,7 @@ def plain_counter(slice: Slice) -> PlainCounter:
         system(at.equations, problem.variables, jacobian=at.hessian),
         record([[entry for row in at.hessian for entry in row]]),
         record([[*inequalities, *stability]]),
+        pause,
     )
     _check_conditions(counter)
     return counter

@@ -17,12 +17,13 @@ from ptmcad.certified.arb_evaluation import ball, run_arb
 from ptmcad.certified.arb_isolation import Box, refined
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.points import PlainCounter, plain_counter
+from ptmcad.certified.plain.problem import MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.relaxed import Relaxed, relaxed_numbers
 from ptmcad.certified.plain.resting import rational_point
-from ptmcad.certified.plain.symmetric import quarter_turns, rational_numbers
+from ptmcad.certified.plain.symmetric import Point, fixed_by_symmetry, quarter_turns, rational_numbers
 from ptmcad.certified.potential import potential
 from ptmcad.certified.tape import Tape, record
-from ptmcad.mechanism import Mechanism
+from ptmcad.mechanism import Mechanism, Model
 from ptmcad.mechanism.evaluate import value_at
 from ptmcad.question.domain import prove_slice
 from ptmcad.question.slice import Axis, Count, Slice
@@ -56,7 +57,7 @@ def plain_poses(mechanism: Mechanism, parameters: Mapping[str, Fraction], digits
     """
     slice = point_slice(mechanism, parameters)
     prove_slice(slice)
-    counter = plain_counter(slice)
+    counter = plain_counter(slice, MAX_UNKNOWNS_AT_POINTS)
     counts = counter.at(Fraction(0), Fraction(0), Count.INDEX)
     if not counts.decided:
         return Poses(mechanism, parameters, (), Status.UNDECIDED, digits, 0, NOT_TOLD)
@@ -78,11 +79,11 @@ def _order(pose: Pose) -> tuple[Fraction, ...]:
     return tuple(number.center for number in (*pose.angles, *pose.reals))
 
 
-def point_slice(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> Slice:
-    """The mechanism at a point as a slice on whose axes nothing depends."""
+def point_slice(model: Model, parameters: Mapping[str, Fraction]) -> Slice:
+    """The model at a point as a slice on whose axes nothing depends."""
     unit = (Fraction(0), Fraction(1))
     constants = {name: 0 * axis(0) + value for name, value in parameters.items()}
-    return Slice("point", mechanism, (Axis("x", *unit), Axis("y", *unit)), constants, Count.INDEX)
+    return Slice("point", model, (Axis("x", *unit), Axis("y", *unit)), constants, Count.INDEX)
 
 
 def _tape(mechanism: Mechanism, parameters: Mapping[str, Fraction]) -> tuple[Tape, tuple[str, ...]]:
@@ -123,6 +124,7 @@ def _pose(
     last = f"eigenvalue {len(mechanism.unknowns) - 1}"
     bits, found = 64 + 4 * digits, dict[str, Enclosure]()
     turns: dict[str, int] = {}
+    at: Point = {}
     for attempt in range(MAX_DOUBLINGS):
         with ctx.workprec(bits):
             radius = solution.radius
@@ -158,7 +160,9 @@ def _pose(
                 tuple(n for n in range(len(mechanism.springs)) if f"force {n}" not in found),
                 tuple(n for n in range(len(mechanism.torsion)) if f"torsion moment {n}" not in found),
             )
-            found |= relaxed_numbers(mechanism, parameters, relaxed, (whole, box), bits)
+            found |= relaxed_numbers(
+                mechanism, parameters, relaxed, (whole, box), bits, fixed_by_symmetry(mechanism, at)
+            )
         if found.keys() >= numbers.keys() and (last in found or not mechanism.has_potential):
             index = solution.signs.count("-") if mechanism.has_potential else None
             return assembled(mechanism, parameters, found, index), bits

@@ -26,6 +26,8 @@ from ptmcad.text.tree import Tree, to_text
 
 MAX_UNKNOWNS = 3
 """Angles and lengths; the time of a search multiplies with every one."""
+MAX_UNKNOWNS_AT_POINTS = 5
+"""The same at a single point, without axes to be searched: of four angles a second, of five half a minute."""
 FIRST = 2
 """Number of the first unknown among the variables, after the two axes."""
 
@@ -88,22 +90,22 @@ class Problem:
         return tuple(range(FIRST, FIRST + len(self.unknowns)))
 
 
-def problem_of(slice: Slice) -> Problem:
+def problem_of(slice: Slice, most: int = MAX_UNKNOWNS) -> Problem:
     """The problem of a slice's model.
 
     Raises
     ------
     ConfigError
-        When the plain formulas do not take the model or the count: more than `MAX_UNKNOWNS` unknowns, or
+        When the plain formulas do not take the model or the count: more than ``most`` unknowns, or
         `Count.ADMISSIBLE`; or when a condition on solutions holds nowhere.
     GeometryError
         When it is not proved that k l0 is nowhere negative in the window: only then is a spring without length, whose
         energy has a peak there, no stable equilibrium that is not counted.
     """
     model = slice.model
-    if len(model.unknowns) > MAX_UNKNOWNS:
+    if len(model.unknowns) > most:
         raise ConfigError(
-            f"the certified engine takes up to {MAX_UNKNOWNS} unknowns, and {model.name} has {len(model.unknowns)}",
+            f"the certified engine takes up to {most} unknowns, and {model.name} has {len(model.unknowns)}",
             key="unknowns",
         )
     if slice.count is Count.ADMISSIBLE:

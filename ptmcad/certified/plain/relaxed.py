@@ -8,7 +8,8 @@ of R plus multiples of the |d_s| - l0_s and of the sines. If these equations, wi
 those of springs that follow from others', are as many as the unknowns, interval Newton can prove that they have a zero
 in a box; if the box holds one equilibrium only, that is the zero. An equation |d_s|^2 = l0_s^2 follows from others
 where the polynomial, reduced by cos^2 + sin^2 = 1, is a linear combination of theirs, such as that of the other half of
-a symmetric truss.
+a symmetric truss. Unknowns that a mirror symmetry of the energy fixes have their values, and their slopes
+vanish: then there are fewer equations in fewer unknowns.
 
 Balls alone would never tell such a force from its neighbours. The lemma is that of interval Newton as in
 `ptmcad.certified.arb_isolation`.
@@ -27,6 +28,7 @@ from ptmcad.certified.arb_evaluation import run_arb
 from ptmcad.certified.arb_isolation import Box, newton
 from ptmcad.certified.formula import Graph
 from ptmcad.certified.plain.problem import FIRST
+from ptmcad.certified.plain.symmetric import fixed_place, partly_valued, point_of
 from ptmcad.certified.potential import potential
 from ptmcad.certified.system import system
 from ptmcad.certified.tape import record
@@ -52,6 +54,7 @@ def relaxed_numbers(
     relaxed: Relaxed,
     boxes: tuple[Box, Box],
     precision: int,
+    turns: Mapping[str, int],
 ) -> dict[str, Enclosure]:
     """The numbers of these springs, if all are proved to be relaxed, and the energy if it is rational then.
 
@@ -61,6 +64,7 @@ def relaxed_numbers(
     ----------
     boxes : one that holds no other equilibrium, and a narrower one around the equilibrium.
     precision : in bits.
+    turns : the unknowns that a symmetry fixes, as `ptmcad.certified.plain.symmetric.fixed_turns` has them.
 
     Returns
     -------
@@ -79,24 +83,29 @@ def relaxed_numbers(
     others = tuple(spring for n, spring in enumerate(mechanism.springs) if n not in free)
     bent = tuple(torsion for n, torsion in enumerate(mechanism.torsion) if n not in relaxed.torsion)
     rest = potential(replace(mechanism, springs=others, torsion=bent), values, unknowns)
-    equations = [graph.derivative(rest.energy, v.variable) for v in unknowns.values()]
+    loose = [v.variable for name, v in unknowns.items() if name not in turns]
+    equations = [graph.derivative(rest.energy, k) for k in loose]
     equations = [slope for slope in equations if slope.value != 0]
-    for n in _independent(mechanism, parameters, free):
+    for n in _independent(mechanism, parameters, free, point_of(mechanism, turns)):
         value = free[n]
         (x0, y0), (x1, y1) = (rest.points[end] for end in (mechanism.springs[n].start, mechanism.springs[n].end))
         equations.append((x1 - x0).squared() + (y1 - y0).squared() - value**2)
     deflections = potential(mechanism, values, unknowns).deflections if relaxed.torsion else ()
     equations += [deflections[n][1] for n in relaxed.torsion]
-    if len(equations) != len(unknowns):
+    if not loose or len(equations) != len(loose):
         return {}
     whole, narrow = boxes
     with ctx.workprec(precision):
         around = list(narrow)
-        for v in unknowns.values():
-            around[v.variable] = arb(narrow[v.variable].mid(), arb(fmpq(1, 2 ** (precision // 2))))
-            if not whole[v.variable].contains(around[v.variable]):
+        for name, v in unknowns.items():
+            k = v.variable
+            if name not in turns:
+                around[k] = arb(narrow[k].mid(), arb(fmpq(1, 2 ** (precision // 2))))
+            else:
+                around[k] = fixed_place(mechanism, name, narrow[k])
+            if not whole[k].contains(around[k]):
                 return {}
-    step = newton(system(equations, [v.variable for v in unknowns.values()]), tuple(around), precision)
+    step = newton(system(equations, loose), tuple(around), precision)
     if step is None or not step[1]:
         return {}
     found = {f"length {n}": value for n, value in free.items()} | {f"force {n}": Fraction(0) for n in free}
@@ -114,17 +123,24 @@ def relaxed_numbers(
     return {name: Enclosure(value, value) for name, value in found.items()}
 
 
-def _independent(mechanism: Mechanism, parameters: Mapping[str, Fraction], free: Mapping[int, Fraction]) -> list[int]:
+def _independent(
+    mechanism: Mechanism, parameters: Mapping[str, Fraction], free: Mapping[int, Fraction], at: Mapping[str, Fraction]
+) -> list[int]:
     """Springs from whose equations |d|^2 = l0^2 those of all these springs follow, by linear combination.
 
     All of them, where that is too much to be multiplied out.
+
+    Parameters
+    ----------
+    at : values of unknowns that are known, as `partly_valued` takes them.
     """
     rows: list[tuple[Monomial, dict[Monomial, Fraction]]] = []
     chosen = []
     try:
         for n, value in free.items():
             image, spring = MirrorImage(parameters), mechanism.springs[n]
-            rest = dict((squared_length(mechanism, image, spring.start, spring.end) - image.constant(value**2)).terms)
+            squared = squared_length(mechanism, image, spring.start, spring.end)
+            rest = partly_valued(squared - image.constant(value**2), at)
             for pivot, row in rows:
                 if factor := rest.get(pivot):
                     rest = {m: c for m in rest.keys() | row.keys() if (c := rest.get(m, 0) - factor * row.get(m, 0))}

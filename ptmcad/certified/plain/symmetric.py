@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from math import prod
+from math import pi, prod
 from typing import TYPE_CHECKING
 
 from flint import arb
@@ -19,7 +19,7 @@ from flint import arb
 from ptmcad.certified.plain.jets import rational_energy, rational_root
 from ptmcad.errors import ExpressionError
 from ptmcad.mechanism.evaluate import value_at
-from ptmcad.mechanism.proofs import MirrorImage, Polynomial, energy_is_kept, squared_length
+from ptmcad.mechanism.proofs import MirrorImage, Monomial, Polynomial, energy_is_kept, squared_length
 from ptmcad.text.enclosure import Enclosure
 
 if TYPE_CHECKING:
@@ -43,9 +43,8 @@ def fixed_turns(
     """
     turns: dict[str, int] = {}
     for name, ball in held.items():
-        half = arb.pi() / 2 if name in mechanism.angles else arb(0)
-        n = round(float(ball.mid()) / float(half.mid())) if name in mechanism.angles else 0
-        place = half * n
+        place = fixed_place(mechanism, name, ball)
+        n = round(float(place.mid()) / (pi / 2))
         if ball.overlaps(place) and boxes[name].contains(2 * place - ball):
             turns[name] = n
     if not turns:
@@ -85,6 +84,18 @@ def quarter_turns(mechanism: Mechanism, at: Point) -> dict[str, int]:
         if f"cos {name}" in at and (quarters := _quarters(at[f"cos {name}"], at[f"sin {name}"])) is not None:
             found[name] = quarters
     return found
+
+
+def fixed_by_symmetry(mechanism: Mechanism, at: Point) -> dict[str, int]:
+    """The unknowns that `fixed_turns` fixed, where it did not fix all of them.
+
+    Parameters
+    ----------
+    at : values of unknowns that are proved; of all of them where a zero gradient proved them, which may be no symmetry.
+    """
+    if len(at) == len(mechanism.angles) + len(mechanism.unknowns):
+        return {}
+    return quarter_turns(mechanism, at) | {name: 0 for name in mechanism.reals if name in at}
 
 
 def _quarters(cosine: Fraction, sine: Fraction) -> int | None:
@@ -152,8 +163,22 @@ def _of_energy(mechanism: Mechanism, parameters: Mapping[str, Fraction], at: Poi
 
 def _value(p: Polynomial, at: Point) -> Fraction | None:
     """The value of a polynomial; None where it depends on what has no value."""
-    total: dict[tuple[tuple[str, int], ...], Fraction] = {}
+    total = partly_valued(p, at)
+    return total.get((), Fraction(0)) if not any(total.keys() - {()}) else None
+
+
+def partly_valued(p: Polynomial, at: Mapping[str, Fraction]) -> dict[Monomial, Fraction]:
+    """The terms of a polynomial in which some variables have values."""
+    total: dict[Monomial, Fraction] = {}
     for monomial, c in p.terms.items():
         rest = tuple((name, e) for name, e in monomial if name not in at)
         total[rest] = total.get(rest, Fraction(0)) + c * prod(at[name] ** e for name, e in monomial if name in at)
-    return total.get((), Fraction(0)) if not any(c for rest, c in total.items() if rest) else None
+    return {rest: c for rest, c in total.items() if c}
+
+
+def fixed_place(mechanism: Mechanism, name: str, near: arb) -> arb:
+    """The value of a fixed unknown about which a ball is, at the context's precision."""
+    if name not in mechanism.angles:
+        return arb(0)
+    half = arb.pi() / 2
+    return half * round(float(near.mid()) / float(half.mid()))

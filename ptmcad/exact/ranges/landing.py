@@ -2,15 +2,15 @@
 
 Guarantee: every enclosure holds the number at the critical value itself, wherever that lies in its isolating interval;
 so it does not depend on where a path began. A pose that is simple there is carried to it by tubes (`tracking`). Poses
-that merge there are enclosed by a region that none of them leaves meanwhile (`meeting`), or are those of an exact
-solution, where the value is rational. An energy is that at a place beside, which differs by no more than the distance
-times the largest slope: along a branch of critical points the energy changes with the parameter alone, which is
-bounded on the torus.
+that merge there are enclosed by a region that none of them leaves meanwhile (`meeting`), or by what a symmetry or an
+exact solution at a rational value says of them. An energy is that at a place beside, which differs by no more than the
+distance times the largest slope: along a branch of critical points the energy changes with the parameter alone, which
+is bounded on the torus.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from fractions import Fraction
 from math import pi
 from typing import NamedTuple
@@ -29,6 +29,9 @@ from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 DIGITS = 12
 _NEAREST = Fraction(1, 2**56)
 """How near to a critical value branches are followed for what holds there, against the window's width."""
+
+_MOST_STEPS = 1000
+"""On that way, of which a fold takes some hundred; a pitchfork, of which fewer digits are told, takes them all."""
 
 
 class Landing(NamedTuple):
@@ -82,7 +85,7 @@ def beside(value: Fraction, side: int, gap: Fraction) -> Fraction:
 
 def _nearer(family: Family, place: Reached, value: Fraction) -> Reached:
     """The branch at a value, or as near to it as it can be followed."""
-    steps, _ = follow(family, place, value, abs(value - place.value))
+    steps, _ = follow(family, place, value, abs(value - place.value), _MOST_STEPS)
     return steps[-1] if steps else place
 
 
@@ -105,12 +108,23 @@ def _merged(
         return None
     with ctx.workprec(BITS):
         region = tuple(map(enclosure_of, found.box))
+        region = tuple(_exactly(x, k, family.angles, found.zero) for k, x in enumerate(region))
     if number.exact is None:
         return region
     poses = exact_poses(family.model, parameters_at(family, line, number.exact), DIGITS).equilibria
     near = [_turned((*pose.angles, *pose.reals), region, family.angles) for pose in poses]
     inside = [p for p in near if _overlap(p, region)]
     return inside[0] if len(inside) == 1 else region
+
+
+def _exactly(x: Enclosure, k: int, angles: int, zero: Set[int]) -> Enclosure:
+    """An unknown of which the cosine or the sine, or which itself, is zero; as it is where nothing is known."""
+    if k >= angles:
+        return Enclosure(Fraction(0), Fraction(0)) if k + angles in zero else x
+    if not {2 * k, 2 * k + 1} & zero:
+        return x
+    quarters = 2 * round(float(x) / pi) if 2 * k + 1 in zero else 2 * round(float(x) / pi - 0.5) + 1
+    return enclosure_of(arb.pi() * quarters / 2)
 
 
 def _turned(pose: Sequence[Enclosure], region: Sequence[Enclosure], angles: int) -> tuple[Enclosure, ...]:

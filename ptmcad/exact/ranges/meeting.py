@@ -55,6 +55,8 @@ class Meeting(NamedTuple):
     beyond : all solutions on the far side.
     box : where there is a region that no solution enters or leaves meanwhile, what it holds of each unknown, angles as
         the branch has them; else None.
+    zero : of the coordinates, cosine and sine of each angle and then the unknowns on the line, those that are zero
+        where the solutions meet: a symmetry that changes their signs takes the solutions that meet to one another.
     """
 
     meeting: tuple[int, ...]
@@ -62,6 +64,14 @@ class Meeting(NamedTuple):
     among: bool
     beyond: tuple[Solution, ...]
     box: Vector | None = None
+    zero: frozenset[int] = frozenset()
+
+
+class _Symmetry(NamedTuple):
+    """How a change of coordinates that leaves the equations alone permutes a group, and which it only gives signs."""
+
+    images: tuple[int, ...]
+    odd: frozenset[int]
 
 
 class _Member(NamedTuple):
@@ -109,14 +119,19 @@ def what_meets(family: Family, line: Line, current: Reached, after: Fraction) ->
     if region is None:
         return _without_region(family, unmatched, tuple(beyond))
     group, box = region
-    classes = _own_classes(group, _symmetries(family, line, group))
+    symmetries = _symmetries(family, line, group)
+    classes = _own_classes(group, [s.images for s in symmetries])
     if not classes:
         return None
     if len(classes) > 1 and any(group[k].ahead for c in classes for k in c):
         return None
     chosen = [group[k] for k in sorted(frozenset().union(*classes))]
     met, left = (tuple(sorted(m.solution.negative for m in chosen if m.ahead is side)) for side in (False, True))
-    return Meeting(met, left, len(classes) > 1, tuple(beyond), box)
+    zero: frozenset[int] = frozenset()
+    if len(classes) == 1:
+        own = next(iter(classes))
+        zero = zero.union(*(s.odd for s in symmetries if {s.images[k] for k in own} == own))
+    return Meeting(met, left, len(classes) > 1, tuple(beyond), box, zero)
 
 
 def _solutions(family: Family, line: Line, value: Fraction) -> list[Solution] | None:
@@ -280,7 +295,7 @@ def _outside(family: Family, point: Vector, box: Sequence[tuple[arb, arb]]) -> b
     return False
 
 
-def _symmetries(family: Family, line: Line, group: Sequence[_Member]) -> list[tuple[int, ...]]:
+def _symmetries(family: Family, line: Line, group: Sequence[_Member]) -> list[_Symmetry]:
     """How exchanges of unknowns and coordinates' signs that leave the equations alone on the line permute the group."""
     if len(group) <= 2:
         return []
@@ -301,7 +316,8 @@ def _symmetries(family: Family, line: Line, group: Sequence[_Member]) -> list[tu
                 for m, image in zip(group, moved, strict=True)
             ]
             if all(len(i) == 1 for i in images):
-                found.append(tuple(i[0] for i in images))
+                odd = frozenset(k for k, (i, sign) in enumerate(zip(order, signs, strict=True)) if i == k and sign < 0)
+                found.append(_Symmetry(tuple(i[0] for i in images), odd))
     return found
 
 

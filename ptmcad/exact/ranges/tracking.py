@@ -298,8 +298,14 @@ def at_value(family: Family, value: Fraction, guess: Vector) -> Tube | None:
     return enclose(family, value, value, guess)
 
 
-def follow(family: Family, start: Reached, end: Fraction, longest: Fraction) -> tuple[list[Reached], bool]:
+def follow(
+    family: Family, start: Reached, end: Fraction, longest: Fraction, most: int | None = None
+) -> tuple[list[Reached], bool]:
     """Follow a branch from one value of the parameter to another, in steps no longer than ``longest``.
+
+    Parameters
+    ----------
+    most : steps; `_MAX_STEPS` when None.
 
     Returns
     -------
@@ -309,7 +315,7 @@ def follow(family: Family, start: Reached, end: Fraction, longest: Fraction) -> 
     current, step = start, max(-longest, min(longest, (end - start.value) / 8))
     least = abs(end - start.value) * _MIN_STEP
     while current.value != end:
-        if len(found) == _MAX_STEPS:
+        if len(found) == (_MAX_STEPS if most is None else most):
             return found, False
         goal = end if abs(step) >= abs(end - current.value) else _short(current.value, step)
         reached = bridge(family, current, goal)
