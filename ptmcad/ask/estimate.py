@@ -68,7 +68,7 @@ def _degree(equation: Terms, above: list[int], below: list[int]) -> int:
     terms = [dict(powers) for _, part in equation for powers, _ in part]
     least = [min((t.get(k, 0) for t in terms), default=0) for k in range(len(above))]
     most = [max((t.get(k, 0) for t in terms), default=0) for k in range(len(above))]
-    varying = [k for k in range(len(above)) if most[k] > least[k] and (above[k] or below[k])]
+    varying = [k for k in range(len(above)) if above[k] or below[k]]
     return max(
         (sum((t.get(k, 0) - least[k]) * above[k] + (most[k] - t.get(k, 0)) * below[k] for k in varying) for t in terms),
         default=0,

@@ -250,6 +250,10 @@ PTM = "mechanism: ptm\naxes: {rho: [0, 2], L2: [0, 2]}\n"
             ["1: axes.L: the range of L goes below zero", "3: mechanism.parameters.k.default: k is -1"],
         ),
         (
+            "axes: {L: [0], W: [0, 3]}\n" + SPRUNG % ("", "-1", "0", "1"),
+            ["1: axes.L: expected a range", "7: mechanism.springs.1.k: a stiffness is positive"],
+        ),
+        (
             AXES + SPRUNG % (", k: {default: 1}", "-1", "0", "1"),
             ["3: mechanism.parameters.k: nothing uses k", "7: mechanism.springs.1.k: a stiffness is positive"],
         ),
