@@ -37,7 +37,7 @@ MAX_PROVED = 8
 """Complex solutions: of more it is not proved that the slice is degenerate, which takes seconds and more."""
 MAX_SECONDS = 4.0
 """For that proof."""
-MAX_EXPANDING = 2.0
+MAX_EXPANDING = 1.0
 """Seconds for what is written out as functions of the axes."""
 MAX_QUICK = 1_000
 """Terms of the equations times those of the longest parameter up to which that takes no while."""
