@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from ptmcad.ask.classification import check_taken
 from ptmcad.ask.engines import is_certified
+from ptmcad.ask.estimate import WORDS, cost
 from ptmcad.errors import ConfigError, GeometryError, LimitReached, shown
 from ptmcad.mechanism import Mechanism, ptm
 from ptmcad.mechanism.sizes import terms_of
@@ -36,7 +37,7 @@ MAX_PROVED = 8
 """Complex solutions: of more it is not proved that the slice is degenerate, which takes seconds and more."""
 MAX_SECONDS = 4.0
 """For that proof."""
-MAX_EXPANDING = 2.0
+MAX_EXPANDING = 1.0
 """Seconds for what is written out as functions of the axes."""
 MAX_QUICK = 1_000
 """Terms of the equations times those of the longest parameter up to which that takes no while."""
@@ -46,13 +47,6 @@ MAX_COUNTED = 40
 """Solutions with multiplicity: of more it takes seconds to see how many are different."""
 MAX_BASIS = 100, 400, 4_000
 """Polynomials, terms of each and bits of a number in a basis of the equations at a point."""
-_CLASSES = (
-    (4, "a second or less"),
-    (8, "seconds, on most slices"),
-    (16, "from seconds to minutes"),
-    (20, "minutes to hours: try --timeout, and counts along lines by ptmcad range"),
-)
-_BEYOND = "hours or more: ask for counts at points or along lines instead"
 _UNCOUNTED = "not known: try single points first, by ptmcad solve"
 _LONG = 16
 """Complex solutions: with more of them the exact map takes so long that whoever asks for it is told."""
@@ -103,7 +97,7 @@ def check(slice: Slice) -> Check:
             return Check(slice, at, None, "certified", _LARGE)
         return Check(slice, at, None, "certified", _CERTIFIED)
     if len(slice.model.unknowns) > MAX_UNKNOWNS:
-        return Check(slice, at, None, "exact", _BEYOND)
+        return Check(slice, at, None, "exact", WORDS[-1])
     return _counted(slice, at)
 
 
@@ -171,8 +165,8 @@ def _counted(slice: Slice, sample: tuple[Fraction, Fraction]) -> Check:
             return Check(slice, sample, found, "exact", f"not known: {seen}{late}")
     if not found:
         return Check(slice, sample, None, "exact", f"not known: at the sample {doubt}")
-    cost = next((cost for most, cost in _CLASSES if found <= most), _BEYOND)
-    return Check(slice, sample, found, "exact", cost + (_BY_INTERVALS if found > _LONG and _encloses(slice) else ""))
+    words = cost(found, problem.system, slice.parameters)
+    return Check(slice, sample, found, "exact", words + (_BY_INTERVALS if found > _LONG and _encloses(slice) else ""))
 
 
 def _prove(slice: Slice) -> None:
@@ -231,6 +225,12 @@ def warning(slice: Slice) -> str:
     return f"the equations have {found.complex_solutions} complex solutions, and {takes} {found.cost}"
 
 
+_TORSION = (
+    "energy k (1 - cos(angle - rest)), moment k sin(angle - rest): for small angles that of a linear spring, "
+    "k (angle - rest)"
+)
+
+
 def asked_text(slice: Slice) -> Iterator[str]:
     """What a slice asks as lines of text, before anything is computed."""
     model = slice.model
@@ -247,6 +247,8 @@ def asked_text(slice: Slice) -> Iterator[str]:
         }  # fmt: skip
         words = (f"{number} {one if number == 1 else many}" for (one, many), number in parts.items() if number)
         yield f"{'parts':<12}{', '.join(words)}"
+        if model.torsion:
+            yield f"{'torsion':<12}{_TORSION}"
     values = {name: e.to_text(slice.axis_names) for name, e in slice.parameters.items() if name not in slice.axis_names}
     fixed = [
         f"{name} = {value if len(value) <= MAX_SHOWN else shown(slice.text.get(name, value), MAX_SHOWN)}"

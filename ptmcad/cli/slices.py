@@ -76,10 +76,10 @@ class Asked(NamedTuple):
         """
         return record_from_options(self._typed(None)._replace(free=free))
 
-    def placed(self, error: ConfigError | HypothesisError) -> PtmcadError:
+    def placed(self, error: ConfigError | HypothesisError, count: str | None = None) -> PtmcadError:
         """A fault of the question with its place, as far as the record or the options can still be read for it."""
         try:
-            return with_place(error, record_from_options(self._typed(None)))
+            return with_place(error, record_from_options(self._typed(count)))
         except ConfigError:  # it is this one
             return error
 
@@ -104,7 +104,7 @@ def _with_places(command: F) -> F:
         try:
             return command(asked=asked, **given)
         except (ConfigError, HypothesisError) as error:
-            raise asked.placed(error) from error
+            raise asked.placed(error, given.get("count")) from error
 
     return placed  # type: ignore[return-value]
 

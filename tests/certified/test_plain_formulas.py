@@ -27,6 +27,7 @@ from ptmcad.mechanism.ptm import RECORD
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
 from ptmcad.show.ranges.certified import table as interval_table
+from ptmcad.text.expressions import constant
 
 VON_MISES: dict[str, Any] = {"name": "von_mises", **TRUSS}
 CHAIN: dict[str, Any] = {
@@ -260,10 +261,9 @@ def test_what_the_plain_formulas_do_not_take_is_refused_by_name() -> None:
                             "potential": "cos(t0) + a*cos(t1) + b*cos(t2) + cos(t3)"}  # fmt: skip
     with pytest.raises(ConfigError, match="up to 3 unknowns"):
         plain_counter(slice_from_mapping({"name": "four", "system": four, "axes": {"a": [1, 2], "b": [1, 2]}}))
-    springs = [{"between": ["A", "P"], "k": 1, "free": "l0 - 1"}]
-    upwards = {**PENDULUM, "mechanism": {**PENDULUM["mechanism"], "springs": springs}}
+    upwards = slice_from_mapping(PENDULUM)
     with pytest.raises(GeometryError, match="stiffness times free length of spring AP is -1/2 at"):
-        plain_counter(slice_from_mapping(upwards))
+        plain_counter(replace(upwards, parameters={**upwards.parameters, "l0": constant(Fraction(-1, 2))}))
 
 
 def test_equations_without_a_potential_are_counted() -> None:

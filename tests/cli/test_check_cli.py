@@ -212,3 +212,18 @@ def test_a_proof_that_takes_long_is_ended(monkeypatch: pytest.MonkeyPatch) -> No
     found = check(slice)
     assert found.complex_solutions == 1
     assert found.cost.startswith("not known: at 5 points") and found.cost.endswith("not proved in the time")
+
+
+def test_the_law_of_torsion_springs_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "hinge.yaml"
+    path.write_text(
+        "mechanism:\n  parameters: {W: {kind: force}, c: {kind: number}}\n  unknowns: {th: angle}\n"
+        "  points: {P: [sin(th), cos(th)]}\n  torsion: [{angle: th, k: c}]\n  loads: {P: {weight: W}}\n"
+        "axes: {W: [0, 1], c: [0, 2]}\n",
+        encoding="utf-8",
+    )
+    assert run(["check", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert "torsion     energy k (1 - cos(angle - rest)), moment k sin(angle - rest): for small angles" in out
+    assert run(["check", str(CONFIGS / "fig4.yaml")]) == 0
+    assert "torsion" not in capsys.readouterr().out

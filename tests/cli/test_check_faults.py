@@ -250,6 +250,10 @@ PTM = "mechanism: ptm\naxes: {rho: [0, 2], L2: [0, 2]}\n"
             ["1: axes.L: the range of L goes below zero", "3: mechanism.parameters.k.default: k is -1"],
         ),
         (
+            "axes: {L: [0], W: [0, 3]}\n" + SPRUNG % ("", "-1", "0", "1"),
+            ["1: axes.L: expected a range", "7: mechanism.springs.1.k: a stiffness is positive"],
+        ),
+        (
             AXES + SPRUNG % (", k: {default: 1}", "-1", "0", "1"),
             ["3: mechanism.parameters.k: nothing uses k", "7: mechanism.springs.1.k: a stiffness is positive"],
         ),
@@ -361,3 +365,17 @@ def test_what_an_engine_refuses_of_an_option_names_the_option(
     given = ["--set", "L1=(a - b)^2 + 10^-30*(a + b)"]
     assert run(["classify", str(path), *given, "--out", str(tmp_path)]) == 2
     assert capsys.readouterr().err.startswith("error: --set L1: a length must be positive")
+
+
+def test_a_count_that_an_engine_refuses_is_that_of_the_option(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "good.yaml"
+    text = SPRUNG % (", l0: {kind: free length, default: 1}", "1", "l0", "1") + AXES
+    path.write_text(f"{text}count: stable\n", encoding="utf-8")
+    assert run(["classify", str(path), "--count", "admissible", "--out", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.startswith("error: --count: the certified engine counts admissible")
+    path.write_text(f"{text}count: admissible\n", encoding="utf-8")
+    for command in (["classify", str(path), "--out", str(tmp_path)], ["check", str(path)]):
+        assert run(command) == 2
+        assert capsys.readouterr().err.startswith(f"error: {path}:10: count: the certified engine counts")

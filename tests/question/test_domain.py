@@ -195,3 +195,42 @@ def test_a_line_need_not_lie_in_the_window(at: str, sign: bool) -> None:
         pytest.importorskip("numba")
         with pytest.raises(GeometryError, match=r"l0_3 is -.* at rho = 3/2, m = 1"):
             certified_intervals(slice, "rho", {"m": at}, 6)
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "free", "torsion", "part"),
+    [("g", "0", "1", "springs.1.k"), ("1", "g - 1", "1", "springs.1.free"), ("1", "0", "g*m", "torsion.1.k")],
+)
+def test_what_springs_are_given_is_proved_by_engines(stiffness: str, free: str, torsion: str, part: str) -> None:
+    """They trust no reader: in the slice as read all of it is right."""
+    mechanism = {
+        "parameters": {"g": {"default": 1}, "m": {}, "n": {}},
+        "unknowns": {"th": "angle"},
+        "points": {"A": ["-2", "0"], "P": ["sin(th)", "cos(th)"]},
+        "springs": [{"between": ["A", "P"], "k": stiffness, "free": free}],
+        "torsion": [{"angle": "th", "k": torsion}],
+        "loads": {"P": ["n", "g*m"]},
+    }
+    slice = slice_from_mapping({"mechanism": mechanism, "axes": {"m": [0, 2], "n": [-3, 1]}})
+    prove_slice(slice)
+    dip = parse("(m - 1/3)^2 + (n + 1/7)^2 - 1e-18", {"m": axis(0), "n": axis(1)})
+    with pytest.raises(GeometryError) as caught:
+        prove_slice(replace(slice, parameters={**slice.parameters, "g": dip}))
+    assert caught.value.part == part
+
+
+def test_an_expression_in_a_spring_has_a_degree_that_can_be_computed() -> None:
+    mechanism = {
+        "parameters": {"L": {"kind": "length"}, "g": {}},
+        "unknowns": {"th": "angle"},
+        "points": {"A": ["-2", "0"], "P": ["L*sin(th)", "L*cos(th)"]},
+        "springs": [{"between": ["A", "P"], "k": "g^20"}],
+    }
+    with pytest.raises(ConfigError, match="has degree 40 in the axes: at most 32 can be computed"):
+        slice_from_mapping({
+            "mechanism": mechanism, "parameters": {"g": "1 + u*L"}, "axes": {"L": [0, 1], "u": [0, 1]},
+        })  # fmt: skip
+    with pytest.raises(ConfigError, match=r"springs\.1\.k: cannot be judged: the power is too large"):
+        slice_from_mapping({
+            "mechanism": mechanism, "parameters": {"g": "(1 + u + L)^8"}, "axes": {"L": [0, 1], "u": [0, 1]},
+        })  # fmt: skip
