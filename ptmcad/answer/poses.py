@@ -6,7 +6,7 @@ Guarantee: all real equilibria are there; every number is exact or an `Enclosure
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -98,6 +98,7 @@ class Poses:
         UNDECIDED with no equilibria when there are infinitely many or they could not be separated; see ``remark``.
     digits : significant digits that each enclosure settles.
     bits : the precision that was needed.
+    units : of ``length`` and ``force``, where the record declares them; nothing but text depends on them.
     """
 
     model: Model
@@ -107,6 +108,7 @@ class Poses:
     digits: int
     bits: int
     remark: str = ""
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def mechanism(self) -> str:

@@ -11,8 +11,9 @@ from itertools import pairwise
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, noun, of_what, untold
-from ptmcad.mechanism import Mechanism, Model, built_in
+from ptmcad.mechanism import Mechanism, built_in
 from ptmcad.question.slice import merged
+from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure, exact_text
 
 WIDTH = 100
@@ -48,23 +49,28 @@ def table(poses: Poses, digits: int | None = None) -> str:
     if poses.equilibria:
         lines += [
             "",
-            *(_wrapped("units", units) if (units := _units(poses.model)) else []),
+            *(_wrapped("units", units) if (units := _units(poses)) else []),
             *(_wrapped("energy", [note]) if (note := _energy_note(poses)) else []),
             *(_wrapped("tense", [_TENSE]) if poses.equilibria[0].admissible is not None else []),
         ]
     return "\n".join(lines)
 
 
-def _units(mechanism: Model) -> list[str]:
+def _units(poses: Poses) -> list[str]:
     """In what numbers are measured; nothing of a system, whose numbers have no units."""
+    mechanism, units = poses.model, poses.units
     if not isinstance(mechanism, Mechanism):
         return []
-    length, force = mechanism.units
+    length, force = (
+        units.get(what) or (f"that of {name}" if name else "")
+        for what, name in zip(("length", "force"), mechanism.units, strict=True)
+    )
+    product = energy_unit(units) if "length" in units and "force" in units else "their product"
     pivots = " and ".join(f"{angle} at {at}" for angle, at in mechanism.pivots.items())
     return [
-        *([f"lengths and coordinates in that of {length}"] if length else []),
-        *([f"forces in that of {force}"] if force else []),
-        *(["energies and the Hessian's eigenvalues in their product"] if mechanism.has_potential else []),
+        *([f"lengths and coordinates in {length}"] if length else []),
+        *([f"forces in {force}"] if force else []),
+        *([f"energies and the Hessian's eigenvalues in {product}"] if mechanism.has_potential else []),
         # only of what is built in it is known where an angle is measured from
         *([f"angles between rod and base, {pivots}"] if pivots and mechanism.name in built_in() else []),
     ]

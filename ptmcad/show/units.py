@@ -5,11 +5,14 @@ Guarantee: an axis has the unit of the parameters which are a number times it, o
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ptmcad.mechanism import Kind
 from ptmcad.mechanism.description import UnknownKind
 from ptmcad.question.slice import Slice
 
 _LENGTH, _FORCE, _STIFFNESS = ("length",), ("force",), ("force", "length")
+_ENERGY = (*_FORCE, *_LENGTH)
 _QUANTITIES = {Kind.LENGTH: _LENGTH, Kind.BASE: _LENGTH, Kind.STIFFNESS: _STIFFNESS, Kind.FORCE: _FORCE}
 """The quantities, of which a second one divides."""
 
@@ -28,6 +31,20 @@ def _quantities(slice: Slice, axis: int) -> tuple[str, ...]:
 def unit(slice: Slice, axis: int) -> str:
     """The unit of an axis, such as ``mm``, or ``length`` where the record declares none; empty when not known."""
     return "/".join(slice.units.get(quantity, quantity) for quantity in _quantities(slice, axis))
+
+
+def energy_unit(units: Mapping[str, str]) -> str:
+    """The unit of energies of a mechanism, such as ``kN·m``; in words as far as units are not declared."""
+    return (
+        "·".join(units[q] for q in _ENERGY)
+        if all(q in units for q in _ENERGY)
+        else " · ".join(units.get(q, q) for q in _ENERGY)
+    )
+
+
+def declared_units(units: Mapping[str, str]) -> dict[str, str]:
+    """Of lengths, forces and energies, as far as a record declares them."""
+    return {**units, **({"energy": energy_unit(units)} if all(q in units for q in _ENERGY) else {})}
 
 
 def unit_of_unknown(slice: Slice, name: str) -> str:

@@ -66,6 +66,7 @@ __all__ = [
     "slice_from",
     "slice_from_mapping",
     "slice_from_options",
+    "units_of",
     "with_place",
 ]
 
@@ -276,6 +277,17 @@ def point_from_mapping(values: Mapping[str, object], model: Model | None = None)
             raise ConfigError(unknown_parameter(name, model))
         given[name] = number_text(from_python(plain(value), place))
     return point_of(Record(model=model, values=given), {})
+
+
+def units_of(config: str | Path) -> Mapping[str, str]:
+    """The units that a record declares, of ``length`` and ``force``.
+
+    Raises
+    ------
+    ConfigError
+        For anything wrong in it, with file, line and key.
+    """
+    return record_of(read_file(config)).units
 
 
 def point_from_options(

@@ -26,6 +26,7 @@ FORMAT = "ptmcad-poses/1"
 MAX_TEXT = 2_000_000
 MAX_NAME = 40
 MAX_REMARK = 300
+MAX_UNIT = 20
 
 T = TypeVar("T")
 
@@ -81,6 +82,7 @@ def _poses(digits: int) -> Codec[Poses]:
         parameters=_by_name(_EXACT),
         digits=NATURAL,
         bits=NATURAL,
+        units=codec.Key(codec.named(line(MAX_UNIT)), default={}),
         equilibria=listed(
             Codec(
                 lambda pose: (bare if pose.admissible is None else free).write(pose),
