@@ -452,7 +452,7 @@ def test_all_poses_of_a_cell_are_at_one_scale_however_tall_one_of_them_is(one: B
     path = tmp_path / "crane.html"
     path.write_text(page(ptmcad.classify(CRANE, areas=False)), encoding="utf-8")
     one.media(prefers_color_scheme="light")
-    for width in (1200, 700, 380):
+    for width in (1200, 620, 380):
         one.size(width, 900)
         one.open(path)
         one.run("choose(0, false)")
