@@ -60,7 +60,7 @@ def _figure(family: FamilyMap, dpi: int, style: Style) -> Figure:
     if len(family.values) > 1:
         told.append(Entry(("paler: seen through", "a map above it"), heads=2))
     if any(not separates for result in family.members for _, separates, _ in shapes(result).walls()):
-        told.append(Entry(("without curves at which", "the count does not change"), heads=2))
+        told.append(Entry(("other curves left out",)))
     entries = [] if style.legend is Place.NONE else told
     legend = max((type.entry_width(entry) for entry in entries), default=0.0) + (1.2 * em if entries else 0.0)
     head = 2 * em if title else 0.0
